@@ -1,0 +1,30 @@
+# One interface target that every target of the project links: warnings, sanitizers, include root.
+add_library(irdm_options INTERFACE)
+target_include_directories(irdm_options INTERFACE ${PROJECT_SOURCE_DIR})
+target_compile_options(irdm_options INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wcast-align
+  -Wunused -Wdouble-promotion -Wformat=2
+  $<$<BOOL:${IRDM_WERROR}>:-Werror>)
+# Identical inputs give identical bits: no contraction that depends on the optimiser's mood.
+target_compile_options(irdm_options INTERFACE -ffp-contract=off)
+target_compile_definitions(irdm_options INTERFACE IRDM_VERSION="${PROJECT_VERSION}")
+
+if(IRDM_SANITIZE)
+  target_compile_options(irdm_options INTERFACE
+    -fsanitize=${IRDM_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  target_link_options(irdm_options INTERFACE -fsanitize=${IRDM_SANITIZE})
+  target_compile_definitions(irdm_options INTERFACE IRDM_SANITIZED)
+endif()
+
+# irdm_add_library(NAME SOURCES... ) makes one static library target for a folder.
+function(irdm_add_library name)
+  add_library(${name} STATIC ${ARGN})
+  target_link_libraries(${name} PUBLIC irdm_options)
+endfunction()
+
+# irdm_add_program(NAME LIBRARY) makes a program from the folder's main.cpp and its library.
+function(irdm_add_program name library)
+  add_executable(${name} main.cpp)
+  target_link_libraries(${name} PRIVATE ${library})
+  install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endfunction()

@@ -1,0 +1,211 @@
+#include "common/config/toml_reader.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "common/error.hpp"
+
+namespace irdm {
+namespace {
+
+const toml::table kEmptyTable;
+
+std::string to_text(double value) {
+  std::ostringstream stream;
+  stream << value;
+  return stream.str();
+}
+
+std::string describe(const Range& range) {
+  const bool low = range.lowest > std::numeric_limits<double>::lowest();
+  const bool high = range.highest < std::numeric_limits<double>::max();
+  std::string text = "a finite number";
+  if (low) text += (range.lowest_included ? " >= " : " > ") + to_text(range.lowest);
+  if (high) {
+    text += low ? " and" : "";
+    text += (range.highest_included ? " <= " : " < ") + to_text(range.highest);
+  }
+  return text;
+}
+
+bool contains(const Range& range, double value) {
+  if (!std::isfinite(value)) return false;
+  const bool low = range.lowest_included ? value >= range.lowest : value > range.lowest;
+  const bool high = range.highest_included ? value <= range.highest : value < range.highest;
+  return low && high;
+}
+
+}  // namespace
+
+TomlTable TomlTable::adopt(toml::table root, std::string name, std::filesystem::path folder) {
+  auto document =
+      std::make_shared<Document>(Document{std::move(root), std::move(name), std::move(folder)});
+  const toml::table* table = &document->root;
+  return {std::move(document), table, ""};
+}
+
+TomlTable TomlTable::parse_file(const std::filesystem::path& path) {
+  if (!std::filesystem::is_regular_file(path)) {
+    throw Error(path.string(), "no such file", "check the path");
+  }
+  try {
+    return adopt(toml::parse_file(path.string()), path.string(),
+                 std::filesystem::absolute(path).parent_path());
+  } catch (const toml::parse_error& error) {
+    throw Error(path.string() + ":" + std::to_string(error.source().begin.line),
+                std::string(error.description()), "correct the TOML syntax");
+  }
+}
+
+TomlTable TomlTable::parse_text(const std::string& text, const std::string& name) {
+  try {
+    return adopt(toml::parse(text), name, std::filesystem::current_path());
+  } catch (const toml::parse_error& error) {
+    throw Error(name + ":" + std::to_string(error.source().begin.line),
+                std::string(error.description()), "correct the TOML syntax");
+  }
+}
+
+std::string TomlTable::full_name(const std::string& key) const {
+  return name_.empty() ? key : name_ + "." + key;
+}
+
+void TomlTable::fail(const std::string& key, const std::string& what,
+                     const std::string& remedy) const {
+  const toml::node* node = key.empty() ? nullptr : table_->get(key);
+  const auto line = node != nullptr ? node->source().begin.line : table_->source().begin.line;
+  std::string where = document_->name;
+  if (line > 0) where += ":" + std::to_string(line);
+  throw Error(where, (key.empty() ? "[" + name_ + "]" : full_name(key)) + " " + what, remedy);
+}
+
+bool TomlTable::has(const std::string& key) const {
+  return table_->contains(key);
+}
+
+const toml::node* TomlTable::find(const std::string& key) {
+  read_.insert(key);
+  return table_->get(key);
+}
+
+const toml::node& TomlTable::need(const std::string& key) {
+  const toml::node* node = find(key);
+  if (node == nullptr) fail(key, "is missing", "add it");
+  return *node;
+}
+
+double TomlTable::checked(const std::string& key, const toml::node& node,
+                          const Range& range) const {
+  const std::optional<double> value = node.value<double>();
+  if (!node.is_number() || !value) fail(key, "is not a number", "give " + describe(range));
+  if (!contains(range, *value)) fail(key, "is " + to_text(*value), "give " + describe(range));
+  return *value;
+}
+
+double TomlTable::number(const std::string& key, const Range& range) {
+  return checked(key, need(key), range);
+}
+
+double TomlTable::number(const std::string& key, const Range& range, double fallback) {
+  const toml::node* node = find(key);
+  return node == nullptr ? fallback : checked(key, *node, range);
+}
+
+int TomlTable::integer(const std::string& key, int lowest, int highest) {
+  const toml::node& node = need(key);
+  const std::string wanted =
+      "give a whole number from " + std::to_string(lowest) + " to " + std::to_string(highest);
+  if (!node.is_integer()) fail(key, "is not a whole number", wanted);
+  const std::int64_t value = node.value<std::int64_t>().value_or(0);
+  if (value < lowest || value > highest) fail(key, "is " + std::to_string(value), wanted);
+  return static_cast<int>(value);
+}
+
+int TomlTable::integer(const std::string& key, int lowest, int highest, int fallback) {
+  return has(key) ? integer(key, lowest, highest) : (find(key), fallback);
+}
+
+bool TomlTable::boolean(const std::string& key, bool fallback) {
+  const toml::node* node = find(key);
+  if (node == nullptr) return fallback;
+  if (!node->is_boolean()) fail(key, "is not true or false", "give true or false");
+  return node->value<bool>().value_or(fallback);
+}
+
+std::string TomlTable::text(const std::string& key) {
+  const toml::node& node = need(key);
+  if (!node.is_string()) fail(key, "is not text", "give text in quotes");
+  return node.value<std::string>().value_or("");
+}
+
+std::string TomlTable::text(const std::string& key, const std::string& fallback) {
+  return has(key) ? text(key) : (find(key), fallback);
+}
+
+std::string TomlTable::choice(const std::string& key, const std::vector<std::string>& words,
+                              const std::string& fallback) {
+  const std::string word = text(key, fallback);
+  if (std::find(words.begin(), words.end(), word) == words.end()) {
+    std::string list;
+    for (const std::string& each : words) list += (list.empty() ? "" : " | ") + each;
+    fail(key, "is '" + word + "'", "give one of: " + list);
+  }
+  return word;
+}
+
+std::filesystem::path TomlTable::path(const std::string& key) {
+  const std::string name = text(key);
+  if (name.empty()) fail(key, "is empty", "give a path");
+  return (document_->folder / name).lexically_normal();
+}
+
+std::vector<double> TomlTable::numbers(const std::string& key, std::size_t count,
+                                       const Range& range) {
+  const toml::array* array = need(key).as_array();
+  const std::string wanted = "give a list of " + std::to_string(count) + " numbers";
+  if (array == nullptr) fail(key, "is not a list", wanted);
+  if (array->size() != count) {
+    fail(key, "has " + std::to_string(array->size()) + " entries", wanted);
+  }
+  std::vector<double> values;
+  for (const toml::node& node : *array) values.push_back(checked(key, node, range));
+  return values;
+}
+
+std::vector<double> TomlTable::numbers(const std::string& key, std::size_t count,
+                                       const Range& range, const std::vector<double>& fallback) {
+  return has(key) ? numbers(key, count, range) : (find(key), fallback);
+}
+
+TomlTable TomlTable::table(const std::string& key, bool required) {
+  const toml::node* node = required ? &need(key) : find(key);
+  if (node == nullptr) return {document_, &kEmptyTable, full_name(key)};
+  if (!node->is_table()) fail(key, "is not a table", "write it as [" + full_name(key) + "]");
+  return {document_, node->as_table(), full_name(key)};
+}
+
+std::vector<TomlTable> TomlTable::tables(const std::string& key) {
+  std::vector<TomlTable> found;
+  const toml::node* node = find(key);
+  if (node == nullptr) return found;
+  const toml::array* array = node->as_array();
+  if (array == nullptr || !std::all_of(array->begin(), array->end(),
+                                       [](const toml::node& each) { return each.is_table(); })) {
+    fail(key, "is not a list of tables", "write it as [[" + full_name(key) + "]]");
+  }
+  for (const toml::node& each : *array) {
+    found.push_back(
+        {document_, each.as_table(), full_name(key) + "[" + std::to_string(found.size()) + "]"});
+  }
+  return found;
+}
+
+void TomlTable::finish() const {
+  for (const auto& [key, node] : *table_) {
+    const std::string name(key.str());
+    if (!read_.contains(name)) fail(name, "is not a known key", "remove it or correct its name");
+  }
+}
+
+}  // namespace irdm

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <toml++/toml.h>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+/// Strict reading of configuration files: every key that is read is checked for type and range, and
+/// every key that nobody read is an error. All errors are irdm::Error with file and line.
+namespace irdm {
+
+/// Closed range of a number; the default is any finite number.
+struct Range {
+  double lowest = -std::numeric_limits<double>::max();
+  double highest = std::numeric_limits<double>::max();
+  bool lowest_included = true;
+  bool highest_included = true;
+};
+
+inline Range at_least(double lowest) {
+  return {.lowest = lowest};
+}
+inline Range above(double lowest) {
+  return {.lowest = lowest, .lowest_included = false};
+}
+inline Range between(double lowest, double highest) {
+  return {.lowest = lowest, .highest = highest};
+}
+
+/// One table of a TOML file. Reading consumes keys; finish() rejects what is left over.
+class TomlTable {
+ public:
+  /// Parses a file. Throws Error when it is missing or not TOML.
+  static TomlTable parse_file(const std::filesystem::path& path);
+  /// Parses text; `name` stands for the file in messages.
+  static TomlTable parse_text(const std::string& text, const std::string& name);
+
+  bool has(const std::string& key) const;
+
+  double number(const std::string& key, const Range& range);  ///< required
+  double number(const std::string& key, const Range& range, double fallback);
+  int integer(const std::string& key, int lowest, int highest);  ///< required
+  int integer(const std::string& key, int lowest, int highest, int fallback);
+  bool boolean(const std::string& key, bool fallback);
+  std::string text(const std::string& key);  ///< required
+  std::string text(const std::string& key, const std::string& fallback);
+  /// One of a list of words.
+  std::string choice(const std::string& key, const std::vector<std::string>& words,
+                     const std::string& fallback);
+  /// A path; a relative one is relative to the configuration file's folder. Required.
+  std::filesystem::path path(const std::string& key);
+  std::vector<double> numbers(const std::string& key, std::size_t count, const Range& range);
+  std::vector<double> numbers(const std::string& key, std::size_t count, const Range& range,
+                              const std::vector<double>& fallback);
+
+  /// A table inside this one; absent and not required: an empty one.
+  TomlTable table(const std::string& key, bool required = false);
+  /// An array of tables ([[key]]); empty when absent.
+  std::vector<TomlTable> tables(const std::string& key);
+
+  /// Throws Error on the first key of this table that was never read.
+  void finish() const;
+
+  /// Throws Error about a key (or about the table when the key is empty), with file and line.
+  [[noreturn]] void fail(const std::string& key, const std::string& what,
+                         const std::string& remedy) const;
+
+ private:
+  struct Document {
+    toml::table root;
+    std::string name;
+    std::filesystem::path folder;
+  };
+  TomlTable(std::shared_ptr<const Document> document, const toml::table* table, std::string name)
+      : document_(std::move(document)), table_(table), name_(std::move(name)) {}
+  static TomlTable adopt(toml::table root, std::string name, std::filesystem::path folder);
+  const toml::node* find(const std::string& key);
+  const toml::node& need(const std::string& key);
+  std::string full_name(const std::string& key) const;
+  double checked(const std::string& key, const toml::node& node, const Range& range) const;
+
+  std::shared_ptr<const Document> document_;
+  const toml::table* table_ = nullptr;
+  std::string name_;
+  std::set<std::string> read_;
+};
+
+}  // namespace irdm

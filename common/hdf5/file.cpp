@@ -1,0 +1,358 @@
+#include "common/hdf5/file.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <numeric>
+
+#include "common/error.hpp"
+
+namespace irdm::hdf5 {
+
+template <>
+hid_t native_type<double>() {
+  return H5T_NATIVE_DOUBLE;
+}
+template <>
+hid_t native_type<float>() {
+  return H5T_NATIVE_FLOAT;
+}
+template <>
+hid_t native_type<std::int32_t>() {
+  return H5T_NATIVE_INT32;
+}
+template <>
+hid_t native_type<std::uint8_t>() {
+  return H5T_NATIVE_UINT8;
+}
+template <>
+hid_t native_type<std::uint64_t>() {
+  return H5T_NATIVE_UINT64;
+}
+
+namespace {
+
+// HDF5 prints its own error stack to stderr by default; our errors are one line.
+void silence_library() {
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+
+Handle make_space(const Shape& shape, const hsize_t* maximum = nullptr) {
+  if (shape.empty()) return {H5Screate(H5S_SCALAR), H5Sclose};
+  return {H5Screate_simple(static_cast<int>(shape.size()), shape.data(), maximum), H5Sclose};
+}
+
+// Missing groups on the way to a new object are made with it.
+Handle make_link_properties() {
+  Handle properties(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
+  H5Pset_create_intermediate_group(properties.get(), 1);
+  return properties;
+}
+
+hsize_t product(const Shape& shape) {
+  return std::accumulate(shape.begin(), shape.end(), hsize_t{1}, std::multiplies<>());
+}
+
+std::string to_text(const Shape& shape) {
+  std::string text = "(";
+  for (std::size_t i = 0; i < shape.size(); ++i) {
+    text += (i > 0 ? ", " : "") + (shape[i] == 0 ? std::string("any") : std::to_string(shape[i]));
+  }
+  return text + ")";
+}
+
+}  // namespace
+
+void File::fail_read(const std::string& what) const {
+  throw Error(name_, what, "the file is damaged or of another kind; make it again");
+}
+
+void File::fail_write(const std::string& what) const {
+  throw Error(name_, what, "check free space and permissions of the folder");
+}
+
+File File::create(const std::filesystem::path& path) {
+  silence_library();
+  if (std::filesystem::exists(path)) {
+    throw Error(path.string(), "exists already", "choose another name or remove it");
+  }
+  Handle file(H5Fcreate(path.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+  if (file.get() < 0) {
+    throw Error(path.string(), "cannot be created", "check that the folder exists and is writable");
+  }
+  return {std::move(file), path.string()};
+}
+
+File File::open(const std::filesystem::path& path) {
+  silence_library();
+  if (!std::filesystem::exists(path)) {
+    throw Error(path.string(), "no such file", "check the path");
+  }
+  Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  if (file.get() < 0) {
+    throw Error(path.string(), "is not a complete HDF5 file",
+                "it is truncated, of another kind or not readable; make it again");
+  }
+  return {std::move(file), path.string()};
+}
+
+bool File::exists(const std::string& path) const {
+  for (std::size_t end = path.find('/', 1);; end = path.find('/', end + 1)) {
+    if (H5Lexists(file_.get(), path.substr(0, end).c_str(), H5P_DEFAULT) <= 0) return false;
+    if (end == std::string::npos) return true;
+  }
+}
+
+void File::create_group(const std::string& path) {
+  const Handle links = make_link_properties();
+  const Handle group(H5Gcreate2(file_.get(), path.c_str(), links.get(), H5P_DEFAULT, H5P_DEFAULT),
+                     H5Gclose);
+  if (group.get() < 0) fail_write("cannot create " + path);
+}
+
+void File::flush() {
+  if (H5Fflush(file_.get(), H5F_SCOPE_GLOBAL) < 0) fail_write("cannot be written");
+}
+
+void File::close() {
+  flush();
+  file_ = Handle();
+}
+
+Handle File::open_object(const std::string& path) const {
+  Handle object(H5Oopen(file_.get(), path.c_str(), H5P_DEFAULT), H5Oclose);
+  if (object.get() < 0) fail_read("has no " + path);
+  return object;
+}
+
+Handle File::open_dataset(const std::string& path) const {
+  Handle dataset(H5Dopen2(file_.get(), path.c_str(), H5P_DEFAULT), H5Dclose);
+  if (dataset.get() < 0) fail_read("has no dataset " + path);
+  return dataset;
+}
+
+Handle File::make_dataset(const std::string& path, hid_t type, hid_t space, hid_t creation) {
+  const Handle links = make_link_properties();
+  Handle dataset(
+      H5Dcreate2(file_.get(), path.c_str(), type, space, links.get(), creation, H5P_DEFAULT),
+      H5Dclose);
+  if (dataset.get() < 0) fail_write("cannot create " + path);
+  return dataset;
+}
+
+void File::write_attribute(const std::string& object, const std::string& name,
+                           const std::string& value) {
+  const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+  H5Tset_size(type.get(), std::max<std::size_t>(value.size(), 1));
+  H5Tset_strpad(type.get(), H5T_STR_NULLPAD);
+  H5Tset_cset(type.get(), H5T_CSET_UTF8);
+  write_numbers(object, name, type.get(), {}, value.empty() ? "\0" : value.data());
+}
+
+void File::write_attribute(const std::string& object, const std::string& name, double value) {
+  write_numbers(object, name, H5T_NATIVE_DOUBLE, {}, &value);
+}
+
+void File::write_attribute(const std::string& object, const std::string& name, std::int64_t value) {
+  write_numbers(object, name, H5T_NATIVE_INT64, {}, &value);
+}
+
+void File::write_attribute(const std::string& object, const std::string& name, const Shape& shape,
+                           const double* values) {
+  write_numbers(object, name, H5T_NATIVE_DOUBLE, shape, values);
+}
+
+void File::write_numbers(const std::string& object, const std::string& name, hid_t type,
+                         const Shape& shape, const void* values) {
+  const Handle owner = open_object(object);
+  const Handle space = make_space(shape);
+  const Handle attribute(
+      H5Acreate2(owner.get(), name.c_str(), type, space.get(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  if (attribute.get() < 0 || H5Awrite(attribute.get(), type, values) < 0) {
+    fail_write("cannot write attribute " + name);
+  }
+}
+
+std::string File::read_string_attribute(const std::string& object, const std::string& name) const {
+  const Handle owner = open_object(object);
+  const Handle attribute(H5Aopen(owner.get(), name.c_str(), H5P_DEFAULT), H5Aclose);
+  if (attribute.get() < 0) fail_read("has no attribute " + name + " at " + object);
+  const Handle stored(H5Aget_type(attribute.get()), H5Tclose);
+  if (H5Tget_class(stored.get()) != H5T_STRING) fail_read("attribute " + name + " is not text");
+  if (H5Tis_variable_str(stored.get()) > 0) {  // as h5py writes it
+    char* text = nullptr;
+    const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+    H5Tset_size(type.get(), H5T_VARIABLE);
+    H5Tset_cset(type.get(), H5Tget_cset(stored.get()));
+    if (H5Aread(attribute.get(), type.get(), &text) < 0 || text == nullptr) {
+      fail_read("attribute " + name + " cannot be read");
+    }
+    std::string value(text);
+    H5free_memory(text);
+    return value;
+  }
+  std::string value(H5Tget_size(stored.get()), '\0');
+  if (H5Aread(attribute.get(), stored.get(), value.data()) < 0) {
+    fail_read("attribute " + name + " cannot be read");
+  }
+  value.resize(std::min(value.size(), value.find('\0')));
+  return value;
+}
+
+void File::read_numbers(const std::string& object, const std::string& name, hid_t type,
+                        std::size_t count, void* values) const {
+  const Handle owner = open_object(object);
+  const Handle attribute(H5Aopen(owner.get(), name.c_str(), H5P_DEFAULT), H5Aclose);
+  if (attribute.get() < 0) fail_read("has no attribute " + name + " at " + object);
+  const Handle stored(H5Aget_type(attribute.get()), H5Tclose);
+  const H5T_class_t kind = H5Tget_class(stored.get());
+  const Handle space(H5Aget_space(attribute.get()), H5Sclose);
+  if ((kind != H5T_FLOAT && kind != H5T_INTEGER) ||
+      H5Sget_simple_extent_npoints(space.get()) != static_cast<hssize_t>(count)) {
+    fail_read("attribute " + name + " at " + object + " is not " + std::to_string(count) +
+              " number(s)");
+  }
+  if (H5Aread(attribute.get(), type, values) < 0) {
+    fail_read("attribute " + name + " cannot be read");
+  }
+}
+
+double File::read_double_attribute(const std::string& object, const std::string& name) const {
+  double value = 0.0;
+  read_numbers(object, name, H5T_NATIVE_DOUBLE, 1, &value);
+  return value;
+}
+
+std::int64_t File::read_integer_attribute(const std::string& object,
+                                          const std::string& name) const {
+  std::int64_t value = 0;
+  read_numbers(object, name, H5T_NATIVE_INT64, 1, &value);
+  return value;
+}
+
+std::vector<double> File::read_doubles_attribute(const std::string& object, const std::string& name,
+                                                 std::size_t count) const {
+  std::vector<double> values(count);
+  read_numbers(object, name, H5T_NATIVE_DOUBLE, count, values.data());
+  return values;
+}
+
+Shape File::shape(const std::string& dataset) const {
+  if (!exists(dataset)) fail_read("has no dataset " + dataset);
+  const Handle set = open_dataset(dataset);
+  const Handle space(H5Dget_space(set.get()), H5Sclose);
+  Shape extents(static_cast<std::size_t>(std::max(0, H5Sget_simple_extent_ndims(space.get()))));
+  H5Sget_simple_extent_dims(space.get(), extents.data(), nullptr);
+  return extents;
+}
+
+std::size_t File::element_size(const std::string& dataset) const {
+  const Handle set = open_dataset(dataset);
+  const Handle type(H5Dget_type(set.get()), H5Tclose);
+  return H5Tget_size(type.get());
+}
+
+template <typename T>
+void File::create_dataset(const std::string& dataset, const Shape& shape) {
+  make_dataset(dataset, native_type<T>(), make_space(shape).get(), H5P_DEFAULT);
+}
+
+template <typename T>
+void File::write(const std::string& dataset, const Shape& shape, const T* values) {
+  const Handle set = make_dataset(dataset, native_type<T>(), make_space(shape).get(), H5P_DEFAULT);
+  if (H5Dwrite(set.get(), native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0) {
+    fail_write("cannot write " + dataset);
+  }
+}
+
+template <typename T>
+std::vector<T> File::read(const std::string& dataset, const Shape& expected) const {
+  const Shape found = shape(dataset);
+  const bool fits =
+      found.size() == expected.size() &&
+      std::equal(found.begin(), found.end(), expected.begin(),
+                 [](hsize_t have, hsize_t want) { return want == 0 || have == want; });
+  if (!fits) {
+    fail_read("dataset " + dataset + " has shape " + to_text(found) + ", expected " +
+              to_text(expected));
+  }
+  std::vector<T> values(product(found));
+  const Handle set = open_dataset(dataset);
+  if (H5Dread(set.get(), native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) {
+    fail_read("dataset " + dataset + " cannot be read");
+  }
+  return values;
+}
+
+void File::transfer_slab(const std::string& dataset, const Shape& start, const Shape& count,
+                         hid_t type, const void* source, void* target) const {
+  const Handle set = open_dataset(dataset);
+  const Handle space(H5Dget_space(set.get()), H5Sclose);
+  const Handle memory = make_space(count);
+  H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr);
+  if (source != nullptr) {
+    if (H5Dwrite(set.get(), type, memory.get(), space.get(), H5P_DEFAULT, source) < 0) {
+      fail_write("cannot write into " + dataset);
+    }
+  } else if (H5Dread(set.get(), type, memory.get(), space.get(), H5P_DEFAULT, target) < 0) {
+    fail_read("dataset " + dataset + " cannot be read");
+  }
+}
+
+template <typename T>
+void File::write_slab(const std::string& dataset, const Shape& start, const Shape& count,
+                      const T* values) {
+  transfer_slab(dataset, start, count, native_type<T>(), values, nullptr);
+}
+
+template <typename T>
+void File::read_slab(const std::string& dataset, const Shape& start, const Shape& count,
+                     T* values) const {
+  transfer_slab(dataset, start, count, native_type<T>(), nullptr, values);
+}
+
+template <typename T>
+void File::create_growing(const std::string& dataset, const Shape& row, hsize_t chunk_rows) {
+  Shape shape{0};
+  Shape maximum{H5S_UNLIMITED};
+  Shape chunk{chunk_rows};
+  for (const hsize_t extent : row) {
+    shape.push_back(extent);
+    maximum.push_back(extent);
+    chunk.push_back(extent);
+  }
+  const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  H5Pset_chunk(creation.get(), static_cast<int>(chunk.size()), chunk.data());
+  make_dataset(dataset, native_type<T>(), make_space(shape, maximum.data()).get(), creation.get());
+}
+
+template <typename T>
+void File::append(const std::string& dataset, hsize_t rows, const T* values) {
+  Shape extents = shape(dataset);
+  Shape start(extents.size(), 0);
+  Shape count = extents;
+  start[0] = extents[0];
+  count[0] = rows;
+  extents[0] += rows;
+  {
+    const Handle set = open_dataset(dataset);
+    if (H5Dset_extent(set.get(), extents.data()) < 0) fail_write("cannot extend " + dataset);
+  }
+  write_slab(dataset, start, count, values);
+}
+
+#define IRDM_HDF5_INSTANTIATE(T)                                                               \
+  template void File::create_dataset<T>(const std::string&, const Shape&);                     \
+  template void File::write<T>(const std::string&, const Shape&, const T*);                    \
+  template std::vector<T> File::read<T>(const std::string&, const Shape&) const;               \
+  template void File::write_slab<T>(const std::string&, const Shape&, const Shape&, const T*); \
+  template void File::read_slab<T>(const std::string&, const Shape&, const Shape&, T*) const;  \
+  template void File::create_growing<T>(const std::string&, const Shape&, hsize_t);            \
+  template void File::append<T>(const std::string&, hsize_t, const T*);
+IRDM_HDF5_INSTANTIATE(double)
+IRDM_HDF5_INSTANTIATE(float)
+IRDM_HDF5_INSTANTIATE(std::int32_t)
+IRDM_HDF5_INSTANTIATE(std::uint8_t)
+IRDM_HDF5_INSTANTIATE(std::uint64_t)
+#undef IRDM_HDF5_INSTANTIATE
+
+}  // namespace irdm::hdf5

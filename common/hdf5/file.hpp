@@ -1,0 +1,127 @@
+#pragma once
+
+#include <hdf5.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <initializer_list>
+#include <string>
+#include <utility>
+#include <vector>
+
+/// Thin RAII over HDF5's C interface: what the model and the trace file need, nothing more. Every
+/// failure is an irdm::Error that names the file and the object. The library is not thread safe:
+/// each process calls it from one thread at a time.
+namespace irdm::hdf5 {
+
+/// Owns one HDF5 identifier and closes it with the function that its kind asks for.
+class Handle {
+ public:
+  using Closer = herr_t (*)(hid_t);
+  Handle() = default;
+  Handle(hid_t id, Closer closer) : id_(id), closer_(closer) {}
+  Handle(Handle&& other) noexcept
+      : id_(std::exchange(other.id_, H5I_INVALID_HID)), closer_(other.closer_) {}
+  Handle& operator=(Handle&& other) noexcept {
+    std::swap(id_, other.id_);
+    std::swap(closer_, other.closer_);
+    return *this;
+  }
+  Handle(const Handle&) = delete;
+  Handle& operator=(const Handle&) = delete;
+  ~Handle() {
+    if (id_ >= 0) closer_(id_);
+  }
+  hid_t get() const { return id_; }
+
+ private:
+  hid_t id_ = H5I_INVALID_HID;
+  Closer closer_ = nullptr;
+};
+
+using Shape = std::vector<hsize_t>;
+
+/// HDF5's name for a C++ number type: double, float, std::int32_t, std::uint8_t or std::uint64_t.
+template <typename T>
+hid_t native_type();
+
+/// An open HDF5 file. Paths inside it are absolute ("/mesh/nodes"); missing groups are made on
+/// write.
+class File {
+ public:
+  /// Creates a file that must not exist yet. Throws Error.
+  static File create(const std::filesystem::path& path);
+  /// Opens a file for reading. Throws Error when it is missing, unreadable or not HDF5.
+  static File open(const std::filesystem::path& path);
+
+  const std::string& name() const { return name_; }
+  hid_t id() const { return file_.get(); }
+  bool exists(const std::string& path) const;
+
+  void create_group(const std::string& path);
+  void flush();
+  /// Closes the file now and throws Error if what was buffered cannot be written.
+  void close();
+
+  void write_attribute(const std::string& object, const std::string& name,
+                       const std::string& value);
+  void write_attribute(const std::string& object, const std::string& name, double value);
+  void write_attribute(const std::string& object, const std::string& name, std::int64_t value);
+  void write_attribute(const std::string& object, const std::string& name, const Shape& shape,
+                       const double* values);
+
+  std::string read_string_attribute(const std::string& object, const std::string& name) const;
+  double read_double_attribute(const std::string& object, const std::string& name) const;
+  std::int64_t read_integer_attribute(const std::string& object, const std::string& name) const;
+  /// Reads `count` doubles, whatever the attribute's shape.
+  std::vector<double> read_doubles_attribute(const std::string& object, const std::string& name,
+                                             std::size_t count) const;
+
+  /// Shape of a dataset. Throws Error when there is none of that name.
+  Shape shape(const std::string& dataset) const;
+  /// Bytes of one floating-point number of the dataset in the file: 4 or 8.
+  std::size_t element_size(const std::string& dataset) const;
+
+  template <typename T>
+  void write(const std::string& dataset, const Shape& shape, const T* values);
+  /// Reads a whole dataset and checks its shape; 0 in `expected` stands for any extent.
+  template <typename T>
+  std::vector<T> read(const std::string& dataset, const Shape& expected) const;
+
+  /// Makes a dataset of fixed shape without data, to be filled by write_slab.
+  template <typename T>
+  void create_dataset(const std::string& dataset, const Shape& shape);
+  /// Writes or reads the box [start, start + count) of a dataset.
+  template <typename T>
+  void write_slab(const std::string& dataset, const Shape& start, const Shape& count,
+                  const T* values);
+  template <typename T>
+  void read_slab(const std::string& dataset, const Shape& start, const Shape& count,
+                 T* values) const;
+
+  /// Makes a dataset that is empty along its first axis and grows by append; `row` is the rest of
+  /// its shape (empty for a plain list).
+  template <typename T>
+  void create_growing(const std::string& dataset, const Shape& row, hsize_t chunk_rows);
+  template <typename T>
+  void append(const std::string& dataset, hsize_t rows, const T* values);
+
+ private:
+  File(Handle file, std::string name) : file_(std::move(file)), name_(std::move(name)) {}
+  [[noreturn]] void fail_read(const std::string& what) const;
+  [[noreturn]] void fail_write(const std::string& what) const;
+  Handle open_object(const std::string& path) const;
+  Handle open_dataset(const std::string& path) const;
+  Handle make_dataset(const std::string& path, hid_t type, hid_t space, hid_t creation);
+  void read_numbers(const std::string& object, const std::string& name, hid_t type,
+                    std::size_t count, void* values) const;
+  void write_numbers(const std::string& object, const std::string& name, hid_t type,
+                     const Shape& shape, const void* values);
+  void transfer_slab(const std::string& dataset, const Shape& start, const Shape& count, hid_t type,
+                     const void* source, void* target) const;
+
+  Handle file_;
+  std::string name_;
+};
+
+}  // namespace irdm::hdf5

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "common/geometry.hpp"
+
+namespace irdm {
+
+/// Matrix whose rows are contiguous, as HDF5 stores them.
+template <typename Scalar>
+using RowMatrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// Geometry of the object at rest. N nodes, E elements, n surface nodes, t triangles.
+struct ModelMesh {
+  Points nodes;                    ///< (N, 3) [m], B
+  RowMatrix<int> tets;             ///< (E, 4 or 10), into nodes
+  std::vector<int> surface_nodes;  ///< (n), into nodes
+  Triangles triangles;             ///< (t, 3), into surface_nodes, normals outward
+  Eigen::VectorXd node_mass;       ///< (N) [kg]
+  Vector3 com_offset =
+      Vector3::Zero();  ///< centre of mass in the coordinates of the input mesh [m]
+
+  int surface_node_count() const { return static_cast<int>(surface_nodes.size()); }
+  /// Rest position of surface node i [m], B.
+  Vector3 rest_position(int i) const {
+    return nodes.row(surface_nodes[static_cast<std::size_t>(i)]).transpose();
+  }
+};
+
+/// Whether the object floats freely or some of its nodes are clamped.
+enum class Support { kFloating, kFixed };
+
+/// The object as a rigid body.
+struct BodyProperties {
+  double mass = 0.0;                  ///< M [kg]
+  Matrix3 inertia = Matrix3::Zero();  ///< I_B about the centre of mass [kg m^2], B
+  Support support = Support::kFloating;
+};
+
+/// Linear isotropic elasticity with Rayleigh damping C = alpha M + beta K.
+struct Material {
+  double youngs_modulus = 0.0;  ///< E [Pa], > 0
+  double poisson_ratio = 0.0;   ///< nu, in (-1, 0.5)
+  double density = 0.0;         ///< rho [kg/m^3], > 0
+  double rayleigh_alpha = 0.0;  ///< [1/s], >= 0
+  double rayleigh_beta = 0.0;   ///< [s], >= 0
+};
+
+/// R in modal form, R[s] = Phi diag(h_i[s]) Phi^T: r elastic modes at the surface.
+struct ModalResponse {
+  Eigen::VectorXd angular_frequency;  ///< omega_i (r) [rad/s]
+  Eigen::VectorXd decay_rate;         ///< sigma_i (r) [1/s]
+  std::variant<RowMatrix<float>, RowMatrix<double>>
+      shapes;  ///< Phi (3n, r), mass-normalised [kg^-1/2]
+
+  int mode_count() const { return static_cast<int>(angular_frequency.size()); }
+};
+
+/// R itself. In memory the step s runs fastest, so that one convolution reads consecutive numbers:
+/// entry (a, b) of R[s] stands at (b * dof + a) * steps + s. [m/N]
+struct DenseResponse {
+  int degrees_of_freedom = 0;  ///< 3n
+  int steps = 0;               ///< T
+  std::variant<std::vector<float>, std::vector<double>> values;
+};
+
+/// What a model file holds.
+struct Model {
+  ModelMesh mesh;
+  BodyProperties body;
+  Material material;
+  double dt = 0.0;  ///< response interval and force-loop period [s]
+  int steps = 0;    ///< T, recorded steps
+  std::variant<std::monostate, ModalResponse, DenseResponse>
+      response;  ///< the one that was asked for
+
+  int degrees_of_freedom() const { return 3 * mesh.surface_node_count(); }
+};
+
+}  // namespace irdm

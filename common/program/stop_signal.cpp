@@ -1,0 +1,43 @@
+#include "common/program/stop_signal.hpp"
+
+#include <poll.h>
+#include <sys/signalfd.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+
+#include "common/error.hpp"
+
+namespace irdm {
+
+StopSignal::StopSignal() {
+  std::signal(SIGPIPE, SIG_IGN);
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGTERM);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  descriptor_ = signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK);
+  if (descriptor_ < 0) {
+    throw Error("system", "no file descriptor for signals is left", "raise the limit (ulimit -n)");
+  }
+}
+
+StopSignal::~StopSignal() {
+  ::close(descriptor_);
+}
+
+bool StopSignal::wait(int other_descriptor) {
+  pollfd entries[2] = {{descriptor_, POLLIN, 0}, {other_descriptor, POLLIN, 0}};
+  while (::poll(entries, 2, -1) < 0 && errno == EINTR) {
+  }
+  return entries[0].revents != 0;
+}
+
+bool StopSignal::wait_for(int timeout_ms) {
+  pollfd entry{descriptor_, POLLIN, 0};
+  return ::poll(&entry, 1, timeout_ms) > 0;
+}
+
+}  // namespace irdm

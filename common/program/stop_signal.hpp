@@ -1,0 +1,23 @@
+#pragma once
+
+namespace irdm {
+
+/// SIGINT and SIGTERM as something to wait for. Make one in main before any thread starts: the
+/// signals are blocked from then on in every thread, and SIGPIPE is ignored.
+class StopSignal {
+ public:
+  StopSignal();
+  StopSignal(const StopSignal&) = delete;
+  StopSignal& operator=(const StopSignal&) = delete;
+  ~StopSignal();
+
+  /// Waits until a signal has come (true) or `other_descriptor` is readable (false); -1: no other.
+  bool wait(int other_descriptor = -1);
+  /// Waits at most `timeout_ms`; true when a signal has come.
+  bool wait_for(int timeout_ms);
+
+ private:
+  int descriptor_;
+};
+
+}  // namespace irdm

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+
+namespace irdm {
+
+/// Monotonic time of this machine [ns]. Any thread, real-time safe.
+std::int64_t monotonic_ns() noexcept;
+
+/// Sleeps until monotonic_ns() reaches `deadline_ns`.
+void sleep_until(std::int64_t deadline_ns) noexcept;
+
+/// Absolute deadlines of a periodic loop: no drift, and no burst to catch up. Periods that are over
+/// when the loop comes back are skipped whole and counted.
+class PeriodicSchedule {
+ public:
+  /// @param start_ns start of the first period
+  /// @param period_ns > 0
+  PeriodicSchedule(std::int64_t start_ns, std::int64_t period_ns) noexcept
+      : period_ns_(period_ns), deadline_ns_(start_ns) {}
+
+  /// The start of the period to wait for, given the time now: the next one that is not over yet.
+  /// One that starts late but has not ended still runs.
+  std::int64_t next(std::int64_t now_ns) noexcept;
+  std::uint64_t missed() const noexcept { return missed_; }
+
+ private:
+  std::int64_t period_ns_;
+  std::int64_t deadline_ns_;
+  std::uint64_t missed_ = 0;
+};
+
+}  // namespace irdm

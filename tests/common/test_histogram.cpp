@@ -1,0 +1,32 @@
+#include <catch2/catch.hpp>
+
+#include "common/realtime/histogram.hpp"
+
+using irdm::Histogram;
+
+TEST_CASE("histogram of nothing is zero") {
+  const Histogram histogram;
+  CHECK(histogram.count() == 0);
+  CHECK(histogram.percentile(0.5) == 0);
+  CHECK(histogram.maximum() == 0);
+}
+
+TEST_CASE("histogram percentiles are within a bucket's width of the exact ones") {
+  Histogram histogram;
+  constexpr std::int64_t kCount = 100'000;
+  for (std::int64_t i = 1; i <= kCount; ++i) histogram.add(i * 37);
+  CHECK(histogram.maximum() == kCount * 37);
+  for (const double fraction : {0.01, 0.5, 0.9, 0.99, 1.0}) {
+    const double exact = fraction * static_cast<double>(kCount) * 37.0;
+    CHECK(static_cast<double>(histogram.percentile(fraction)) == Approx(exact).epsilon(0.035));
+  }
+}
+
+TEST_CASE("histogram keeps what is out of range") {
+  Histogram histogram;
+  histogram.add(-5);
+  histogram.add(std::int64_t{1} << 60);
+  CHECK(histogram.count() == 2);
+  CHECK(histogram.percentile(0.5) == 0);
+  CHECK(histogram.maximum() == std::int64_t{1} << 60);
+}

@@ -1,0 +1,132 @@
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+
+#include "common/error.hpp"
+#include "common/model/model_file.hpp"
+
+using Catch::Matchers::Contains;
+using namespace irdm;
+
+namespace {
+
+// A single tetrahedron with two made-up modes: enough to exercise every field.
+Model small_model() {
+  Model model;
+  model.mesh.nodes.resize(4, 3);
+  model.mesh.nodes << 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1;
+  model.mesh.tets.resize(1, 4);
+  model.mesh.tets << 0, 1, 2, 3;
+  model.mesh.surface_nodes = {0, 1, 2, 3};
+  model.mesh.triangles.resize(4, 3);
+  model.mesh.triangles << 0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2;
+  model.mesh.node_mass = Eigen::VectorXd::Constant(4, 0.25);
+  model.mesh.com_offset = Vector3(0.1, 0.2, 0.3);
+  model.body.mass = 1.0;
+  model.body.inertia = Vector3(1, 2, 3).asDiagonal();
+  model.material = {2000, 0.49, 110, 8, 2e-4};
+  model.dt = 0.002;
+  model.steps = 3;
+  ModalResponse response;
+  response.angular_frequency = Eigen::Vector2d(10, 20);
+  response.decay_rate = Eigen::Vector2d(1, 2);
+  response.shapes = RowMatrix<float>(RowMatrix<float>::Random(12, 2));
+  model.response = response;
+  return model;
+}
+
+struct TemporaryFolder {
+  std::filesystem::path path =
+      std::filesystem::temp_directory_path() / ("irdm-test-model-" + std::to_string(::getpid()));
+  TemporaryFolder() { std::filesystem::create_directories(path); }
+  ~TemporaryFolder() { std::filesystem::remove_all(path); }
+};
+
+}  // namespace
+
+TEST_CASE("model file gives back what was written, modal and dense") {
+  const TemporaryFolder folder;
+  const auto path = folder.path / "model.h5";
+  const Model model = small_model();
+  const auto& modal = std::get<ModalResponse>(model.response);
+  {
+    ModelFileWriter writer(path);
+    writer.write_description(model);
+    writer.write_modal(modal);
+    writer.begin_dense(12, 3, Precision::kSingle);
+    for (int b = 0; b < 12; ++b) {
+      RowMatrix<float> column(3, 12);
+      for (int s = 0; s < 3; ++s) {
+        for (int a = 0; a < 12; ++a) column(s, a) = static_cast<float>(1000 * b + 100 * s + a);
+      }
+      writer.write_dense_column(b, column.data());
+    }
+    CHECK_FALSE(std::filesystem::exists(path));
+    writer.commit();
+  }
+  const Model read = read_model(path, ResponseKind::kModal);
+  CHECK(read.mesh.nodes == model.mesh.nodes);
+  CHECK(read.mesh.triangles == model.mesh.triangles);
+  CHECK(read.mesh.com_offset == model.mesh.com_offset);
+  CHECK(read.body.inertia == model.body.inertia);
+  CHECK(read.material.poisson_ratio == 0.49);
+  CHECK(read.dt == 0.002);
+  const auto& response = std::get<ModalResponse>(read.response);
+  CHECK(response.angular_frequency == modal.angular_frequency);
+  CHECK(std::get<RowMatrix<float>>(response.shapes) == std::get<RowMatrix<float>>(modal.shapes));
+
+  const Model dense_model = read_model(path, ResponseKind::kDense);
+  const auto& dense = std::get<DenseResponse>(dense_model.response);
+  const auto& values = std::get<std::vector<float>>(dense.values);
+  CHECK(values[(7 * 12 + 5) * 3 + 2] == 7205.0f);  // b = 7, a = 5, s = 2
+}
+
+TEST_CASE("model file without commit leaves nothing behind") {
+  const TemporaryFolder folder;
+  { ModelFileWriter(folder.path / "model.h5").write_description(small_model()); }
+  CHECK(std::filesystem::is_empty(folder.path));
+}
+
+TEST_CASE("model file that is missing, truncated, foreign or damaged is refused with its name") {
+  const TemporaryFolder folder;
+  const auto path = folder.path / "model.h5";
+  CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal), Contains("no such file"));
+
+  Model model = small_model();
+  const auto write = [&] {
+    ModelFileWriter writer(path);
+    writer.write_description(model);
+    writer.write_modal(std::get<ModalResponse>(model.response));
+    writer.commit();
+  };
+  SECTION("no dense response") {
+    write();
+    CHECK_THROWS_WITH(read_model(path, ResponseKind::kDense), Contains("no dense response"));
+  }
+  SECTION("truncated") {
+    write();
+    std::filesystem::resize_file(path, std::filesystem::file_size(path) / 2);
+    CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal), Contains("not a complete HDF5 file"));
+  }
+  SECTION("triangle out of range") {
+    model.mesh.triangles(0, 0) = 99;
+    write();
+    CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal), Contains("points outside"));
+  }
+  SECTION("number that is not finite") {
+    model.mesh.nodes(0, 0) = std::numeric_limits<double>::quiet_NaN();
+    write();
+    CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal), Contains("not finite"));
+  }
+  SECTION("mass that is not positive") {
+    model.body.mass = 0;
+    write();
+    CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal), Contains("mass"));
+  }
+  SECTION("negative frequency") {
+    std::get<ModalResponse>(model.response).angular_frequency(0) = -1;
+    write();
+    CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal), Contains("frequencies"));
+  }
+}

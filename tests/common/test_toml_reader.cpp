@@ -1,0 +1,55 @@
+#include <catch2/catch.hpp>
+
+#include "common/config/toml_reader.hpp"
+#include "common/error.hpp"
+
+using Catch::Matchers::Contains;
+using irdm::Error;
+using irdm::TomlTable;
+
+namespace {
+TomlTable parse(const std::string& text) {
+  return TomlTable::parse_text(text, "test.toml");
+}
+}  // namespace
+
+TEST_CASE("configuration reader returns values and fallbacks") {
+  TomlTable table = parse("a = 1.5\nb = 3\nc = \"x\"\nd = true\ne = [1, 2.5, 3]\n");
+  CHECK(table.number("a", irdm::above(0)) == 1.5);
+  CHECK(table.integer("b", 0, 5) == 3);
+  CHECK(table.number("missing", irdm::above(0), 9.0) == 9.0);
+  CHECK(table.choice("c", {"x", "y"}, "y") == "x");
+  CHECK(table.boolean("d", false));
+  CHECK(table.numbers("e", 3, {}) == std::vector<double>{1, 2.5, 3});
+  CHECK_NOTHROW(table.finish());
+}
+
+TEST_CASE("configuration reader names file, line and key of what is wrong") {
+  CHECK_THROWS_WITH(parse("\n\na = -1").number("a", irdm::above(0)),
+                    Contains("test.toml:3: a is -1"));
+  CHECK_THROWS_WITH(parse("a = nan").number("a", {}), Contains("finite"));
+  CHECK_THROWS_WITH(parse("a = inf").number("a", {}), Contains("finite"));
+  CHECK_THROWS_WITH(parse("a = \"1\"").number("a", {}), Contains("not a number"));
+  CHECK_THROWS_WITH(parse("").number("a", {}), Contains("a is missing"));
+  CHECK_THROWS_WITH(parse("a = 7").integer("a", 0, 5), Contains("from 0 to 5"));
+  CHECK_THROWS_WITH(parse("a = 1.5").integer("a", 0, 5), Contains("whole number"));
+  CHECK_THROWS_WITH(parse("a = 1").boolean("a", true), Contains("true or false"));
+  CHECK_THROWS_WITH(parse("a = \"z\"").choice("a", {"x", "y"}, "x"), Contains("x | y"));
+  CHECK_THROWS_WITH(parse("a = [1, 2]").numbers("a", 3, {}), Contains("3 numbers"));
+  CHECK_THROWS_WITH(parse("a = 1").table("a"), Contains("not a table"));
+  CHECK_THROWS_WITH(parse("a = [1]").tables("a"), Contains("list of tables"));
+  CHECK_THROWS_WITH(parse("a = "), Contains("test.toml:1"));
+}
+
+TEST_CASE("configuration reader rejects keys that nobody reads, in nested tables too") {
+  TomlTable table = parse("a = 1\n[b]\nc = 2\ntypo = 3\n");
+  table.number("a", {});
+  TomlTable nested = table.table("b");
+  nested.number("c", {});
+  CHECK_NOTHROW(table.finish());
+  CHECK_THROWS_WITH(nested.finish(), Contains("test.toml:4: b.typo is not a known key"));
+}
+
+TEST_CASE("configuration reader says when the file is missing") {
+  CHECK_THROWS_AS(TomlTable::parse_file("no-such-file.toml"), Error);
+}

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "common/model/model.hpp"
+#include "server/collision/surface_topology.hpp"
+#include "server/collision/surface_tree.hpp"
+#include "server/collision/triangle.hpp"
+#include "server/engine/response_engine.hpp"
+
+namespace irdm {
+
+/// The point of the deformed surface nearest to a query point.
+struct SurfaceHit {
+  int triangle = 0;
+  SurfacePoint point;
+  Vector3 position = Vector3::Zero();  ///< [m], B
+  /// From the surface to the query point, positive outside, negative inside [m].
+  double signed_distance = 0.0;
+};
+
+/// The surface as it would be at the end of the coming step if no force acted during it, in B. Only
+/// the nodes that a query looks at are computed, each once a step, so that what a query costs does
+/// not depend on the size of the object. Real-time safe after construction; one thread.
+///
+/// The rest surface's tree, asked at the query point less the displacement found there, gives a
+/// triangle to start from; from it the search goes to whichever neighbour is nearer until none is.
+class DeformedSurface {
+ public:
+  /// @param mesh must outlive this object
+  explicit DeformedSurface(const ModelMesh& mesh);
+
+  /// Starts a step: forgets the nodes of the last one. @param engine must outlive the step
+  void begin_step(const ResponseEngine& engine) noexcept;
+
+  /// r_i = X_i + h_i of a surface node [m], B.
+  const Vector3& node(int i) noexcept;
+
+  /// The point nearest to p.
+  SurfaceHit closest(const Vector3& p) noexcept;
+
+  /// Where the way from `from` to `to` first enters the surface, among the triangles around `near`.
+  std::optional<SurfacePoint> entry(int near, const Vector3& from, const Vector3& to,
+                                    int& triangle) noexcept;
+
+  /// Outward unit normal of a deformed triangle.
+  Vector3 normal(int triangle) noexcept;
+
+ private:
+  TriangleCorners corners(int triangle) noexcept;
+  SurfaceHit hit_on(int triangle, const Vector3& p) noexcept;
+  SurfaceHit descend(SurfaceHit best, const Vector3& p) noexcept;
+  Vector3 pseudonormal(const SurfaceHit& hit) noexcept;
+  template <typename Visit>
+  void visit_neighbours(int triangle, const Visit& visit) noexcept;
+
+  const ModelMesh& mesh_;
+  SurfaceTree tree_;
+  SurfaceTopology topology_;
+  const ResponseEngine* engine_ = nullptr;
+  std::uint64_t step_ = 0;
+  std::vector<std::uint64_t> known_in_;  ///< step in which positions_ of a node was computed
+  std::vector<Vector3> positions_;
+};
+
+}  // namespace irdm

@@ -1,0 +1,60 @@
+#include "server/engine/force_history.hpp"
+
+#include <algorithm>
+
+namespace irdm {
+
+ForceHistory::ForceHistory(int nodes, int steps)
+    : steps_(steps),
+      values_(static_cast<std::size_t>(nodes) * 3 * 2 * static_cast<std::size_t>(steps), 0.0),
+      first_(static_cast<std::size_t>(nodes), -1),
+      last_(static_cast<std::size_t>(nodes), -1) {
+  active_.reserve(static_cast<std::size_t>(nodes));
+}
+
+void ForceHistory::push(std::span<const NodalForce> forces) noexcept {
+  ++clock_;
+  head_ = head_ == 0 ? steps_ - 1 : head_ - 1;
+  // Nodes whose last force has left the window are forgotten; the others have no force yet.
+  std::erase_if(active_, [&](int node) {
+    const auto index = static_cast<std::size_t>(node);
+    if (clock_ - last_[index] < steps_) return false;
+    first_[index] = -1;
+    return true;
+  });
+  for (const int node : active_) {
+    for (int axis = 0; axis < 3; ++axis) {
+      slot(node, axis)[head_] = slot(node, axis)[head_ + steps_] = 0.0;
+    }
+  }
+  for (const NodalForce& nodal : forces) {
+    const auto index = static_cast<std::size_t>(nodal.node);
+    if (first_[index] < 0) {
+      first_[index] = clock_;
+      active_.push_back(nodal.node);
+      for (int axis = 0; axis < 3; ++axis) slot(nodal.node, axis)[head_] = 0.0;
+    }
+    last_[index] = clock_;
+    for (int axis = 0; axis < 3; ++axis) {
+      double* values = slot(nodal.node, axis);
+      values[head_] += nodal.force[axis];
+      values[head_ + steps_] = values[head_];
+    }
+  }
+}
+
+void ForceHistory::clear() noexcept {
+  for (const int node : active_) first_[static_cast<std::size_t>(node)] = -1;
+  active_.clear();
+}
+
+ForceHistory::Series ForceHistory::series(int node, int axis) const noexcept {
+  const auto index = static_cast<std::size_t>(node);
+  const auto youngest = static_cast<int>(clock_ - last_[index]);
+  const auto oldest = static_cast<int>(std::min<std::int64_t>(clock_ - first_[index], steps_ - 1));
+  const double* values = values_.data() + (3 * index + static_cast<std::size_t>(axis)) * 2 *
+                                              static_cast<std::size_t>(steps_);
+  return {values + head_ + youngest, youngest, oldest - youngest + 1};
+}
+
+}  // namespace irdm

@@ -1,0 +1,25 @@
+#include "common/error.hpp"
+#include "server/engine/dense_engine.hpp"
+#include "server/engine/modal_engine.hpp"
+
+namespace irdm {
+
+std::unique_ptr<ResponseEngine> make_engine(std::shared_ptr<const Model> model) {
+  if (const auto* modal = std::get_if<ModalResponse>(&model->response)) {
+    return std::visit(
+        [&]<typename Scalar>(const RowMatrix<Scalar>&) -> std::unique_ptr<ResponseEngine> {
+          return std::make_unique<ModalEngine<Scalar>>(std::move(model));
+        },
+        modal->shapes);
+  }
+  if (const auto* dense = std::get_if<DenseResponse>(&model->response)) {
+    return std::visit(
+        [&]<typename Scalar>(const std::vector<Scalar>&) -> std::unique_ptr<ResponseEngine> {
+          return std::make_unique<DenseEngine<Scalar>>(std::move(model));
+        },
+        dense->values);
+  }
+  throw Error("model", "holds no response", "make it again with irdm-precompute");
+}
+
+}  // namespace irdm

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <vector>
+
+#include "server/engine/response_engine.hpp"
+
+namespace irdm {
+
+/// R in modal form: every mode is a damped oscillator whose exact held-force transition is applied
+/// once a step. No history is needed; contacts cost nothing after they end.
+template <typename Scalar>
+class ModalEngine final : public ResponseEngine {
+ public:
+  /// @param model holds a ModalResponse with shapes of type Scalar
+  explicit ModalEngine(std::shared_ptr<const Model> model);
+
+  Vector3 free_displacement(int node) const noexcept override;
+  void predict(std::span<const SurfacePoint> points, std::span<Vector3> h,
+               ContactMatrix& compliance) noexcept override;
+  void advance(std::span<const NodalForce> forces) noexcept override;
+  void displacement(Points& u) const override;
+  void reset() noexcept override;
+
+ private:
+  const Scalar* shape_row(int dof) const noexcept {
+    return shapes_->data() + static_cast<std::size_t>(dof) * modes_;
+  }
+
+  std::shared_ptr<const Model> model_;
+  const RowMatrix<Scalar>* shapes_;  ///< Phi (3n, r)
+  std::size_t modes_;                ///< r
+  // Transition of each mode over one step, one array a coefficient.
+  std::vector<double> a11_, a12_, a21_, a22_, b1_, b2_;
+  std::vector<double> coordinate_, velocity_;  ///< at the end of the last step
+  std::vector<double> free_coordinate_,
+      free_velocity_;  ///< at the end of the coming step, no force
+  std::vector<double> modal_force_;
+  std::vector<double> contact_shapes_;  ///< (3 kMaxContacts, r): rows sum_i w_i Phi_i
+  std::vector<double> weighted_row_;    ///< one such row times b1
+};
+
+}  // namespace irdm

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "common/contact/contact_problem.hpp"
+#include "common/geometry.hpp"
+#include "common/model/model.hpp"
+
+namespace irdm {
+
+/// Force on one surface node during one step [N], B.
+struct NodalForce {
+  int node = 0;
+  Vector3 force = Vector3::Zero();
+};
+
+/// The elastic answer of one object to the history of forces on its surface nodes, equation (10):
+/// u[k] = sum_s R[s] f[k-s]. Everything is in B. An engine has one state and belongs to one thread;
+/// several engines may share the same model. All members but the constructor and displacement() are
+/// real-time safe, and what they cost does not depend on the number of nodes.
+class ResponseEngine {
+ public:
+  virtual ~ResponseEngine() = default;
+
+  /// Displacement of a node at the end of the coming step if no force acts during it [m].
+  virtual Vector3 free_displacement(int node) const noexcept = 0;
+
+  /// For contact points a = 0..m-1 (m <= kMaxContacts): their free displacement h_a at the end of
+  /// the coming step [m], and the compliance between them within it, the blocks sum_ij w_i w_j
+  /// R_ij[0] of the (3m, 3m) matrix [m/N].
+  virtual void predict(std::span<const SurfacePoint> points, std::span<Vector3> h,
+                       ContactMatrix& compliance) noexcept = 0;
+
+  /// Ends the coming step with these forces held during it.
+  virtual void advance(std::span<const NodalForce> forces) noexcept = 0;
+
+  /// Displacement of all nodes at the end of the last step, shape (n, 3) [m]. Uses OpenMP; the
+  /// result does not depend on the number of threads. Not for the force thread.
+  virtual void displacement(Points& u) const = 0;
+
+  /// Forgets all forces.
+  virtual void reset() noexcept = 0;
+};
+
+enum class EngineKind { kModal, kDense };
+
+/// Makes an engine on a model that holds the response it needs. Throws Error when it does not.
+std::unique_ptr<ResponseEngine> make_engine(std::shared_ptr<const Model> model);
+
+/// The point's value of a quantity that is known at nodes: sum_i w_i value(node_i); nodes of no
+/// weight are not asked for.
+template <typename NodeValue>
+Vector3 interpolate(const SurfacePoint& point, const NodeValue& value) {
+  Vector3 sum = Vector3::Zero();
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (point.weights[i] != 0.0) sum += point.weights[i] * value(point.nodes[i]);
+  }
+  return sum;
+}
+
+}  // namespace irdm

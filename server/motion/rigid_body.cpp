@@ -1,0 +1,62 @@
+#include "server/motion/rigid_body.hpp"
+
+#include <cmath>
+
+namespace irdm {
+
+Quaternion rotation_from_vector(const Vector3& v) noexcept {
+  const double half = 0.5 * v.norm();
+  // sin(half) / |v|, by its series where the quotient would lose digits.
+  const double scale = half < 1e-4 ? 0.5 - half * half / 12.0 : 0.5 * std::sin(half) / half;
+  const Vector3 xyz = scale * v;
+  return {std::cos(half), xyz.x(), xyz.y(), xyz.z()};
+}
+
+RigidBody::RigidBody(const BodyProperties& properties, double dt)
+    : mass_(properties.mass),
+      inertia_(properties.inertia),
+      inverse_inertia_(properties.inertia.inverse()),
+      dt_(dt),
+      moves_(properties.support == Support::kFloating) {}
+
+Vector3 RigidBody::step_angular_velocity(const Quaternion& orientation,
+                                         const Vector3& angular_momentum) const noexcept {
+  // Fixed point of w = Q_half I^-1 Q_half^T L with Q_half = exp(dt/2 w) Q. Each round gains a
+  // factor of about dt |w|; a fixed number keeps the cost bounded.
+  constexpr int kRounds = 4;
+  Vector3 w = Vector3::Zero();
+  for (int round = 0; round <= kRounds; ++round) {
+    const Quaternion half = rotation_from_vector(0.5 * dt_ * w) * orientation;
+    w = half * (inverse_inertia_ * (half.conjugate() * angular_momentum));
+  }
+  return w;
+}
+
+RigidState RigidBody::advance(const RigidState& state, const Vector3& force,
+                              const Vector3& torque) const noexcept {
+  if (!moves_) return state;
+  RigidState next;
+  next.velocity = state.velocity + dt_ / mass_ * force;
+  next.position = state.position + dt_ * next.velocity;
+  next.angular_momentum = state.angular_momentum + dt_ * torque;
+  const Vector3 w = step_angular_velocity(state.orientation, next.angular_momentum);
+  next.orientation = (rotation_from_vector(dt_ * w) * state.orientation).normalized();
+  return next;
+}
+
+Vector3 RigidBody::angular_velocity(const RigidState& state) const noexcept {
+  const Quaternion& Q = state.orientation;
+  return Q * (inverse_inertia_ * (Q.conjugate() * state.angular_momentum));
+}
+
+Vector3 RigidBody::angular_momentum(const Quaternion& orientation,
+                                    const Vector3& angular_velocity) const noexcept {
+  return orientation * (inertia_ * (orientation.conjugate() * angular_velocity));
+}
+
+Matrix3 RigidBody::compliance(const Vector3& at, const Vector3& from) const noexcept {
+  if (!moves_) return Matrix3::Zero();
+  return dt_ * dt_ * (Matrix3::Identity() / mass_ - skew(at) * inverse_inertia_ * skew(from));
+}
+
+}  // namespace irdm

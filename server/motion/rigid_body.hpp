@@ -1,0 +1,62 @@
+#pragma once
+
+#include "common/geometry.hpp"
+#include "common/model/model.hpp"
+
+namespace irdm {
+
+/// Pose and motion of the object's body frame B in W.
+struct RigidState {
+  Vector3 position = Vector3::Zero();               ///< c, centre of mass [m], W
+  Quaternion orientation = Quaternion::Identity();  ///< Q, unit, B to W
+  Vector3 velocity = Vector3::Zero();               ///< v [m/s], W
+  /// I w [kg m^2/s], W. Kept instead of w so that a free body keeps it exactly.
+  Vector3 angular_momentum = Vector3::Zero();
+};
+
+/// Rigid motion by equations (1)(2), M dv/dt = sum F and I dw/dt + w x (I w) = sum tau, one step of
+/// dt at a time. Momentum and angular momentum change by exactly the impulses applied. The
+/// velocities at the end of a step carry the body through it (symplectic Euler), rotation by the
+/// angular velocity half-way (implicit midpoint on the rotation group), so that the energy of a
+/// free spin does not drift. A fixed object does not move. Pure and real-time safe.
+class RigidBody {
+ public:
+  /// @param dt step [s], > 0
+  RigidBody(const BodyProperties& properties, double dt);
+
+  /// The state after a step in which `force` [N] and `torque` about the centre of mass [N m], both
+  /// W, acted throughout.
+  RigidState advance(const RigidState& state, const Vector3& force,
+                     const Vector3& torque) const noexcept;
+
+  /// Angular velocity that carries a body of this orientation and angular momentum through the
+  /// coming step [rad/s], W.
+  Vector3 step_angular_velocity(const Quaternion& orientation,
+                                const Vector3& angular_momentum) const noexcept;
+
+  /// Instantaneous angular velocity [rad/s], W.
+  Vector3 angular_velocity(const RigidState& state) const noexcept;
+
+  /// Angular momentum of a body that turns with `angular_velocity` [rad/s], W.
+  Vector3 angular_momentum(const Quaternion& orientation,
+                           const Vector3& angular_velocity) const noexcept;
+
+  /// Displacement [m] of the body's point `at` by the end of a step per force [N] held during it at
+  /// the body's point `from`: dt^2 (1/M Id - [at]x I_B^-1 [from]x). Everything in B.
+  Matrix3 compliance(const Vector3& at, const Vector3& from) const noexcept;
+
+  double mass() const noexcept { return mass_; }
+  bool moves() const noexcept { return moves_; }
+
+ private:
+  double mass_;
+  Matrix3 inertia_;          ///< I_B
+  Matrix3 inverse_inertia_;  ///< I_B^-1
+  double dt_;
+  bool moves_;
+};
+
+/// The rotation by |v| about v.
+Quaternion rotation_from_vector(const Vector3& v) noexcept;
+
+}  // namespace irdm

@@ -1,12 +1,9 @@
 #include "server/step/simulation.hpp"
 
-#include <algorithm>
+#include "server/step/nodal_forces.hpp"
 
 namespace irdm {
 namespace {
-
-// Three forces a contact: at most three nodes each.
-constexpr std::size_t kMaxNodalForces = 3 * kMaxContacts;
 
 // First row of contact i in matrices over the contacts.
 Eigen::Index row(std::size_t i) {
@@ -205,23 +202,17 @@ void Simulation::settle() noexcept {
 
 // Step 5: the forces enter the history, and the rigid motion goes on.
 void Simulation::advance() noexcept {
-  std::array<NodalForce, kMaxNodalForces> nodal;
-  std::size_t count = 0;
+  NodalForces nodal;
   Vector3 force = Vector3::Zero();
   Vector3 torque = Vector3::Zero();
   for (int a = 0; a < contact_count_; ++a) {
     const Contact& contact = contacts_[static_cast<std::size_t>(a)];
     if (contact.state == ContactState::kFree) continue;
-    const SurfacePoint& point = points_[static_cast<std::size_t>(a)];
-    for (std::size_t i = 0; i < 3; ++i) {
-      if (point.weights[i] != 0.0) {
-        nodal[count++] = {point.nodes[i], point.weights[i] * contact.force};
-      }
-    }
+    nodal.add(points_[static_cast<std::size_t>(a)], contact.force);
     force += contact.force;
     torque += contact.arm.cross(contact.force);
   }
-  engine_->advance({nodal.data(), count});
+  engine_->advance(nodal.view());
   const Quaternion Q = state_.orientation;
   state_ = body_.advance(state_, Q * force + body_.mass() * config_.gravity, Q * torque);
 }

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "common/config/toml_reader.hpp"
+#include "server/engine/response_engine.hpp"
+#include "server/step/step_record.hpp"
+
+namespace irdm {
+
+/// [server]
+struct ServerConfig {
+  std::string address = "127.0.0.1";  ///< to listen on
+  int port = 0;                       ///< 0..65535; 0: any free one
+  int styluses = 1;                   ///< how many styluses take part, 1..kMaxStyluses
+  double deformation_rate = 60.0;     ///< deformed surfaces a second, 1..1000 [Hz]
+  int deformation_threads = 0;        ///< OpenMP threads for them, 0..64; 0: all cores but one
+};
+
+/// [world]
+struct WorldConfig {
+  Vector3 gravity = Vector3::Zero();  ///< [m/s^2], W
+};
+
+/// [contact]
+struct ContactConfig {
+  double coupling_stiffness = 0.0;  ///< k_vc, spring between tip and surface, >= 0 [N/m]; 0: none
+};
+
+/// [[object]]
+struct ObjectConfig {
+  std::string name = "object";
+  std::filesystem::path model;  ///< required
+  EngineKind engine = EngineKind::kModal;
+  Vector3 position = Vector3::Zero();               ///< of the centre of mass [m], W
+  Quaternion orientation = Quaternion::Identity();  ///< w x y z, normalised when read
+  Vector3 velocity = Vector3::Zero();               ///< [m/s], W
+  Vector3 angular_velocity = Vector3::Zero();       ///< [rad/s], W
+};
+
+/// What irdm-server is to run. One object in this version; the file's [[object]] leaves room for more.
+struct SceneConfig {
+  ServerConfig server;
+  WorldConfig world;
+  ContactConfig contact;
+  std::vector<ObjectConfig> objects;
+};
+
+/// Reads and checks a scene. Throws Error with file and line.
+SceneConfig read_scene(TomlTable file);
+
+/// The whole text of a file. Throws Error.
+std::string read_text(const std::filesystem::path& path);
+
+}  // namespace irdm

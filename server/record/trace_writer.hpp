@@ -1,0 +1,46 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "common/hdf5/file.hpp"
+#include "server/step/step_record.hpp"
+
+namespace irdm {
+
+/// What a trace says of its run besides the steps.
+struct TraceHeader {
+  std::string model_file;      ///< name of the model file
+  std::string model_checksum;  ///< its SHA-256
+  std::string scene;           ///< the scene file's text
+  double dt = 0.0;             ///< [s]
+  int stylus_count = 1;
+};
+
+/// Writes the trace file of one run (HDF5, format "irdm-trace", docs/files.md). One thread.
+class TraceWriter {
+ public:
+  /// Makes the file; one that exists is not overwritten. Throws Error.
+  TraceWriter(const std::filesystem::path& path, const TraceHeader& header);
+
+  /// Appends steps in their order. Throws Error when they cannot be written.
+  void append(std::span<const StepRecord> records);
+  /// Makes what was appended safe against a kill of this process.
+  void flush() { file_.flush(); }
+  /// Completes the file. Throws Error when it cannot be written.
+  void close() { file_.close(); }
+
+ private:
+  void create_datasets(int stylus_count);
+  void append_stylus(std::span<const StepRecord> records, std::size_t stylus);
+  /// Appends one row of `width` numbers a record; `fill` writes a record's row.
+  template <typename T, typename Fill>
+  void append_rows(const std::string& dataset, std::size_t width,
+                   std::span<const StepRecord> records, const Fill& fill);
+
+  hdf5::File file_;
+  int stylus_count_;
+};
+
+}  // namespace irdm

@@ -1,0 +1,53 @@
+#include "server/report.hpp"
+
+#include <cstdio>
+#include <iostream>
+#include <string>
+
+namespace irdm {
+namespace {
+
+std::string microseconds(const Histogram& histogram) {
+  const auto value = [](std::int64_t ns) { return static_cast<double>(ns) / 1000.0; };
+  char text[128];
+  std::snprintf(text, sizeof text, "p50 %.1f us, p99 %.1f us, max %.1f us",
+                value(histogram.percentile(0.5)), value(histogram.percentile(0.99)),
+                value(histogram.maximum()));
+  return text;
+}
+
+}  // namespace
+
+int print_report(const FinishedRun& run, const ServerOptions& options) {
+  const ForceThreadReport& force = run.force.report();
+  std::cout << "steps: " << force.steps << '\n';
+  if (run.clock != nullptr) {
+    std::cout << "missed deadlines: " << run.clock->missed() << '\n'
+              << "wake-up delay: " << microseconds(run.clock->wakeup_delay()) << '\n';
+  }
+  char peak[32];
+  std::snprintf(peak, sizeof peak, "%.3f", force.peak_force);
+  std::cout << "step time: " << microseconds(force.step_time) << '\n'
+            << "peak force: " << peak << " N\n"
+            << "steps without a finite solution: " << force.unsolved << '\n'
+            << "surfaces: " << run.deformation.frames() << ", each "
+            << microseconds(run.deformation.compute_time()) << '\n'
+            << "sessions: " << run.network.stats().accepted << " accepted, "
+            << run.network.stats().refused << " refused, "
+            << run.network.stats().protocol_errors << " closed for protocol errors\n";
+  if (run.recorder == nullptr) return 0;
+  if (!run.recorder->error().empty()) {
+    std::cerr << "irdm-server: error: recording ended early: " << run.recorder->error() << '\n';
+    return 1;
+  }
+  std::cout << "recorded: " << run.recorder->rows() << " steps in " << options.record->string()
+            << std::endl;
+  if (const std::uint64_t lost = run.recorder->sink().lost()) {
+    std::cerr << "irdm-server: error: " << lost << " steps are missing in the trace: "
+              << "the disk was too slow; record to a faster one\n";
+    return 1;
+  }
+  return 0;
+}
+
+}  // namespace irdm

@@ -1,0 +1,108 @@
+#include "server/run_server.hpp"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <memory>
+
+#include "common/checksum.hpp"
+#include "common/model/model_file.hpp"
+#include "common/program/stop_signal.hpp"
+#include "server/config/scene.hpp"
+#include "server/report.hpp"
+#include "server/threads/deformation_thread.hpp"
+#include "server/threads/force_thread.hpp"
+#include "server/threads/recorder_thread.hpp"
+#include "server/threads/step_clock.hpp"
+
+namespace irdm {
+namespace {
+
+std::shared_ptr<const Model> load_model(const ObjectConfig& object) {
+  const bool dense = object.engine == EngineKind::kDense;
+  return std::make_shared<const Model>(
+      read_model(object.model, dense ? ResponseKind::kDense : ResponseKind::kModal));
+}
+
+SimulationConfig simulation_config(const SceneConfig& scene) {
+  const ObjectConfig& object = scene.objects.front();
+  SimulationConfig config;
+  config.gravity = scene.world.gravity;
+  config.position = object.position;
+  config.orientation = object.orientation;
+  config.velocity = object.velocity;
+  config.angular_velocity = object.angular_velocity;
+  config.coupling_stiffness = scene.contact.coupling_stiffness;
+  config.stylus_count = scene.server.styluses;
+  return config;
+}
+
+NetworkSettings network_settings(const SceneConfig& scene, const ServerOptions& options,
+                                 double dt) {
+  NetworkSettings settings;
+  settings.address = scene.server.address;
+  settings.port = static_cast<std::uint16_t>(options.port.value_or(scene.server.port));
+  settings.dt = dt;
+  settings.lockstep = options.lockstep;
+  settings.styluses = scene.server.styluses;
+  return settings;
+}
+
+std::unique_ptr<RecorderThread> make_recorder(const SceneConfig& scene,
+                                              const ServerOptions& options, double dt) {
+  if (!options.record) return nullptr;
+  const std::filesystem::path& model = scene.objects.front().model;
+  return std::make_unique<RecorderThread>(
+      *options.record, TraceHeader{model.filename().string(), sha256_of_file(model),
+                                   read_text(options.scene), dt, scene.server.styluses});
+}
+
+std::unique_ptr<StepClock> make_clock(bool lockstep, NetworkServer& network,
+                                      const std::vector<StepSink*>& sinks, double dt) {
+  if (lockstep) return std::make_unique<LockstepClock>(network, sinks);
+  return std::make_unique<RealTimeClock>(dt);
+}
+
+int deformation_threads(const ServerConfig& config) {
+  if (config.deformation_threads > 0) return config.deformation_threads;
+  return std::max(1, omp_get_num_procs() - 1);
+}
+
+}  // namespace
+
+int run_server(const ServerOptions& options) {
+  StopSignal stop;
+  const SceneConfig scene = read_scene(TomlTable::parse_file(options.scene));
+  const std::shared_ptr<const Model> model = load_model(scene.objects.front());
+  Simulation simulation(model, simulation_config(scene));
+  NetworkServer network(network_settings(scene, options, model->dt));
+  DeformationThread deformation(model, scene.server.deformation_rate,
+                                deformation_threads(scene.server));
+  const std::unique_ptr<RecorderThread> recorder = make_recorder(scene, options, model->dt);
+
+  std::vector<StepSink*> sinks{&deformation.sink()};
+  if (recorder) sinks.push_back(&recorder->sink());
+  const std::unique_ptr<StepClock> clock = make_clock(options.lockstep, network, sinks, model->dt);
+  const auto steps = static_cast<std::uint64_t>(
+      std::llround(std::ceil(options.duration.value_or(0.0) / model->dt - 1e-9)));
+  ForceThread force(simulation, network, *clock, sinks, steps);
+
+  network.start();
+  std::cout << "listening on " << network.endpoint() << std::endl;
+  if (recorder) recorder->start();
+  deformation.start();
+  force.start();
+  stop.wait(force.finished().descriptor());
+
+  force.finish();
+  network.stop();
+  deformation.finish();
+  if (recorder) recorder->finish();
+  return print_report(
+      {force, network, deformation, recorder.get(), dynamic_cast<RealTimeClock*>(clock.get())},
+      options);
+}
+
+}  // namespace irdm

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+namespace irdm {
+
+/// The command line of irdm-server.
+struct ServerOptions {
+  std::filesystem::path scene;
+  std::optional<int> port;                       ///< 0..65535; overrides the scene's
+  std::optional<std::filesystem::path> record;   ///< trace file
+  std::optional<double> duration;                ///< [s], > 0
+  bool lockstep = false;
+};
+
+/// Runs a server until its duration is over or a signal asks it to stop. Returns the exit status.
+/// Throws Error.
+int run_server(const ServerOptions& options);
+
+}  // namespace irdm

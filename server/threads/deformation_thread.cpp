@@ -1,0 +1,64 @@
+#include "server/threads/deformation_thread.hpp"
+
+#include <omp.h>
+
+#include "common/realtime/clock.hpp"
+
+namespace irdm {
+namespace {
+
+constexpr std::size_t kQueueCapacity = 4096;  // 4 s at 1 kHz
+constexpr std::int64_t kNanosecondsPerMillisecond = 1'000'000;
+
+SurfaceFrame empty_frame(const Model& model) {
+  SurfaceFrame frame;
+  frame.displacement = Points::Zero(model.mesh.surface_node_count(), 3);
+  return frame;
+}
+
+}  // namespace
+
+DeformationThread::DeformationThread(std::shared_ptr<const Model> model, double rate, int threads)
+    : deformation_(model),
+      period_ns_(static_cast<std::int64_t>(1e9 / rate)),
+      threads_(threads),
+      sink_(kQueueCapacity),
+      surfaces_(empty_frame(*model)) {}
+
+DeformationThread::~DeformationThread() { finish(); }
+
+void DeformationThread::start() {
+  thread_ = std::thread([this] { run(); });
+}
+
+void DeformationThread::finish() {
+  if (!thread_.joinable()) return;
+  stop_.signal();
+  thread_.join();
+}
+
+void DeformationThread::run() {
+  omp_set_num_threads(threads_);
+  PeriodicSchedule schedule(monotonic_ns(), period_ns_);
+  StepRecord record;
+  for (;;) {
+    const std::int64_t now = monotonic_ns();
+    const std::int64_t wait_ns = schedule.next(now) - now;
+    if (stop_.wait(static_cast<int>(std::max<std::int64_t>(0, wait_ns) / kNanosecondsPerMillisecond))) {
+      return;
+    }
+    bool moved = false;
+    while (sink_.take(record)) {
+      deformation_.follow(record);
+      moved = true;
+    }
+    if (!moved) continue;
+    const std::int64_t begin = monotonic_ns();
+    deformation_.compute(surfaces_.back());
+    surfaces_.publish();
+    compute_time_.add(monotonic_ns() - begin);
+    frames_.fetch_add(1, std::memory_order_relaxed);
+  }
+}
+
+}  // namespace irdm

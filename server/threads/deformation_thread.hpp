@@ -1,0 +1,51 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <thread>
+
+#include "common/realtime/histogram.hpp"
+#include "common/realtime/mailbox.hpp"
+#include "common/realtime/wakeup.hpp"
+#include "server/deformation/deformation.hpp"
+#include "server/threads/step_sink.hpp"
+
+namespace irdm {
+
+/// Computes the deformed surface at display rate and publishes it. It follows the force thread through
+/// its own queue and never makes it wait.
+class DeformationThread {
+ public:
+  /// @param rate surfaces a second [Hz]
+  /// @param threads OpenMP threads, >= 1
+  DeformationThread(std::shared_ptr<const Model> model, double rate, int threads);
+  ~DeformationThread();
+
+  /// Where the force thread puts its steps.
+  StepSink& sink() noexcept { return sink_; }
+  /// The newest surface; for one reader.
+  Mailbox<SurfaceFrame>& surfaces() noexcept { return surfaces_; }
+
+  void start();
+  void finish();
+
+  std::uint64_t frames() const noexcept { return frames_.load(std::memory_order_relaxed); }
+  /// Time to compute one surface; after finish().
+  const Histogram& compute_time() const noexcept { return compute_time_; }
+
+ private:
+  void run();
+
+  Deformation deformation_;
+  std::int64_t period_ns_;
+  int threads_;
+  StepSink sink_;
+  Mailbox<SurfaceFrame> surfaces_;
+  Histogram compute_time_;
+  std::atomic<std::uint64_t> frames_{0};
+  Wakeup stop_;
+  std::thread thread_;
+};
+
+}  // namespace irdm

@@ -1,0 +1,71 @@
+#include "server/threads/force_thread.hpp"
+
+#include <algorithm>
+
+#include "common/realtime/clock.hpp"
+
+namespace irdm {
+namespace {
+
+StylusCommand to_command(const StylusInput& input) noexcept {
+  return {input.present, input.sample.buttons, input.sample.tip, std::nullopt};
+}
+
+StylusForce to_answer(const StepRecord& record, const StylusRecord& stylus,
+                      const StylusSample& sample) noexcept {
+  return {record.force_step, sample.sequence, sample.time_ns,
+          stylus.contact,    stylus.force,    stylus.proxy};
+}
+
+}  // namespace
+
+ForceThread::ForceThread(Simulation& simulation, NetworkServer& network, StepClock& clock,
+                         std::vector<StepSink*> sinks, std::uint64_t steps)
+    : simulation_(simulation),
+      network_(network),
+      clock_(clock),
+      sinks_(std::move(sinks)),
+      steps_(steps),
+      commands_(static_cast<std::size_t>(network.styluses())) {}
+
+ForceThread::~ForceThread() { finish(); }
+
+void ForceThread::start() {
+  thread_ = std::thread([this] { run(); });
+}
+
+void ForceThread::finish() {
+  if (!thread_.joinable()) return;
+  clock_.stop();
+  thread_.join();
+}
+
+void ForceThread::run() noexcept {
+  while ((steps_ == 0 || report_.steps < steps_) && clock_.wait(report_.steps)) {
+    const std::int64_t begin = monotonic_ns();
+    step();
+    report_.step_time.add(monotonic_ns() - begin);
+    ++report_.steps;
+  }
+  finished_.signal();
+}
+
+void ForceThread::step() noexcept {
+  for (std::size_t s = 0; s < commands_.size(); ++s) {
+    StylusPort& port = network_.port(static_cast<int>(s));
+    port.in.receive();
+    commands_[s] = to_command(port.in.front());
+  }
+  simulation_.step(commands_, record_);
+  for (std::size_t s = 0; s < commands_.size(); ++s) {
+    if (!commands_[s].present) continue;
+    StylusPort& port = network_.port(static_cast<int>(s));
+    port.out.put(to_answer(record_, record_.stylus[s], port.in.front().sample));
+    report_.peak_force = std::max(report_.peak_force, record_.stylus[s].force.norm());
+  }
+  network_.forces_ready().signal();
+  if (!record_.solved) ++report_.unsolved;
+  for (StepSink* sink : sinks_) sink->put(record_);
+}
+
+}  // namespace irdm

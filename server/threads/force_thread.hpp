@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <thread>
+#include <vector>
+
+#include "common/realtime/histogram.hpp"
+#include "common/realtime/wakeup.hpp"
+#include "server/network/network_server.hpp"
+#include "server/step/simulation.hpp"
+#include "server/threads/step_clock.hpp"
+#include "server/threads/step_sink.hpp"
+
+namespace irdm {
+
+/// What the force thread counted; read after finish().
+struct ForceThreadReport {
+  std::uint64_t steps = 0;
+  std::uint64_t unsolved = 0;  ///< steps whose contact problem had no finite solution
+  double peak_force = 0.0;     ///< largest |force| on a stylus [N]
+  Histogram step_time;         ///< from the clock's go to the forces' hand-over [ns]
+};
+
+/// Takes the newest stylus samples, makes the force step and hands on what came of it, once for every go
+/// of the clock. Neither allocates, locks, throws, logs nor touches files while it runs.
+class ForceThread {
+ public:
+  /// All of these must outlive the thread. @param steps how many to make; 0: until the clock stops
+  ForceThread(Simulation& simulation, NetworkServer& network, StepClock& clock,
+              std::vector<StepSink*> sinks, std::uint64_t steps);
+  ~ForceThread();
+
+  void start();
+  void finish();
+  /// Becomes readable when the thread has made its last step.
+  Wakeup& finished() noexcept { return finished_; }
+  const ForceThreadReport& report() const noexcept { return report_; }
+
+ private:
+  void run() noexcept;
+  void step() noexcept;
+
+  Simulation& simulation_;
+  NetworkServer& network_;
+  StepClock& clock_;
+  std::vector<StepSink*> sinks_;
+  std::uint64_t steps_;
+  std::vector<StylusCommand> commands_;
+  StepRecord record_;
+  ForceThreadReport report_;
+  Wakeup finished_;
+  std::thread thread_;
+};
+
+}  // namespace irdm

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <vector>
+
+#include "common/realtime/clock.hpp"
+#include "common/realtime/histogram.hpp"
+#include "server/network/network_server.hpp"
+#include "server/threads/step_sink.hpp"
+
+namespace irdm {
+
+/// Tells the force thread when a step may run: the only thing that --lockstep replaces.
+class StepClock {
+ public:
+  virtual ~StepClock() = default;
+  /// Returns when step k may run; false when there is to be no further step. Force thread.
+  virtual bool wait(std::uint64_t step) noexcept = 0;
+  /// Ends the wait; any thread.
+  void stop() noexcept { stopped_.store(true, std::memory_order_relaxed); }
+
+ protected:
+  bool stopped() const noexcept { return stopped_.load(std::memory_order_relaxed); }
+
+ private:
+  std::atomic<bool> stopped_{false};
+};
+
+/// One step every dt of the machine's clock, at absolute times from the first step on. Periods missed
+/// are skipped.
+class RealTimeClock final : public StepClock {
+ public:
+  explicit RealTimeClock(double dt);
+  bool wait(std::uint64_t step) noexcept override;
+  /// How late the thread woke [ns]; after the run.
+  const Histogram& wakeup_delay() const noexcept { return wakeup_delay_; }
+  /// Steps that were left out because an earlier one was late; after the run.
+  std::uint64_t missed() const noexcept { return schedule_.missed(); }
+
+ private:
+  std::int64_t period_ns_;
+  PeriodicSchedule schedule_;
+  Histogram wakeup_delay_;
+};
+
+/// Step k runs when sample k of every stylus is there; the run is over when a stylus leaves. Waits for
+/// the followers too, so that no step is lost however fast simulated time goes.
+class LockstepClock final : public StepClock {
+ public:
+  /// The force thread's side of `network` and of the sinks; they must outlive the clock.
+  LockstepClock(NetworkServer& network, std::vector<StepSink*> sinks);
+  bool wait(std::uint64_t step) noexcept override;
+
+ private:
+  enum class Samples { kComplete, kAwaited, kEnded };
+  Samples samples(std::uint64_t step) noexcept;
+  bool room() const noexcept;
+
+  NetworkServer& network_;
+  std::vector<StepSink*> sinks_;
+};
+
+}  // namespace irdm

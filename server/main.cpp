@@ -5,9 +5,11 @@ int main(int argc, char** argv) {
   irdm::ServerOptions options;
   CLI::App app("Renders a soft, free-floating object to force-feedback styluses.", "irdm-server");
   app.add_option("scene", options.scene, "Scene file (TOML)")->required();
-  app.add_option("--port", options.port, "TCP port to listen on; 0: any free one (default: the scene's)")
+  app.add_option("--port", options.port,
+                 "TCP port to listen on; 0: any free one (default: the scene's)")
       ->check(CLI::Range(0, 65535));
-  app.add_option("--record", options.record, "Trace file (HDF5) to record the run in; must not exist");
+  app.add_option("--record", options.record,
+                 "Trace file (HDF5) to record the run in; must not exist");
   app.add_option("--duration", options.duration,
                  "Seconds to run, simulated ones in lockstep (default: until stopped)")
       ->check(CLI::PositiveNumber);

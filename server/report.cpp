@@ -33,8 +33,8 @@ int print_report(const FinishedRun& run, const ServerOptions& options) {
             << "surfaces: " << run.deformation.frames() << ", each "
             << microseconds(run.deformation.compute_time()) << '\n'
             << "sessions: " << run.network.stats().accepted << " accepted, "
-            << run.network.stats().refused << " refused, "
-            << run.network.stats().protocol_errors << " closed for protocol errors\n";
+            << run.network.stats().refused << " refused, " << run.network.stats().protocol_errors
+            << " closed for protocol errors\n";
   if (run.recorder == nullptr) return 0;
   if (!run.recorder->error().empty()) {
     std::cerr << "irdm-server: error: recording ended early: " << run.recorder->error() << '\n';

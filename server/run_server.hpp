@@ -8,9 +8,9 @@ namespace irdm {
 /// The command line of irdm-server.
 struct ServerOptions {
   std::filesystem::path scene;
-  std::optional<int> port;                       ///< 0..65535; overrides the scene's
-  std::optional<std::filesystem::path> record;   ///< trace file
-  std::optional<double> duration;                ///< [s], > 0
+  std::optional<int> port;                      ///< 0..65535; overrides the scene's
+  std::optional<std::filesystem::path> record;  ///< trace file
+  std::optional<double> duration;               ///< [s], > 0
   bool lockstep = false;
 };
 

@@ -47,7 +47,8 @@ Quaternion read_orientation(TomlTable& table) {
   const Quaternion orientation(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
   constexpr double kSmallest = 1e-6;
   if (orientation.norm() < kSmallest) {
-    table.fail("orientation", "has no length", "give a quaternion w, x, y, z, for instance [1, 0, 0, 0]");
+    table.fail("orientation", "has no length",
+               "give a quaternion w, x, y, z, for instance [1, 0, 0, 0]");
   }
   return orientation.normalized();
 }

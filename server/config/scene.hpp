@@ -40,7 +40,8 @@ struct ObjectConfig {
   Vector3 angular_velocity = Vector3::Zero();       ///< [rad/s], W
 };
 
-/// What irdm-server is to run. One object in this version; the file's [[object]] leaves room for more.
+/// What irdm-server is to run. One object in this version; the file's [[object]] leaves room for
+/// more.
 struct SceneConfig {
   ServerConfig server;
   WorldConfig world;

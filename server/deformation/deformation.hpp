@@ -17,19 +17,20 @@ struct SurfaceFrame {
 
   /// x_i = c + Q (X_i + u_i) [m], W.
   Vector3 world(const ModelMesh& mesh, int node) const {
-    return position + orientation * (mesh.rest_position(node) +
-                                     Vector3(displacement.row(node).transpose()));
+    return position +
+           orientation * (mesh.rest_position(node) + Vector3(displacement.row(node).transpose()));
   }
 };
 
 /// Follows the force thread's steps with an engine of its own. Because an engine's state depends on
-/// nothing but the forces, the two always agree, and nobody has to wait for a snapshot. Pure; one thread.
+/// nothing but the forces, the two always agree, and nobody has to wait for a snapshot. Pure; one
+/// thread.
 class Deformation {
  public:
   explicit Deformation(std::shared_ptr<const Model> model);
 
-  /// Takes in the next step. Steps that were lost on the way are taken to have had the forces of the one
-  /// before them; how many, is counted.
+  /// Takes in the next step. Steps that were lost on the way are taken to have had the forces of
+  /// the one before them; how many, is counted.
   void follow(const StepRecord& record);
 
   /// Displacements of all nodes after the last step taken in (OpenMP).

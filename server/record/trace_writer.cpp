@@ -7,9 +7,13 @@ namespace {
 
 constexpr hsize_t kChunkRows = 512;
 
-std::string stylus_path(std::size_t stylus) { return "/stylus/" + std::to_string(stylus); }
+std::string stylus_path(std::size_t stylus) {
+  return "/stylus/" + std::to_string(stylus);
+}
 
-void put(double* row, const Vector3& v) { Eigen::Map<Vector3>(row, 3) = v; }
+void put(double* row, const Vector3& v) {
+  Eigen::Map<Vector3>(row, 3) = v;
+}
 
 }  // namespace
 
@@ -79,9 +83,8 @@ void TraceWriter::append(std::span<const StepRecord> records) {
 void TraceWriter::append_stylus(std::span<const StepRecord> records, std::size_t s) {
   const std::string path = stylus_path(s);
   const auto vectors = [&](const char* name, const auto& member) {
-    append_rows<double>(path + name, 3, records, [&](const StepRecord& r, double* row) {
-      put(row, r.stylus[s].*member);
-    });
+    append_rows<double>(path + name, 3, records,
+                        [&](const StepRecord& r, double* row) { put(row, r.stylus[s].*member); });
   };
   vectors("/tip", &StylusRecord::tip);
   vectors("/proxy", &StylusRecord::proxy);
@@ -95,11 +98,12 @@ void TraceWriter::append_stylus(std::span<const StepRecord> records, std::size_t
     const bool free = r.stylus[s].contact == ContactState::kFree;
     for (std::size_t i = 0; i < 3; ++i) row[i] = free ? 0.0 : r.stylus[s].point.weights[i];
   });
-  append_rows<std::int32_t>(
-      path + "/contact_nodes", 3, records, [&](const StepRecord& r, std::int32_t* row) {
-        const bool free = r.stylus[s].contact == ContactState::kFree;
-        for (std::size_t i = 0; i < 3; ++i) row[i] = free ? -1 : r.stylus[s].point.nodes[i];
-      });
+  append_rows<std::int32_t>(path + "/contact_nodes", 3, records,
+                            [&](const StepRecord& r, std::int32_t* row) {
+                              const bool free = r.stylus[s].contact == ContactState::kFree;
+                              for (std::size_t i = 0; i < 3; ++i)
+                                row[i] = free ? -1 : r.stylus[s].point.nodes[i];
+                            });
   append_rows<std::int32_t>(path + "/buttons", 1, records,
                             [&](const StepRecord& r, std::int32_t* row) {
                               *row = static_cast<std::int32_t>(r.stylus[s].buttons);

@@ -25,7 +25,9 @@ DeformationThread::DeformationThread(std::shared_ptr<const Model> model, double 
       sink_(kQueueCapacity),
       surfaces_(empty_frame(*model)) {}
 
-DeformationThread::~DeformationThread() { finish(); }
+DeformationThread::~DeformationThread() {
+  finish();
+}
 
 void DeformationThread::start() {
   thread_ = std::thread([this] { run(); });
@@ -44,7 +46,8 @@ void DeformationThread::run() {
   for (;;) {
     const std::int64_t now = monotonic_ns();
     const std::int64_t wait_ns = schedule.next(now) - now;
-    if (stop_.wait(static_cast<int>(std::max<std::int64_t>(0, wait_ns) / kNanosecondsPerMillisecond))) {
+    if (stop_.wait(
+            static_cast<int>(std::max<std::int64_t>(0, wait_ns) / kNanosecondsPerMillisecond))) {
       return;
     }
     bool moved = false;

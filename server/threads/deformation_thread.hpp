@@ -13,8 +13,8 @@
 
 namespace irdm {
 
-/// Computes the deformed surface at display rate and publishes it. It follows the force thread through
-/// its own queue and never makes it wait.
+/// Computes the deformed surface at display rate and publishes it. It follows the force thread
+/// through its own queue and never makes it wait.
 class DeformationThread {
  public:
   /// @param rate surfaces a second [Hz]

@@ -28,7 +28,9 @@ ForceThread::ForceThread(Simulation& simulation, NetworkServer& network, StepClo
       steps_(steps),
       commands_(static_cast<std::size_t>(network.styluses())) {}
 
-ForceThread::~ForceThread() { finish(); }
+ForceThread::~ForceThread() {
+  finish();
+}
 
 void ForceThread::start() {
   thread_ = std::thread([this] { run(); });

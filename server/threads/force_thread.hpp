@@ -21,8 +21,8 @@ struct ForceThreadReport {
   Histogram step_time;         ///< from the clock's go to the forces' hand-over [ns]
 };
 
-/// Takes the newest stylus samples, makes the force step and hands on what came of it, once for every go
-/// of the clock. Neither allocates, locks, throws, logs nor touches files while it runs.
+/// Takes the newest stylus samples, makes the force step and hands on what came of it, once for
+/// every go of the clock. Neither allocates, locks, throws, logs nor touches files while it runs.
 class ForceThread {
  public:
   /// All of these must outlive the thread. @param steps how many to make; 0: until the clock stops

@@ -14,7 +14,9 @@ RecorderThread::RecorderThread(const std::filesystem::path& path, const TraceHea
   batch_.reserve(kBatch);
 }
 
-RecorderThread::~RecorderThread() { finish(); }
+RecorderThread::~RecorderThread() {
+  finish();
+}
 
 void RecorderThread::start() {
   thread_ = std::thread([this] { run(); });

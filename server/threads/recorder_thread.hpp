@@ -13,8 +13,8 @@
 
 namespace irdm {
 
-/// Writes the steps of a run to its trace file. A write that fails ends the recording, is kept as an
-/// error for the end of the run, and disturbs nobody.
+/// Writes the steps of a run to its trace file. A write that fails ends the recording, is kept as
+/// an error for the end of the run, and disturbs nobody.
 class RecorderThread {
  public:
   /// Makes the file. Throws Error.

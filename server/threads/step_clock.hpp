@@ -27,8 +27,8 @@ class StepClock {
   std::atomic<bool> stopped_{false};
 };
 
-/// One step every dt of the machine's clock, at absolute times from the first step on. Periods missed
-/// are skipped.
+/// One step every dt of the machine's clock, at absolute times from the first step on. Periods
+/// missed are skipped.
 class RealTimeClock final : public StepClock {
  public:
   explicit RealTimeClock(double dt);
@@ -44,8 +44,8 @@ class RealTimeClock final : public StepClock {
   Histogram wakeup_delay_;
 };
 
-/// Step k runs when sample k of every stylus is there; the run is over when a stylus leaves. Waits for
-/// the followers too, so that no step is lost however fast simulated time goes.
+/// Step k runs when sample k of every stylus is there; the run is over when a stylus leaves. Waits
+/// for the followers too, so that no step is lost however fast simulated time goes.
 class LockstepClock final : public StepClock {
  public:
   /// The force thread's side of `network` and of the sinks; they must outlive the clock.

@@ -7,8 +7,9 @@
 
 namespace irdm {
 
-/// The way of the steps from the force thread to another one that needs every step (the recorder, the
-/// deformation). The force thread never waits for it in real time; what does not fit is counted.
+/// The way of the steps from the force thread to another one that needs every step (the recorder,
+/// the deformation). The force thread never waits for it in real time; what does not fit is
+/// counted.
 class StepSink {
  public:
   explicit StepSink(std::size_t capacity) : queue_(capacity) {}

@@ -1,0 +1,115 @@
+#include "common/wire/connection.hpp"
+
+#include <sstream>
+#include <utility>
+
+#include "common/realtime/clock.hpp"
+#include "common/wire/protocol_error.hpp"
+
+namespace irdm::wire {
+
+using boost::asio::ip::tcp;
+using boost::system::error_code;
+
+Connection::Connection(tcp::socket socket) : socket_(std::move(socket)) {
+  error_code ignored;
+  socket_.set_option(tcp::no_delay(true), ignored);
+  std::ostringstream name;
+  name << socket_.remote_endpoint(ignored);
+  peer_ = name.str();
+}
+
+void Connection::start(Handlers handlers) {
+  handlers_ = std::move(handlers);
+  received_ns_ = monotonic_ns();
+  read();
+}
+
+void Connection::read() {
+  socket_.async_read_some(boost::asio::buffer(incoming_),
+                          [self = shared_from_this()](error_code error, std::size_t size) {
+                            if (!self->open_) return;
+                            if (error) return self->close(error.message());
+                            self->received_ns_ = monotonic_ns();
+                            self->take({self->incoming_.data(), size});
+                            if (self->open_) self->read();
+                          });
+}
+
+void Connection::take(std::span<const std::uint8_t> bytes) {
+  try {
+    while (open_ && !finishing_) {
+      const std::optional<Frame> frame = reader_.read(bytes);
+      if (!frame) break;
+      partial_since_ns_.reset();
+      handlers_.received(*frame);
+    }
+  } catch (const ProtocolError& error) {
+    if (open_ && !finishing_) handlers_.violated(error);
+  }
+  if (finishing_ || !reader_.partial()) {
+    partial_since_ns_.reset();
+  } else if (!partial_since_ns_) {
+    partial_since_ns_ = received_ns_;
+  }
+}
+
+void Connection::append(const Message& message) {
+  const FrameBytes frame = encode_frame(message, session_, sequence_++, monotonic_ns());
+  writing_.insert(writing_.end(), frame.view().begin(), frame.view().end());
+}
+
+void Connection::send(const Message& message) {
+  if (!open_ || finishing_) return;
+  control_.push_back(message);
+  write();
+}
+
+bool Connection::send_newest(std::size_t stream, const Message& message) {
+  if (!open_ || finishing_) return false;
+  if (newest_.size() <= stream) newest_.resize(stream + 1);
+  const bool replaces = newest_[stream].has_value();
+  newest_[stream] = message;
+  write();
+  return replaces;
+}
+
+void Connection::write() {
+  if (!open_ || writing_since_ns_) return;
+  writing_.clear();
+  for (std::optional<Message>& message : newest_) {
+    if (message) append(*message);
+    message.reset();
+  }
+  for (const Message& message : control_) append(message);
+  control_.clear();
+  if (writing_.empty()) {
+    error_code ignored;
+    if (finishing_) socket_.shutdown(tcp::socket::shutdown_send, ignored);
+    return;
+  }
+  writing_since_ns_ = monotonic_ns();
+  boost::asio::async_write(socket_, boost::asio::buffer(writing_),
+                           [self = shared_from_this()](error_code error, std::size_t) {
+                             self->writing_since_ns_.reset();
+                             if (!self->open_) return;
+                             if (error) return self->close(error.message());
+                             self->write();
+                           });
+}
+
+void Connection::finish() {
+  if (!open_ || finishing_) return;
+  finishing_ = true;
+  write();
+}
+
+void Connection::close(const std::string& reason) {
+  if (!open_) return;
+  open_ = false;
+  error_code ignored;
+  socket_.close(ignored);
+  if (handlers_.closed) handlers_.closed(reason);
+}
+
+}  // namespace irdm::wire

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/wire/asio.hpp"
+#include "common/wire/frame.hpp"
+#include "common/wire/protocol_error.hpp"
+
+namespace irdm::wire {
+
+/// A TCP connection that carries frames, on the thread of its io_context. Control messages go out
+/// in order and all of them; of the messages of one stream (a stylus, say) only the newest goes out
+/// when the peer or the network cannot keep up. It knows no time-out: its owner looks at the ages.
+class Connection : public std::enable_shared_from_this<Connection> {
+ public:
+  /// Called on the thread of the io_context; what they refer to must live until `closed` returns.
+  struct Handlers {
+    /// A whole, checked frame. May throw ProtocolError.
+    std::function<void(const Frame&)> received;
+    /// The stream is not valid, or `received` threw. Send a last message and finish(), or close();
+    /// nothing is received any more.
+    std::function<void(const ProtocolError&)> violated;
+    /// The connection has ended for whatever reason; last call.
+    std::function<void(const std::string& reason)> closed;
+  };
+
+  /// Takes over a connected socket and turns no-delay on.
+  explicit Connection(boost::asio::ip::tcp::socket socket);
+  void start(Handlers handlers);
+
+  /// Goes into the headers of all messages from now on.
+  void set_session(std::uint32_t session) noexcept { session_ = session; }
+
+  /// Sends in order, never dropped.
+  void send(const Message& message);
+  /// Sends the newest message of a stream; true when it replaced one that still waited.
+  /// @param stream small number >= 0
+  bool send_newest(std::size_t stream, const Message& message);
+  /// Sends what waits, then ends the sending half and waits for the peer to close; what still
+  /// comes is ignored.
+  void finish();
+  /// Ends it at once; `closed` is called.
+  void close(const std::string& reason);
+
+  const std::string& peer() const noexcept { return peer_; }
+  bool finishing() const noexcept { return finishing_; }
+  std::int64_t received_ns() const noexcept {
+    return received_ns_;
+  }  ///< of the last bytes, or start
+  /// When the frame began that is not complete; nothing when there is none.
+  std::optional<std::int64_t> partial_since_ns() const noexcept { return partial_since_ns_; }
+  /// When the write began that is not complete; nothing when there is none.
+  std::optional<std::int64_t> writing_since_ns() const noexcept { return writing_since_ns_; }
+
+ private:
+  void read();
+  void take(std::span<const std::uint8_t> bytes);
+  void append(const Message& message);
+  void write();
+
+  boost::asio::ip::tcp::socket socket_;
+  std::string peer_;
+  Handlers handlers_;
+  FrameReader reader_;
+  std::array<std::uint8_t, 4096> incoming_;
+  std::vector<Message> control_;                // wait, in order
+  std::vector<std::optional<Message>> newest_;  // wait, by stream
+  std::vector<std::uint8_t> writing_;
+  std::uint32_t session_ = 0;
+  std::uint64_t sequence_ = 0;
+  std::int64_t received_ns_ = 0;
+  std::optional<std::int64_t> partial_since_ns_;
+  std::optional<std::int64_t> writing_since_ns_;
+  bool finishing_ = false;
+  bool open_ = true;
+};
+
+}  // namespace irdm::wire

@@ -1,0 +1,125 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <variant>
+
+#include "common/stylus.hpp"
+
+/// The messages between bridge and server. docs/protocol.md is the document; this header is its
+/// only translation, used by server, bridge and the scripted peers of the tests.
+namespace irdm::wire {
+
+inline constexpr std::uint32_t kProtocolMagic = 0x4D445249;  ///< the bytes "IRDM"
+/// Version of header and payloads that this build writes, and the oldest that it still reads.
+inline constexpr std::uint16_t kProtocolVersion = 1;
+inline constexpr std::uint16_t kOldestProtocolVersion = 1;
+
+inline constexpr std::size_t kHeaderSize = 36;
+/// No payload of any version is longer; a longer announcement is refused before it is read.
+inline constexpr std::size_t kMaxPayload = 16384;
+inline constexpr std::size_t kNameSize = 32;
+inline constexpr std::size_t kTextSize = 64;
+/// Coordinates beyond this are a fault of the sender, not a place for a hand [m].
+inline constexpr double kMaxCoordinate = 1000.0;
+/// Longest force step that a Welcome may announce [s].
+inline constexpr double kLongestStep = 1.0;
+
+/// Reserved for the contact solved at the bridge, and for monitoring; refused by version 1:
+/// 16 ContactModel (free path s_1..s_H and blocks C_0..C_{H-1}, server to bridge),
+/// 17 AppliedForces (bridge to server), 18 Status (server to bridge), 19 Command (bridge to
+/// server).
+enum class MessageType : std::uint16_t {
+  kHello = 1,
+  kWelcome = 2,
+  kRefuse = 3,
+  kGoodbye = 4,
+  kSample = 5,
+  kForce = 6,
+};
+
+/// Bits of Hello::capabilities and Welcome::capabilities; none is in use in version 1.
+inline constexpr std::uint32_t kCapabilityContactModel = 1u << 0;  ///< reserved: types 16 and 17
+inline constexpr std::uint32_t kCapabilityStatus = 1u << 1;        ///< reserved: type 18
+inline constexpr std::uint32_t kCapabilityCommand = 1u << 2;       ///< reserved: type 19
+
+/// What goes before every payload. The CRC32C that ends it is the codec's business.
+struct Header {
+  std::uint16_t version = kProtocolVersion;
+  MessageType type = MessageType::kHello;
+  std::uint32_t payload_size = 0;
+  std::uint32_t session = 0;      ///< from Welcome; 0 before it
+  std::uint64_t sequence = 0;     ///< number of the frame in its direction, from 0
+  std::int64_t send_time_ns = 0;  ///< sender's monotonic clock
+};
+
+/// Bridge to server, first.
+struct Hello {
+  std::uint16_t version_min = kOldestProtocolVersion;
+  std::uint16_t version_max = kProtocolVersion;
+  std::uint32_t capabilities = 0;
+  std::uint16_t styluses = 1;  ///< how many slots it asks for, >= 1
+  bool lockstep = false;       ///< whether it can run on the simulated clock
+  std::string name;            ///< for the log, at most kNameSize bytes
+};
+
+/// Server to bridge: the answer to an accepted Hello.
+struct Welcome {
+  std::uint16_t version = kProtocolVersion;
+  std::uint16_t first_stylus = 0;  ///< the bridge's slots are this one and those that follow
+  std::uint32_t capabilities = 0;  ///< those that both sides have
+  std::uint32_t session = 0;       ///< goes into every header from here on, > 0
+  bool lockstep = false;
+  double dt = 0.0;  ///< of the force step [s], > 0
+};
+
+enum class RefuseReason : std::uint16_t {
+  kVersion = 1,             ///< no common version
+  kNoFreeStylus = 2,        ///< all slots in use now
+  kTooManyStyluses = 3,     ///< more slots asked for than the server has
+  kTooManyConnections = 4,  ///< try again later
+  kLockstep = 5,            ///< the server runs in lockstep and the bridge cannot
+  kStopping = 6,            ///< the server is about to end
+};
+
+/// Server to bridge: the answer to any other Hello, and the end of the connection.
+struct Refuse {
+  RefuseReason reason = RefuseReason::kVersion;
+  std::uint16_t version_min = kOldestProtocolVersion;  ///< of the server
+  std::uint16_t version_max = kProtocolVersion;
+  std::string text;  ///< for a person, at most kTextSize bytes
+};
+
+enum class GoodbyeReason : std::uint16_t {
+  kFinished = 0,       ///< the work is done
+  kStopping = 1,       ///< told to stop
+  kProtocolError = 2,  ///< the peer broke the protocol
+  kTimeout = 3,        ///< the peer was silent too long
+};
+
+/// Either way: the orderly end.
+struct Goodbye {
+  GoodbyeReason reason = GoodbyeReason::kFinished;
+};
+
+/// Bridge to server. Tip and orientation are finite, the orientation has norm 1 within 1e-3.
+struct SampleMessage {
+  std::uint16_t stylus = 0;  ///< server's slot
+  StylusSample sample;
+};
+
+/// Server to bridge: what step force_step answers to one sample. Force and proxy are finite.
+struct ForceMessage {
+  std::uint16_t stylus = 0;  ///< server's slot
+  StylusForce force;
+};
+
+using Message = std::variant<Hello, Welcome, Refuse, Goodbye, SampleMessage, ForceMessage>;
+
+struct Frame {
+  Header header;
+  Message message;
+};
+
+}  // namespace irdm::wire

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "common/wire/message.hpp"
+
+/// Payloads, field by field as in the tables of docs/protocol.md.
+namespace irdm::wire {
+
+/// The largest payload that this version writes.
+inline constexpr std::size_t kLargestPayload = 80;
+
+MessageType type_of(const Message& message) noexcept;
+/// The fixed size of a type's payload; nothing for a type that this version does not know.
+std::optional<std::size_t> payload_size(MessageType type) noexcept;
+
+/// Fills `payload`, which has the size of the message's type.
+void encode_payload(const Message& message, std::span<std::uint8_t> payload);
+/// Reads a payload of the right size. Throws ProtocolError for values outside their range.
+Message decode_payload(MessageType type, std::span<const std::uint8_t> payload);
+
+}  // namespace irdm::wire

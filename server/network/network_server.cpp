@@ -1,0 +1,223 @@
+#include "server/network/network_server.hpp"
+
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cmath>
+#include <exception>
+#include <list>
+#include <sstream>
+#include <thread>
+#include <utility>
+
+#include "common/error.hpp"
+#include "common/realtime/clock.hpp"
+#include "server/network/session.hpp"
+
+namespace irdm {
+
+using boost::asio::ip::tcp;
+using boost::system::error_code;
+
+class NetworkServer::Impl {
+ public:
+  explicit Impl(const NetworkSettings& settings)
+      : settings_(checked(settings)),
+        slots_(settings.styluses, samples_arrived_),
+        acceptor_(io_),
+        forces_descriptor_(io_),
+        timer_(io_) {
+    listen();
+    forces_descriptor_.assign(::dup(forces_ready_.descriptor()));
+  }
+  ~Impl() { stop(); }
+
+  void start();
+  void stop();
+  std::string endpoint() const;
+
+  const NetworkSettings settings_;
+  NetworkStats stats_;
+  Wakeup samples_arrived_;
+  Wakeup forces_ready_;
+  StylusSlots slots_;
+  std::uint16_t port_ = 0;
+
+ private:
+  static const NetworkSettings& checked(const NetworkSettings& settings);
+  void listen();
+  void run() noexcept;
+  void accept();
+  void admit(tcp::socket socket);
+  void await_forces();
+  void await_tick();
+  void shut_down();
+
+  boost::asio::io_context io_{1};
+  tcp::acceptor acceptor_;
+  boost::asio::posix::stream_descriptor forces_descriptor_;
+  boost::asio::steady_timer timer_;
+  std::list<Session> sessions_;
+  std::uint32_t newest_session_ = 0;
+  bool accepting_ = false;
+  bool stopping_ = false;
+  std::thread thread_;
+};
+
+const NetworkSettings& NetworkServer::Impl::checked(const NetworkSettings& settings) {
+  const bool good = std::isfinite(settings.dt) && settings.dt > 0.0 &&
+                    settings.dt <= wire::kLongestStep && settings.styluses >= 1 &&
+                    settings.styluses <= 64 && settings.max_connections >= 1;
+  if (!good) throw Error("network", "settings out of range", "see NetworkSettings");
+  return settings;
+}
+
+void NetworkServer::Impl::listen() {
+  const std::string wanted = settings_.address + ":" + std::to_string(settings_.port);
+  error_code error;
+  const auto address = boost::asio::ip::make_address(settings_.address, error);
+  if (error) {
+    throw Error(wanted, "is not an address", "give a numeric address of this machine");
+  }
+  try {
+    const tcp::endpoint endpoint(address, settings_.port);
+    acceptor_.open(endpoint.protocol());
+    acceptor_.set_option(tcp::acceptor::reuse_address(true));
+    acceptor_.bind(endpoint);
+    acceptor_.listen();
+    port_ = acceptor_.local_endpoint().port();
+  } catch (const boost::system::system_error& failure) {
+    throw Error(wanted, "cannot listen: " + failure.code().message(),
+                "choose another address or port, or end the program that uses it");
+  }
+}
+
+std::string NetworkServer::Impl::endpoint() const {
+  std::ostringstream text;
+  text << tcp::endpoint(boost::asio::ip::make_address(settings_.address), port_);
+  return text.str();
+}
+
+void NetworkServer::Impl::start() {
+  accept();
+  await_forces();
+  await_tick();
+  thread_ = std::thread([this] { run(); });
+}
+
+void NetworkServer::Impl::stop() {
+  if (!thread_.joinable()) return;
+  boost::asio::post(io_, [this] { shut_down(); });
+  thread_.join();
+}
+
+void NetworkServer::Impl::run() noexcept {
+  for (;;) {
+    try {
+      io_.run();
+      return;
+    } catch (const std::exception& error) {
+      stats_.internal_errors.fetch_add(1);
+      spdlog::error("network: {}", error.what());
+    }
+  }
+}
+
+void NetworkServer::Impl::accept() {
+  accepting_ = true;
+  acceptor_.async_accept([this](error_code error, tcp::socket socket) {
+    accepting_ = false;
+    if (stopping_) return;
+    if (error) {
+      // No descriptor left, say: the next tick tries again.
+      spdlog::error("network: cannot accept: {}", error.message());
+      return;
+    }
+    admit(std::move(socket));
+    accept();
+  });
+}
+
+void NetworkServer::Impl::admit(tcp::socket socket) {
+  const auto limit = static_cast<std::size_t>(settings_.max_connections);
+  if (sessions_.size() >= 2 * limit) {  // those beyond the limit wait for nothing but their end
+    stats_.refused.fetch_add(1);
+    return;
+  }
+  const bool full = sessions_.size() >= limit;
+  Session& session = sessions_.emplace_back(++newest_session_,
+                                            std::make_shared<wire::Connection>(std::move(socket)),
+                                            Session::Shared{settings_, slots_, stats_});
+  session.start();
+  if (full) session.refuse(wire::RefuseReason::kTooManyConnections, "too many connections");
+}
+
+void NetworkServer::Impl::await_forces() {
+  forces_descriptor_.async_wait(boost::asio::posix::stream_descriptor::wait_read,
+                                [this](error_code error) {
+                                  if (error || stopping_) return;
+                                  forces_ready_.consume();
+                                  for (Session& session : sessions_) session.send_forces();
+                                  await_forces();
+                                });
+}
+
+void NetworkServer::Impl::await_tick() {
+  constexpr std::chrono::milliseconds kTick(10);
+  constexpr std::int64_t kNanosecondsPerMillisecond = 1'000'000;
+  timer_.expires_after(kTick);
+  timer_.async_wait([this](error_code) {
+    const std::int64_t now_ns = monotonic_ns();
+    if (!settings_.lockstep) {
+      slots_.expire(now_ns, settings_.absent_after_ms * kNanosecondsPerMillisecond);
+    }
+    for (Session& session : sessions_) session.check_time(now_ns);
+    // Nothing of a session is on the stack here, so this is the place to remove it.
+    sessions_.remove_if([](const Session& session) { return session.over(); });
+    if (!accepting_ && !stopping_) accept();
+    if (!stopping_ || !sessions_.empty()) await_tick();
+  });
+}
+
+void NetworkServer::Impl::shut_down() {
+  stopping_ = true;
+  error_code ignored;
+  acceptor_.close(ignored);
+  forces_descriptor_.close(ignored);
+  for (Session& session : sessions_) session.end(wire::GoodbyeReason::kStopping);
+}
+
+NetworkServer::NetworkServer(const NetworkSettings& settings)
+    : impl_(std::make_unique<Impl>(settings)) {}
+NetworkServer::~NetworkServer() = default;
+
+std::string NetworkServer::endpoint() const {
+  return impl_->endpoint();
+}
+std::uint16_t NetworkServer::port_number() const noexcept {
+  return impl_->port_;
+}
+int NetworkServer::styluses() const noexcept {
+  return impl_->slots_.count();
+}
+StylusPort& NetworkServer::port(int stylus) {
+  return impl_->slots_.port(stylus);
+}
+Wakeup& NetworkServer::samples_arrived() noexcept {
+  return impl_->samples_arrived_;
+}
+Wakeup& NetworkServer::forces_ready() noexcept {
+  return impl_->forces_ready_;
+}
+const NetworkStats& NetworkServer::stats() const noexcept {
+  return impl_->stats_;
+}
+void NetworkServer::start() {
+  impl_->start();
+}
+void NetworkServer::stop() {
+  impl_->stop();
+}
+
+}  // namespace irdm

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "common/realtime/wakeup.hpp"
+#include "server/network/stylus_port.hpp"
+
+namespace irdm {
+
+struct NetworkSettings {
+  std::string address = "127.0.0.1";  ///< numeric IPv4 or IPv6 address of this machine
+  std::uint16_t port = 0;             ///< 0: any free one
+  double dt = 0.002;                  ///< force step [s], (0, 1]
+  bool lockstep = false;
+  int styluses = 4;                 ///< slots, 1 to 64
+  int max_connections = 16;         ///< >= 1
+  int handshake_timeout_ms = 1000;  ///< from connection to Hello
+  int frame_timeout_ms = 1000;      ///< from the first byte of a frame to its last
+  int absent_after_ms = 100;        ///< without a sample the stylus is absent; not in lockstep
+  int silence_timeout_ms = 2000;    ///< without a byte the session ends; not in lockstep
+};
+
+/// Counters of the network thread; read from any thread.
+struct NetworkStats {
+  std::atomic<std::uint64_t> accepted{0};         ///< sessions welcomed
+  std::atomic<std::uint64_t> refused{0};          ///< connections refused
+  std::atomic<std::uint64_t> protocol_errors{0};  ///< connections closed for breaking the protocol
+  std::atomic<std::uint64_t> timeouts{0};         ///< connections closed for being silent
+  std::atomic<std::uint64_t> goodbyes{0};         ///< sessions that their bridge ended in order
+  std::atomic<std::uint64_t> samples{0};          ///< handed to the force thread
+  std::atomic<std::uint64_t> samples_old{0};      ///< dropped: not newer than the last
+  std::atomic<std::uint64_t> forces{0};           ///< handed to a connection
+  std::atomic<std::uint64_t> forces_replaced{0};  ///< not sent because a newer one was there
+  std::atomic<std::uint64_t> forces_not_finite{0};  ///< sent as zero
+  std::atomic<std::uint64_t> internal_errors{0};    ///< caught in the network thread
+};
+
+/// Listens for bridges and relays samples and forces between them and the force thread, on a thread
+/// of its own (docs/protocol.md). The force thread touches port(i), samples_arrived() and
+/// forces_ready() only; all of that is real-time safe.
+class NetworkServer {
+ public:
+  /// Binds and listens. Throws Error when it cannot.
+  explicit NetworkServer(const NetworkSettings& settings);
+  NetworkServer(const NetworkServer&) = delete;
+  NetworkServer& operator=(const NetworkServer&) = delete;
+  ~NetworkServer();  ///< stops
+
+  /// Where it listens, as ADDRESS:PORT, and the port alone.
+  std::string endpoint() const;
+  std::uint16_t port_number() const noexcept;
+
+  int styluses() const noexcept;
+  StylusPort& port(int stylus);
+  /// Signalled after every put into an `in` mailbox: a sample, or a stylus that came or went.
+  Wakeup& samples_arrived() noexcept;
+  /// To be signalled once after the `out` mailboxes of a step were filled.
+  Wakeup& forces_ready() noexcept;
+  const NetworkStats& stats() const noexcept;
+
+  /// Starts the thread.
+  void start();
+  /// Says goodbye to every bridge, waits at most half a second for them to hang up, and joins the
+  /// thread. Every stylus is absent afterwards. Further calls do nothing.
+  void stop();
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace irdm

@@ -1,0 +1,176 @@
+#include "server/network/session.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "common/realtime/clock.hpp"
+
+namespace irdm {
+namespace {
+
+constexpr std::int64_t kNanosecondsPerMillisecond = 1'000'000;
+constexpr std::int64_t kHangUpNs = 500 * kNanosecondsPerMillisecond;  // for the peer to close
+
+using wire::ProtocolError;
+using wire::ProtocolFault;
+
+[[noreturn]] void unexpected(const std::string& what) {
+  throw ProtocolError(ProtocolFault::kUnexpected, what);
+}
+
+}  // namespace
+
+Session::Session(std::uint32_t id, std::shared_ptr<wire::Connection> connection,
+                 const Shared& shared)
+    : id_(id), connection_(std::move(connection)), shared_(shared), accepted_ns_(monotonic_ns()) {}
+
+void Session::start() {
+  connection_->start({
+      .received = [this](const wire::Frame& frame) { receive(frame); },
+      .violated = [this](const ProtocolError& error) { violated(error); },
+      .closed =
+          [this](const std::string& reason) {
+            if (welcomed_ && !ending_since_ns_) {
+              spdlog::warn("bridge {}: connection lost: {}", connection_->peer(), reason);
+            }
+            release();
+            over_ = true;
+          },
+  });
+}
+
+void Session::receive(const wire::Frame& frame) {
+  if (frame.header.session != (welcomed_ ? id_ : 0)) unexpected("a message of another session");
+  if (const auto* hello = std::get_if<wire::Hello>(&frame.message)) {
+    greet(*hello);
+  } else if (!welcomed_) {
+    unexpected("a message before Hello");
+  } else if (const auto* sample = std::get_if<wire::SampleMessage>(&frame.message)) {
+    take(*sample);
+  } else if (std::holds_alternative<wire::Goodbye>(frame.message)) {
+    spdlog::info("bridge {}: goodbye", connection_->peer());
+    // Counted before the styluses go, so that whoever sees them absent knows why.
+    shared_.stats.goodbyes.fetch_add(1);
+    end(wire::GoodbyeReason::kFinished);
+  } else {
+    unexpected("a message that only a server sends");
+  }
+}
+
+void Session::greet(const wire::Hello& hello) {
+  if (welcomed_) unexpected("a second Hello");
+  const NetworkSettings& settings = shared_.settings;
+  if (hello.version_min > wire::kProtocolVersion ||
+      hello.version_max < wire::kOldestProtocolVersion) {
+    throw wire::VersionMismatch(hello.version_min, hello.version_max, wire::kOldestProtocolVersion,
+                                wire::kProtocolVersion);
+  }
+  if (settings.lockstep && !hello.lockstep) {
+    return refuse(wire::RefuseReason::kLockstep, "the server runs in lockstep");
+  }
+  if (hello.styluses > settings.styluses) {
+    return refuse(wire::RefuseReason::kTooManyStyluses,
+                  "the server has " + std::to_string(settings.styluses) + " styluses");
+  }
+  const std::optional<int> first = shared_.slots.claim(hello.styluses);
+  if (!first) return refuse(wire::RefuseReason::kNoFreeStylus, "no free stylus");
+  welcomed_ = true;
+  first_ = *first;
+  count_ = hello.styluses;
+  connection_->set_session(id_);
+  connection_->send(wire::Welcome{.version = std::min(hello.version_max, wire::kProtocolVersion),
+                                  .first_stylus = static_cast<std::uint16_t>(first_),
+                                  .session = id_,
+                                  .lockstep = settings.lockstep,
+                                  .dt = settings.dt});
+  shared_.stats.accepted.fetch_add(1);
+  spdlog::info("bridge {} ({}): session {}, stylus {} to {}", connection_->peer(), hello.name, id_,
+               first_, first_ + count_ - 1);
+}
+
+void Session::take(const wire::SampleMessage& message) {
+  if (message.stylus < first_ || message.stylus >= first_ + count_) {
+    unexpected("a sample of a stylus that is not its own");
+  }
+  const bool newer = shared_.slots.put(message.stylus, message.sample, monotonic_ns());
+  (newer ? shared_.stats.samples : shared_.stats.samples_old).fetch_add(1);
+}
+
+void Session::violated(const ProtocolError& error) {
+  if (error.fault() == ProtocolFault::kWrongVersion) {
+    return refuse(wire::RefuseReason::kVersion, error.what());
+  }
+  spdlog::error("bridge {}: {}; connection closed", connection_->peer(), error.what());
+  shared_.stats.protocol_errors.fetch_add(1);
+  end(wire::GoodbyeReason::kProtocolError);
+}
+
+void Session::refuse(wire::RefuseReason reason, const std::string& text) {
+  spdlog::warn("bridge {}: refused: {}", connection_->peer(), text);
+  shared_.stats.refused.fetch_add(1);
+  ending_since_ns_ = monotonic_ns();
+  connection_->send(wire::Refuse{.reason = reason, .text = text});
+  connection_->finish();
+  release();
+}
+
+void Session::end(wire::GoodbyeReason reason) {
+  if (ending_since_ns_) return;
+  ending_since_ns_ = monotonic_ns();
+  connection_->send(wire::Goodbye{reason});
+  connection_->finish();
+  release();
+}
+
+void Session::release() {
+  shared_.slots.release(first_, count_);
+  count_ = 0;
+}
+
+void Session::send_forces() {
+  for (int slot = first_; slot < first_ + count_; ++slot) {
+    std::optional<StylusForce> force = shared_.slots.take_force(slot);
+    if (!force) continue;
+    if (!force->force.allFinite() || !force->proxy.allFinite()) {
+      if (shared_.stats.forces_not_finite.fetch_add(1) == 0) {
+        spdlog::error("step {}: the force is not finite; zero is sent", force->force_step);
+      }
+      force->force.setZero();
+      force->proxy.setZero();
+    }
+    const bool replaced =
+        connection_->send_newest(static_cast<std::size_t>(slot - first_),
+                                 wire::ForceMessage{static_cast<std::uint16_t>(slot), *force});
+    if (replaced) shared_.stats.forces_replaced.fetch_add(1);
+    shared_.stats.forces.fetch_add(1);
+  }
+}
+
+void Session::check_time(std::int64_t now_ns) {
+  const NetworkSettings& settings = shared_.settings;
+  const auto older = [now_ns](std::optional<std::int64_t> since, int limit_ms) {
+    return since && now_ns - *since > limit_ms * kNanosecondsPerMillisecond;
+  };
+  const auto time_out = [this](const char* what) {
+    spdlog::warn("bridge {}: {}; connection closed", connection_->peer(), what);
+    shared_.stats.timeouts.fetch_add(1);
+    end(wire::GoodbyeReason::kTimeout);
+  };
+  if (over_) return;
+  if (ending_since_ns_) {
+    if (now_ns - *ending_since_ns_ > kHangUpNs) connection_->close("the peer does not hang up");
+  } else if (older(connection_->partial_since_ns(), settings.frame_timeout_ms)) {
+    violated(ProtocolError(ProtocolFault::kTruncated, "a message is not complete in time"));
+  } else if (!welcomed_) {
+    if (older(accepted_ns_, settings.handshake_timeout_ms)) time_out("no Hello in time");
+  } else if (!settings.lockstep) {
+    if (older(connection_->received_ns(), settings.silence_timeout_ms)) time_out("silent too long");
+    if (older(connection_->writing_since_ns(), settings.silence_timeout_ms)) {
+      time_out("does not read its forces");
+    }
+  }
+}
+
+}  // namespace irdm

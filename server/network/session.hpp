@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "common/wire/connection.hpp"
+#include "server/network/network_server.hpp"
+#include "server/network/stylus_slots.hpp"
+
+namespace irdm {
+
+/// One bridge's connection, from accept to close: handshake, samples in, forces out, limits.
+/// Network thread only.
+class Session {
+ public:
+  /// What all sessions share; outlives them.
+  struct Shared {
+    const NetworkSettings& settings;
+    StylusSlots& slots;
+    NetworkStats& stats;
+  };
+
+  Session(std::uint32_t id, std::shared_ptr<wire::Connection> connection, const Shared& shared);
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  /// Starts to receive.
+  void start();
+  /// Answers with a refusal instead of a session.
+  void refuse(wire::RefuseReason reason, const std::string& text);
+  /// Says goodbye and gives its styluses back.
+  void end(wire::GoodbyeReason reason);
+  /// Sends the forces that are ready.
+  void send_forces();
+  /// Applies the time limits.
+  void check_time(std::int64_t now_ns);
+
+  /// True once the connection has ended and the session may be removed.
+  bool over() const noexcept { return over_; }
+
+ private:
+  void receive(const wire::Frame& frame);
+  void greet(const wire::Hello& hello);
+  void take(const wire::SampleMessage& message);
+  void violated(const wire::ProtocolError& error);
+  void release();
+
+  std::uint32_t id_;
+  std::shared_ptr<wire::Connection> connection_;
+  Shared shared_;
+  std::int64_t accepted_ns_;
+  std::optional<std::int64_t> ending_since_ns_;
+  bool welcomed_ = false;
+  bool over_ = false;
+  int first_ = 0;  ///< its slots
+  int count_ = 0;
+};
+
+}  // namespace irdm

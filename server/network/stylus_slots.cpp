@@ -1,0 +1,65 @@
+#include "server/network/stylus_slots.hpp"
+
+#include <algorithm>
+
+namespace irdm {
+
+StylusSlots::StylusSlots(int count, Wakeup& arrived)
+    : arrived_(arrived),
+      ports_(static_cast<std::size_t>(count)),
+      owners_(static_cast<std::size_t>(count)) {}
+
+std::optional<int> StylusSlots::claim(int count) {
+  const auto first =
+      std::search_n(owners_.begin(), owners_.end(), count, false,
+                    [](const Owner& owner, bool wanted) { return owner.claimed == wanted; });
+  if (first == owners_.end()) return std::nullopt;
+  std::fill_n(first, count, Owner{.claimed = true});
+  return static_cast<int>(first - owners_.begin());
+}
+
+void StylusSlots::release(int first, int count) {
+  for (int slot = first; slot < first + count; ++slot) {
+    make_absent(slot);
+    owners_[static_cast<std::size_t>(slot)] = Owner{};
+  }
+}
+
+bool StylusSlots::put(int slot, const StylusSample& sample, std::int64_t now_ns) {
+  Owner& owner = owners_[static_cast<std::size_t>(slot)];
+  if (owner.any_sample && sample.sequence <= owner.newest_sequence) return false;
+  if (!owner.any_sample) owner.first_time_ns = sample.time_ns;
+  owner.any_sample = true;
+  owner.present = true;
+  owner.newest_sequence = sample.sequence;
+  owner.arrived_ns = now_ns;
+  port(slot).in.put({.present = true, .sample = sample});
+  arrived_.signal();
+  return true;
+}
+
+void StylusSlots::expire(std::int64_t now_ns, std::int64_t limit_ns) {
+  for (int slot = 0; slot < count(); ++slot) {
+    if (now_ns - owners_[static_cast<std::size_t>(slot)].arrived_ns > limit_ns) make_absent(slot);
+  }
+}
+
+void StylusSlots::make_absent(int slot) {
+  Owner& owner = owners_[static_cast<std::size_t>(slot)];
+  if (!owner.present) return;
+  owner.present = false;
+  port(slot).in.put({});
+  arrived_.signal();
+}
+
+std::optional<StylusForce> StylusSlots::take_force(int slot) {
+  if (!port(slot).out.receive()) return std::nullopt;
+  const Owner& owner = owners_[static_cast<std::size_t>(slot)];
+  const StylusForce& force = port(slot).out.front();
+  // A force for an owner that has gone may still be on its way when the next one comes.
+  const bool ours = owner.any_sample && force.sample_sequence <= owner.newest_sequence &&
+                    force.sample_time_ns >= owner.first_time_ns;
+  return ours ? std::optional(force) : std::nullopt;
+}
+
+}  // namespace irdm

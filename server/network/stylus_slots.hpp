@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "common/realtime/wakeup.hpp"
+#include "server/network/stylus_port.hpp"
+
+namespace irdm {
+
+/// Which session owns which stylus, and what goes through the ports. Network thread only, except
+/// for the other side of port().
+class StylusSlots {
+ public:
+  /// @param arrived signalled whenever an input changes
+  StylusSlots(int count, Wakeup& arrived);
+
+  int count() const noexcept { return static_cast<int>(ports_.size()); }
+  StylusPort& port(int slot) { return ports_[static_cast<std::size_t>(slot)]; }
+
+  /// Takes `count` free slots in a row; the first of them, or nothing when there are no such slots.
+  std::optional<int> claim(int count);
+  /// Gives them back; their styluses are absent from here on.
+  void release(int first, int count);
+
+  /// Hands a sample over; false when it is not newer than the last one of this session.
+  bool put(int slot, const StylusSample& sample, std::int64_t now_ns);
+  /// Makes those styluses absent whose last sample is older than `limit_ns`.
+  void expire(std::int64_t now_ns, std::int64_t limit_ns);
+
+  /// The newest force that was not taken yet, if it answers a sample of the present owner.
+  std::optional<StylusForce> take_force(int slot);
+
+ private:
+  struct Owner {
+    bool claimed = false;
+    bool present = false;
+    bool any_sample = false;
+    std::uint64_t newest_sequence = 0;
+    std::int64_t first_time_ns = 0;  ///< bridge's clock
+    std::int64_t arrived_ns = 0;     ///< our clock
+  };
+  void make_absent(int slot);
+
+  Wakeup& arrived_;
+  std::vector<StylusPort> ports_;
+  std::vector<Owner> owners_;
+};
+
+}  // namespace irdm

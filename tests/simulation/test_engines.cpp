@@ -1,0 +1,190 @@
+#include <omp.h>
+
+#include <catch2/catch.hpp>
+#include <deque>
+#include <random>
+
+#include "common/response/oscillator.hpp"
+#include "server/engine/response_engine.hpp"
+#include "tests/support/synthetic_model.hpp"
+
+using namespace irdm;
+using irdm::test::synthetic_cube;
+using irdm::test::with_dense_response;
+
+namespace {
+
+std::shared_ptr<const Model> share(Model model) {
+  return std::make_shared<const Model>(std::move(model));
+}
+
+// Contacts that come, move from node to node and go, with silences.
+class RandomContacts {
+ public:
+  explicit RandomContacts(int nodes) : nodes_(nodes) {}
+  std::vector<NodalForce> next() {
+    std::vector<NodalForce> forces;
+    if (left_-- <= 0) {
+      active_ = random_() % 3 != 0;
+      left_ = 5 + static_cast<int>(random_() % 40);
+      node_ = static_cast<int>(random_() % static_cast<unsigned>(nodes_));
+    }
+    if (!active_) return forces;
+    for (int i = 0; i < 3; ++i) {
+      forces.push_back(
+          {(node_ + i) % nodes_, Vector3(uniform_(random_), uniform_(random_), uniform_(random_))});
+    }
+    if (random_() % 10 == 0) node_ = (node_ + 1) % nodes_;
+    return forces;
+  }
+
+ private:
+  int nodes_;
+  int node_ = 0;
+  int left_ = 0;
+  bool active_ = false;
+  std::mt19937 random_{7};
+  std::uniform_real_distribution<double> uniform_{-1.0, 1.0};
+};
+
+// Equation (10) written down: u[k] = sum over ages of R[age] f[k - age], over ages first..last - 1.
+class DirectSum {
+ public:
+  DirectSum(const Model& modal, int first, int last) : first_(first), last_(last) {
+    const auto& response = std::get<ModalResponse>(modal.response);
+    shapes_ = std::get<RowMatrix<double>>(response.shapes);
+    h_.resize(response.mode_count(), last);
+    for (int i = 0; i < response.mode_count(); ++i) {
+      h_.row(i) = held_force_response(held_force_oscillator(response.angular_frequency(i),
+                                                            response.decay_rate(i), modal.dt),
+                                      last)
+                      .transpose();
+    }
+  }
+  void push(const std::vector<NodalForce>& forces) {
+    Eigen::VectorXd modal = Eigen::VectorXd::Zero(shapes_.cols());
+    for (const NodalForce& force : forces) {
+      modal += shapes_.middleRows(3 * force.node, 3).transpose() * force.force;
+    }
+    history_.push_front(modal);
+    if (static_cast<int>(history_.size()) > last_) history_.pop_back();
+  }
+  Points displacement() const {
+    Eigen::VectorXd q = Eigen::VectorXd::Zero(shapes_.cols());
+    for (int age = first_; age < static_cast<int>(history_.size()); ++age) {
+      q += h_.col(age).cwiseProduct(history_[static_cast<std::size_t>(age)]);
+    }
+    const Eigen::VectorXd u = shapes_ * q;
+    return Eigen::Map<const Points>(u.data(), u.size() / 3, 3);
+  }
+
+ private:
+  int first_;
+  int last_;
+  RowMatrix<double> shapes_;
+  Eigen::MatrixXd h_;
+  std::deque<Eigen::VectorXd> history_;
+};
+
+}  // namespace
+
+TEST_CASE("engines equal the direct sum of equation (10) and each other, past the end of R") {
+  constexpr int kSteps = 60;
+  const Model modal = synthetic_cube(2, 20, kSteps);
+  const auto modal_engine = make_engine(share(modal));
+  const auto single = make_engine(share(with_dense_response<float>(modal)));
+  const auto exact = make_engine(share(with_dense_response<double>(modal)));
+  RandomContacts contacts(modal.mesh.surface_node_count());
+  DirectSum everything(modal, 0, 4 * kSteps);
+  DirectSum truncated(modal, 0, kSteps);
+  DirectSum beyond(modal, kSteps, 4 * kSteps);
+
+  double peak = 0.0;
+  double tail = 0.0;
+  Points u;
+  for (int k = 0; k < 4 * kSteps; ++k) {
+    const std::vector<NodalForce> forces = contacts.next();
+    for (DirectSum* sum : {&everything, &truncated, &beyond}) sum->push(forces);
+    for (const auto* engine : {&modal_engine, &single, &exact}) (*engine)->advance(forces);
+    const Points all = everything.displacement();
+    const Points within = truncated.displacement();
+    const Points lost = beyond.displacement();
+    peak = std::max(peak, all.cwiseAbs().maxCoeff());
+    tail = std::max(tail, lost.cwiseAbs().maxCoeff());
+    modal_engine->displacement(u);
+    REQUIRE((u - all).cwiseAbs().maxCoeff() <= 1e-11 * (peak + 1e-30));
+    exact->displacement(u);
+    REQUIRE((u - within).cwiseAbs().maxCoeff() <= 1e-11 * (peak + 1e-30));
+    // Single precision; what is cut off at T is accounted for exactly.
+    single->displacement(u);
+    REQUIRE((u + lost - all).cwiseAbs().maxCoeff() <= 1e-5 * (peak + 1e-30));
+  }
+  // The run is long enough, and its damping weak enough, for the cut at T to be seen.
+  CHECK(tail > 1e-3 * peak);
+}
+
+TEST_CASE("engines predict the coming step: free displacement, and R[0] between the contacts") {
+  const Model modal = synthetic_cube(2, 20, 80);
+  const auto engine = GENERATE_COPY(
+      as<std::shared_ptr<ResponseEngine>>{},
+      std::shared_ptr<ResponseEngine>(make_engine(share(modal))),
+      std::shared_ptr<ResponseEngine>(make_engine(share(with_dense_response<double>(modal)))));
+  RandomContacts contacts(modal.mesh.surface_node_count());
+  for (int k = 0; k < 30; ++k) engine->advance(contacts.next());
+
+  const std::array<SurfacePoint, 2> points{SurfacePoint{{0, 1, 2}, {0.2, 0.3, 0.5}},
+                                           SurfacePoint{{7, 3, 9}, {1.0, 0.0, 0.0}}};
+  std::array<Vector3, 2> h;
+  ContactMatrix W;
+  engine->predict(points, h, W);
+  CHECK((h[1] - engine->free_displacement(7)).norm() < 1e-15);
+  const std::array<Vector3, 2> f{Vector3(0.3, -0.2, 0.1), Vector3(-0.5, 0.4, 0.6)};
+  std::vector<NodalForce> nodal;
+  for (std::size_t a = 0; a < 2; ++a) {
+    for (std::size_t i = 0; i < 3; ++i)
+      nodal.push_back({points[a].nodes[i], points[a].weights[i] * f[a]});
+  }
+  engine->advance(nodal);
+  Points u;
+  engine->displacement(u);
+  Eigen::Matrix<double, 6, 1> force;
+  force << f[0], f[1];
+  const Eigen::Matrix<double, 6, 1> answer = W * force;
+  CHECK((W - W.transpose()).norm() < 1e-12 * W.norm());
+  for (std::size_t a = 0; a < 2; ++a) {
+    const Vector3 moved =
+        interpolate(points[a], [&](int i) -> Vector3 { return u.row(i).transpose(); });
+    const Vector3 predicted = h[a] + answer.segment<3>(static_cast<Eigen::Index>(3 * a));
+    CHECK((moved - predicted).norm() < 1e-12 * u.norm());
+  }
+}
+
+TEST_CASE("engine's surface is the same to the bit with one and with two OpenMP threads") {
+  const Model modal = synthetic_cube(3, 30, 50);
+  for (const Model& model : {modal, with_dense_response<float>(modal)}) {
+    const auto engine = make_engine(share(model));
+    RandomContacts contacts(modal.mesh.surface_node_count());
+    for (int k = 0; k < 70; ++k) engine->advance(contacts.next());
+    Points one, two;
+    omp_set_num_threads(1);
+    engine->displacement(one);
+    omp_set_num_threads(2);
+    engine->displacement(two);
+    CHECK((one.array() == two.array()).all());
+    CHECK(one.norm() > 0);
+  }
+}
+
+TEST_CASE("engine forgets everything on reset") {
+  const Model modal = synthetic_cube(2, 10, 50);
+  for (const Model& model : {modal, with_dense_response<float>(modal)}) {
+    const auto engine = make_engine(share(model));
+    RandomContacts contacts(modal.mesh.surface_node_count());
+    for (int k = 0; k < 20; ++k) engine->advance(contacts.next());
+    engine->reset();
+    engine->advance({});
+    Points u;
+    engine->displacement(u);
+    CHECK(u.norm() == 0.0);
+  }
+}

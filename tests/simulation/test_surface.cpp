@@ -1,0 +1,162 @@
+#include <catch2/catch.hpp>
+#include <limits>
+#include <random>
+
+#include "server/collision/deformed_surface.hpp"
+#include "tests/support/synthetic_model.hpp"
+
+using namespace irdm;
+
+namespace {
+
+// Displaces every node of a mesh as a function of its rest position says.
+class FakeEngine final : public ResponseEngine {
+ public:
+  template <typename Field>
+  FakeEngine(const ModelMesh& mesh, const Field& field) {
+    for (int i = 0; i < mesh.surface_node_count(); ++i) u_.push_back(field(mesh.rest_position(i)));
+  }
+  Vector3 free_displacement(int node) const noexcept override {
+    ++evaluations;
+    return u_[static_cast<std::size_t>(node)];
+  }
+  void predict(std::span<const SurfacePoint>, std::span<Vector3>,
+               ContactMatrix&) noexcept override {}
+  void advance(std::span<const NodalForce>) noexcept override {}
+  void displacement(Points&) const override {}
+  void reset() noexcept override {}
+  mutable int evaluations = 0;
+
+ private:
+  std::vector<Vector3> u_;
+};
+
+Vector3 random_point(std::mt19937& random, double reach) {
+  std::uniform_real_distribution<double> uniform(-reach, reach);
+  return {uniform(random), uniform(random), uniform(random)};
+}
+
+// Signed distance to an axis-aligned cube of half edge a, positive outside.
+double cube_distance(const Vector3& p, double a) {
+  const Vector3 d = p.cwiseAbs() - Vector3::Constant(a);
+  return d.cwiseMax(0.0).norm() + std::min(d.maxCoeff(), 0.0);
+}
+
+}  // namespace
+
+TEST_CASE("nearest point of a triangle: face, edges and corners") {
+  const TriangleCorners triangle{Vector3(0, 0, 0), Vector3(2, 0, 0), Vector3(0, 2, 0)};
+  CHECK((at(triangle, closest_point(triangle, {0.5, 0.5, 3})) - Vector3(0.5, 0.5, 0)).norm() <
+        1e-15);
+  CHECK((at(triangle, closest_point(triangle, {1, -5, 1})) - Vector3(1, 0, 0)).norm() < 1e-15);
+  CHECK((at(triangle, closest_point(triangle, {2, 2, -1})) - Vector3(1, 1, 0)).norm() < 1e-15);
+  CHECK(closest_point(triangle, {-1, -1, 0}) == Barycentric{1, 0, 0});
+  CHECK(closest_point(triangle, {5, -1, 0}) == Barycentric{0, 1, 0});
+  const TriangleCorners line{Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(2, 0, 0)};
+  CHECK((at(line, closest_point(line, {1.5, 1, 0})) - Vector3(1.5, 0, 0)).norm() < 1e-15);
+}
+
+TEST_CASE("nearest point of a triangle is never beaten by a sample of it") {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  for (int i = 0; i < 300; ++i) {
+    const TriangleCorners triangle{random_point(random, 1), random_point(random, 1),
+                                   random_point(random, 1)};
+    const Vector3 p = random_point(random, 2);
+    const Barycentric weights = closest_point(triangle, p);
+    REQUIRE(weights[0] + weights[1] + weights[2] == Approx(1.0));
+    const double distance = (at(triangle, weights) - p).norm();
+    for (int j = 0; j < 300; ++j) {
+      double a = uniform(random), b = uniform(random);
+      if (a + b > 1) {
+        a = 1 - a;
+        b = 1 - b;
+      }
+      REQUIRE(distance <= (at(triangle, {1 - a - b, a, b}) - p).norm() + 1e-14);
+    }
+  }
+}
+
+TEST_CASE("a path enters a triangle from its outer side only") {
+  const TriangleCorners triangle{Vector3(0, 0, 0), Vector3(2, 0, 0), Vector3(0, 2, 0)};
+  const auto in = crossing(triangle, {0.5, 0.5, 1}, {0.5, 0.5, -3});
+  REQUIRE(in);
+  CHECK(in->fraction == Approx(0.25));
+  CHECK_FALSE(crossing(triangle, {0.5, 0.5, -1}, {0.5, 0.5, 1}));
+  CHECK_FALSE(crossing(triangle, {3, 3, 1}, {3, 3, -1}));
+  CHECK_FALSE(crossing(triangle, {0.5, 0.5, 2}, {0.5, 0.5, 1}));
+}
+
+TEST_CASE("surface tree finds the triangle that a search through all finds") {
+  const Model model = test::synthetic_cube(5, 1, 1);
+  const SurfaceTree tree(model.mesh);
+  std::mt19937 random(2);
+  for (int i = 0; i < 500; ++i) {
+    const Vector3 p = random_point(random, 0.15);
+    double nearest = std::numeric_limits<double>::infinity();
+    const auto distance = [&](int t) {
+      const TriangleCorners corners{model.mesh.rest_position(model.mesh.triangles(t, 0)),
+                                    model.mesh.rest_position(model.mesh.triangles(t, 1)),
+                                    model.mesh.rest_position(model.mesh.triangles(t, 2))};
+      return (at(corners, closest_point(corners, p)) - p).norm();
+    };
+    for (int t = 0; t < model.mesh.triangles.rows(); ++t) nearest = std::min(nearest, distance(t));
+    REQUIRE(distance(tree.closest_triangle(p)) == Approx(nearest).margin(1e-15));
+  }
+}
+
+TEST_CASE("deformed surface gives the signed distance of the cube at rest") {
+  const Model model = test::synthetic_cube(6, 1, 1);
+  DeformedSurface surface(model.mesh);
+  const FakeEngine engine(model.mesh, [](const Vector3&) -> Vector3 { return Vector3::Zero(); });
+  std::mt19937 random(4);
+  for (int i = 0; i < 1000; ++i) {
+    surface.begin_step(engine);
+    const Vector3 p = random_point(random, 0.1);
+    const SurfaceHit hit = surface.closest(p);
+    REQUIRE(hit.signed_distance == Approx(cube_distance(p, 0.06)).margin(1e-12));
+  }
+}
+
+TEST_CASE("deformed surface follows displacements much larger than its triangles") {
+  const Model model = test::synthetic_cube(6, 1, 1);
+  DeformedSurface surface(model.mesh);
+  // Squeezed to half, and shifted by a third of the edge: still a box, of which the distance is
+  // known.
+  const Vector3 scale(1.2, 0.5, 0.8);
+  const Vector3 shift(0.04, -0.03, 0.02);
+  const FakeEngine engine(
+      model.mesh, [&](const Vector3& x) -> Vector3 { return scale.cwiseProduct(x) + shift - x; });
+  std::mt19937 random(4);
+  int wrong = 0;
+  for (int i = 0; i < 1000; ++i) {
+    surface.begin_step(engine);
+    // Points within 1 cm of the deformed surface: where contacts are made.
+    Vector3 x = random_point(random, 0.06);
+    x[i % 3] = (i & 4) != 0 ? 0.06 : -0.06;
+    const Vector3 p = scale.cwiseProduct(x) + shift + random_point(random, 0.01);
+    const Vector3 d = (p - shift).cwiseAbs() - 0.06 * scale;
+    const double expected = d.cwiseMax(0.0).norm() + std::min(d.maxCoeff(), 0.0);
+    if (std::abs(surface.closest(p).signed_distance - expected) > 1e-12) ++wrong;
+  }
+  CHECK(wrong == 0);
+}
+
+TEST_CASE("deformed surface computes a bounded number of nodes, each once a step") {
+  int fewest = 1'000'000;
+  int most = 0;
+  for (const int cells : {4, 8, 16}) {
+    const Model model = test::synthetic_cube(cells, 1, 1);
+    DeformedSurface surface(model.mesh);
+    const FakeEngine engine(model.mesh, [](const Vector3&) -> Vector3 { return Vector3::Zero(); });
+    surface.begin_step(engine);
+    surface.closest({0.01, 0.012, 0.065});
+    const int once = engine.evaluations;
+    surface.closest({0.01, 0.012, 0.065});
+    CHECK(engine.evaluations == once);
+    fewest = std::min(fewest, once);
+    most = std::max(most, once);
+  }
+  CHECK(most <= 20);
+  CHECK(most - fewest <= 4);
+}

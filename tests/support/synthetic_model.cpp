@@ -1,0 +1,122 @@
+#include "tests/support/synthetic_model.hpp"
+
+#include <map>
+#include <random>
+
+#include "common/response/oscillator.hpp"
+
+namespace irdm::test {
+namespace {
+
+// Surface grid of a cube: nodes numbered as they are met, two triangles a square, outward.
+void make_surface(int cells, double edge, ModelMesh& mesh) {
+  std::map<std::array<int, 3>, int> numbers;
+  std::vector<Vector3> nodes;
+  std::vector<std::array<int, 3>> triangles;
+  const auto node = [&](const std::array<int, 3>& at) {
+    const auto [found, added] = numbers.try_emplace(at, static_cast<int>(nodes.size()));
+    if (added)
+      nodes.push_back(Vector3(at[0], at[1], at[2]) * edge / cells - Vector3::Constant(edge / 2));
+    return found->second;
+  };
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (const int side : {0, cells}) {
+      for (int a = 0; a < cells; ++a) {
+        for (int b = 0; b < cells; ++b) {
+          const auto corner = [&](int u, int v) {
+            std::array<int, 3> at{};
+            at[axis] = side;
+            at[(axis + 1) % 3] = u;
+            at[(axis + 2) % 3] = v;
+            return node(at);
+          };
+          std::array<int, 4> q{corner(a, b), corner(a + 1, b), corner(a + 1, b + 1),
+                               corner(a, b + 1)};
+          if (side == 0) std::swap(q[1], q[3]);
+          triangles.push_back({q[0], q[1], q[2]});
+          triangles.push_back({q[0], q[2], q[3]});
+        }
+      }
+    }
+  }
+  mesh.nodes.resize(static_cast<Eigen::Index>(nodes.size()), 3);
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    mesh.nodes.row(static_cast<Eigen::Index>(i)) = nodes[i].transpose();
+    mesh.surface_nodes.push_back(static_cast<int>(i));
+  }
+  mesh.triangles.resize(static_cast<Eigen::Index>(triangles.size()), 3);
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      mesh.triangles(static_cast<Eigen::Index>(t), static_cast<Eigen::Index>(i)) = triangles[t][i];
+    }
+  }
+  mesh.tets = RowMatrix<int>::Zero(1, 4);
+  mesh.node_mass = Eigen::VectorXd::Constant(mesh.nodes.rows(), 0.0);
+}
+
+}  // namespace
+
+Model synthetic_cube(int cells, int modes, int steps, double edge, unsigned seed) {
+  Model model;
+  make_surface(cells, edge, model.mesh);
+  constexpr double kDensity = 110.0;
+  model.body.mass = kDensity * edge * edge * edge;
+  model.body.inertia = Matrix3::Identity() * model.body.mass * edge * edge / 6.0;
+  model.mesh.node_mass.setConstant(model.body.mass / static_cast<double>(model.mesh.nodes.rows()));
+  model.material = {2000.0, 0.49, kDensity, 8.0, 2e-4};
+  model.dt = 0.002;
+  model.steps = steps;
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  ModalResponse response;
+  response.angular_frequency.resize(modes);
+  response.decay_rate.resize(modes);
+  RowMatrix<double> shapes(model.degrees_of_freedom(), modes);
+  for (int i = 0; i < modes; ++i) {
+    constexpr double kTwoPi = 6.283185307179586;
+    const double frequency = 10.0 + 390.0 * i / std::max(1, modes - 1);
+    response.angular_frequency(i) = kTwoPi * frequency;
+    response.decay_rate(i) = 4.0 + 0.05 * frequency;
+  }
+  for (Eigen::Index i = 0; i < shapes.size(); ++i) {
+    shapes.data()[i] = uniform(random) / std::sqrt(model.body.mass);
+  }
+  response.shapes = shapes;
+  model.response = response;
+  return model;
+}
+
+template <typename Scalar>
+Model with_dense_response(const Model& modal) {
+  const auto& response = std::get<ModalResponse>(modal.response);
+  const auto& shapes = std::get<RowMatrix<double>>(response.shapes);
+  const int dof = modal.degrees_of_freedom();
+  std::vector<Scalar> values(static_cast<std::size_t>(dof) * static_cast<std::size_t>(dof) *
+                             static_cast<std::size_t>(modal.steps));
+  Eigen::MatrixXd h(response.mode_count(), modal.steps);
+  for (int i = 0; i < response.mode_count(); ++i) {
+    h.row(i) = held_force_response(held_force_oscillator(response.angular_frequency(i),
+                                                         response.decay_rate(i), modal.dt),
+                                   modal.steps)
+                   .transpose();
+  }
+  for (int b = 0; b < dof; ++b) {
+    const Eigen::MatrixXd column = shapes * shapes.row(b).asDiagonal() * h;  // (3n, T)
+    for (int a = 0; a < dof; ++a) {
+      for (int s = 0; s < modal.steps; ++s) {
+        values[(static_cast<std::size_t>(b) * static_cast<std::size_t>(dof) +
+                static_cast<std::size_t>(a)) *
+                   static_cast<std::size_t>(modal.steps) +
+               static_cast<std::size_t>(s)] = static_cast<Scalar>(column(a, s));
+      }
+    }
+  }
+  Model dense = modal;
+  dense.response = DenseResponse{dof, modal.steps, std::move(values)};
+  return dense;
+}
+
+template Model with_dense_response<float>(const Model&);
+template Model with_dense_response<double>(const Model&);
+
+}  // namespace irdm::test

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <memory>
+
+#include "common/model/model.hpp"
+
+namespace irdm::test {
+
+/// A cube of `cells` cells an edge and `edge` m, its surface alone, with `modes` random modes from
+/// 10 to 400 Hz: every formula of the online part that holds for any linear response can be tried
+/// on it without finite elements. dt = 2 ms.
+Model synthetic_cube(int cells, int modes, int steps, double edge = 0.12, unsigned seed = 1);
+
+/// The same object with R itself, computed from its modes by the closed form, as a DenseResponse.
+template <typename Scalar>
+Model with_dense_response(const Model& modal);
+
+}  // namespace irdm::test

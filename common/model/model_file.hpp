@@ -35,6 +35,9 @@ class ModelFileWriter {
   void write_dense_column(int b, const float* values);
   void write_dense_column(int b, const double* values);
 
+  /// Where the file is until commit: for a signal handler that tidies up.
+  const std::filesystem::path& temporary_path() const { return temporary_; }
+
   /// Completes the file and moves it to its final name, replacing an older one.
   void commit();
 

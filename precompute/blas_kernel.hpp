@@ -1,0 +1,34 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+namespace irdm::precompute {
+
+/// What the processor can do, as far as BLAS kernels differ by it.
+struct CpuFeatures {
+  bool avx2_fma = false;
+  bool avx512 = false;  ///< F, DQ, BW, VL and CD: what OpenBLAS's SkylakeX kernels use
+};
+
+/// The features of this machine.
+CpuFeatures cpu_features();
+
+/// OpenBLAS 0.3.21 does not know processors newer than itself and falls back to SSE kernels, three
+/// to four times slower. Returns the value of OPENBLAS_CORETYPE that mends it, nothing when the
+/// kernel in use is a modern one already or the processor has none better.
+/// @param kernel name of the kernel in use, as openblas_get_corename() gives it
+std::optional<std::string> better_blas_kernel(const std::string& kernel, const CpuFeatures& cpu);
+
+/// Name of the kernel that OpenBLAS uses in this process.
+std::string blas_kernel();
+
+/// Starts this program anew with a better kernel when OpenBLAS picked a slow one and nobody chose
+/// by OPENBLAS_CORETYPE. OpenBLAS looks at that only when it is loaded, hence the new start; call
+/// first in main. Returns when there is nothing to do.
+void use_fast_blas_kernel(char** argv);
+
+/// Number of threads of the BLAS; 0 leaves OpenBLAS's choice, all cores.
+void set_blas_threads(int threads);
+
+}  // namespace irdm::precompute

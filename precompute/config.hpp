@@ -1,0 +1,57 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <variant>
+
+#include "common/config/toml_reader.hpp"
+#include "common/model/model.hpp"
+#include "common/model/model_file.hpp"
+
+namespace irdm::precompute {
+
+/// A box to be meshed: one corner at the origin, edges along the axes.
+struct BoxConfig {
+  Vector3 size = Vector3::Zero();        ///< edge lengths [m], > 0
+  std::array<int, 3> cells = {0, 0, 0};  ///< grid cells along each edge, 1..100
+};
+
+/// [mesh]: either `box = { size = [..], cells = [..] }` or `file = "name"` (.msh, .node, .ele).
+struct MeshConfig {
+  std::variant<BoxConfig, std::filesystem::path> source;
+  int order = 1;  ///< 1: linear tetrahedra, the only ones in this version
+};
+
+/// Which form of R the model file gets.
+enum class Storage { kModal, kDense, kBoth };
+
+/// [response]
+struct ResponseConfig {
+  double dt = 0.002;                         ///< response interval [s], above 0 up to 1
+  int steps = 500;                           ///< T, 1..1 000 000
+  Storage storage = Storage::kModal;         ///< "modal" | "dense" | "both"
+  Precision precision = Precision::kSingle;  ///< of stored numbers of R: "single" | "double"
+  // method = "modal" and support = "floating" are the only ones in this version
+};
+
+/// A configuration file of irdm-precompute.
+struct PrecomputeConfig {
+  std::string name;  ///< of the file, for messages
+  MeshConfig mesh;
+  /// [material]: youngs_modulus [Pa] > 0, poisson_ratio in (-1, 0.5) and density [kg/m^3] > 0 are
+  /// required; rayleigh_alpha [1/s] >= 0 and rayleigh_beta [s] >= 0 are 8.0 and 2e-4 unless given.
+  Material material;
+  ResponseConfig response;
+};
+
+/// The word of a configuration file or command line. Throws std::out_of_range for others.
+Storage storage_from_word(const std::string& word);
+
+/// Throws Error, naming what is available, unless the method is "modal".
+void check_method(const std::string& method);
+
+/// Reads and checks a whole configuration. Throws Error with file and line.
+PrecomputeConfig read_config(TomlTable root, const std::string& name);
+PrecomputeConfig load_config(const std::filesystem::path& path);
+
+}  // namespace irdm::precompute

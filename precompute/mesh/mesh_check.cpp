@@ -1,0 +1,148 @@
+#include "precompute/mesh/mesh_check.hpp"
+
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <vector>
+
+#include "common/error.hpp"
+#include "precompute/mesh/faces.hpp"
+#include "precompute/mesh/surface.hpp"
+
+namespace irdm::precompute {
+namespace {
+
+// A tetrahedron is flat when its volume is below this share of its longest edge cubed (a regular
+// one has 0.118); far below the worst slivers of mesh generators.
+constexpr double kFlat = 1e-9;
+
+std::string element(int e) {
+  return "element " + std::to_string(e + 1);
+}
+
+void check_coordinates(const TetMesh& mesh, const std::string& name) {
+  for (int i = 0; i < mesh.node_count(); ++i) {
+    if (mesh.nodes.row(i).allFinite()) continue;
+    throw Error(name, "node " + std::to_string(i + 1) + " has a coordinate that is not finite",
+                "write the mesh again");
+  }
+}
+
+void check_indices(const TetMesh& mesh, const std::string& name) {
+  std::vector<bool> used(static_cast<std::size_t>(mesh.node_count()), false);
+  for (int e = 0; e < mesh.tet_count(); ++e) {
+    for (int i = 0; i < 4; ++i) {
+      const int node = mesh.tets(e, i);
+      if (node < 0 || node >= mesh.node_count()) {
+        throw Error(name, element(e) + " uses a node that does not exist", "write the mesh again");
+      }
+      used[static_cast<std::size_t>(node)] = true;
+      for (int j = 0; j < i; ++j) {
+        if (mesh.tets(e, j) != node) continue;
+        throw Error(name, element(e) + " uses the same node twice", "remove degenerate elements");
+      }
+    }
+  }
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    if (used[i]) continue;
+    throw Error(name, "node " + std::to_string(i + 1) + " belongs to no tetrahedron",
+                "remove unused nodes");
+  }
+}
+
+double longest_edge(const TetMesh& mesh, int e) {
+  double longest = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    for (int j = 0; j < i; ++j) {
+      const Vector3 edge = mesh.position(mesh.tets(e, i)) - mesh.position(mesh.tets(e, j));
+      longest = std::max(longest, edge.norm());
+    }
+  }
+  return longest;
+}
+
+void check_volumes(const TetMesh& mesh, const std::string& name) {
+  int first = -1;
+  int inverted = 0;
+  for (int e = 0; e < mesh.tet_count(); ++e) {
+    const double volume = signed_volume(mesh, e);
+    if (!(std::abs(volume) > kFlat * std::pow(longest_edge(mesh, e), 3))) {
+      throw Error(name, element(e) + " has zero volume", "repair or optimise the mesh");
+    }
+    if (volume > 0.0) continue;
+    if (inverted++ == 0) first = e;
+  }
+  if (inverted == 0) return;
+  if (inverted == mesh.tet_count()) {
+    throw Error(name, "all " + std::to_string(inverted) + " tetrahedra are inverted",
+                "the file orders the nodes of an element the other way round: exchange two nodes "
+                "of every element");
+  }
+  throw Error(name,
+              std::to_string(inverted) + " of " + std::to_string(mesh.tet_count()) +
+                  " tetrahedra are inverted, the first is " + element(first),
+              "repair the mesh");
+}
+
+class Pieces {
+ public:
+  explicit Pieces(int count) : parent_(static_cast<std::size_t>(count)) {
+    std::iota(parent_.begin(), parent_.end(), 0);
+  }
+  int find(int i) {
+    int& parent = parent_[static_cast<std::size_t>(i)];
+    while (parent_[static_cast<std::size_t>(parent)] != parent) {
+      parent = parent_[static_cast<std::size_t>(parent)];
+    }
+    return parent;
+  }
+  void join(int i, int j) { parent_[static_cast<std::size_t>(find(i))] = find(j); }
+
+ private:
+  std::vector<int> parent_;
+};
+
+void check_connected(const TetMesh& mesh, const std::string& name) {
+  Pieces pieces(mesh.tet_count());
+  for (const auto& [nodes, owners] : faces_by_nodes(mesh)) {
+    for (const TetFace& owner : owners) pieces.join(owners.front().tet, owner.tet);
+  }
+  int count = 0;
+  for (int e = 0; e < mesh.tet_count(); ++e) count += pieces.find(e) == e ? 1 : 0;
+  if (count == 1) return;
+  throw Error(name,
+              "the mesh falls into " + std::to_string(count) +
+                  " pieces that share no face of a tetrahedron",
+              "keep one piece or join them conformingly");
+}
+
+void check_surface(const TetMesh& mesh, const std::string& name) {
+  const Triangles triangles = boundary_faces(mesh, name);
+  std::map<std::pair<int, int>, int> edges;
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
+    for (int i = 0; i < 3; ++i) ++edges[{triangles(t, i), triangles(t, (i + 1) % 3)}];
+  }
+  for (const auto& [edge, count] : edges) {
+    const auto back = edges.find({edge.second, edge.first});
+    if (count == 1 && back != edges.end() && back->second == 1) continue;
+    throw Error(name,
+                "the surface is not manifold at the edge of nodes " +
+                    std::to_string(edge.first + 1) + " and " + std::to_string(edge.second + 1),
+                "separate or join the parts that touch there");
+  }
+}
+
+}  // namespace
+
+void check_mesh(const TetMesh& mesh, const std::string& name) {
+  if (mesh.tet_count() == 0 || mesh.node_count() < 4) {
+    throw Error(name, "there are no tetrahedra", "make a volume mesh of linear tetrahedra");
+  }
+  check_coordinates(mesh, name);
+  check_indices(mesh, name);
+  check_volumes(mesh, name);
+  check_connected(mesh, name);
+  check_surface(mesh, name);
+}
+
+}  // namespace irdm::precompute

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/geometry.hpp"
+#include "precompute/mesh/tet_mesh.hpp"
+
+namespace irdm::precompute {
+
+/// The boundary of a tetrahedral mesh. n surface nodes, t triangles.
+struct Surface {
+  std::vector<int> nodes;  ///< (n) into the mesh's nodes, increasing
+  Triangles triangles;     ///< (t, 3) into `nodes`, normals outward
+};
+
+/// Faces that belong to exactly one tetrahedron, as node triples of the mesh seen from outside
+/// counter-clockwise, in the order of the elements. Throws Error (about `name`) when a face belongs
+/// to more than two tetrahedra.
+Triangles boundary_faces(const TetMesh& mesh, const std::string& name);
+
+/// The boundary with its own node numbering.
+Surface extract_surface(const TetMesh& mesh, const std::string& name);
+
+}  // namespace irdm::precompute

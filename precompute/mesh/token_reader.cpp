@@ -1,0 +1,104 @@
+#include "precompute/mesh/token_reader.hpp"
+
+#include <cctype>
+#include <charconv>
+#include <fstream>
+#include <iterator>
+
+#include "common/error.hpp"
+
+namespace irdm::precompute {
+namespace {
+
+bool is_blank(char c) {
+  return std::isspace(static_cast<unsigned char>(c)) != 0;
+}
+
+// Reads the whole word as a number; from_chars knows no leading plus sign.
+template <typename Number>
+bool parse(std::string_view word, Number& value) {
+  if (word.size() > 1 && word.front() == '+') word.remove_prefix(1);
+  const char* end = word.data() + word.size();
+  const auto result = std::from_chars(word.data(), end, value);
+  return result.ec == std::errc() && result.ptr == end;
+}
+
+}  // namespace
+
+TokenReader::TokenReader(const std::filesystem::path& path, char comment)
+    : name_(path.string()), comment_(comment) {
+  if (!std::filesystem::is_regular_file(path)) throw Error(name_, "no such file", "check the path");
+  std::ifstream file(path, std::ios::binary);
+  text_.assign(std::istreambuf_iterator<char>(file), {});
+  if (!file) throw Error(name_, "cannot be read", "check its permissions");
+  if (at_end()) throw Error(name_, "is empty", "write the mesh again");
+}
+
+void TokenReader::skip_blanks() {
+  while (position_ < text_.size()) {
+    const char c = text_[position_];
+    if (comment_ != 0 && c == comment_) {
+      position_ = std::min(text_.find('\n', position_), text_.size());
+    } else if (is_blank(c)) {
+      line_ += c == '\n' ? 1 : 0;
+      ++position_;
+    } else {
+      return;
+    }
+  }
+}
+
+bool TokenReader::at_end() {
+  skip_blanks();
+  return position_ == text_.size();
+}
+
+std::string_view TokenReader::word() {
+  if (at_end()) fail("the file ends too early", "it is truncated: write the mesh again");
+  const std::size_t start = position_;
+  while (position_ < text_.size() && !is_blank(text_[position_])) ++position_;
+  return std::string_view(text_).substr(start, position_ - start);
+}
+
+std::int64_t TokenReader::integer() {
+  const std::string_view text = word();
+  std::int64_t value = 0;
+  if (!parse(text, value)) {
+    fail("'" + std::string(text.substr(0, 40)) + "' is not a whole number", "write the mesh again");
+  }
+  return value;
+}
+
+std::int64_t TokenReader::integer(std::int64_t lowest, std::int64_t highest,
+                                  const std::string& meaning) {
+  const std::int64_t value = integer();
+  if (value < lowest || value > highest) {
+    fail(meaning + " is " + std::to_string(value),
+         "it must lie from " + std::to_string(lowest) + " to " + std::to_string(highest));
+  }
+  return value;
+}
+
+double TokenReader::number() {
+  const std::string_view text = word();
+  double value = 0.0;
+  if (!parse(text, value)) {
+    fail("'" + std::string(text.substr(0, 40)) + "' is not a number", "write the mesh again");
+  }
+  return value;
+}
+
+void TokenReader::skip(std::int64_t words) {
+  for (std::int64_t i = 0; i < words; ++i) word();
+}
+
+void TokenReader::skip_past(std::string_view wanted) {
+  while (word() != wanted) {
+  }
+}
+
+void TokenReader::fail(const std::string& what, const std::string& remedy) const {
+  throw Error(name_ + ":" + std::to_string(line_), what, remedy);
+}
+
+}  // namespace irdm::precompute

@@ -1,0 +1,72 @@
+#include "precompute/modal/elastic_modes.hpp"
+
+#include <string>
+
+#include "common/error.hpp"
+#include "precompute/fem/rigid_motions.hpp"
+#include "precompute/modal/symmetric_eigen.hpp"
+
+namespace irdm::precompute {
+namespace {
+
+// Eigenvalues up to this share of the largest are zero: the eigensolver leaves about 1e-15.
+constexpr double kZeroShare = 1e-12;
+
+Eigen::VectorXd per_degree_of_freedom(const Eigen::VectorXd& per_node) {
+  return per_node.replicate(1, 3).transpose().reshaped();
+}
+
+int count_zero(const Eigen::VectorXd& values) {
+  return static_cast<int>((values.array() <= kZeroShare * values.maxCoeff()).count());
+}
+
+void check_rigid_modes(const EigenPairs& pairs, const Eigen::MatrixXd& rigid) {
+  const int zero = count_zero(pairs.values);
+  if (zero != 6) {
+    throw Error("mesh",
+                "the free body has " + std::to_string(zero) +
+                    " modes without elastic energy instead of six",
+                "check for elements that hang on a single node or edge, and for very thin parts");
+  }
+  const Eigen::VectorXd overlap =
+      (rigid.transpose() * pairs.vectors.leftCols(6)).colwise().squaredNorm().transpose();
+  if (overlap.minCoeff() < 1.0 - 1e-6) {
+    throw Error("mesh", "the six lowest modes are not the rigid motions of the body",
+                "check the mesh for extremely distorted elements");
+  }
+}
+
+}  // namespace
+
+ElasticModes elastic_modes(const SparseMatrix& stiffness, const Points& nodes,
+                           const Eigen::VectorXd& mass) {
+  const Eigen::VectorXd root_mass = per_degree_of_freedom(mass).cwiseSqrt();
+  const Eigen::VectorXd inverse_root = root_mass.cwiseInverse();
+  const SparseMatrix scaled = inverse_root.asDiagonal() * stiffness * inverse_root.asDiagonal();
+  EigenPairs pairs = symmetric_eigen(Eigen::MatrixXd(scaled));
+
+  // In the coordinates M^1/2 u the rigid motions are orthonormal columns.
+  const Eigen::MatrixXd rigid = root_mass.asDiagonal() * rigid_motions(nodes, mass);
+  check_rigid_modes(pairs, rigid);
+  const Eigen::Index count = pairs.values.size() - 6;
+  auto elastic = pairs.vectors.rightCols(count);
+  const Eigen::MatrixXd rigid_part = rigid.transpose() * elastic;
+  elastic.noalias() -= rigid * rigid_part;
+  elastic = inverse_root.asDiagonal() * elastic;
+  return {pairs.values.tail(count).cwiseSqrt(), elastic};
+}
+
+ModalResponse modal_response(const ElasticModes& modes, const std::vector<int>& surface_nodes,
+                             const Material& material) {
+  const Eigen::VectorXd& omega = modes.angular_frequency;
+  RowMatrix<double> shapes(static_cast<Eigen::Index>(3 * surface_nodes.size()), omega.size());
+  for (std::size_t i = 0; i < surface_nodes.size(); ++i) {
+    shapes.middleRows<3>(static_cast<Eigen::Index>(3 * i)) =
+        modes.shapes.middleRows<3>(3 * surface_nodes[i]);
+  }
+  const Eigen::VectorXd decay =
+      0.5 * (material.rayleigh_alpha + material.rayleigh_beta * omega.array().square());
+  return {omega, decay, std::move(shapes)};
+}
+
+}  // namespace irdm::precompute

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <Eigen/Dense>
+
+#include "common/geometry.hpp"
+#include "common/model/model.hpp"
+#include "precompute/fem/assembly.hpp"
+
+namespace irdm::precompute {
+
+/// Elastic modes of the free mesh: K phi = omega^2 M phi. r = 3N - 6 of them.
+struct ElasticModes {
+  Eigen::VectorXd angular_frequency;  ///< omega (r), increasing, > 0 [rad/s]
+  Eigen::MatrixXd shapes;             ///< (3N, r), Phi^T M Phi = Id [kg^-1/2]
+};
+
+/// All elastic modes of a floating body, from the eigenvectors of M^-1/2 K M^-1/2. The six rigid
+/// modes are recognised by their vanishing eigenvalue and their overlap with the analytic rigid
+/// motions, and left out; what rounding left of rigid motion in the others is removed, so that they
+/// carry no momentum. Throws Error when there are not exactly six.
+/// @param stiffness (3N, 3N) [N/m]
+/// @param nodes (N, 3) [m]
+/// @param mass lumped (N) [kg]
+ElasticModes elastic_modes(const SparseMatrix& stiffness, const Points& nodes,
+                           const Eigen::VectorXd& mass);
+
+/// R in modal form: shapes at the surface, decay rates sigma = (alpha + beta omega^2) / 2.
+/// @param surface_nodes (n) into the mesh's nodes
+ModalResponse modal_response(const ElasticModes& modes, const std::vector<int>& surface_nodes,
+                             const Material& material);
+
+}  // namespace irdm::precompute

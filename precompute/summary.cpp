@@ -1,0 +1,51 @@
+#include "precompute/summary.hpp"
+
+#include <cstdio>
+
+namespace irdm::precompute {
+namespace {
+
+std::string significant(double value, const char* unit) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%.3g %s", value, unit);
+  return text;
+}
+
+std::string bytes(double value) {
+  const char* const units[] = {"B", "kB", "MB", "GB", "TB"};
+  int unit = 0;
+  while (value >= 1000.0 && unit < 4) {
+    value /= 1000.0;
+    ++unit;
+  }
+  char text[64];
+  std::snprintf(text, sizeof text, "%.*f %s", value < 100.0 && unit > 0 ? 1 : 0, value,
+                units[unit]);
+  return text;
+}
+
+std::string row(const std::string& name, const std::string& value) {
+  return "  " + name + std::string(34 - name.size(), ' ') + value + "\n";
+}
+
+}  // namespace
+
+std::string format_summary(const Summary& s) {
+  const double dof = s.degrees_of_freedom();
+  return row("free nodes (n)", std::to_string(s.free_nodes)) +
+         row("triangle patches", std::to_string(s.triangles)) +
+         row("entire nodes", std::to_string(s.nodes)) +
+         row("tetrahedral elements", std::to_string(s.tetrahedra)) +
+         row("degrees of freedom (3n)", std::to_string(s.degrees_of_freedom())) +
+         row("elastic modes", std::to_string(s.modes)) +
+         row("lowest elastic frequency", significant(s.lowest_frequency, "Hz")) +
+         row("decay left at the last step", significant(100.0 * s.decay_left, "%")) +
+         row("nodal over solid inertia", significant(100.0 * s.inertia_excess, "% more")) +
+         row("pre-computation time", significant(s.seconds, "s")) +
+         row("pre-computation time per d.o.f.", significant(s.seconds / dof, "s")) +
+         row("model file", bytes(static_cast<double>(s.file_bytes))) +
+         row("data size per d.o.f.", bytes(static_cast<double>(s.file_bytes) / dof)) +
+         row("BLAS kernel", s.blas_kernel);
+}
+
+}  // namespace irdm::precompute

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace irdm::precompute {
+
+/// What was computed and what it cost: the table at the end of a run, like the paper's Table 1.
+struct Summary {
+  int free_nodes = 0;  ///< n, at the surface
+  int triangles = 0;   ///< at the surface
+  int nodes = 0;       ///< N, all
+  int tetrahedra = 0;
+  int modes = 0;
+  double seconds = 0.0;  ///< of the whole run
+  std::uint64_t file_bytes = 0;
+  double lowest_frequency = 0.0;  ///< of the elastic modes [Hz]
+  double decay_left = 0.0;        ///< see decay_left(), 0..
+  double inertia_excess = 0.0;    ///< largest moment of inertia of the nodes over the solid's, - 1
+  std::string blas_kernel;
+
+  int degrees_of_freedom() const { return 3 * free_nodes; }
+};
+
+/// One "name value" a line, aligned.
+std::string format_summary(const Summary& summary);
+
+}  // namespace irdm::precompute

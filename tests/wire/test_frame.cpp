@@ -1,0 +1,174 @@
+#include <catch2/catch.hpp>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "common/wire/frame.hpp"
+
+using namespace irdm::wire;
+using irdm::ContactState;
+using irdm::Quaternion;
+using irdm::Vector3;
+
+namespace {
+
+/// "49 52 .." as bytes.
+std::vector<std::uint8_t> from_hex(const std::string& text) {
+  std::vector<std::uint8_t> bytes;
+  std::string digits;
+  for (const char c : text) {
+    if (c != ' ' && c != '\n') digits += c;
+    if (digits.size() == 2) {
+      bytes.push_back(static_cast<std::uint8_t>(std::stoi(digits, nullptr, 16)));
+      digits.clear();
+    }
+  }
+  return bytes;
+}
+
+std::vector<std::uint8_t> encoded(const Message& message, std::uint32_t session = 0x01020304) {
+  const FrameBytes frame = encode_frame(message, session, 0x1112131415161718, 0x2122232425262728);
+  return {frame.view().begin(), frame.view().end()};
+}
+
+/// The literal bytes of a frame, after header fields that are the same in all of these tests.
+std::vector<std::uint8_t> golden(const std::string& type_and_size, const std::string& crc,
+                                 const std::string& payload) {
+  return from_hex("49 52 44 4d 01 00 " + type_and_size +
+                  " 04 03 02 01  18 17 16 15 14 13 12 11  28 27 26 25 24 23 22 21 " + crc +
+                  payload);
+}
+
+template <typename T>
+T round_trip(const T& message) {
+  const std::vector<std::uint8_t> bytes = encoded(message);
+  std::span<const std::uint8_t> rest(bytes);
+  FrameReader reader;
+  const std::optional<Frame> frame = reader.read(rest);
+  REQUIRE(frame);
+  CHECK(rest.empty());
+  CHECK_FALSE(reader.partial());
+  CHECK(frame->header.version == 1);
+  CHECK(frame->header.session == 0x01020304);
+  CHECK(frame->header.sequence == 0x1112131415161718);
+  CHECK(frame->header.send_time_ns == 0x2122232425262728);
+  return std::get<T>(frame->message);
+}
+
+const std::string kThreeNumbers =
+    "00 00 00 00 00 00 f0 3f "
+    "00 00 00 00 00 00 00 c0 "
+    "00 00 00 00 00 00 e0 3f ";
+
+}  // namespace
+
+TEST_CASE("hello has its documented bytes") {
+  const Hello hello{.version_min = 1,
+                    .version_max = 2,
+                    .capabilities = 0x80000001,
+                    .styluses = 3,
+                    .lockstep = true,
+                    .name = "desk"};
+  std::string name = "64 65 73 6b ";
+  for (int i = 0; i < 28; ++i) name += "00 ";
+  CHECK(encoded(hello) ==
+        golden("01 00 2c 00 00 00", "ce b8 eb 6d ", "01 00 02 00 01 00 00 80 03 00 01 00 " + name));
+  const Hello back = round_trip(hello);
+  CHECK(back.version_min == 1);
+  CHECK(back.version_max == 2);
+  CHECK(back.capabilities == 0x80000001);
+  CHECK(back.styluses == 3);
+  CHECK(back.lockstep);
+  CHECK(back.name == "desk");
+}
+
+TEST_CASE("welcome has its documented bytes") {
+  const Welcome welcome{.version = 1,
+                        .first_stylus = 2,
+                        .capabilities = 5,
+                        .session = 0x0A0B0C0D,
+                        .lockstep = true,
+                        .dt = 0.5};
+  CHECK(encoded(welcome) ==
+        golden("02 00 18 00 00 00", "d6 05 a8 fb ",
+               "01 00 02 00 05 00 00 00 0d 0c 0b 0a 01 00 00 00 00 00 00 00 00 00 e0 3f"));
+  const Welcome back = round_trip(welcome);
+  CHECK(back.version == 1);
+  CHECK(back.first_stylus == 2);
+  CHECK(back.capabilities == 5);
+  CHECK(back.session == 0x0A0B0C0D);
+  CHECK(back.lockstep);
+  CHECK(back.dt == 0.5);
+}
+
+TEST_CASE("refuse has its documented bytes") {
+  const Refuse refuse{
+      .reason = RefuseReason::kNoFreeStylus, .version_min = 1, .version_max = 2, .text = "no"};
+  std::string text = "6e 6f ";
+  for (int i = 0; i < 62; ++i) text += "00 ";
+  CHECK(encoded(refuse) ==
+        golden("03 00 48 00 00 00", "72 b7 8b ed ", "02 00 01 00 02 00 00 00 " + text));
+  const Refuse back = round_trip(refuse);
+  CHECK(back.reason == RefuseReason::kNoFreeStylus);
+  CHECK(back.version_min == 1);
+  CHECK(back.version_max == 2);
+  CHECK(back.text == "no");
+}
+
+TEST_CASE("goodbye has its documented bytes") {
+  const Goodbye goodbye{GoodbyeReason::kTimeout};
+  CHECK(encoded(goodbye) == golden("04 00 04 00 00 00", "b9 1b 40 12 ", "03 00 00 00"));
+  CHECK(round_trip(goodbye).reason == GoodbyeReason::kTimeout);
+}
+
+TEST_CASE("sample has its documented bytes") {
+  const SampleMessage message{.stylus = 1,
+                              .sample = {.sequence = 7,
+                                         .time_ns = -2,
+                                         .buttons = 1,
+                                         .tip = Vector3(1.0, -2.0, 0.5),
+                                         .orientation = Quaternion(0.0, 1.0, 0.0, 0.0)}};
+  CHECK(encoded(message) == golden("05 00 50 00 00 00", "bd fb 7a 5b ",
+                                   "01 00 00 00  01 00 00 00  07 00 00 00 00 00 00 00 "
+                                   "fe ff ff ff ff ff ff ff " +
+                                       kThreeNumbers +
+                                       "00 00 00 00 00 00 00 00  00 00 00 00 00 00 f0 3f "
+                                       "00 00 00 00 00 00 00 00  00 00 00 00 00 00 00 00"));
+  const SampleMessage back = round_trip(message);
+  CHECK(back.stylus == 1);
+  CHECK(back.sample.sequence == 7);
+  CHECK(back.sample.time_ns == -2);
+  CHECK(back.sample.buttons == 1);
+  CHECK(back.sample.tip == message.sample.tip);
+  CHECK(back.sample.orientation.coeffs() == message.sample.orientation.coeffs());
+}
+
+TEST_CASE("force has its documented bytes") {
+  const ForceMessage message{.stylus = 2,
+                             .force = {.force_step = 9,
+                                       .sample_sequence = 8,
+                                       .sample_time_ns = 6,
+                                       .contact = ContactState::kHeld,
+                                       .force = Vector3(1.0, -2.0, 0.5),
+                                       .proxy = Vector3::Zero()}};
+  std::string zeros;
+  for (int i = 0; i < 24; ++i) zeros += "00 ";
+  CHECK(encoded(message) ==
+        golden("06 00 50 00 00 00", "73 1e 3d 99 ",
+               "02 00 02 00 00 00 00 00  09 00 00 00 00 00 00 00  08 00 00 00 00 00 00 00 "
+               "06 00 00 00 00 00 00 00 " +
+                   kThreeNumbers + zeros));
+  const ForceMessage back = round_trip(message);
+  CHECK(back.stylus == 2);
+  CHECK(back.force.force_step == 9);
+  CHECK(back.force.sample_sequence == 8);
+  CHECK(back.force.sample_time_ns == 6);
+  CHECK(back.force.contact == ContactState::kHeld);
+  CHECK(back.force.force == message.force.force);
+  CHECK(back.force.proxy == message.force.proxy);
+}
+
+TEST_CASE("text is cut to its field and cleaned of what a log should not see") {
+  CHECK(round_trip(Hello{.name = std::string(100, 'x')}).name == std::string(kNameSize, 'x'));
+  CHECK(round_trip(Hello{.name = "a\nb\x1b"}).name == "a?b?");
+}

@@ -1,0 +1,50 @@
+#include "tests/support/fem_cube.hpp"
+
+#include <map>
+#include <sstream>
+#include <tuple>
+
+#include "precompute/precompute.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace irdm::test {
+namespace {
+
+auto key(const FemCube& cube) {
+  return std::tie(cube.cells, cube.youngs_modulus, cube.rayleigh_alpha, cube.dt, cube.steps);
+}
+
+precompute::PrecomputeConfig configuration(const FemCube& cube, ResponseKind kind) {
+  precompute::PrecomputeConfig config;
+  config.name = "test cube";
+  config.mesh.source =
+      precompute::BoxConfig{Vector3::Constant(0.12), {cube.cells, cube.cells, cube.cells}};
+  config.material = {cube.youngs_modulus, 0.49, 110.0, cube.rayleigh_alpha, 2e-4};
+  config.response.dt = cube.dt;
+  config.response.steps = cube.steps;
+  config.response.storage =
+      kind == ResponseKind::kDense ? precompute::Storage::kDense : precompute::Storage::kModal;
+  return config;
+}
+
+}  // namespace
+
+bool FemCube::operator<(const FemCube& other) const {
+  return key(*this) < key(other);
+}
+
+std::shared_ptr<const Model> fem_cube(const FemCube& cube, ResponseKind kind) {
+  static std::map<std::pair<FemCube, ResponseKind>, std::shared_ptr<const Model>> made;
+  std::shared_ptr<const Model>& model = made[{cube, kind}];
+  if (model == nullptr) {
+    const TemporaryFolder folder;
+    std::ostringstream ignored;
+    const auto path = folder.path() / "cube.h5";
+    precompute::precompute_model(configuration(cube, kind), path,
+                                 precompute::Console{ignored, false});
+    model = std::make_shared<const Model>(read_model(path, kind));
+  }
+  return model;
+}
+
+}  // namespace irdm::test

@@ -42,11 +42,11 @@ TetMesh make_mesh(const MeshConfig& config) {
   const auto& path = std::get<std::filesystem::path>(config.source);
   TetMesh mesh = read_mesh_file(path);
   const int unused = drop_unused_nodes(mesh);
+  check_mesh(mesh, path.string());
   if (unused > 0) {
     warn(path.string() + ": left out " + std::to_string(unused) +
          " nodes that belong to no tetrahedron");
   }
-  check_mesh(mesh, path.string());
   return mesh;
 }
 

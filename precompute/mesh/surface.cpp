@@ -7,6 +7,17 @@
 #include "precompute/mesh/faces.hpp"
 
 namespace irdm::precompute {
+namespace {
+
+// Two elements of positive volume see their common face the same way round only when they overlap.
+bool same_side(const TetMesh& mesh, const TetFace& a, const TetFace& b) {
+  const auto nodes = face_nodes(mesh, a);
+  auto other = face_nodes(mesh, b);
+  std::rotate(other.begin(), std::find(other.begin(), other.end(), nodes[0]), other.end());
+  return other == nodes;
+}
+
+}  // namespace
 
 Triangles boundary_faces(const TetMesh& mesh, const std::string& name) {
   std::vector<TetFace> boundary;
@@ -18,6 +29,12 @@ Triangles boundary_faces(const TetMesh& mesh, const std::string& name) {
                   "remove duplicate or overlapping elements");
     }
     if (owners.size() == 1) boundary.push_back(owners.front());
+    if (owners.size() == 2 && same_side(mesh, owners[0], owners[1])) {
+      throw Error(name,
+                  "elements " + std::to_string(owners[0].tet + 1) + " and " +
+                      std::to_string(owners[1].tet + 1) + " lie on the same side of a common face",
+                  "remove duplicate or overlapping elements");
+    }
   }
   std::sort(boundary.begin(), boundary.end(), [](const TetFace& a, const TetFace& b) {
     return std::pair(a.tet, a.face) < std::pair(b.tet, b.face);

@@ -16,7 +16,7 @@ struct Surface {
 
 /// Faces that belong to exactly one tetrahedron, as node triples of the mesh seen from outside
 /// counter-clockwise, in the order of the elements. Throws Error (about `name`) when a face belongs
-/// to more than two tetrahedra.
+/// to more than two tetrahedra or to two that overlap. Volumes must be positive.
 Triangles boundary_faces(const TetMesh& mesh, const std::string& name);
 
 /// The boundary with its own node numbering.

@@ -1,0 +1,158 @@
+#include <catch2/catch.hpp>
+#include <filesystem>
+
+#include "precompute/config.hpp"
+
+using Catch::Matchers::Contains;
+using namespace irdm;
+using namespace irdm::precompute;
+
+namespace {
+
+const std::string kMesh = "[mesh]\nbox = { size = [0.1, 0.2, 0.3], cells = [1, 2, 3] }\n";
+const std::string kMaterial =
+    "[material]\nyoungs_modulus = 2000\npoisson_ratio = 0.3\ndensity = 110\n";
+
+PrecomputeConfig read(const std::string& text) {
+  return read_config(TomlTable::parse_text(text, "c.toml"), "c.toml");
+}
+
+void check_refused(const std::string& text, const std::string& message) {
+  CAPTURE(text);
+  CHECK_THROWS_WITH(read(text), Contains(message) && Contains("c.toml"));
+}
+
+std::string material(const std::string& key, const std::string& value) {
+  std::string text = kMaterial;
+  const auto start = text.find(key);
+  if (start == std::string::npos) return text + key + " = " + value + "\n";
+  return text.replace(start, text.find('\n', start) - start, key + " = " + value);
+}
+
+}  // namespace
+
+TEST_CASE("every precompute configuration in configs/ loads") {
+  int count = 0;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(std::filesystem::path(IRDM_SOURCE_DIR) / "configs")) {
+    if (entry.path().extension() != ".toml") continue;
+    if (!TomlTable::parse_file(entry.path()).has("mesh")) continue;  // another program's
+    CAPTURE(entry.path());
+    CHECK_NOTHROW(load_config(entry.path()));
+    ++count;
+  }
+  CHECK(count >= 2);
+}
+
+TEST_CASE("the paper's cube has the numbers of the paper") {
+  const auto config =
+      load_config(std::filesystem::path(IRDM_SOURCE_DIR) / "configs" / "paper-cube.toml");
+  const auto& box = std::get<BoxConfig>(config.mesh.source);
+  CHECK(box.size == Vector3(0.12, 0.12, 0.12));
+  CHECK(box.cells == std::array{12, 12, 12});
+  CHECK(config.material.youngs_modulus == 2000.0);
+  CHECK(config.material.poisson_ratio == 0.49);
+  CHECK(config.material.density == 110.0);
+  CHECK(config.material.rayleigh_alpha == 8.0);
+  CHECK(config.material.rayleigh_beta == 2e-4);
+  CHECK(config.response.dt == 0.002);
+  CHECK(config.response.steps == 500);
+  CHECK(config.response.storage == Storage::kModal);
+}
+
+TEST_CASE("configuration has defaults for damping and response") {
+  const PrecomputeConfig config = read(kMesh + kMaterial);
+  CHECK(config.mesh.order == 1);
+  CHECK(config.material.rayleigh_alpha == 8.0);
+  CHECK(config.material.rayleigh_beta == 2e-4);
+  CHECK(config.response.dt == 0.002);
+  CHECK(config.response.steps == 500);
+  CHECK(config.response.storage == Storage::kModal);
+  CHECK(config.response.precision == Precision::kSingle);
+}
+
+TEST_CASE("configuration takes every documented word") {
+  const auto response = [](const std::string& line) {
+    return read(kMesh + kMaterial + "[response]\n" + line + "\n").response;
+  };
+  CHECK(response("storage = \"dense\"").storage == Storage::kDense);
+  CHECK(response("storage = \"both\"").storage == Storage::kBoth);
+  CHECK(response("precision = \"double\"").precision == Precision::kDouble);
+  CHECK(response("method = \"modal\"\nsupport = \"floating\"\ndt = 0.001").dt == 0.001);
+}
+
+TEST_CASE("a mesh file is found beside its configuration") {
+  const auto config = read("[mesh]\nfile = \"x/liver.msh\"\n" + kMaterial);
+  CHECK(std::get<std::filesystem::path>(config.mesh.source) ==
+        std::filesystem::current_path() / "x" / "liver.msh");
+}
+
+TEST_CASE("configuration refuses each bad mesh entry") {
+  check_refused(kMaterial, "mesh is missing");
+  check_refused("[mesh]\n" + kMaterial, "has neither box nor file");
+  check_refused(kMesh + "file = \"a.msh\"\n" + kMaterial, "has both box and file");
+  check_refused("[mesh]\nbox = 3\n" + kMaterial, "mesh.box is not a table");
+  check_refused("[mesh]\nfile = 3\n" + kMaterial, "mesh.file is not text");
+  check_refused("[mesh]\nbox = { size = [0.1, 0.2], cells = [1, 2, 3] }\n" + kMaterial,
+                "has 2 entries");
+  check_refused("[mesh]\nbox = { size = [0.1, 0, 0.3], cells = [1, 2, 3] }\n" + kMaterial,
+                "size is 0");
+  check_refused("[mesh]\nbox = { size = [0.1, nan, 0.3], cells = [1, 2, 3] }\n" + kMaterial,
+                "size is nan");
+  check_refused("[mesh]\nbox = { size = [1, 1, 1], cells = [1, 0, 3] }\n" + kMaterial,
+                "cells is 0");
+  check_refused("[mesh]\nbox = { size = [1, 1, 1], cells = [1, 1.5, 3] }\n" + kMaterial,
+                "not whole");
+  check_refused("[mesh]\nbox = { size = [1, 1, 1], cells = [1, 1, 3], x = 1 }\n" + kMaterial,
+                "mesh.box.x is not a known key");
+  check_refused(kMesh + "order = 2\n" + kMaterial, "only 1 (linear tetrahedra)");
+  check_refused(kMesh + "order = 3\n" + kMaterial, "mesh.order is 3");
+  check_refused(kMesh + "typo = 2\n" + kMaterial, "mesh.typo is not a known key");
+}
+
+TEST_CASE("configuration refuses each bad material entry") {
+  check_refused(kMesh, "material is missing");
+  check_refused(kMesh + "[material]\npoisson_ratio = 0.3\ndensity = 1\n",
+                "material.youngs_modulus is missing");
+  check_refused(kMesh + material("youngs_modulus", "0"), "youngs_modulus is 0");
+  check_refused(kMesh + material("youngs_modulus", "-5"), "youngs_modulus is -5");
+  check_refused(kMesh + material("youngs_modulus", "inf"), "youngs_modulus is inf");
+  check_refused(kMesh + material("youngs_modulus", "\"soft\""), "is not a number");
+  check_refused(kMesh + material("poisson_ratio", "0.5"), "poisson_ratio is 0.5");
+  check_refused(kMesh + material("poisson_ratio", "0.6"), "poisson_ratio is 0.6");
+  check_refused(kMesh + material("poisson_ratio", "-1"), "poisson_ratio is -1");
+  check_refused(kMesh + material("density", "-110"), "density is -110");
+  check_refused(kMesh + material("density", "0"), "density is 0");
+  check_refused(kMesh + material("density", "nan"), "density is nan");
+  check_refused(kMesh + material("rayleigh_alpha", "-1"), "rayleigh_alpha is -1");
+  check_refused(kMesh + material("rayleigh_beta", "-1e-4"), "rayleigh_beta is -0.0001");
+  check_refused(kMesh + material("youngs_modulsu", "1"), "youngs_modulsu is not a known key");
+}
+
+TEST_CASE("configuration refuses each bad response entry") {
+  const auto refused = [](const std::string& line, const std::string& message) {
+    check_refused(kMesh + kMaterial + "[response]\n" + line + "\n", message);
+  };
+  refused("dt = 0", "response.dt is 0");
+  refused("dt = -0.002", "response.dt is -0.002");
+  refused("dt = nan", "response.dt is nan");
+  refused("dt = \"2 ms\"", "response.dt is not a number");
+  refused("dt = 2.0", "response.dt is 2");
+  refused("steps = 0", "response.steps is 0");
+  refused("steps = 1.5", "response.steps is not a whole number");
+  refused("method = \"time-stepping\"", "only \"modal\" is available");
+  refused("method = \"magic\"", "modal | time-stepping");
+  refused("storage = \"sparse\"", "modal | dense | both");
+  refused("precision = \"half\"", "single | double");
+  refused("support = \"fixed\"", "only \"floating\" is available");
+  refused("support = \"nailed\"", "floating | fixed");
+  refused("typo = 1", "response.typo is not a known key");
+  check_refused(kMesh + kMaterial + "[respnse]\n", "respnse is not a known key");
+  check_refused("mesh = 3\n" + kMaterial, "mesh is not a table");
+}
+
+TEST_CASE("configuration refuses files that are missing, empty or truncated") {
+  CHECK_THROWS_WITH(load_config("no-such.toml"), Contains("no-such.toml: no such file"));
+  check_refused("", "mesh is missing");
+  check_refused(kMesh.substr(0, 40), "c.toml:2");
+}

@@ -1,0 +1,256 @@
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <thread>
+
+#include "common/model/model_file.hpp"
+#include "precompute/modal/held_responses.hpp"
+#include "precompute/process/temporary_folder.hpp"
+
+using Catch::Matchers::Contains;
+using namespace irdm;
+using namespace irdm::precompute;
+
+namespace {
+
+const std::string kBox = "[mesh]\nbox = { size = [0.12, 0.1, 0.08], cells = [3, 2, 2] }\n";
+const std::string kMaterial =
+    "[material]\nyoungs_modulus = 2000\npoisson_ratio = 0.3\ndensity = 110\n";
+const std::string kMsh =
+    "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n"
+    "5 1 1 1\n$EndNodes\n$Elements\n2\n1 4 2 0 1 1 2 3 4\n2 4 2 0 1 2 3 4 5\n$EndElements\n";
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  return text.replace(text.find(from), from.size(), to);
+}
+
+std::string content(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+// Runs the real program in a folder of its own.
+struct Run : TemporaryFolder {
+  int status = -1;
+  std::string out;
+  std::string err;
+
+  Run() : TemporaryFolder("irdm-test-program") {
+    std::filesystem::create_directory(path() / "made");
+  }
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(path() / name) << text;
+  }
+  std::filesystem::path model() const { return path() / "made" / "model.h5"; }
+  void start(const std::string& arguments) {
+    const std::string command = "cd '" + path().string() + "' && " IRDM_PROGRAM " " + arguments +
+                                " > out 2> err < /dev/null";
+    const int raw = std::system(command.c_str());
+    status = WIFEXITED(raw) ? WEXITSTATUS(raw) : -1;
+    out = content(path() / "out");
+    err = content(path() / "err");
+  }
+  void check_refused(const std::string& message) {
+    start("c.toml -o made/model.h5");
+    CHECK(status == 1);
+    CHECK(std::count(err.begin(), err.end(), '\n') == 1);
+    CHECK_THAT(err, Catch::StartsWith("irdm-precompute: error: ") && Contains(message));
+    CHECK(std::filesystem::is_empty(path() / "made"));
+  }
+};
+
+}  // namespace
+
+TEST_CASE("program writes a model whose dense columns are the closed form of its modes") {
+  Run run;
+  run.write("c.toml", kBox + kMaterial +
+                          "[response]\nsteps = 60\nstorage = \"both\"\nprecision = \"double\"\n");
+  run.start("c.toml -o made/model.h5 --threads 1");
+  REQUIRE(run.err ==
+          "irdm-precompute: warning: more than 1 % of R is left at the last step; "
+          "raise response.steps or the damping\n");
+  REQUIRE(run.status == 0);
+  CHECK_THAT(run.out, Contains("free nodes (n)") && Contains("BLAS kernel") &&
+                          Contains("columns of R  100 %") && !Contains("\r"));
+
+  const Model modal = read_model(run.model(), ResponseKind::kModal);
+  const Model dense = read_model(run.model(), ResponseKind::kDense);
+  CHECK(modal.mesh.surface_node_count() == 4 * 3 * 3 - 2 * 1 * 1);
+  CHECK(modal.body.mass == Approx(110 * 0.12 * 0.1 * 0.08));
+  CHECK((modal.mesh.com_offset - Vector3(0.06, 0.05, 0.04)).norm() < 1e-12);
+  const auto& response = std::get<ModalResponse>(modal.response);
+  const auto& phi = std::get<RowMatrix<double>>(response.shapes);
+  CHECK(response.mode_count() == 3 * modal.mesh.nodes.rows() - 6);
+  const RowMatrix<double> h = held_responses(response, modal.dt, modal.steps);
+  const auto& r = std::get<std::vector<double>>(std::get<DenseResponse>(dense.response).values);
+  const auto dof = static_cast<std::size_t>(phi.rows());
+  for (const Eigen::Index s : {0, 1, 30, 59}) {
+    const Eigen::MatrixXd exact = phi * h.row(s).asDiagonal() * phi.transpose();
+    double error = 0.0;
+    for (std::size_t b = 0; b < dof; ++b) {
+      for (std::size_t a = 0; a < dof; ++a) {
+        const double found = r[(b * dof + a) * 60 + static_cast<std::size_t>(s)];
+        error = std::max(error, std::abs(found - exact(static_cast<Eigen::Index>(a),
+                                                       static_cast<Eigen::Index>(b))));
+      }
+    }
+    CHECK(error < 1e-12 * exact.cwiseAbs().maxCoeff());
+  }
+}
+
+TEST_CASE("the body in a model file is what its nodes and masses make, about the origin") {
+  Run run;
+  run.write("c.toml", kBox + kMaterial);
+  run.start("c.toml -o made/model.h5");
+  REQUIRE(run.status == 0);
+  const Model model = read_model(run.model(), ResponseKind::kModal);
+  Vector3 first = Vector3::Zero();
+  Matrix3 inertia = Matrix3::Zero();
+  for (Eigen::Index i = 0; i < model.mesh.nodes.rows(); ++i) {
+    const Vector3 x = model.mesh.nodes.row(i).transpose();
+    first += model.mesh.node_mass(i) * x;
+    inertia -= model.mesh.node_mass(i) * skew(x) * skew(x);
+  }
+  CHECK(first.norm() < 1e-15);
+  CHECK(model.mesh.node_mass.sum() == Approx(model.body.mass).epsilon(1e-13));
+  CHECK((inertia - model.body.inertia).norm() < 1e-13 * inertia.norm());
+  CHECK_THROWS_WITH(read_model(run.model(), ResponseKind::kDense), Contains("no dense response"));
+}
+
+TEST_CASE("command line overrides storage; a mesh file works from end to end") {
+  Run run;
+  run.write("m.msh", kMsh);
+  run.write("c.toml", "[mesh]\nfile = \"m.msh\"\n" + kMaterial + "[response]\nsteps = 900\n");
+  run.start("c.toml -o made/model.h5 --storage dense --method modal");
+  CHECK(run.status == 0);
+  CHECK(std::filesystem::exists(run.model()));
+  CHECK_NOTHROW(read_model(run.model(), ResponseKind::kDense));
+  CHECK_THROWS_WITH(read_model(run.model(), ResponseKind::kModal), Contains("no modal response"));
+}
+
+TEST_CASE("high Poisson ratio is warned about") {
+  Run run;
+  run.write("c.toml", kBox + replaced(kMaterial, "0.3", "0.49"));
+  run.start("c.toml -o made/model.h5");
+  CHECK(run.status == 0);
+  CHECK_THAT(run.err, Contains("warning: poisson_ratio above 0.45"));
+}
+
+TEST_CASE("wrong usage ends with status 2, help and version with 0") {
+  Run run;
+  for (const char* arguments :
+       {"", "c.toml", "-o made/model.h5", "c.toml -o made/model.h5 --storage sparse",
+        "c.toml -o made/model.h5 --method magic", "c.toml -o made/model.h5 --threads 0",
+        "c.toml -o made/model.h5 --frobnicate"}) {
+    run.start(arguments);
+    CHECK(run.status == 2);
+  }
+  run.start("--help");
+  CHECK(run.status == 0);
+  CHECK_THAT(run.out, Contains("--storage") && Contains("--threads") && Contains("--method"));
+  run.start("--version");
+  CHECK(run.status == 0);
+  CHECK_THAT(run.out, Catch::StartsWith("irdm-precompute "));
+}
+
+TEST_CASE("bad configuration: one line on stderr, status 1, no output") {
+  Run run;
+  const auto refused = [&](const std::string& text, const std::string& message) {
+    CAPTURE(text);
+    run.write("c.toml", text);
+    run.check_refused(message);
+  };
+  run.check_refused("no such file");
+  refused("", "mesh is missing");
+  refused((kBox + kMaterial).substr(0, 40), "c.toml:2");
+  refused(kBox + replaced(kMaterial, "2000", "\"soft\""), "c.toml:4: material.youngs_modulus");
+  refused(kBox + kMaterial + "typo = 1\n", "material.typo is not a known key");
+  refused(kBox + replaced(kMaterial, "2000", "nan"), "material.youngs_modulus is nan");
+  refused(kBox + replaced(kMaterial, "0.3", "0.5"), "material.poisson_ratio is 0.5");
+  refused(kBox + replaced(kMaterial, "110", "-110"), "material.density is -110");
+  refused(kBox + kMaterial + "[response]\ndt = 0\n", "response.dt is 0");
+  refused(kBox + "order = 2\n" + kMaterial, "only 1 (linear tetrahedra)");
+  refused(kBox + kMaterial + "[response]\nmethod = \"time-stepping\"\n", "only \"modal\"");
+  refused(kBox + kMaterial + "[response]\nsupport = \"fixed\"\n", "only \"floating\"");
+}
+
+TEST_CASE("bad mesh: one line on stderr, status 1, no output") {
+  Run run;
+  run.write("c.toml", "[mesh]\nfile = \"m.msh\"\n" + kMaterial);
+  const auto refused = [&](const std::string& text, const std::string& message) {
+    CAPTURE(text);
+    run.write("m.msh", text);
+    run.check_refused(message);
+  };
+  run.check_refused("m.msh: no such file");
+  refused("", "m.msh: is empty");
+  refused(kMsh.substr(0, 100), "truncated");
+  refused(replaced(kMsh, "2 1 0 0", "2 one 0 0"), "m.msh:7: 'one' is not a number");
+  refused(replaced(kMsh, "2 1 0 0", "2 nan 0 0"), "not finite");
+  refused(replaced(kMsh, "2 1 0 0", "2 inf 0 0"), "not finite");
+  refused(replaced(kMsh, "1 2 3 4", "2 1 3 4"), "1 of 2 tetrahedra are inverted");
+  refused(replaced(replaced(kMsh, "1 2 3 4", "2 1 3 4"), "2 3 4 5", "3 2 4 5"),
+          "all 2 tetrahedra are inverted");
+  refused(replaced(kMsh, "5 1 1 1", "5 0.25 0.25 0.5"), "element 2 has zero volume");
+  const std::string eight_nodes = replaced(replaced(kMsh, "$Nodes\n5", "$Nodes\n8"), "5 1 1 1\n",
+                                           "5 9 0 0\n6 10 0 0\n7 9 1 0\n8 9 0 1\n");
+  refused(replaced(eight_nodes, "2 3 4 5", "5 6 7 8"), "2 pieces");
+}
+
+TEST_CASE("time-stepping asked for on the command line is refused in one line") {
+  Run run;
+  run.write("c.toml", kBox + kMaterial);
+  run.start("c.toml -o made/model.h5 --method time-stepping");
+  CHECK(run.status == 1);
+  CHECK_THAT(run.err, Contains("'time-stepping' is not available in this version"));
+  CHECK(std::filesystem::is_empty(run.path() / "made"));
+}
+
+TEST_CASE("an output folder that does not exist is told") {
+  Run run;
+  run.write("c.toml", kBox + kMaterial);
+  run.start("c.toml -o nowhere/model.h5");
+  CHECK(run.status == 1);
+  CHECK(std::count(run.err.begin(), run.err.end(), '\n') == 1);
+  CHECK_THAT(run.err, Contains("nowhere/model.h5"));
+}
+
+TEST_CASE("SIGINT and SIGTERM leave neither the model nor its temporary file") {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    Run run;
+    // Long enough to be interrupted while dense R is written.
+    run.write("c.toml", "[mesh]\nbox = { size = [1, 1, 1], cells = [6, 6, 6] }\n" + kMaterial +
+                            "[response]\nsteps = 500\nstorage = \"dense\"\n");
+    const std::string config = (run.path() / "c.toml").string();
+    const std::string model = run.model().string();
+    const char* const argv[] = {IRDM_PROGRAM, config.c_str(), "-o", model.c_str(), nullptr};
+    pid_t child = 0;
+    REQUIRE(posix_spawn(&child, IRDM_PROGRAM, nullptr, nullptr, const_cast<char**>(argv),
+                        ::environ) == 0);
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    const auto writing = [&] {
+      for (const auto& entry : std::filesystem::directory_iterator(run.path() / "made")) {
+        if (std::filesystem::file_size(entry.path()) > 1'000'000) return true;
+      }
+      return false;
+    };
+    while (!writing() && std::chrono::steady_clock::now() < deadline) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    REQUIRE(::kill(child, signal) == 0);
+    int status = 0;
+    REQUIRE(::waitpid(child, &status, 0) == child);
+    CHECK(WIFSIGNALED(status));
+    CHECK(WTERMSIG(status) == signal);
+    CHECK(std::filesystem::is_empty(run.path() / "made"));
+  }
+}

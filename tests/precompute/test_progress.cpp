@@ -1,0 +1,47 @@
+#include <catch2/catch.hpp>
+#include <sstream>
+
+#include "precompute/progress.hpp"
+#include "precompute/summary.hpp"
+
+using Catch::Matchers::Contains;
+using namespace irdm::precompute;
+
+TEST_CASE("durations are given in units that fit") {
+  CHECK(format_duration(0.84) == "0.8 s");
+  CHECK(format_duration(12.3) == "12 s");
+  CHECK(format_duration(185) == "3 min 05 s");
+  CHECK(format_duration(7830) == "2 h 10 min");
+}
+
+TEST_CASE("progress says what share is done and how long the rest takes") {
+  CHECK(progress_text("work", 0.25, 30.0, false) == "work   25 %  90 s left");
+  CHECK(progress_text("work", 1.0, 30.0, false) == "work  100 %  30 s");
+  CHECK(progress_text("work", 0.0, 0.0, false) == "work    0 %");
+  CHECK(progress_text("work", 0.5, 1.0, true) ==
+        "work   50 %  [###############...............]  1.0 s left");
+}
+
+TEST_CASE("progress draws one line anew on a terminal and whole lines elsewhere") {
+  std::ostringstream out;
+  SECTION("terminal") {
+    Progress(Console{out, true}, "work", 4).update(4);
+    CHECK_THAT(out.str(), Catch::StartsWith("\rwork  100 %") && Catch::EndsWith("\n"));
+  }
+  SECTION("file") {
+    Progress progress(Console{out, false}, "work", 4);
+    for (int done = 1; done <= 4; ++done) progress.update(done);
+    CHECK(out.str() == "work  100 %  0.0 s\n");
+  }
+}
+
+TEST_CASE("summary gives sizes and times per degree of freedom") {
+  Summary summary;
+  summary.free_nodes = 100;
+  summary.seconds = 6.0;
+  summary.file_bytes = 3'000'000;
+  const std::string text = format_summary(summary);
+  CHECK_THAT(text, Contains("per d.o.f.   0.02 s"));
+  CHECK_THAT(text, Contains("10.0 kB"));
+  CHECK_THAT(text, Contains("3.0 MB"));
+}

@@ -36,6 +36,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
   /// Goes into the headers of all messages from now on.
   void set_session(std::uint32_t session) noexcept { session_ = session; }
+  std::uint32_t session() const noexcept { return session_; }
 
   /// Sends in order, never dropped.
   void send(const Message& message);

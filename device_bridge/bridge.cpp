@@ -1,0 +1,85 @@
+#include "device_bridge/bridge.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "common/error.hpp"
+#include "device_bridge/device_registry.hpp"
+#include "device_bridge/network_client.hpp"
+#include "device_bridge/servo_link.hpp"
+#include "device_bridge/servo_loop.hpp"
+#include "device_bridge/servo_thread.hpp"
+
+namespace irdm {
+namespace {
+
+/// Devices that are open, and closed again whatever happens.
+class OpenDevices {
+ public:
+  explicit OpenDevices(const std::vector<DeviceConfig>& configs) {
+    for (const DeviceConfig& config : configs) made_.push_back(make_device(config));
+    for (const auto& device : made_) {
+      device->open();
+      ++open_;
+    }
+  }
+  OpenDevices(const OpenDevices&) = delete;
+  OpenDevices& operator=(const OpenDevices&) = delete;
+  ~OpenDevices() {
+    for (std::size_t i = 0; i < open_; ++i) made_[i]->close();
+  }
+  const std::vector<std::unique_ptr<HapticDevice>>& all() const noexcept { return made_; }
+
+ private:
+  std::vector<std::unique_ptr<HapticDevice>> made_;
+  std::size_t open_ = 0;
+};
+
+}  // namespace
+
+BridgeReport run_bridge(const BridgeConfig& config, StopSignal& stop_signal, double duration) {
+  if (!config.server) {
+    throw Error("bridge", "no server is named", "give --server HOST:PORT or the key bridge.server");
+  }
+  const OpenDevices devices(config.devices);
+  std::vector<ServoLoop> loops;
+  double longest = 0.0;
+  bool simulated = true;
+  for (const auto& device : devices.all()) {
+    loops.emplace_back(*device, GuardLimits{.max_force = config.max_force});
+    longest = std::max(longest, device->duration());
+    simulated = simulated && device->simulated();
+  }
+
+  Wakeup done;
+  ServoLink link(loops.size());
+  NetworkClient client(
+      link,
+      {.server = *config.server,
+       .lockstep = simulated,
+       .connect_timeout_ms = static_cast<int>(std::ceil(1e3 * config.connect_timeout))},
+      done);
+  ServoThread servo(link, loops, {.rate = config.rate, .duration = std::min(duration, longest)},
+                    done);
+  client.start();
+  servo.start();
+  stop_signal.wait(done.descriptor());
+  servo.stop();
+  client.stop(servo.report().end == ServoEnd::kFinished);
+
+  BridgeReport report{.servo = servo.report(),
+                      .client = client.report(),
+                      .styluses = static_cast<int>(loops.size())};
+  for (const ServoLoop& loop : loops) {
+    report.peak_force = std::max(report.peak_force, loop.peak_force());
+    report.faults += loop.faults();
+  }
+  if (report.servo.end == ServoEnd::kLinkLost && report.client.failure.empty()) {
+    report.client.failure = "server: connection lost in lockstep; start both programs again";
+  }
+  return report;
+}
+
+}  // namespace irdm

@@ -1,0 +1,94 @@
+#include "device_bridge/bridge_config.hpp"
+
+#include <charconv>
+
+#include "common/config/toml_reader.hpp"
+#include "common/error.hpp"
+#include "device_bridge/device_registry.hpp"
+
+namespace irdm {
+namespace {
+
+HandParameters read_hand(TomlTable table) {
+  HandParameters hand;
+  hand.mass = table.number("mass", between(1e-3, 100.0), hand.mass);
+  hand.damping = table.number("damping", between(0.0, 1e4), hand.damping);
+  hand.stiffness = table.number("stiffness", between(1e-3, 1e6), hand.stiffness);
+  table.finish();
+  return hand;
+}
+
+DeviceConfig read_device(TomlTable table, const BridgeOverrides& overrides) {
+  DeviceConfig device;
+  device.type = table.choice("type", device_types(), device.type);
+  if (!overrides.device.empty()) device.type = overrides.device;
+  if (table.has("script")) {
+    device.script = table.path("script");
+    if (!overrides.script.empty()) {
+      table.fail("script", "is given here and by --script", "give it once");
+    }
+  } else if (!overrides.script.empty()) {
+    device.script = overrides.script;
+  } else if (device.type == "virtual") {
+    table.fail("", "has no script", "add script = \"FILE.csv\" or give --script FILE.csv");
+  }
+  if (table.has("hand")) device.hand = read_hand(table.table("hand"));
+  table.finish();
+  return device;
+}
+
+void read_bridge(TomlTable table, const std::string& file, BridgeConfig& config) {
+  const std::string server = table.text("server", "");
+  if (!server.empty()) config.server = parse_server_address(server, file + ": bridge.server");
+  config.rate = table.number("rate", between(100.0, 4000.0), config.rate);
+  config.max_force = table.number(
+      "max_force", {.lowest = 0.0, .highest = 40.0, .lowest_included = false}, config.max_force);
+  config.connect_timeout =
+      table.number("connect_timeout", between(0.01, 10.0), config.connect_timeout);
+  table.finish();
+}
+
+}  // namespace
+
+ServerAddress parse_server_address(const std::string& text, const std::string& where) {
+  const std::string remedy = "give HOST:PORT with a port from 1 to 65535";
+  const std::size_t colon = text.rfind(':');
+  if (colon == std::string::npos) throw Error(where, "'" + text + "' has no port", remedy);
+  ServerAddress address;
+  address.host = text.substr(0, colon);
+  if (address.host.starts_with('[') && address.host.ends_with(']')) {
+    address.host = address.host.substr(1, address.host.size() - 2);
+  } else if (address.host.find(':') != std::string::npos) {
+    throw Error(where, "'" + text + "' is ambiguous", "write an IPv6 address as [ADDRESS]:PORT");
+  }
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data() + colon + 1, end, address.port);
+  if (address.host.empty() || error != std::errc() || stop != end || address.port == 0) {
+    throw Error(where, "'" + text + "' is not a server", remedy);
+  }
+  return address;
+}
+
+BridgeConfig load_bridge_config(const std::filesystem::path& path,
+                                const BridgeOverrides& overrides) {
+  TomlTable root = TomlTable::parse_file(path);
+  BridgeConfig config;
+  read_bridge(root.table("bridge"), path.string(), config);
+  for (TomlTable& table : root.tables("device")) {
+    config.devices.push_back(read_device(std::move(table), overrides));
+  }
+  root.finish();
+  if (config.devices.empty()) {
+    throw Error(path.string(), "has no device", "add a [[device]] table");
+  }
+  if (!overrides.script.empty() && config.devices.size() > 1) {
+    throw Error(path.string(), "has several devices and --script is one script",
+                "name each script in its [[device]] table");
+  }
+  if (!overrides.server.empty()) {
+    config.server = parse_server_address(overrides.server, "--server");
+  }
+  return config;
+}
+
+}  // namespace irdm

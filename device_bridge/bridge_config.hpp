@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "device_bridge/virtual_hand.hpp"
+
+namespace irdm {
+
+/// Where a server listens.
+struct ServerAddress {
+  std::string host;  ///< name or numeric address
+  std::uint16_t port = 0;
+};
+
+/// Reads HOST:PORT or [IPV6]:PORT. Throws Error; `where` stands for the place it was written in.
+ServerAddress parse_server_address(const std::string& text, const std::string& where);
+
+/// One [[device]] table.
+struct DeviceConfig {
+  std::string type = "virtual";        ///< key `type`: virtual | openhaptics
+  std::filesystem::path script;        ///< key `script`: of a virtual device, required there
+  std::optional<HandParameters> hand;  ///< key `hand`, a table; left out: moves exactly as scripted
+  // hand.mass [kg], 0.001 to 100, default 0.12
+  // hand.damping [N s/m], 0 to 10000, default 2
+  // hand.stiffness [N/m], 0.001 to 1e6, default 300
+};
+
+/// What a bridge's TOML file says.
+struct BridgeConfig {
+  std::optional<ServerAddress> server;  ///< key `bridge.server`, "HOST:PORT"; no default
+  double rate = 1000.0;                 ///< key `bridge.rate`: servo loop [Hz], 100 to 4000
+  double max_force = 3.3;               ///< key `bridge.max_force`: shown at most [N], (0, 40]
+  double connect_timeout = 0.1;       ///< key `bridge.connect_timeout`: an attempt [s], 0.01 to 10
+  std::vector<DeviceConfig> devices;  ///< [[device]], one or more, one a stylus
+};
+
+/// What the command line says beside the file.
+struct BridgeOverrides {
+  std::string server;  ///< takes the place of bridge.server; empty: not given
+  std::string device;  ///< takes the place of every device's type; empty: not given
+  std::string script;  ///< of the only device, whose table has none; empty: not given
+};
+
+/// Throws Error with file and line for anything that does not fit.
+BridgeConfig load_bridge_config(const std::filesystem::path& path,
+                                const BridgeOverrides& overrides = {});
+
+}  // namespace irdm

@@ -1,0 +1,49 @@
+#include "device_bridge/bridge_report.hpp"
+
+#include <iomanip>
+#include <sstream>
+
+namespace irdm {
+namespace {
+
+constexpr double kNanosecondsPerMillisecond = 1e6;
+
+std::string percentiles(const Histogram& histogram) {
+  if (histogram.count() == 0) return "none";
+  const auto ms = [](std::int64_t ns) {
+    return static_cast<double>(ns) / kNanosecondsPerMillisecond;
+  };
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(3) << "p50 " << ms(histogram.percentile(0.5)) << ", p90 "
+       << ms(histogram.percentile(0.9)) << ", p99 " << ms(histogram.percentile(0.99)) << ", max "
+       << ms(histogram.maximum()) << " ms";
+  return text.str();
+}
+
+}  // namespace
+
+std::string to_text(const BridgeReport& report) {
+  const auto& [servo, client, styluses, peak_force, faults] = report;
+  const std::uint64_t reconnects = client.sessions > 0 ? client.sessions - 1 : 0;
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(3);
+  text << "session: " << servo.session_time << " s " << (servo.lockstep ? "lockstep" : "real time")
+       << ", styluses " << styluses << ", sessions " << client.sessions << ", reconnects "
+       << reconnects << ", protocol errors " << client.protocol_errors << '\n';
+  text << "samples: " << client.samples << " sent\n";
+  text << "forces: " << client.forces << " received, " << client.gaps << " gaps, "
+       << client.steps_missed << " steps missed, longest gap " << client.longest_gap << ", "
+       << client.forces_old << " dropped\n";
+  text << "round trip: " << percentiles(servo.lockstep ? servo.round_trip : client.round_trip)
+       << '\n';
+  if (servo.lockstep) {
+    text << "servo: " << servo.ticks << " steps\n";
+  } else {
+    text << "servo: " << servo.ticks << " ticks, " << servo.missed << " missed, wake-up "
+         << percentiles(servo.wakeup) << '\n';
+  }
+  text << "peak force: " << peak_force << " N, " << faults << " not finite\n";
+  return text.str();
+}
+
+}  // namespace irdm

@@ -1,0 +1,41 @@
+#include "device_bridge/device_registry.hpp"
+
+#include <array>
+
+#include "common/error.hpp"
+#include "device_bridge/virtual_stylus.hpp"
+
+namespace irdm {
+namespace {
+
+std::unique_ptr<HapticDevice> no_openhaptics(const DeviceConfig&) {
+  throw Error("device openhaptics", "this build has no support for it",
+              "use type = \"virtual\" or --device virtual");
+}
+
+struct Entry {
+  const char* type;
+  std::unique_ptr<HapticDevice> (*make)(const DeviceConfig&);
+};
+
+constexpr std::array kEntries{
+    Entry{"virtual", make_virtual_stylus},
+    Entry{"openhaptics", no_openhaptics},
+};
+
+}  // namespace
+
+std::unique_ptr<HapticDevice> make_device(const DeviceConfig& config) {
+  for (const Entry& entry : kEntries) {
+    if (config.type == entry.type) return entry.make(config);
+  }
+  throw Error("device " + config.type, "is not a known type", "use virtual or openhaptics");
+}
+
+std::vector<std::string> device_types() {
+  std::vector<std::string> types;
+  for (const Entry& entry : kEntries) types.emplace_back(entry.type);
+  return types;
+}
+
+}  // namespace irdm

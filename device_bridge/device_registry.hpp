@@ -1,0 +1,19 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "device_bridge/bridge_config.hpp"
+#include "device_bridge/haptic_device.hpp"
+
+namespace irdm {
+
+/// The device that a configuration asks for. Throws Error when there is no such type, or this build
+/// has no support for it. A new device is a new file and one line in the source of this function.
+std::unique_ptr<HapticDevice> make_device(const DeviceConfig& config);
+
+/// The types that make_device() knows.
+std::vector<std::string> device_types();
+
+}  // namespace irdm

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <thread>
+#include <vector>
+
+#include "common/realtime/histogram.hpp"
+#include "common/realtime/wakeup.hpp"
+#include "device_bridge/servo_link.hpp"
+#include "device_bridge/servo_loop.hpp"
+
+namespace irdm {
+
+struct ServoSettings {
+  double rate = 1000.0;   ///< ticks a second, > 0
+  double duration = 0.0;  ///< of a session's time, after which the thread ends [s]; infinity: never
+};
+
+enum class ServoEnd {
+  kStopped,      ///< told to
+  kFinished,     ///< the duration is over
+  kLinkLost,     ///< lockstep: the connection broke
+  kServerEnded,  ///< lockstep: the server said goodbye
+};
+
+struct ServoReport {
+  ServoEnd end = ServoEnd::kStopped;
+  bool lockstep = false;
+  double session_time = 0.0;  ///< [s]
+  std::uint64_t ticks = 0;    ///< in lockstep: steps
+  std::uint64_t missed = 0;   ///< ticks skipped because the loop was late; real time only
+  Histogram wakeup;           ///< how late a tick began [ns]; real time only
+  Histogram round_trip;       ///< sample given to force there [ns]; lockstep only
+};
+
+/// Runs the servo loops of all styluses: at a fixed rate in real time, or step by step on the
+/// server's simulated clock. Until the first session is welcomed the devices rest where they begin,
+/// without force. When it ends in real time, the force fades first.
+class ServoThread {
+ public:
+  /// @param loops one for each stylus of the link, opened devices; used by the thread until stop()
+  /// @param done signalled when the thread ends by itself
+  ServoThread(ServoLink& link, std::vector<ServoLoop>& loops, const ServoSettings& settings,
+              Wakeup& done);
+  ServoThread(const ServoThread&) = delete;
+  ServoThread& operator=(const ServoThread&) = delete;
+  ~ServoThread();  ///< stops
+
+  void start();
+  /// Ends the thread and waits for it. Further calls do nothing.
+  void stop();
+  /// After stop().
+  const ServoReport& report() const noexcept { return report_; }
+
+ private:
+  void run() noexcept;
+  ServoEnd run_real_time() noexcept;
+  ServoEnd run_lockstep() noexcept;
+  void tick(std::int64_t now_ns, std::int64_t start_ns) noexcept;
+  void fade_out() noexcept;
+  void step(std::uint64_t k) noexcept;
+  bool wait_for_forces(std::uint64_t k) noexcept;
+
+  ServoLink& link_;
+  std::vector<ServoLoop>& loops_;
+  ServoSettings settings_;
+  Wakeup& done_;
+  ServoReport report_;
+  std::atomic<bool> stop_{false};
+  std::thread thread_;
+};
+
+}  // namespace irdm

@@ -1,0 +1,62 @@
+#!/usr/bin/env bash
+# The main job from nothing: sets up, builds, precomputes the paper's cube (kept for the next time), plays
+# ten scripted seconds in real time with server and bridge as two processes, and shows what came of it.
+#   scripts/demo.sh [--dense]    --dense: the paper's own engine on the cube's smaller sibling
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+model=paper-cube scene=paper-cube
+case "${1:-}" in
+  "") ;;
+  --dense) model=small-cube scene=small-cube-dense ;;
+  *) echo "usage: scripts/demo.sh [--dense]" >&2; exit 2 ;;
+esac
+bin=build/release/bin
+out=out/demo
+mkdir -p "$out"
+server=
+
+fail() {
+  echo "demo: $1" >&2
+  [ -z "${2:-}" ] || cat "$2" >&2
+  exit 1
+}
+stop_server() { [ -z "$server" ] || kill "$server" 2>/dev/null || true; }
+trap stop_server EXIT
+
+scripts/setup.sh
+scripts/build.sh release irdm-precompute irdm-server irdm-bridge
+
+# The model is made again when its configuration or the program that makes it is newer.
+config=configs/models/$model.toml
+if [ ! -f "$out/$model.h5" ] || [ "$config" -nt "$out/$model.h5" ]; then
+  echo "demo: precomputing $model"
+  "$bin/irdm-precompute" "$config" -o "$out/$model.h5" || fail "precomputation failed"
+else
+  echo "demo: $out/$model.h5 is there from the last time"
+fi
+cp "configs/scenes/$scene.toml" "$out/scene.toml"
+rm -f "$out/trace.h5" "$out/force.png"
+
+"$bin/irdm-server" "$out/scene.toml" --record "$out/trace.h5" >"$out/server.log" 2>&1 &
+server=$!
+until address=$(sed -n 's/^listening on //p' "$out/server.log") && [ -n "$address" ]; do
+  kill -0 "$server" 2>/dev/null || fail "the server did not start" "$out/server.log"
+  sleep 0.1
+done
+echo "demo: ten seconds in real time: press, tap, grab, swing, let go"
+"$bin/irdm-bridge" configs/bridges/demo.toml --server "$address" >"$out/bridge.log" 2>&1 ||
+  fail "the bridge failed" "$out/bridge.log"
+kill -TERM "$server"
+wait "$server" || fail "the server failed" "$out/server.log"
+server=
+
+echo
+echo "server"
+grep -v -E '^\[|^listening' "$out/server.log" | sed 's/^/  /'
+echo "bridge"
+grep -v -E '^\[' "$out/bridge.log" | sed 's/^/  /'
+/usr/bin/python3 scripts/plot_force.py "$out/trace.h5" "$out/force.png" || fail "the plot failed"
+echo
+echo "trace    $out/trace.h5"
+echo "picture  $out/force.png"

@@ -82,9 +82,9 @@ ResponseConfig read_response(TomlTable table) {
 }  // namespace
 
 Storage storage_from_word(const std::string& word) {
-  static const std::map<std::string, Storage> kWords{
+  static const std::map<std::string, Storage> words{
       {"modal", Storage::kModal}, {"dense", Storage::kDense}, {"both", Storage::kBoth}};
-  return kWords.at(word);
+  return words.at(word);
 }
 
 void check_method(const std::string& method) {

@@ -7,7 +7,7 @@ namespace {
 
 std::string significant(double value, const char* unit) {
   char text[64];
-  std::snprintf(text, sizeof text, "%.3g %s", value, unit);
+  std::snprintf(text, sizeof text, "%.4g %s", value, unit);
   return text;
 }
 

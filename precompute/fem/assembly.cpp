@@ -20,7 +20,8 @@ SparseMatrix assemble_stiffness(const TetMesh& mesh, const Lame& lame) {
       }
     }
   }
-  SparseMatrix stiffness(3 * mesh.node_count(), 3 * mesh.node_count());
+  const Eigen::Index unknowns = 3 * mesh.nodes.rows();
+  SparseMatrix stiffness(unknowns, unknowns);
   stiffness.setFromTriplets(entries.begin(), entries.end());
   return stiffness;
 }

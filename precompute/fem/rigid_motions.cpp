@@ -11,7 +11,7 @@ Eigen::Matrix<double, Eigen::Dynamic, 6> rigid_motions(const Points& nodes,
   const MassProperties body = nodal_mass_properties(nodes, mass);
   // Principal axes make the rotations orthogonal to each other.
   const Eigen::SelfAdjointEigenSolver<Matrix3> principal(body.inertia);
-  const Matrix3 axes = principal.eigenvectors();
+  const Matrix3& axes = principal.eigenvectors();
   Eigen::Matrix<double, Eigen::Dynamic, 6> motions(3 * nodes.rows(), 6);
   for (Eigen::Index i = 0; i < nodes.rows(); ++i) {
     const Vector3 arm = nodes.row(i).transpose() - body.centre_of_mass;

@@ -17,7 +17,7 @@ struct ElementType {
   std::int64_t nodes;
   const char* refused;  // nullptr: linear tetrahedron or not a volume element
 };
-const std::unordered_map<std::int64_t, ElementType> kElementTypes{
+const std::unordered_map<std::int64_t, ElementType> element_types{
     {1, {2, nullptr}},
     {2, {3, nullptr}},
     {3, {4, nullptr}},
@@ -122,8 +122,8 @@ class GmshReader {
   }
 
   const ElementType& element_type(std::int64_t type) {
-    const auto found = kElementTypes.find(type);
-    if (found == kElementTypes.end()) {
+    const auto found = element_types.find(type);
+    if (found == element_types.end()) {
       in_.fail("element type " + std::to_string(type) + " is not known",
                "make a mesh of linear tetrahedra");
     }

@@ -2,12 +2,15 @@
 
 #include <unistd.h>
 
+#include <array>
 #include <cassert>
 #include <csignal>
 #include <string>
 
 namespace irdm::precompute {
 namespace {
+
+constexpr std::array<int, 4> kSignals{SIGINT, SIGTERM, SIGHUP, SIGPIPE};
 
 std::string file_to_remove;  // constant while the handlers are set
 
@@ -23,13 +26,15 @@ void remove_and_die(int signal) {
 RemoveOnSignal::RemoveOnSignal(const std::filesystem::path& file) {
   assert(file_to_remove.empty());
   file_to_remove = file.string();
-  std::signal(SIGINT, remove_and_die);
-  std::signal(SIGTERM, remove_and_die);
+  for (const int signal : kSignals) {
+    if (std::signal(signal, remove_and_die) == SIG_IGN) std::signal(signal, SIG_IGN);
+  }
 }
 
 RemoveOnSignal::~RemoveOnSignal() {
-  std::signal(SIGINT, SIG_DFL);
-  std::signal(SIGTERM, SIG_DFL);
+  for (const int signal : kSignals) {
+    if (std::signal(signal, SIG_DFL) == SIG_IGN) std::signal(signal, SIG_IGN);
+  }
   file_to_remove.clear();
 }
 

@@ -12,7 +12,7 @@ namespace irdm {
 
 /// Where a server listens.
 struct ServerAddress {
-  std::string host;  ///< name or numeric address
+  std::string host = {};  ///< name or numeric address
   std::uint16_t port = 0;
 };
 
@@ -21,9 +21,10 @@ ServerAddress parse_server_address(const std::string& text, const std::string& w
 
 /// One [[device]] table.
 struct DeviceConfig {
-  std::string type = "virtual";        ///< key `type`: virtual | openhaptics
-  std::filesystem::path script;        ///< key `script`: of a virtual device, required there
-  std::optional<HandParameters> hand;  ///< key `hand`, a table; left out: moves exactly as scripted
+  std::string type = "virtual";       ///< key `type`: virtual | openhaptics
+  std::filesystem::path script = {};  ///< key `script`: of a virtual device, required there
+  std::optional<HandParameters> hand =
+      {};  ///< key `hand`, a table; left out: moves exactly as scripted
   // hand.mass [kg], 0.001 to 100, default 0.12
   // hand.damping [N s/m], 0 to 10000, default 2
   // hand.stiffness [N/m], 0.001 to 1e6, default 300
@@ -40,9 +41,9 @@ struct BridgeConfig {
 
 /// What the command line says beside the file.
 struct BridgeOverrides {
-  std::string server;  ///< takes the place of bridge.server; empty: not given
-  std::string device;  ///< takes the place of every device's type; empty: not given
-  std::string script;  ///< of the only device, whose table has none; empty: not given
+  std::string server = {};  ///< takes the place of bridge.server; empty: not given
+  std::string device = {};  ///< takes the place of every device's type; empty: not given
+  std::string script = {};  ///< of the only device, whose table has none; empty: not given
 };
 
 /// Throws Error with file and line for anything that does not fit.

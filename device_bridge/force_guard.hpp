@@ -12,7 +12,7 @@ namespace irdm {
 struct ServoInput {
   bool linked = false;     ///< a session is on
   bool any_force = false;  ///< `force` is of this session (or of the last one, when not linked)
-  StylusForce force;       ///< the newest
+  StylusForce force = {};  ///< the newest
 };
 
 struct GuardLimits {

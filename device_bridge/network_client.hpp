@@ -12,7 +12,7 @@
 namespace irdm {
 
 struct ClientSettings {
-  ServerAddress server;
+  ServerAddress server = {};
   std::string name = "irdm-bridge";  ///< for the server's log
   bool lockstep = true;              ///< whether all devices can run on the simulated clock
   int connect_timeout_ms = 100;      ///< of one attempt

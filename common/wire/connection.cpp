@@ -12,8 +12,12 @@ using boost::asio::ip::tcp;
 using boost::system::error_code;
 
 Connection::Connection(tcp::socket socket) : socket_(std::move(socket)) {
+  // What the kernel has queued cannot be replaced by something newer: keep it to about a tenth of a
+  // second of samples.
+  constexpr int kSendBuffer = 65536;
   error_code ignored;
   socket_.set_option(tcp::no_delay(true), ignored);
+  socket_.set_option(tcp::socket::send_buffer_size(kSendBuffer), ignored);
   std::ostringstream name;
   name << socket_.remote_endpoint(ignored);
   peer_ = name.str();

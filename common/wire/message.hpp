@@ -61,7 +61,7 @@ struct Hello {
   std::uint32_t capabilities = 0;
   std::uint16_t styluses = 1;  ///< how many slots it asks for, >= 1
   bool lockstep = false;       ///< whether it can run on the simulated clock
-  std::string name;            ///< for the log, at most kNameSize bytes
+  std::string name = {};       ///< for the log, at most kNameSize bytes
 };
 
 /// Server to bridge: the answer to an accepted Hello.
@@ -88,7 +88,7 @@ struct Refuse {
   RefuseReason reason = RefuseReason::kVersion;
   std::uint16_t version_min = kOldestProtocolVersion;  ///< of the server
   std::uint16_t version_max = kProtocolVersion;
-  std::string text;  ///< for a person, at most kTextSize bytes
+  std::string text = {};  ///< for a person, at most kTextSize bytes
 };
 
 enum class GoodbyeReason : std::uint16_t {
@@ -106,13 +106,13 @@ struct Goodbye {
 /// Bridge to server. Tip and orientation are finite, the orientation has norm 1 within 1e-3.
 struct SampleMessage {
   std::uint16_t stylus = 0;  ///< server's slot
-  StylusSample sample;
+  StylusSample sample = {};
 };
 
 /// Server to bridge: what step force_step answers to one sample. Force and proxy are finite.
 struct ForceMessage {
   std::uint16_t stylus = 0;  ///< server's slot
-  StylusForce force;
+  StylusForce force = {};
 };
 
 using Message = std::variant<Hello, Welcome, Refuse, Goodbye, SampleMessage, ForceMessage>;

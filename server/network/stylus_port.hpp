@@ -7,8 +7,8 @@ namespace irdm {
 
 /// What the force thread knows of one stylus.
 struct StylusInput {
-  bool present = false;  ///< false: no bridge, or one that has fallen silent; touch nothing
-  StylusSample sample;   ///< the newest one; meaningless when not present
+  bool present = false;      ///< false: no bridge, or one that has fallen silent; touch nothing
+  StylusSample sample = {};  ///< the newest one; meaningless when not present
 };
 
 /// Hand-over between network thread and force thread for one stylus: the network thread writes `in`

@@ -1,0 +1,137 @@
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "common/error.hpp"
+#include "device_bridge/bridge_config.hpp"
+#include "device_bridge/device_registry.hpp"
+
+using namespace irdm;
+
+namespace {
+
+/// A configuration file for the length of a test.
+class ConfigFile {
+ public:
+  explicit ConfigFile(const std::string& text)
+      : path_(std::filesystem::temp_directory_path() /
+              ("irdm-bridge-config-" + std::to_string(reinterpret_cast<std::uintptr_t>(this)) +
+               ".toml")) {
+    std::ofstream(path_) << text;
+  }
+  ~ConfigFile() { std::filesystem::remove(path_); }
+  BridgeConfig load(const BridgeOverrides& overrides = {}) const {
+    return load_bridge_config(path_, overrides);
+  }
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+const std::string kDevice = "[[device]]\nscript = \"a.csv\"\n";
+
+void check_refused(const std::string& text, const std::string& words,
+                   const BridgeOverrides& overrides = {}) {
+  const ConfigFile file(text);
+  CHECK_THROWS_AS(file.load(overrides), Error);
+  CHECK_THROWS_WITH(file.load(overrides), Catch::Contains(words));
+}
+
+}  // namespace
+
+TEST_CASE("bridge configuration has defaults for all but the script") {
+  const ConfigFile file(kDevice);
+  const BridgeConfig config = file.load();
+  CHECK_FALSE(config.server);
+  CHECK(config.rate == 1000.0);
+  CHECK(config.max_force == 3.3);
+  CHECK(config.connect_timeout == 0.1);
+  REQUIRE(config.devices.size() == 1);
+  CHECK(config.devices[0].type == "virtual");
+  CHECK(config.devices[0].script == file.path().parent_path() / "a.csv");
+  CHECK_FALSE(config.devices[0].hand);
+}
+
+TEST_CASE("bridge configuration takes every key") {
+  const BridgeConfig config =
+      ConfigFile(
+          "[bridge]\nserver = \"[::1]:4000\"\nrate = 500\nmax_force = 2\nconnect_timeout = 0.5\n"
+          "[[device]]\ntype = \"virtual\"\nscript = \"/a.csv\"\nhand = { mass = 0.2 }\n"
+          "[[device]]\ntype = \"openhaptics\"\n")
+          .load();
+  REQUIRE(config.server);
+  CHECK(config.server->host == "::1");
+  CHECK(config.server->port == 4000);
+  CHECK(config.rate == 500.0);
+  CHECK(config.max_force == 2.0);
+  CHECK(config.connect_timeout == 0.5);
+  REQUIRE(config.devices.size() == 2);
+  CHECK(config.devices[0].script == "/a.csv");
+  REQUIRE(config.devices[0].hand);
+  CHECK(config.devices[0].hand->mass == 0.2);
+  CHECK(config.devices[0].hand->damping == 2.0);
+  CHECK(config.devices[0].hand->stiffness == 300.0);
+  CHECK(config.devices[1].type == "openhaptics");
+}
+
+TEST_CASE("the command line names server, device and script") {
+  const BridgeConfig config = ConfigFile("[[device]]\ntype = \"openhaptics\"\n")
+                                  .load({.server = "h:1", .device = "virtual", .script = "b.csv"});
+  CHECK(config.server->host == "h");
+  CHECK(config.server->port == 1);
+  CHECK(config.devices[0].type == "virtual");
+  CHECK(config.devices[0].script == "b.csv");
+}
+
+TEST_CASE("bridge configuration refuses what does not fit") {
+  check_refused("", "no device");
+  check_refused("device = 3", "not a list of tables");
+  check_refused("[[device]]\n", "has no script");
+  check_refused(kDevice + "[extra]\n", "not a known key");
+  check_refused(kDevice + "speed = 1\n", "speed is not a known key");
+  check_refused("[bridge]\nx = 1\n" + kDevice, "bridge.x is not a known key");
+  check_refused("[[device]]\ntype = \"magic\"\n", "type is 'magic'");
+  check_refused(kDevice + "hand = 3\n", "not a table");
+  check_refused(kDevice + "hand = { mass = 0 }\n", "mass is 0");
+  check_refused(kDevice + "hand = { mass = nan }\n", "mass is nan");
+  check_refused(kDevice + "hand = { damping = -1 }\n", "damping is -1");
+  check_refused(kDevice + "hand = { stiffness = 0 }\n", "stiffness is 0");
+  check_refused(kDevice + "hand = { colour = 1 }\n", "not a known key");
+  check_refused("[bridge]\nrate = 10\n" + kDevice, "rate is 10");
+  check_refused("[bridge]\nmax_force = 0\n" + kDevice, "max_force is 0");
+  check_refused("[bridge]\nmax_force = 41\n" + kDevice, "max_force is 41");
+  check_refused("[bridge]\nconnect_timeout = 0\n" + kDevice, "connect_timeout is 0");
+  check_refused("[bridge]\nserver = \"here\"\n" + kDevice, "'here' has no port");
+  check_refused(kDevice, "given here and by --script", {.script = "b.csv"});
+  check_refused("[[device]]\n[[device]]\n", "several devices", {.script = "b.csv"});
+  CHECK_THROWS_AS(load_bridge_config("/nowhere/bridge.toml"), Error);
+}
+
+TEST_CASE("a server address needs a host and a port in range") {
+  CHECK(parse_server_address("localhost:65535", "x").port == 65535);
+  for (const char* bad :
+       {"", ":", "host", "host:", ":1", "host:0", "host:65536", "host:1x", "host:-1", "::1:80"}) {
+    CHECK_THROWS_AS(parse_server_address(bad, "x"), Error);
+  }
+}
+
+TEST_CASE("a device that this build does not support is refused in one clear line") {
+  CHECK_THROWS_WITH(make_device({.type = "openhaptics"}), Catch::Contains("no support"));
+  CHECK_THROWS_AS(make_device({.type = "magic"}), Error);
+}
+
+TEST_CASE("every bridge configuration of the project loads, with its scripts") {
+  int found = 0;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(IRDM_SOURCE_DIR "/configs/bridges")) {
+    if (entry.path().extension() != ".toml") continue;
+    INFO(entry.path());
+    ++found;
+    for (const DeviceConfig& device : load_bridge_config(entry.path()).devices) {
+      if (device.type == "virtual") CHECK(make_device(device)->duration() > 0.0);
+    }
+  }
+  CHECK(found > 0);
+}

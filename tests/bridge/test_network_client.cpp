@@ -1,0 +1,219 @@
+#include <catch2/catch.hpp>
+#include <optional>
+#include <string>
+
+#include "device_bridge/network_client.hpp"
+#include "tests/support/eventually.hpp"
+#include "tests/support/raw_peer.hpp"
+
+using namespace irdm;
+using namespace irdm::test;
+using irdm::wire::ForceMessage;
+using irdm::wire::Goodbye;
+using irdm::wire::Hello;
+using irdm::wire::Refuse;
+using irdm::wire::RefuseReason;
+using irdm::wire::SampleMessage;
+using irdm::wire::Welcome;
+
+namespace {
+
+/// A client, and a server that the test speaks for.
+class ScriptedServer {
+ public:
+  explicit ScriptedServer(ClientSettings settings = {}) : link(1) {
+    settings.server = {"127.0.0.1", listener.port()};
+    client.emplace(link, settings, gave_up);
+    client->start();
+  }
+
+  RawPeer accept() {
+    RawPeer peer = listener.accept();
+    REQUIRE(peer.receive_as<Hello>());
+    return peer;
+  }
+  RawPeer welcome(std::uint32_t session = 1, bool lockstep = false) {
+    RawPeer peer = accept();
+    peer.session = session;
+    peer.send(Welcome{.first_stylus = 2, .session = session, .lockstep = lockstep, .dt = 0.002});
+    REQUIRE(wait_for([&] { return link.state.front().linked; }));
+    return peer;
+  }
+  void give(const StylusSample& sample) {
+    link.styluses[0].sample.put(sample);
+    link.samples_ready.signal();
+  }
+  const ServoInput& input() {
+    link.styluses[0].input.receive();
+    return link.styluses[0].input.front();
+  }
+  /// Waits for news until the condition holds.
+  template <typename Condition>
+  bool wait_for(Condition condition) {
+    for (;;) {
+      link.state.receive();
+      input();
+      if (condition()) return true;
+      if (!link.news.wait(kDeadlineMs)) return false;
+    }
+  }
+  const ClientReport& end() {
+    client->stop();
+    return client->report();
+  }
+
+  RawListener listener;
+  ServoLink link;
+  Wakeup gave_up;
+  std::optional<NetworkClient> client;
+};
+
+}  // namespace
+
+TEST_CASE("client says hello, sends samples of its slot and takes their forces") {
+  ScriptedServer server;
+  RawPeer peer = server.welcome();
+  server.give({.sequence = 4, .time_ns = 9});
+  const auto sample = peer.receive_as<SampleMessage>();
+  REQUIRE(sample);
+  CHECK(sample->stylus == 2);
+  CHECK(sample->sample.sequence == 4);
+  peer.send(ForceMessage{
+      .stylus = 2,
+      .force = {
+          .force_step = 10, .sample_sequence = 4, .sample_time_ns = 9, .force = Vector3(1, 0, 0)}});
+  REQUIRE(server.wait_for([&] { return server.input().any_force; }));
+  CHECK(server.input().force.force == Vector3(1, 0, 0));
+}
+
+TEST_CASE("client drops forces that are old or answer nothing it said, and counts gaps") {
+  ScriptedServer server;
+  RawPeer peer = server.welcome();
+  server.give({.sequence = 4});
+  REQUIRE(peer.receive_as<SampleMessage>());
+  const auto send = [&](std::uint64_t step, std::uint64_t sequence) {
+    peer.send(
+        ForceMessage{.stylus = 2, .force = {.force_step = step, .sample_sequence = sequence}});
+  };
+  send(10, 4);
+  send(9, 4);   // older
+  send(11, 5);  // not said yet
+  send(12, 3);  // said before this session
+  send(13, 4);  // after 11 and 12
+  send(20, 4);  // after 14 to 19
+  REQUIRE(server.wait_for([&] { return server.input().force.force_step == 20; }));
+  const ClientReport& report = server.end();
+  CHECK(report.forces == 3);
+  CHECK(report.forces_old == 3);
+  CHECK(report.gaps == 2);
+  CHECK(report.steps_missed == 8);
+  CHECK(report.longest_gap == 6);
+}
+
+TEST_CASE("client says goodbye when it is stopped") {
+  ScriptedServer server;
+  RawPeer peer = server.welcome();
+  server.give({});
+  REQUIRE(peer.receive_as<SampleMessage>());
+  server.client->stop(true);
+  const auto goodbye = peer.receive_as<Goodbye>();
+  REQUIRE(goodbye);
+  CHECK(goodbye->reason == wire::GoodbyeReason::kFinished);
+  CHECK(peer.ends());
+}
+
+TEST_CASE("client connects again after death, goodbye, garbage and silence of the server") {
+  ScriptedServer server({.silence_timeout_ms = 100});
+  { RawPeer dead = server.welcome(1); }
+  REQUIRE(server.wait_for([&] { return !server.link.state.front().linked; }));
+  CHECK_FALSE(server.input().linked);
+  {
+    RawPeer polite = server.welcome(2);
+    polite.send(Goodbye{});
+    CHECK(polite.ends());
+  }
+  {
+    RawPeer mad = server.welcome(3);
+    mad.send(std::vector<std::uint8_t>(100, 0x55));
+    CHECK(mad.ends());
+  }
+  {
+    RawPeer silent = server.welcome(4);
+    CHECK(silent.ends());
+  }
+  RawPeer good = server.welcome(5);
+  const ClientReport& report = server.end();
+  CHECK(report.sessions == 5);
+  CHECK(report.protocol_errors == 1);
+  CHECK(report.failure.empty());
+}
+
+TEST_CASE("client leaves a server that does not answer or sends half a message") {
+  ScriptedServer server({.answer_timeout_ms = 50});
+  RawPeer mute = server.accept();
+  CHECK(mute.ends());
+  RawPeer late = server.welcome();
+  CHECK(late.session == 1);
+}
+
+TEST_CASE("client leaves a server that breaks the protocol") {
+  ScriptedServer server;
+  const auto check_left = [&](const wire::Message& message) {
+    RawPeer peer = server.welcome();
+    peer.send(message);
+    CHECK(peer.ends());
+  };
+  check_left(Hello{});
+  check_left(SampleMessage{});
+  check_left(Welcome{.session = 1, .dt = 0.002});
+  check_left(Refuse{});
+  check_left(ForceMessage{.stylus = 1});
+  check_left(ForceMessage{.stylus = 3});
+  {
+    RawPeer peer = server.welcome();
+    ++peer.session;
+    peer.send(ForceMessage{.stylus = 2});
+    CHECK(peer.ends());
+  }
+  CHECK(server.end().protocol_errors == 7);
+}
+
+TEST_CASE("client gives up when the versions do not match, and names both") {
+  ScriptedServer server;
+  RawPeer peer = server.accept();
+  peer.send(Refuse{.reason = RefuseReason::kVersion, .version_min = 3, .version_max = 4});
+  REQUIRE(server.gave_up.wait(kDeadlineMs));
+  CHECK_THAT(server.end().failure,
+             Catch::Contains("peer speaks protocol version 3 to 4, this program 1"));
+}
+
+TEST_CASE("client gives up on a header of another version") {
+  ScriptedServer server;
+  RawPeer peer = server.accept();
+  std::vector<std::uint8_t> bytes = frame_bytes(Welcome{.session = 1, .dt = 0.002});
+  bytes[4] = 7;
+  peer.send(bytes);
+  REQUIRE(server.gave_up.wait(kDeadlineMs));
+  CHECK_THAT(server.end().failure, Catch::Contains("version 7"));
+}
+
+TEST_CASE("client gives up when it asks for too much, and tries again when that may pass") {
+  ScriptedServer server;
+  for (const RefuseReason passing :
+       {RefuseReason::kNoFreeStylus, RefuseReason::kTooManyConnections, RefuseReason::kStopping}) {
+    RawPeer peer = server.accept();
+    peer.send(Refuse{.reason = passing, .text = "later"});
+    CHECK(peer.ends());
+  }
+  RawPeer peer = server.accept();
+  peer.send(Refuse{.reason = RefuseReason::kTooManyStyluses, .text = "only 0"});
+  REQUIRE(server.gave_up.wait(kDeadlineMs));
+  CHECK_THAT(server.end().failure, Catch::Contains("only 0"));
+}
+
+TEST_CASE("client gives up when a lockstep session breaks") {
+  ScriptedServer server;
+  { RawPeer peer = server.welcome(1, true); }
+  REQUIRE(server.gave_up.wait(kDeadlineMs));
+  CHECK_THAT(server.end().failure, Catch::Contains("connection lost in lockstep"));
+}

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <catch2/catch.hpp>
+#include <cstdint>
+#include <limits>
+
+#include "server/network/network_server.hpp"
+#include "tests/support/eventually.hpp"
+#include "tests/support/raw_peer.hpp"
+
+namespace irdm::test {
+
+/// A server on a free port, and what the tests of it do again and again.
+class RunningServer {
+ public:
+  explicit RunningServer(const NetworkSettings& settings = {}) : server(settings) {
+    server.start();
+  }
+
+  RawPeer connect() { return RawPeer::connect(server.port_number()); }
+  /// Connects and shakes hands.
+  RawPeer join(std::uint16_t styluses = 1) {
+    RawPeer peer = connect();
+    peer.send(wire::Hello{.styluses = styluses, .lockstep = true, .name = "test"});
+    REQUIRE(peer.receive_as<wire::Welcome>());
+    return peer;
+  }
+  /// Waits for the next input of a stylus.
+  StylusInput next_input(int stylus = 0) {
+    StylusPort& port = server.port(stylus);
+    while (!port.in.receive()) REQUIRE(server.samples_arrived().wait(kDeadlineMs));
+    return port.in.front();
+  }
+  void give(const StylusForce& force, int stylus = 0) {
+    server.port(stylus).out.put(force);
+    server.forces_ready().signal();
+  }
+  /// That the server still serves: a whole exchange with a new peer.
+  void check_serves() {
+    RawPeer peer = join();
+    peer.send(wire::Goodbye{});
+    CHECK(peer.ends());
+  }
+
+  NetworkServer server;
+};
+
+}  // namespace irdm::test

@@ -1,0 +1,245 @@
+#include <catch2/catch.hpp>
+#include <string>
+
+#include "common/error.hpp"
+#include "tests/server_network/running_server.hpp"
+
+using namespace irdm;
+using namespace irdm::test;
+using irdm::wire::Goodbye;
+using irdm::wire::GoodbyeReason;
+using irdm::wire::Hello;
+using irdm::wire::Refuse;
+using irdm::wire::RefuseReason;
+using irdm::wire::SampleMessage;
+using irdm::wire::Welcome;
+
+TEST_CASE("server welcomes a bridge and says what it runs") {
+  RunningServer running({.dt = 0.004});
+  CHECK(running.server.endpoint() == "127.0.0.1:" + std::to_string(running.server.port_number()));
+  RawPeer peer = running.connect();
+  peer.send(Hello{.version_min = 1, .version_max = 9, .styluses = 2, .name = "test"});
+  const auto welcome = peer.receive_as<Welcome>();
+  REQUIRE(welcome);
+  CHECK(welcome->version == 1);
+  CHECK(welcome->first_stylus == 0);
+  CHECK(welcome->dt == 0.004);
+  CHECK_FALSE(welcome->lockstep);
+  CHECK(running.server.stats().accepted == 1);
+}
+
+TEST_CASE("a sample reaches the force thread and its force comes back with its name") {
+  RunningServer running;
+  RawPeer peer = running.join();
+  peer.send(SampleMessage{.sample = {.sequence = 3, .time_ns = 77, .tip = Vector3(1, 2, 3)}});
+  const StylusInput input = running.next_input();
+  CHECK(input.present);
+  CHECK(input.sample.sequence == 3);
+  CHECK(input.sample.tip == Vector3(1, 2, 3));
+  running.give(
+      {.force_step = 12, .sample_sequence = 3, .sample_time_ns = 77, .force = Vector3(0, 1, 0)});
+  const auto force = peer.receive_as<wire::ForceMessage>();
+  REQUIRE(force);
+  CHECK(force->force.force_step == 12);
+  CHECK(force->force.sample_sequence == 3);
+  CHECK(force->force.sample_time_ns == 77);
+  CHECK(force->force.force == Vector3(0, 1, 0));
+}
+
+TEST_CASE("a force that is not finite goes out as zero") {
+  RunningServer running;
+  RawPeer peer = running.join();
+  peer.send(SampleMessage{});
+  running.next_input();
+  running.give({.force = Vector3(0, std::numeric_limits<double>::quiet_NaN(), 1)});
+  const auto force = peer.receive_as<wire::ForceMessage>();
+  REQUIRE(force);
+  CHECK(force->force.force == Vector3::Zero());
+  CHECK(running.server.stats().forces_not_finite == 1);
+}
+
+TEST_CASE("two bridges have their own styluses and get their own forces") {
+  RunningServer running;
+  RawPeer first = running.join(1);
+  RawPeer second = running.join(2);
+  second.send(SampleMessage{.stylus = 2, .sample = {.sequence = 8}});
+  CHECK(running.next_input(2).sample.sequence == 8);
+  running.give({.force_step = 1, .sample_sequence = 8}, 2);
+  const auto force = second.receive_as<wire::ForceMessage>();
+  REQUIRE(force);
+  CHECK(force->stylus == 2);
+  first.send(Goodbye{});
+  CHECK(first.receive_as<Goodbye>());  // and no force before it
+}
+
+TEST_CASE("older and repeated samples are dropped and counted") {
+  RunningServer running;
+  RawPeer peer = running.join();
+  for (const std::uint64_t sequence : {5u, 4u, 5u, 9u, 2u}) {
+    peer.send(SampleMessage{.sample = {.sequence = sequence}});
+  }
+  REQUIRE(eventually([&] { return running.server.stats().samples_old == 3; }));
+  CHECK(running.server.stats().samples == 2);
+  CHECK(running.next_input().sample.sequence == 9);
+}
+
+TEST_CASE("a goodbye is counted, and the stylus is absent after it") {
+  RunningServer running;
+  RawPeer peer = running.join();
+  peer.send(SampleMessage{});
+  CHECK(running.next_input().present);
+  peer.send(Goodbye{});
+  CHECK_FALSE(running.next_input().present);
+  CHECK(running.server.stats().goodbyes == 1);
+  CHECK(peer.ends());
+}
+
+TEST_CASE("a bridge that dies leaves its stylus absent and its slot free") {
+  RunningServer running({.styluses = 1});
+  {
+    RawPeer peer = running.join();
+    peer.send(SampleMessage{});
+    CHECK(running.next_input().present);
+  }
+  CHECK_FALSE(running.next_input().present);
+  CHECK(running.server.stats().goodbyes == 0);
+  running.check_serves();
+}
+
+TEST_CASE("in real time a silent stylus is absent until its next sample") {
+  RunningServer running({.absent_after_ms = 20});
+  RawPeer peer = running.join();
+  peer.send(SampleMessage{.sample = {.sequence = 0}});
+  CHECK(running.next_input().present);
+  CHECK_FALSE(running.next_input().present);
+  peer.send(SampleMessage{.sample = {.sequence = 1}});
+  CHECK(running.next_input().present);
+}
+
+TEST_CASE("in real time a bridge that is silent for long is sent away") {
+  RunningServer running({.silence_timeout_ms = 50});
+  RawPeer peer = running.join();
+  const auto goodbye = peer.receive_as<Goodbye>();
+  REQUIRE(goodbye);
+  CHECK(goodbye->reason == GoodbyeReason::kTimeout);
+  CHECK(peer.ends());
+  CHECK(running.server.stats().timeouts == 1);
+}
+
+TEST_CASE("in lockstep a silent stylus stays") {
+  RunningServer running({.lockstep = true, .absent_after_ms = 5, .silence_timeout_ms = 5});
+  RawPeer peer = running.join();
+  peer.send(SampleMessage{});
+  CHECK(running.next_input().present);
+  running.server.samples_arrived().consume();
+  CHECK_FALSE(running.server.samples_arrived().wait(100));
+  CHECK(running.server.stats().timeouts == 0);
+}
+
+TEST_CASE("server refuses a bridge that has no version in common, and names its own") {
+  RunningServer running;
+  RawPeer peer = running.connect();
+  peer.send(Hello{.version_min = 5, .version_max = 9});
+  const auto refuse = peer.receive_as<Refuse>();
+  REQUIRE(refuse);
+  CHECK(refuse->reason == RefuseReason::kVersion);
+  CHECK(refuse->version_min == 1);
+  CHECK(refuse->version_max == 1);
+  CHECK(peer.ends());
+}
+
+TEST_CASE("server refuses a bridge when no stylus is free, until one is") {
+  RunningServer running({.styluses = 1});
+  RawPeer first = running.join();
+  RawPeer second = running.connect();
+  second.send(Hello{});
+  const auto refuse = second.receive_as<Refuse>();
+  REQUIRE(refuse);
+  CHECK(refuse->reason == RefuseReason::kNoFreeStylus);
+  CHECK(refuse->text == "no free stylus");
+  first.send(Goodbye{});
+  CHECK(first.ends());
+  running.check_serves();
+}
+
+TEST_CASE("server refuses a bridge that wants more styluses than there are") {
+  RunningServer running({.styluses = 2});
+  RawPeer peer = running.connect();
+  peer.send(Hello{.styluses = 3});
+  const auto refuse = peer.receive_as<Refuse>();
+  REQUIRE(refuse);
+  CHECK(refuse->reason == RefuseReason::kTooManyStyluses);
+}
+
+TEST_CASE("server in lockstep refuses a bridge that cannot") {
+  RunningServer running({.lockstep = true});
+  RawPeer peer = running.connect();
+  peer.send(Hello{.lockstep = false});
+  const auto refuse = peer.receive_as<Refuse>();
+  REQUIRE(refuse);
+  CHECK(refuse->reason == RefuseReason::kLockstep);
+}
+
+TEST_CASE("server refuses more connections than its limit") {
+  RunningServer running({.max_connections = 2});
+  RawPeer first = running.join();
+  RawPeer second = running.join();
+  RawPeer third = running.connect();
+  const auto refuse = third.receive_as<Refuse>();
+  REQUIRE(refuse);
+  CHECK(refuse->reason == RefuseReason::kTooManyConnections);
+  CHECK(third.ends());
+}
+
+TEST_CASE("a bridge that does not read gets the newest forces when it does") {
+  RunningServer running({.absent_after_ms = 60'000, .silence_timeout_ms = 60'000});
+  RawPeer peer = RawPeer::connect(running.server.port_number(), 4096);
+  peer.send(Hello{});
+  REQUIRE(peer.receive_as<Welcome>());
+  peer.send(SampleMessage{});
+  running.next_input();
+  const NetworkStats& stats = running.server.stats();
+  std::uint64_t step = 0;
+  while (stats.forces_replaced == 0) {
+    const std::uint64_t before = stats.forces;
+    running.give({.force_step = ++step});
+    REQUIRE(eventually([&] { return stats.forces > before; }));
+  }
+  std::uint64_t newest = 0;
+  while (newest < step) {
+    const auto force = peer.receive_as<wire::ForceMessage>();
+    REQUIRE(force);
+    REQUIRE(force->force.force_step > newest);
+    newest = force->force.force_step;
+  }
+  CHECK(newest == step);
+}
+
+TEST_CASE("a server that stops says goodbye, and its port can be used again") {
+  std::uint16_t port = 0;
+  {
+    RunningServer running;
+    port = running.server.port_number();
+    RawPeer peer = running.join();
+    peer.send(SampleMessage{});
+    CHECK(running.next_input().present);
+    running.server.stop();
+    const auto goodbye = peer.receive_as<Goodbye>();
+    REQUIRE(goodbye);
+    CHECK(goodbye->reason == GoodbyeReason::kStopping);
+    CHECK(peer.ends());
+    CHECK_FALSE(running.next_input().present);
+  }
+  RunningServer again({.port = port});
+  CHECK(again.server.port_number() == port);
+  again.check_serves();
+}
+
+TEST_CASE("server says where it cannot listen") {
+  RunningServer running;
+  CHECK_THROWS_AS(NetworkServer({.port = running.server.port_number()}), Error);
+  CHECK_THROWS_AS(NetworkServer({.address = "nowhere"}), Error);
+  CHECK_THROWS_AS(NetworkServer({.address = "192.0.2.1"}), Error);
+  CHECK_THROWS_AS(NetworkServer({.dt = 0.0}), Error);
+  CHECK_THROWS_AS(NetworkServer({.styluses = 0}), Error);
+}

@@ -1,0 +1,136 @@
+#include <catch2/catch.hpp>
+#include <functional>
+#include <random>
+
+#include "tests/server_network/running_server.hpp"
+
+using namespace irdm;
+using namespace irdm::test;
+using irdm::wire::Goodbye;
+using irdm::wire::GoodbyeReason;
+using irdm::wire::Hello;
+using irdm::wire::SampleMessage;
+
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// That the peer is sent away for breaking the protocol, its stylus is absent, and others are
+/// served.
+void check_sent_away(RunningServer& running, RawPeer& peer) {
+  const auto goodbye = peer.receive_as<Goodbye>();
+  REQUIRE(goodbye);
+  CHECK(goodbye->reason == GoodbyeReason::kProtocolError);
+  CHECK(peer.ends());
+  CHECK(running.server.stats().protocol_errors == 1);
+  running.check_serves();
+}
+
+/// The same for a violation within a session, whose stylus was there.
+void check_violation(const std::function<void(RawPeer&)>& violate) {
+  RunningServer running;
+  RawPeer peer = running.join();
+  peer.send(SampleMessage{});
+  CHECK(running.next_input().present);
+  violate(peer);
+  CHECK_FALSE(running.next_input().present);
+  check_sent_away(running, peer);
+}
+
+}  // namespace
+
+TEST_CASE("server sends garbage away") {
+  RunningServer running;
+  RawPeer peer = running.connect();
+  std::mt19937 random(3);
+  std::vector<std::uint8_t> garbage(5000);
+  for (std::uint8_t& byte : garbage) byte = static_cast<std::uint8_t>(random());
+  peer.send(garbage);
+  check_sent_away(running, peer);
+}
+
+TEST_CASE("server answers a header of another version with a refusal") {
+  RunningServer running;
+  RawPeer peer = running.connect();
+  std::vector<std::uint8_t> bytes = frame_bytes(Hello{});
+  bytes[4] = 2;
+  peer.send(bytes);
+  const auto refuse = peer.receive_as<wire::Refuse>();
+  REQUIRE(refuse);
+  CHECK(refuse->reason == wire::RefuseReason::kVersion);
+  CHECK(peer.ends());
+}
+
+TEST_CASE("server sends an oversized length away without waiting for it") {
+  check_violation([](RawPeer& peer) {
+    std::vector<std::uint8_t> bytes = frame_bytes(SampleMessage{}, peer.session);
+    bytes[11] = 0x7F;
+    bytes.resize(wire::kHeaderSize);
+    peer.send(bytes);
+  });
+}
+
+TEST_CASE("server sends a wrong checksum away") {
+  check_violation([](RawPeer& peer) {
+    std::vector<std::uint8_t> bytes = frame_bytes(SampleMessage{}, peer.session);
+    bytes.back() = static_cast<std::uint8_t>(bytes.back() ^ 1);
+    peer.send(bytes);
+  });
+}
+
+TEST_CASE("server sends a tip away that is not finite") {
+  check_violation([](RawPeer& peer) {
+    peer.send(SampleMessage{.sample = {.sequence = 1, .tip = Vector3(0, kNan, 0)}});
+  });
+}
+
+TEST_CASE("server sends an orientation away that is not finite") {
+  check_violation([](RawPeer& peer) {
+    peer.send(SampleMessage{.sample = {.sequence = 1, .orientation = Quaternion(1, 0, kNan, 0)}});
+  });
+}
+
+TEST_CASE("server sends a sample of another's stylus away") {
+  check_violation([](RawPeer& peer) { peer.send(SampleMessage{.stylus = 1}); });
+}
+
+TEST_CASE("server sends a message of another session away") {
+  check_violation([](RawPeer& peer) {
+    ++peer.session;
+    peer.send(SampleMessage{.sample = {.sequence = 1}});
+  });
+}
+
+TEST_CASE("server sends a second hello away") {
+  check_violation([](RawPeer& peer) { peer.send(Hello{}); });
+}
+
+TEST_CASE("server sends a message away that only a server sends") {
+  check_violation([](RawPeer& peer) { peer.send(wire::ForceMessage{}); });
+}
+
+TEST_CASE("server sends a message before hello away") {
+  RunningServer running;
+  RawPeer peer = running.connect();
+  peer.send(SampleMessage{});
+  check_sent_away(running, peer);
+}
+
+TEST_CASE("server sends a frame away that is not completed in time") {
+  RunningServer running({.frame_timeout_ms = 30});
+  RawPeer peer = running.join();
+  std::vector<std::uint8_t> bytes = frame_bytes(SampleMessage{}, peer.session);
+  bytes.pop_back();
+  peer.send(bytes);
+  check_sent_away(running, peer);
+}
+
+TEST_CASE("server sends a peer away that does not say hello in time") {
+  RunningServer running({.handshake_timeout_ms = 30});
+  RawPeer peer = running.connect();
+  const auto goodbye = peer.receive_as<Goodbye>();
+  REQUIRE(goodbye);
+  CHECK(goodbye->reason == GoodbyeReason::kTimeout);
+  CHECK(peer.ends());
+  CHECK(running.server.stats().timeouts == 1);
+}

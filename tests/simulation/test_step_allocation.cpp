@@ -1,0 +1,38 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "server/step/simulation.hpp"
+#include "tests/support/allocation_guard.hpp"
+#include "tests/support/fem_cube.hpp"
+
+using namespace irdm;
+using namespace irdm::test;
+
+TEST_CASE("step: nothing allocates, free, touching or held, with two styluses and both engines") {
+  if (!AllocationGuard::active()) return;
+  const ResponseKind kind = GENERATE(ResponseKind::kModal, ResponseKind::kDense);
+  SimulationConfig config;
+  config.stylus_count = 2;
+  Simulation simulation(fem_cube({3, 2000.0, 8.0, 0.002, 200}, kind), config);
+  StepRecord record;
+  int touching = 0;
+  int held = 0;
+  // No warm-up: the first step must not allocate either.
+  const AllocationGuard guard;
+  for (int k = 0; k < 1000; ++k) {
+    const double t = 0.002 * k;
+    const double depth = 0.004 * std::sin(12.0 * t);
+    const std::array<StylusCommand, 2> commands{
+        StylusCommand{
+            true, std::sin(3.0 * t) > 0 ? kGrabButton : 0u, {0.001, 0.061 - depth, 0.0}, {}},
+        StylusCommand{k % 500 < 400, 0u, {0.061 - depth, 0.01, 0.002}, {}}};
+    simulation.step(commands, record);
+    for (const StylusRecord& stylus : record.stylus) {
+      touching += stylus.contact == ContactState::kTouching ? 1 : 0;
+      held += stylus.contact == ContactState::kHeld ? 1 : 0;
+    }
+  }
+  CHECK(guard.count() == 0);
+  CHECK(touching > 20);
+  CHECK(held > 20);
+}

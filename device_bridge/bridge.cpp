@@ -61,8 +61,10 @@ BridgeReport run_bridge(const BridgeConfig& config, StopSignal& stop_signal, dou
        .lockstep = simulated,
        .connect_timeout_ms = static_cast<int>(std::ceil(1e3 * config.connect_timeout))},
       done);
-  ServoThread servo(link, loops, {.rate = config.rate, .duration = std::min(duration, longest)},
-                    done);
+  ServoThread servo(
+      link, loops,
+      {.rate = config.rate, .scheduling = config.realtime, .duration = std::min(duration, longest)},
+      done);
   client.start();
   servo.start();
   stop_signal.wait(done.descriptor());
@@ -71,6 +73,7 @@ BridgeReport run_bridge(const BridgeConfig& config, StopSignal& stop_signal, dou
 
   BridgeReport report{.servo = servo.report(),
                       .client = client.report(),
+                      .scheduling = servo.scheduling(),
                       .styluses = static_cast<int>(loops.size())};
   for (const ServoLoop& loop : loops) {
     report.peak_force = std::max(report.peak_force, loop.peak_force());

@@ -45,6 +45,8 @@ void read_bridge(TomlTable table, const std::string& file, BridgeConfig& config)
       "max_force", {.lowest = 0.0, .highest = 40.0, .lowest_included = false}, config.max_force);
   config.connect_timeout =
       table.number("connect_timeout", between(0.01, 10.0), config.connect_timeout);
+  config.realtime =
+      scheduling_from_word(table.choice("realtime", {"require", "prefer", "ignore"}, "prefer"));
   table.finish();
 }
 

@@ -23,7 +23,7 @@ std::string percentiles(const Histogram& histogram) {
 }  // namespace
 
 std::string to_text(const BridgeReport& report) {
-  const auto& [servo, client, styluses, peak_force, faults] = report;
+  const auto& [servo, client, scheduling, styluses, peak_force, faults] = report;
   const std::uint64_t reconnects = client.sessions > 0 ? client.sessions - 1 : 0;
   std::ostringstream text;
   text << std::fixed << std::setprecision(3);
@@ -40,7 +40,7 @@ std::string to_text(const BridgeReport& report) {
     text << "servo: " << servo.ticks << " steps\n";
   } else {
     text << "servo: " << servo.ticks << " ticks, " << servo.missed << " missed, wake-up "
-         << percentiles(servo.wakeup) << '\n';
+         << percentiles(servo.wakeup) << ", scheduling " << scheduling << '\n';
   }
   text << "peak force: " << peak_force << " N, " << faults << " not finite\n";
   return text.str();

@@ -12,6 +12,7 @@ namespace irdm {
 struct BridgeReport {
   ServoReport servo;
   ClientReport client;
+  std::string scheduling;  ///< of the servo thread
   int styluses = 0;
   double peak_force = 0.0;   ///< shown on any stylus [N]
   std::uint64_t faults = 0;  ///< forces or device readings that were not finite

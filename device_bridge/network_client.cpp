@@ -106,6 +106,8 @@ NetworkClient::Impl::Impl(ServoLink& link, const ClientSettings& settings, Wakeu
       samples_descriptor_(io_),
       timer_(io_),
       styluses_(link.styluses.size()) {
+  // Made before any thread logs: the thread sanitizer cannot see the guard inside spdlog.
+  spdlog::default_logger();
   error_code error;
   endpoints_ =
       tcp::resolver(io_).resolve(settings.server.host, std::to_string(settings.server.port), error);

@@ -26,6 +26,7 @@ ServoThread::~ServoThread() {
 
 void ServoThread::start() {
   thread_ = std::thread([this] { run(); });
+  scheduling_ = apply_scheduling(settings_.scheduling, thread_, kServoPriority);
 }
 
 void ServoThread::stop() {

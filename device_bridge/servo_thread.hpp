@@ -2,10 +2,12 @@
 
 #include <atomic>
 #include <cstdint>
+#include <string>
 #include <thread>
 #include <vector>
 
 #include "common/realtime/histogram.hpp"
+#include "common/realtime/scheduling.hpp"
 #include "common/realtime/wakeup.hpp"
 #include "device_bridge/servo_link.hpp"
 #include "device_bridge/servo_loop.hpp"
@@ -13,7 +15,8 @@
 namespace irdm {
 
 struct ServoSettings {
-  double rate = 1000.0;   ///< ticks a second, > 0
+  double rate = 1000.0;  ///< ticks a second, > 0
+  RealTimeScheduling scheduling = RealTimeScheduling::kIgnore;
   double duration = 0.0;  ///< of a session's time, after which the thread ends [s]; infinity: never
 };
 
@@ -47,11 +50,14 @@ class ServoThread {
   ServoThread& operator=(const ServoThread&) = delete;
   ~ServoThread();  ///< stops
 
+  /// Throws Error when real-time scheduling is required and not permitted.
   void start();
   /// Ends the thread and waits for it. Further calls do nothing.
   void stop();
   /// After stop().
   const ServoReport& report() const noexcept { return report_; }
+  /// How the thread is scheduled, for a report; after start().
+  const std::string& scheduling() const noexcept { return scheduling_; }
 
  private:
   void run() noexcept;
@@ -67,6 +73,7 @@ class ServoThread {
   ServoSettings settings_;
   Wakeup& done_;
   ServoReport report_;
+  std::string scheduling_;
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };

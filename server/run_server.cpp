@@ -93,7 +93,8 @@ int run_server(const ServerOptions& options) {
   std::cout << "listening on " << network.endpoint() << std::endl;
   if (recorder) recorder->start();
   deformation.start();
-  force.start();
+  // In lockstep nobody waits for the clock.
+  force.start(options.lockstep ? RealTimeScheduling::kIgnore : scene.server.realtime);
   stop.wait(force.finished().descriptor());
 
   force.finish();

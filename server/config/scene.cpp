@@ -23,6 +23,8 @@ ServerConfig read_server(TomlTable table) {
       table.number("deformation_rate", between(1.0, 1000.0), config.deformation_rate);
   config.deformation_threads =
       table.integer("deformation_threads", 0, 64, config.deformation_threads);
+  config.realtime =
+      scheduling_from_word(table.choice("realtime", {"require", "prefer", "ignore"}, "prefer"));
   table.finish();
   return config;
 }

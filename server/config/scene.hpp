@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "common/config/toml_reader.hpp"
+#include "common/realtime/scheduling.hpp"
 #include "server/engine/response_engine.hpp"
 #include "server/step/step_record.hpp"
 
@@ -16,7 +17,8 @@ struct ServerConfig {
   int port = 0;                       ///< 0..65535; 0: any free one
   int styluses = 1;                   ///< how many styluses take part, 1..kMaxStyluses
   double deformation_rate = 60.0;     ///< deformed surfaces a second, 1..1000 [Hz]
-  int deformation_threads = 0;        ///< OpenMP threads for them, 0..64; 0: all cores but one
+  RealTimeScheduling realtime = RealTimeScheduling::kPrefer;  ///< "require" | "prefer" | "ignore"
+  int deformation_threads = 0;  ///< OpenMP threads for them, 0..64; 0: all cores but one
 };
 
 /// [world]

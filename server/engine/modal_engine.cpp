@@ -1,11 +1,23 @@
 #include "server/engine/modal_engine.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "common/response/oscillator.hpp"
 #include "server/engine/kernels.hpp"
 
 namespace irdm {
+
+namespace {
+
+// A decaying mode would end in denormal numbers, which cost a hundred times as much to compute
+// with. Far below anything that matters (the shapes are of order 1), it is put to rest.
+double put_to_rest(double x) noexcept {
+  constexpr double kNothing = 1e-100;
+  return std::abs(x) < kNothing ? 0.0 : x;
+}
+
+}  // namespace
 
 template <typename Scalar>
 ModalEngine<Scalar>::ModalEngine(std::shared_ptr<const Model> model) : model_(std::move(model)) {
@@ -86,8 +98,8 @@ void ModalEngine<Scalar>::advance(std::span<const NodalForce> forces) noexcept {
     }
   }
   for (std::size_t i = 0; i < modes_; ++i) {
-    free_coordinate_[i] = a11_[i] * coordinate_[i] + a12_[i] * velocity_[i];
-    free_velocity_[i] = a21_[i] * coordinate_[i] + a22_[i] * velocity_[i];
+    free_coordinate_[i] = put_to_rest(a11_[i] * coordinate_[i] + a12_[i] * velocity_[i]);
+    free_velocity_[i] = put_to_rest(a21_[i] * coordinate_[i] + a22_[i] * velocity_[i]);
   }
 }
 

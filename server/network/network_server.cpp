@@ -28,6 +28,8 @@ class NetworkServer::Impl {
         acceptor_(io_),
         forces_descriptor_(io_),
         timer_(io_) {
+    // Made before any thread logs: the thread sanitizer cannot see the guard inside spdlog.
+    spdlog::default_logger();
     listen();
     forces_descriptor_.assign(::dup(forces_ready_.descriptor()));
   }

@@ -79,13 +79,14 @@ void Session::greet(const wire::Hello& hello) {
   welcomed_ = true;
   first_ = *first;
   count_ = hello.styluses;
+  // Counted before it shows, here and elsewhere: whoever sees the effect finds the count.
+  shared_.stats.accepted.fetch_add(1);
   connection_->set_session(id_);
   connection_->send(wire::Welcome{.version = std::min(hello.version_max, wire::kProtocolVersion),
                                   .first_stylus = static_cast<std::uint16_t>(first_),
                                   .session = id_,
                                   .lockstep = settings.lockstep,
                                   .dt = settings.dt});
-  shared_.stats.accepted.fetch_add(1);
   spdlog::info("bridge {} ({}): session {}, stylus {} to {}", connection_->peer(), hello.name, id_,
                first_, first_ + count_ - 1);
 }

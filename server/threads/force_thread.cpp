@@ -32,8 +32,9 @@ ForceThread::~ForceThread() {
   finish();
 }
 
-void ForceThread::start() {
+void ForceThread::start(RealTimeScheduling scheduling) {
   thread_ = std::thread([this] { run(); });
+  scheduling_ = apply_scheduling(scheduling, thread_, kForcePriority);
 }
 
 void ForceThread::finish() {

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <thread>
 #include <vector>
 
 #include "common/realtime/histogram.hpp"
+#include "common/realtime/scheduling.hpp"
 #include "common/realtime/wakeup.hpp"
 #include "server/network/network_server.hpp"
 #include "server/step/simulation.hpp"
@@ -30,11 +32,14 @@ class ForceThread {
               std::vector<StepSink*> sinks, std::uint64_t steps);
   ~ForceThread();
 
-  void start();
+  /// Throws Error when real-time scheduling is required and not permitted.
+  void start(RealTimeScheduling scheduling);
   void finish();
   /// Becomes readable when the thread has made its last step.
   Wakeup& finished() noexcept { return finished_; }
   const ForceThreadReport& report() const noexcept { return report_; }
+  /// How the thread is scheduled, for a report.
+  const std::string& scheduling() const noexcept { return scheduling_; }
 
  private:
   void run() noexcept;
@@ -48,6 +53,7 @@ class ForceThread {
   std::vector<StylusCommand> commands_;
   StepRecord record_;
   ForceThreadReport report_;
+  std::string scheduling_;
   Wakeup finished_;
   std::thread thread_;
 };

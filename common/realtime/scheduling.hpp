@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <thread>
+
+namespace irdm {
+
+/// Whether a thread is to run under real-time scheduling (SCHED_FIFO).
+enum class RealTimeScheduling {
+  kRequire,  ///< without it the program does not start
+  kPrefer,   ///< with it where the system permits
+  kIgnore,   ///< not asked for
+};
+
+/// Priorities under SCHED_FIFO: the servo loop goes before the force step.
+inline constexpr int kServoPriority = 70;
+inline constexpr int kForcePriority = 60;
+
+/// "require", "prefer" or "ignore". Throws std::out_of_range for other words.
+RealTimeScheduling scheduling_from_word(const std::string& word);
+
+/// Puts a running thread under SCHED_FIFO as wanted. Returns what came of it in a few words for a
+/// report. Throws Error when it is required and the system does not permit it. Called by the
+/// thread's starter, not by the thread.
+std::string apply_scheduling(RealTimeScheduling wanted, std::thread& thread, int priority);
+
+}  // namespace irdm

@@ -1,0 +1,10 @@
+#!/usr/bin/env bash
+# Builds and runs the benchmarks: bench/run.sh [GB of memory that dense models may take, 3 unless given]
+set -euo pipefail
+cd "$(dirname "$0")/.."
+scripts/build.sh release
+echo "## Force step"
+build/release/bin/bench_force_step "${1:-3}"
+echo
+echo "## Deformation"
+build/release/bin/bench_deformation

@@ -45,24 +45,14 @@ void Simulation::step(std::span<const StylusCommand> commands, StepRecord& recor
 }
 
 Simulation::FreeMotion Simulation::predict_free_motion() const noexcept {
-  if (!body_.moves()) return {};
-  const double dt = model_->dt;
-  const Quaternion& Q = state_.orientation;
-  return {dt * (state_.velocity + dt * config_.gravity),
-          dt * (Q.conjugate() * body_.step_angular_velocity(Q, state_.angular_momentum))};
-}
-
-Vector3 Simulation::to_body(const FreeMotion& motion, const Vector3& x,
-                            const Vector3& arm) const noexcept {
-  const Vector3 p = state_.orientation.conjugate() * (x - state_.position - motion.displacement);
-  return p - motion.rotation.cross(arm);
+  const RigidState end = body_.advance(state_, body_.mass() * config_.gravity, Vector3::Zero());
+  return {end.position, end.orientation};
 }
 
 // A tip that comes through the surface from outside proposes a touching contact at its entry.
 void Simulation::find_contact(const FreeMotion& motion, const StylusCommand& command,
                               Stylus& stylus) noexcept {
-  const Vector3 unrotated = to_body(motion, command.tip, Vector3::Zero());
-  const Vector3 tip = to_body(motion, command.tip, unrotated);
+  const Vector3 tip = motion.to_body(command.tip);
   const SurfaceHit hit = surface_.closest(tip);
   if (hit.signed_distance > 0) {
     stylus.outside = true;
@@ -146,8 +136,7 @@ ContactProblem Simulation::contact_problem(
     const Contact& contact = contacts_[a];
     const Stylus& stylus = styluses_[static_cast<std::size_t>(contact.stylus)];
     const Vector3& tip = commands[static_cast<std::size_t>(contact.stylus)].tip;
-    Vector3 gap =
-        to_body(motion, tip - state_.orientation * stylus.offset, contact.arm) - contact.arm;
+    Vector3 gap = motion.to_body(tip) - stylus.offset - contact.arm;
     for (std::size_t b = 0; b < count; ++b) {
       if (contacts_[b].given) gap -= total_.block<3, 3>(row(a), row(b)) * contacts_[b].force;
     }

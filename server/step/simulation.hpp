@@ -62,16 +62,17 @@ class Simulation {
     Vector3 force = Vector3::Zero();  ///< on the object [N], B
     bool given = false;
   };
-  /// Rigid motion through the step under everything but the styluses.
+  /// Where everything but the styluses takes the body frame by the end of the step.
   struct FreeMotion {
-    Vector3 displacement = Vector3::Zero();  ///< dt v_free [m], W
-    Vector3 rotation = Vector3::Zero();      ///< dt w_free [rad], B
+    Vector3 position = Vector3::Zero();               ///< c + dt v_free [m], W
+    Quaternion orientation = Quaternion::Identity();  ///< exp(dt w_free) Q
+    /// A point of W in that frame.
+    Vector3 to_body(const Vector3& x) const noexcept {
+      return orientation.conjugate() * (x - position);
+    }
   };
 
   FreeMotion predict_free_motion() const noexcept;
-  /// Where a point x of W would have to be in B before the step to end up at x by free motion,
-  /// given that it is about `arm` from the centre of mass.
-  Vector3 to_body(const FreeMotion& motion, const Vector3& x, const Vector3& arm) const noexcept;
   void find_contact(const FreeMotion& motion, const StylusCommand& command,
                     Stylus& stylus) noexcept;
   void collect(const FreeMotion& motion, std::span<const StylusCommand> commands) noexcept;

@@ -1,23 +1,11 @@
 #include "server/engine/modal_engine.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "common/response/oscillator.hpp"
 #include "server/engine/kernels.hpp"
 
 namespace irdm {
-
-namespace {
-
-// A decaying mode would end in denormal numbers, which cost a hundred times as much to compute
-// with. Far below anything that matters (the shapes are of order 1), it is put to rest.
-double put_to_rest(double x) noexcept {
-  constexpr double kNothing = 1e-100;
-  return std::abs(x) < kNothing ? 0.0 : x;
-}
-
-}  // namespace
 
 template <typename Scalar>
 ModalEngine<Scalar>::ModalEngine(std::shared_ptr<const Model> model) : model_(std::move(model)) {
@@ -56,15 +44,11 @@ void ModalEngine<Scalar>::predict(std::span<const SurfacePoint> points, std::spa
                                   ContactMatrix& compliance) noexcept {
   const auto row = [&](std::size_t index) { return contact_shapes_.data() + index * modes_; };
   for (std::size_t a = 0; a < points.size(); ++a) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      double* shape = row(3 * a + axis);
-      std::fill_n(shape, modes_, 0.0);
-      for (std::size_t corner = 0; corner < 3; ++corner) {
-        if (points[a].weights[corner] == 0.0) continue;
-        const int dof = 3 * points[a].nodes[corner] + static_cast<int>(axis);
-        add_scaled(points[a].weights[corner], shape_row(dof), shape, modes_);
-      }
-      h[a][static_cast<Eigen::Index>(axis)] = dot(shape, free_coordinate_.data(), modes_);
+    for (int axis = 0; axis < 3; ++axis) {
+      double* shape = row(3 * a + static_cast<std::size_t>(axis));
+      const auto corner = [&](std::size_t i) { return shape_row(3 * points[a].nodes[i] + axis); };
+      combine(points[a].weights, corner(0), corner(1), corner(2), shape, modes_);
+      h[a][axis] = dot(shape, free_coordinate_.data(), modes_);
     }
   }
   // R[0] = Phi diag(b1) Phi^T, symmetric.
@@ -72,7 +56,7 @@ void ModalEngine<Scalar>::predict(std::span<const SurfacePoint> points, std::spa
   compliance.resize(size, size);
   for (Eigen::Index i = 0; i < size; ++i) {
     const double* shape = row(static_cast<std::size_t>(i));
-    for (std::size_t m = 0; m < modes_; ++m) weighted_row_[m] = b1_[m] * shape[m];
+    multiply(b1_.data(), shape, weighted_row_.data(), modes_);
     for (Eigen::Index j = 0; j <= i; ++j) {
       compliance(i, j) = dot(weighted_row_.data(), row(static_cast<std::size_t>(j)), modes_);
       compliance(j, i) = compliance(i, j);
@@ -87,20 +71,17 @@ void ModalEngine<Scalar>::advance(std::span<const NodalForce> forces) noexcept {
   if (!forces.empty()) {
     std::fill(modal_force_.begin(), modal_force_.end(), 0.0);
     for (const NodalForce& nodal : forces) {
-      for (int axis = 0; axis < 3; ++axis) {
-        add_scaled(nodal.force[axis], shape_row(3 * nodal.node + axis), modal_force_.data(),
-                   modes_);
-      }
+      const int dof = 3 * nodal.node;
+      accumulate({nodal.force.x(), nodal.force.y(), nodal.force.z()}, shape_row(dof),
+                 shape_row(dof + 1), shape_row(dof + 2), modal_force_.data(), modes_);
     }
     for (std::size_t i = 0; i < modes_; ++i) {
       coordinate_[i] += b1_[i] * modal_force_[i];
       velocity_[i] += b2_[i] * modal_force_[i];
     }
   }
-  for (std::size_t i = 0; i < modes_; ++i) {
-    free_coordinate_[i] = put_to_rest(a11_[i] * coordinate_[i] + a12_[i] * velocity_[i]);
-    free_velocity_[i] = put_to_rest(a21_[i] * coordinate_[i] + a22_[i] * velocity_[i]);
-  }
+  transit({a11_.data(), a12_.data(), a21_.data(), a22_.data()}, coordinate_.data(),
+          velocity_.data(), free_coordinate_.data(), free_velocity_.data(), modes_);
 }
 
 template <typename Scalar>

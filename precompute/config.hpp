@@ -19,7 +19,9 @@ struct BoxConfig {
 /// [mesh]: either `box = { size = [..], cells = [..] }` or `file = "name"` (.msh, .node, .ele).
 struct MeshConfig {
   std::variant<BoxConfig, std::filesystem::path> source;
-  int order = 1;  ///< 1: linear tetrahedra, the only ones in this version
+  /// 1: linear, 2: quadratic tetrahedra, whose mid-side nodes are made here; the cells of a box are
+  /// those of the tetrahedra, so that 6 cells an edge have the surface nodes of 12 linear ones
+  int order = 1;
 };
 
 /// Which form of R the model file gets.

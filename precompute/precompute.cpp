@@ -14,6 +14,7 @@
 #include "precompute/mesh/box_mesh.hpp"
 #include "precompute/mesh/mesh_check.hpp"
 #include "precompute/mesh/mesh_file.hpp"
+#include "precompute/mesh/quadratic_mesh.hpp"
 #include "precompute/mesh/surface.hpp"
 #include "precompute/mesh/tetgen_program.hpp"
 #include "precompute/modal/dense_columns.hpp"
@@ -25,7 +26,7 @@
 namespace irdm::precompute {
 namespace {
 
-// Above this, linear tetrahedra are far too stiff in bending (they lock).
+// Above this, linear tetrahedra are far too stiff (they lock): on the cube of the paper by a third.
 constexpr double kLockingPoissonRatio = 0.45;
 constexpr double kMaxDecayLeft = 0.01;
 
@@ -33,7 +34,7 @@ void warn(const std::string& text) {
   std::cerr << "irdm-precompute: warning: " << text << std::endl;
 }
 
-TetMesh make_mesh(const MeshConfig& config) {
+TetMesh make_linear_mesh(const MeshConfig& config) {
   if (const auto* box = std::get_if<BoxConfig>(&config.source)) {
     TetMesh mesh = tetrahedralise(box_surface(box->size, box->cells));
     check_mesh(mesh, "mesh of the box");
@@ -48,6 +49,11 @@ TetMesh make_mesh(const MeshConfig& config) {
          " nodes that belong to no tetrahedron");
   }
   return mesh;
+}
+
+TetMesh make_mesh(const MeshConfig& config) {
+  TetMesh mesh = make_linear_mesh(config);
+  return config.order == 1 ? mesh : quadratic_mesh(mesh);
 }
 
 // Everything of the model but its response; the nodes move into the body frame.
@@ -143,8 +149,10 @@ void write_responses(ModelFileWriter& writer, ModalResponse response, const Mode
 }
 
 void warn_about(const PrecomputeConfig& config, const Summary& summary) {
-  if (config.material.poisson_ratio > kLockingPoissonRatio) {
-    warn("poisson_ratio above 0.45: linear tetrahedra lock, the body comes out too stiff");
+  if (config.mesh.order == 1 && config.material.poisson_ratio > kLockingPoissonRatio) {
+    warn(
+        "poisson_ratio above 0.45: linear tetrahedra lock, the body comes out too stiff; use "
+        "mesh.order = 2 with half the cells an edge");
   }
   if (summary.decay_left > kMaxDecayLeft) {
     warn("more than 1 % of R is left at the last step; raise response.steps or the damping");

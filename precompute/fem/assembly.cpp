@@ -2,19 +2,36 @@
 
 #include <vector>
 
+#include "precompute/fem/tet10.hpp"
 #include "precompute/fem/tet4.hpp"
 
 namespace irdm::precompute {
+namespace {
+
+Eigen::MatrixXd element_stiffness(const TetMesh& mesh, int e, const Lame& lame) {
+  tet4::Corners corners;
+  for (int i = 0; i < 4; ++i) corners.row(i) = mesh.nodes.row(mesh.tets(e, i));
+  const tet4::Geometry geometry = tet4::geometry(corners);
+  if (mesh.order() == 1) return tet4::stiffness(geometry, lame);
+  return tet10::stiffness(geometry, lame);
+}
+
+// Share of an element's mass that each of its nodes gets.
+Eigen::VectorXd mass_shares(int order) {
+  if (order == 1) return Eigen::VectorXd::Constant(4, 0.25);
+  return tet10::mass_shares();
+}
+
+}  // namespace
 
 SparseMatrix assemble_stiffness(const TetMesh& mesh, const Lame& lame) {
   std::vector<Eigen::Triplet<double>> entries;
-  entries.reserve(static_cast<std::size_t>(mesh.tet_count()) * 144);
+  const Eigen::Index size = 3 * mesh.tets.cols();
+  entries.reserve(static_cast<std::size_t>(mesh.tet_count() * size * size));
   for (int e = 0; e < mesh.tet_count(); ++e) {
-    tet4::Corners corners;
-    for (int i = 0; i < 4; ++i) corners.row(i) = mesh.nodes.row(mesh.tets(e, i));
-    const tet4::Stiffness k = tet4::stiffness(tet4::geometry(corners), lame);
-    for (int row = 0; row < 12; ++row) {
-      for (int column = 0; column < 12; ++column) {
+    const Eigen::MatrixXd k = element_stiffness(mesh, e, lame);
+    for (int row = 0; row < size; ++row) {
+      for (int column = 0; column < size; ++column) {
         entries.emplace_back(3 * mesh.tets(e, row / 3) + row % 3,
                              3 * mesh.tets(e, column / 3) + column % 3, k(row, column));
       }
@@ -28,9 +45,10 @@ SparseMatrix assemble_stiffness(const TetMesh& mesh, const Lame& lame) {
 
 Eigen::VectorXd lumped_mass(const TetMesh& mesh, double density) {
   Eigen::VectorXd mass = Eigen::VectorXd::Zero(mesh.node_count());
+  const Eigen::VectorXd shares = mass_shares(mesh.order());
   for (int e = 0; e < mesh.tet_count(); ++e) {
-    const double quarter = 0.25 * density * signed_volume(mesh, e);
-    for (int i = 0; i < 4; ++i) mass(mesh.tets(e, i)) += quarter;
+    const double element_mass = density * signed_volume(mesh, e);
+    for (int i = 0; i < shares.size(); ++i) mass(mesh.tets(e, i)) += shares(i) * element_mass;
   }
   return mass;
 }

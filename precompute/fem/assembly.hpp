@@ -12,7 +12,11 @@ using SparseMatrix = Eigen::SparseMatrix<double>;
 /// Stiffness of the whole mesh [N/m], (3N, 3N), index 3 node + axis; both triangles are stored.
 SparseMatrix assemble_stiffness(const TetMesh& mesh, const Lame& lame);
 
-/// Lumped mass [kg], (N): every tetrahedron gives a quarter of its mass to each corner.
+/// Lumped mass [kg], (N), all > 0. Every linear tetrahedron gives a quarter of its mass to each
+/// corner, every quadratic one 1/36 to each corner and 4/27 to each mid-side node: the diagonal of
+/// the consistent mass matrix, scaled to the mass of the element (Hinton, Rock and Zienkiewicz, A
+/// note on mass lumping, Earthquake Eng. Struct. Dyn. 4, 1976). Row sums would give the corners
+/// -1/20. Total mass and centre of mass are those of the solid.
 /// @param density [kg/m^3]
 Eigen::VectorXd lumped_mass(const TetMesh& mesh, double density);
 

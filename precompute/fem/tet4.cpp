@@ -1,5 +1,7 @@
 #include "precompute/fem/tet4.hpp"
 
+#include "precompute/fem/strain_energy.hpp"
+
 namespace irdm::precompute::tet4 {
 
 Geometry geometry(const Corners& corners) {
@@ -14,22 +16,12 @@ Geometry geometry(const Corners& corners) {
 }
 
 Matrix3 stress(const Geometry& geometry, const Lame& lame, const Displacements& displacements) {
-  const Matrix3 du_dx = displacements.transpose() * geometry.gradient;
-  const Matrix3 strain = 0.5 * (du_dx + du_dx.transpose());
-  return lame.lambda * strain.trace() * Matrix3::Identity() + 2.0 * lame.mu * strain;
+  return lame_stress(displacements.transpose() * geometry.gradient, lame);
 }
 
 Stiffness stiffness(const Geometry& geometry, const Lame& lame) {
-  Stiffness k;
-  for (int i = 0; i < 4; ++i) {
-    const Vector3 gi = geometry.gradient.row(i).transpose();
-    for (int j = 0; j < 4; ++j) {
-      const Vector3 gj = geometry.gradient.row(j).transpose();
-      k.block<3, 3>(3 * i, 3 * j) =
-          geometry.volume * (lame.lambda * gi * gj.transpose() +
-                             lame.mu * (gj * gi.transpose() + gi.dot(gj) * Matrix3::Identity()));
-    }
-  }
+  Stiffness k = Stiffness::Zero();
+  add_strain_energy(geometry.gradient, geometry.volume, lame, k);
   return k;
 }
 

@@ -129,7 +129,7 @@ class GmshReader {
     }
     if (found->second.refused != nullptr) {
       in_.fail(std::string("there is a ") + found->second.refused,
-               "only linear tetrahedra are available in this version: mesh with them");
+               "write linear tetrahedra (gmsh -order 1); mesh.order = 2 makes them quadratic here");
     }
     return found->second;
   }

@@ -9,7 +9,7 @@ namespace irdm::precompute {
 /// Reads the linear tetrahedra of a Gmsh file, MSH 2.2 or 4.1, ASCII; coordinates in metres.
 /// Points, lines and surface elements are passed over. Nodes keep the order of the file. Throws
 /// Error with file and line for other versions, binary files, other or second-order volume
-/// elements, truncated or damaged files.
+/// elements (quadratic_mesh makes those), truncated or damaged files.
 TetMesh read_gmsh(const std::filesystem::path& path);
 
 }  // namespace irdm::precompute

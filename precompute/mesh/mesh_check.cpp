@@ -31,7 +31,7 @@ void check_coordinates(const TetMesh& mesh, const std::string& name) {
 void check_indices(const TetMesh& mesh, const std::string& name) {
   std::vector<bool> used(static_cast<std::size_t>(mesh.node_count()), false);
   for (int e = 0; e < mesh.tet_count(); ++e) {
-    for (int i = 0; i < 4; ++i) {
+    for (int i = 0; i < mesh.tets.cols(); ++i) {
       const int node = mesh.tets(e, i);
       if (node < 0 || node >= mesh.node_count()) {
         throw Error(name, element(e) + " uses a node that does not exist", "write the mesh again");

@@ -17,9 +17,8 @@ bool same_side(const TetMesh& mesh, const TetFace& a, const TetFace& b) {
   return other == nodes;
 }
 
-}  // namespace
-
-Triangles boundary_faces(const TetMesh& mesh, const std::string& name) {
+// Faces of one tetrahedron only, in the order of the elements.
+std::vector<TetFace> lone_faces(const TetMesh& mesh, const std::string& name) {
   std::vector<TetFace> boundary;
   for (const auto& [nodes, owners] : faces_by_nodes(mesh)) {
     if (owners.size() > 2) {
@@ -39,17 +38,33 @@ Triangles boundary_faces(const TetMesh& mesh, const std::string& name) {
   std::sort(boundary.begin(), boundary.end(), [](const TetFace& a, const TetFace& b) {
     return std::pair(a.tet, a.face) < std::pair(b.tet, b.face);
   });
-  Triangles triangles(static_cast<Eigen::Index>(boundary.size()), 3);
-  for (std::size_t i = 0; i < boundary.size(); ++i) {
-    const auto nodes = face_nodes(mesh, boundary[i]);
-    triangles.row(static_cast<Eigen::Index>(i)) << nodes[0], nodes[1], nodes[2];
+  return boundary;
+}
+
+Triangles as_matrix(const std::vector<std::array<int, 3>>& triangles) {
+  Triangles matrix(static_cast<Eigen::Index>(triangles.size()), 3);
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const auto& [a, b, c] = triangles[i];
+    matrix.row(static_cast<Eigen::Index>(i)) << a, b, c;
   }
-  return triangles;
+  return matrix;
+}
+
+}  // namespace
+
+Triangles boundary_faces(const TetMesh& mesh, const std::string& name) {
+  std::vector<std::array<int, 3>> triangles;
+  for (const TetFace& face : lone_faces(mesh, name)) triangles.push_back(face_nodes(mesh, face));
+  return as_matrix(triangles);
 }
 
 Surface extract_surface(const TetMesh& mesh, const std::string& name) {
   Surface surface;
-  surface.triangles = boundary_faces(mesh, name);
+  std::vector<std::array<int, 3>> triangles;
+  for (const TetFace& face : lone_faces(mesh, name)) {
+    for (const auto& triangle : face_triangles(mesh, face)) triangles.push_back(triangle);
+  }
+  surface.triangles = as_matrix(triangles);
   std::vector<int> number(static_cast<std::size_t>(mesh.node_count()), -1);
   const auto at = [&](int node) -> int& { return number[static_cast<std::size_t>(node)]; };
   for (Eigen::Index i = 0; i < surface.triangles.size(); ++i) at(surface.triangles.data()[i]) = 0;

@@ -1,18 +1,29 @@
 #pragma once
 
+#include <array>
+
 #include "common/geometry.hpp"
 #include "common/model/model.hpp"
 
 namespace irdm::precompute {
 
-/// A mesh of linear tetrahedra as it was generated or read. N nodes, E elements. The corners of an
-/// element (a, b, c, d) are ordered so that (b-a) x (c-a) points towards d: positive volume.
+/// The six edges of a tetrahedron as local corner numbers. A quadratic tetrahedron has a node in
+/// the middle of each, numbered 4..9 in this order, which is VTK's (VTK_QUADRATIC_TETRA). Gmsh's
+/// order is the same but for the last two, which are exchanged there.
+inline constexpr std::array<std::array<int, 2>, 6> kTetEdges{
+    {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}}};
+
+/// A mesh of tetrahedra, all linear or all quadratic, with straight edges. N nodes, E elements. The
+/// corners of an element (a, b, c, d) are ordered so that (b-a) x (c-a) points towards d: positive
+/// volume. They come first; in a quadratic element the mid-side nodes follow (see kTetEdges).
 struct TetMesh {
   Points nodes;         ///< (N, 3) [m], coordinates of the input
-  RowMatrix<int> tets;  ///< (E, 4), into nodes
+  RowMatrix<int> tets;  ///< (E, 4 or 10), into nodes
 
   int node_count() const { return static_cast<int>(nodes.rows()); }
   int tet_count() const { return static_cast<int>(tets.rows()); }
+  /// 1: linear, 2: quadratic.
+  int order() const { return tets.cols() == 10 ? 2 : 1; }
   /// Position of a node [m].
   Vector3 position(int node) const { return nodes.row(node).transpose(); }
 };

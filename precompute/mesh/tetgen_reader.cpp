@@ -40,7 +40,7 @@ RowMatrix<int> read_tets(const std::filesystem::path& path, const NodeFile& node
   const std::int64_t count = in.integer(0, kMany, "number of tetrahedra");
   if (in.integer(4, 10, "nodes of a tetrahedron") != 4) {
     in.fail("the tetrahedra are of second order",
-            "only linear tetrahedra are available in this version: run tetgen without -o2");
+            "run tetgen without -o2; mesh.order = 2 makes them quadratic here");
   }
   const std::int64_t extra = in.integer(0, 1000, "number of attributes");
   std::vector<int> values;

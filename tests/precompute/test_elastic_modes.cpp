@@ -1,90 +1,27 @@
-#include <Eigen/SparseCholesky>
 #include <catch2/catch.hpp>
-#include <numbers>
 
 #include "common/error.hpp"
-#include "precompute/fem/rigid_motions.hpp"
 #include "precompute/mesh/surface.hpp"
 #include "precompute/modal/elastic_modes.hpp"
 #include "precompute/modal/symmetric_eigen.hpp"
+#include "tests/precompute/discrete.hpp"
 #include "tests/precompute/meshes.hpp"
 
 using Catch::Matchers::Contains;
 using namespace irdm;
 using namespace irdm::precompute;
+using irdm::precompute::test::Discrete;
+using irdm::precompute::test::inertia_relief;
+using irdm::precompute::test::lowest_eigenvalues;
+using irdm::precompute::test::lowest_frequency;
+using irdm::precompute::test::node_at;
 
 namespace {
 
 const Material kMaterial{2000.0, 0.49, 110.0, 8.0, 2e-4};
 
-struct Discrete {
-  TetMesh mesh;
-  SparseMatrix stiffness;
-  Eigen::VectorXd mass;   // (N)
-  Eigen::VectorXd mass3;  // (3N)
-  Eigen::MatrixXd rigid;  // (3N, 6), mass-normalised
-
-  explicit Discrete(TetMesh m)
-      : mesh(std::move(m)),
-        stiffness(assemble_stiffness(mesh, lame_parameters(kMaterial))),
-        mass(lumped_mass(mesh, kMaterial.density)),
-        mass3(mass.replicate(1, 3).transpose().reshaped()),
-        rigid(rigid_motions(mesh.nodes, mass)) {}
-
-  Eigen::MatrixXd without_rigid(const Eigen::MatrixXd& u) const {
-    return u - rigid * (rigid.transpose() * mass3.asDiagonal() * u);
-  }
-};
-
 Discrete small_box() {
-  return Discrete(test::box_mesh(Vector3(0.12, 0.08, 0.10), {4, 3, 3}));
-}
-
-int node_at(const TetMesh& mesh, const Vector3& x) {
-  Eigen::Index node = 0;
-  (mesh.nodes.rowwise() - x.transpose()).rowwise().squaredNorm().minCoeff(&node);
-  return static_cast<int>(node);
-}
-
-// Static answer of the free body to a force: what accelerates the body as a whole is taken off the
-// force, the rest is solved with six degrees of freedom held (no reaction comes there), and the
-// rigid motion that this choice brings is removed.
-Eigen::VectorXd inertia_relief(const Discrete& body, const Eigen::VectorXd& force) {
-  const TetMesh& mesh = body.mesh;
-  const int a = node_at(mesh, Vector3(0, 0, 0));
-  const int b = node_at(mesh, Vector3(0.12, 0, 0));
-  const int c = node_at(mesh, Vector3(0, 0.08, 0));
-  SparseMatrix held = body.stiffness;
-  const double large = 1e3 * Eigen::VectorXd(held.diagonal()).maxCoeff();
-  for (const int dof : {3 * a, 3 * a + 1, 3 * a + 2, 3 * b + 1, 3 * b + 2, 3 * c + 2}) {
-    held.coeffRef(dof, dof) += large;
-  }
-  const Eigen::VectorXd balanced =
-      force - body.mass3.asDiagonal() * (body.rigid * (body.rigid.transpose() * force));
-  const Eigen::SimplicialLDLT<SparseMatrix> solver(held);
-  return body.without_rigid(solver.solve(balanced));
-}
-
-// Lowest elastic eigenvalues by subspace iteration on (K + s M)^-1 M: nothing in common with the
-// dense solver.
-Eigen::VectorXd lowest_eigenvalues(const Discrete& body, double shift, int block, int rounds) {
-  SparseMatrix shifted = body.stiffness;
-  for (Eigen::Index i = 0; i < body.mass3.size(); ++i) {
-    shifted.coeffRef(i, i) += shift * body.mass3(i);
-  }
-  const Eigen::SimplicialLDLT<SparseMatrix> solver(shifted);
-  std::srand(1);
-  Eigen::MatrixXd x = Eigen::MatrixXd::Random(body.mass3.size(), block);
-  Eigen::VectorXd values;
-  for (int round = 0; round < rounds; ++round) {
-    x = body.without_rigid(solver.solve(body.mass3.asDiagonal() * x));
-    const Eigen::MatrixXd k = x.transpose() * (body.stiffness * x);
-    const Eigen::MatrixXd m = x.transpose() * body.mass3.asDiagonal() * x;
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> ritz(k, m);
-    x = Eigen::MatrixXd(x * ritz.eigenvectors());
-    values = ritz.eigenvalues();
-  }
-  return values;
+  return Discrete(test::box_mesh(Vector3(0.12, 0.08, 0.10), {4, 3, 3}), kMaterial);
 }
 
 }  // namespace
@@ -146,7 +83,9 @@ TEST_CASE("static limit of R is the answer of an independent inertia-relief solv
     const Eigen::VectorXd modal = phi * (compliance.asDiagonal() * phi.row(b).transpose());
     Eigen::VectorXd force = Eigen::VectorXd::Zero(body.mass3.size());
     force(3 * surface.nodes[static_cast<std::size_t>(b / 3)] + b % 3) = 1.0;
-    const Eigen::VectorXd all = inertia_relief(body, force);
+    const Eigen::VectorXd all = inertia_relief(body, force, node_at(body.mesh, Vector3(0, 0, 0)),
+                                               node_at(body.mesh, Vector3(0.12, 0, 0)),
+                                               node_at(body.mesh, Vector3(0, 0.08, 0)));
     Eigen::VectorXd direct(modal.size());
     for (std::size_t i = 0; i < surface.nodes.size(); ++i) {
       direct.segment<3>(static_cast<Eigen::Index>(3 * i)) = all.segment<3>(3 * surface.nodes[i]);
@@ -173,16 +112,14 @@ TEST_CASE("bodies with more than six modes without energy are refused") {
   mesh.nodes.row(5) << 0, -1, 0;
   mesh.tets.conservativeResize(2, 4);
   mesh.tets.row(1) << 0, 4, 5, 3;
-  const Discrete body(mesh);
+  const Discrete body(mesh, kMaterial);
   CHECK_THROWS_WITH(elastic_modes(body.stiffness, body.mesh.nodes, body.mass),
                     Contains("7 modes without elastic energy"));
 }
 
 TEST_CASE("lowest elastic frequency of the paper's cube is 10.7 Hz") {
-  const Discrete body(test::box_mesh(Vector3(0.12, 0.12, 0.12), {12, 12, 12}));
-  const Eigen::VectorXd values = lowest_eigenvalues(body, 1000.0, 12, 12);
-  const double frequency = std::sqrt(values(0)) / (2 * std::numbers::pi);
-  CHECK(frequency == Approx(10.7).margin(0.2));
+  const Discrete body(test::box_mesh(Vector3(0.12, 0.12, 0.12), {12, 12, 12}), kMaterial);
+  CHECK(lowest_frequency(body, 1000.0) == Approx(10.7).margin(0.2));
 }
 
 TEST_CASE("dense solver finds the lowest modes that subspace iteration finds") {

@@ -1,0 +1,40 @@
+#include "precompute/mesh/quadratic_mesh.hpp"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+#include <vector>
+
+namespace irdm::precompute {
+
+TetMesh quadratic_mesh(const TetMesh& linear) {
+  std::map<std::pair<int, int>, int> middles;
+  std::vector<std::pair<int, int>> edges;
+  const auto middle = [&](int a, int b) {
+    const std::pair<int, int> edge = std::minmax(a, b);
+    const int next = linear.node_count() + static_cast<int>(edges.size());
+    const auto [place, is_new] = middles.try_emplace(edge, next);
+    if (is_new) edges.push_back(edge);
+    return place->second;
+  };
+
+  TetMesh mesh;
+  mesh.tets.resize(linear.tets.rows(), 10);
+  mesh.tets.leftCols<4>() = linear.tets;
+  for (int e = 0; e < linear.tet_count(); ++e) {
+    int node = 4;
+    for (const auto& [i, j] : kTetEdges) {
+      mesh.tets(e, node++) = middle(linear.tets(e, i), linear.tets(e, j));
+    }
+  }
+  mesh.nodes.resize(linear.nodes.rows() + static_cast<Eigen::Index>(edges.size()), 3);
+  mesh.nodes.topRows(linear.nodes.rows()) = linear.nodes;
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const auto& [a, b] = edges[i];
+    mesh.nodes.row(linear.nodes.rows() + static_cast<Eigen::Index>(i)) =
+        0.5 * (linear.nodes.row(a) + linear.nodes.row(b));
+  }
+  return mesh;
+}
+
+}  // namespace irdm::precompute

@@ -21,7 +21,7 @@ int main(int argc, char** argv) {
       ->check(CLI::IsMember({"virtual", "openhaptics"}));
   app.add_option("--script", overrides.script, "Motion of the virtual stylus (CSV)");
   app.add_option("--duration", duration, "End after this many seconds of session")
-      ->check(CLI::PositiveNumber);
+      ->check(irdm::positive_number());
 
   return irdm::run_program(app, argc, argv, [&] {
     irdm::StopSignal stop_signal;

@@ -12,7 +12,7 @@ int main(int argc, char** argv) {
                  "Trace file (HDF5) to record the run in; must not exist");
   app.add_option("--duration", options.duration,
                  "Seconds to run, simulated ones in lockstep (default: until stopped)")
-      ->check(CLI::PositiveNumber);
+      ->check(irdm::positive_number());
   app.add_flag("--lockstep", options.lockstep,
                "Simulated clock: step k uses exactly sample k of every stylus");
   return irdm::run_program(app, argc, argv, [&] { return irdm::run_server(options); });

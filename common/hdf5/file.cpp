@@ -31,11 +31,6 @@ hid_t native_type<std::uint64_t>() {
 
 namespace {
 
-// HDF5 prints its own error stack to stderr by default; our errors are one line.
-void silence_library() {
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-}
-
 Handle make_space(const Shape& shape, const hsize_t* maximum = nullptr) {
   if (shape.empty()) return {H5Screate(H5S_SCALAR), H5Sclose};
   return {H5Screate_simple(static_cast<int>(shape.size()), shape.data(), maximum), H5Sclose};
@@ -62,6 +57,11 @@ std::string to_text(const Shape& shape) {
 
 }  // namespace
 
+// HDF5 prints its own error stack to stderr by default; our errors are one line.
+void silence_this_thread() {
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+
 void File::fail_read(const std::string& what) const {
   throw Error(name_, what, "the file is damaged or of another kind; make it again");
 }
@@ -71,7 +71,7 @@ void File::fail_write(const std::string& what) const {
 }
 
 File File::create(const std::filesystem::path& path) {
-  silence_library();
+  silence_this_thread();
   if (std::filesystem::exists(path)) {
     throw Error(path.string(), "exists already", "choose another name or remove it");
   }
@@ -83,7 +83,7 @@ File File::create(const std::filesystem::path& path) {
 }
 
 File File::open(const std::filesystem::path& path) {
-  silence_library();
+  silence_this_thread();
   if (!std::filesystem::exists(path)) {
     throw Error(path.string(), "no such file", "check the path");
   }

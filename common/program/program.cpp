@@ -1,6 +1,7 @@
 #include "common/program/program.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <iostream>
 #include <new>
@@ -18,6 +19,15 @@ int complain(const std::string& program, std::string text) {
 }
 
 }  // namespace
+
+CLI::Validator positive_number() {
+  const auto check = [](const std::string& text) {
+    double value = 0.0;
+    const bool good = CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value > 0.0;
+    return good ? std::string() : "'" + text + "' is not a finite number above 0";
+  };
+  return {check, "POSITIVE", "positive_number"};
+}
 
 int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& body) {
   app.set_version_flag("--version", app.get_name() + " " + IRDM_VERSION);

@@ -8,6 +8,9 @@
 /// 2 on wrong usage.
 namespace irdm {
 
+/// Of an option: a finite number above zero. (CLI11's own check lets "nan" through.)
+CLI::Validator positive_number();
+
 /// Adds --version, parses the command line and runs `body`; returns the exit status. An exception
 /// out of `body` becomes one line on stderr, `NAME: error: WHAT`, and status 1.
 int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& body);

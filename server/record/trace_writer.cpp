@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "common/error.hpp"
+
 namespace irdm {
 namespace {
 
@@ -19,6 +21,18 @@ void put(double* row, const Vector3& v) {
 
 TraceWriter::TraceWriter(const std::filesystem::path& path, const TraceHeader& header)
     : file_(hdf5::File::create(path)), stylus_count_(header.stylus_count) {
+  try {
+    write_header(header);
+    create_datasets();
+    file_.flush();
+  } catch (const Error&) {
+    std::error_code ignored;
+    std::filesystem::remove(path, ignored);
+    throw;
+  }
+}
+
+void TraceWriter::write_header(const TraceHeader& header) {
   file_.write_attribute("/", "format", std::string("irdm-trace"));
   file_.write_attribute("/", "version", std::int64_t{1});
   file_.write_attribute("/", "created_by", std::string("irdm ") + IRDM_VERSION);
@@ -26,11 +40,9 @@ TraceWriter::TraceWriter(const std::filesystem::path& path, const TraceHeader& h
   file_.write_attribute("/", "model_checksum", header.model_checksum);
   file_.write_attribute("/", "scene", header.scene);
   file_.write_attribute("/", "dt", header.dt);
-  create_datasets(header.stylus_count);
-  file_.flush();
 }
 
-void TraceWriter::create_datasets(int stylus_count) {
+void TraceWriter::create_datasets() {
   file_.create_growing<double>("/step/time", {}, kChunkRows);
   file_.create_growing<std::uint64_t>("/step/force_step", {}, kChunkRows);
   file_.create_growing<double>("/step/body_position", {3}, kChunkRows);
@@ -38,7 +50,7 @@ void TraceWriter::create_datasets(int stylus_count) {
   file_.create_growing<double>("/step/body_velocity", {3}, kChunkRows);
   file_.create_growing<double>("/step/body_angular_velocity", {3}, kChunkRows);
   file_.create_growing<double>("/step/residual", {}, kChunkRows);
-  for (std::size_t s = 0; s < static_cast<std::size_t>(stylus_count); ++s) {
+  for (std::size_t s = 0; s < static_cast<std::size_t>(stylus_count_); ++s) {
     const std::string path = stylus_path(s);
     for (const char* name : {"/tip", "/proxy", "/force", "/contact_weights", "/offset"}) {
       file_.create_growing<double>(path + name, {3}, kChunkRows);

@@ -21,7 +21,7 @@ struct TraceHeader {
 /// Writes the trace file of one run (HDF5, format "irdm-trace", docs/files.md). One thread.
 class TraceWriter {
  public:
-  /// Makes the file; one that exists is not overwritten. Throws Error.
+  /// Makes the file; one that exists is not overwritten. Throws Error, and leaves no file then.
   TraceWriter(const std::filesystem::path& path, const TraceHeader& header);
 
   /// Appends steps in their order. Throws Error when they cannot be written.
@@ -32,7 +32,8 @@ class TraceWriter {
   void close() { file_.close(); }
 
  private:
-  void create_datasets(int stylus_count);
+  void write_header(const TraceHeader& header);
+  void create_datasets();
   void append_stylus(std::span<const StepRecord> records, std::size_t stylus);
   /// Appends one row of `width` numbers a record; `fill` writes a record's row.
   template <typename T, typename Fill>

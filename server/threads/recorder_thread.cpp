@@ -29,8 +29,10 @@ void RecorderThread::finish() {
 }
 
 void RecorderThread::run() {
+  hdf5::silence_this_thread();
+  bool stopped = false;
   try {
-    while (!stop_.wait(kPeriodMs)) {
+    while (!(stopped = stop_.wait(kPeriodMs))) {
       drain();
       writer_.flush();
     }
@@ -39,11 +41,16 @@ void RecorderThread::run() {
   } catch (const std::exception& error) {
     error_ = error.what();
     // Keep taking, so that the queue does not report what the disk did.
-    StepRecord dropped;
-    while (!stop_.wait(kPeriodMs)) {
-      while (sink_.take(dropped)) {
-      }
+    while (!stopped) {
+      stopped = stop_.wait(kPeriodMs);
+      discard();
     }
+  }
+}
+
+void RecorderThread::discard() {
+  StepRecord dropped;
+  while (sink_.take(dropped)) {
   }
 }
 

@@ -36,6 +36,7 @@ class RecorderThread {
  private:
   void run();
   void drain();
+  void discard();
 
   TraceWriter writer_;
   StepSink sink_;

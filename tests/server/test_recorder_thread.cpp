@@ -1,0 +1,94 @@
+#include <sys/resource.h>
+
+#include <catch2/catch.hpp>
+#include <csignal>
+
+#include "server/threads/recorder_thread.hpp"
+#include "tests/server/records.hpp"
+#include "tests/support/eventually.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+using Catch::Matchers::Contains;
+using namespace irdm;
+using namespace irdm::test;
+
+namespace {
+
+/// As long as it lives, no file of this process can grow beyond `bytes`: a disk that is full.
+class FullDisk {
+ public:
+  explicit FullDisk(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{bytes, before_.rlim_max};
+    REQUIRE(::setrlimit(RLIMIT_FSIZE, &limit) == 0);
+  }
+  FullDisk(const FullDisk&) = delete;
+  FullDisk& operator=(const FullDisk&) = delete;
+  ~FullDisk() {
+    ::setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);
+  }
+
+ private:
+  void (*handler_)(int);
+  rlimit before_{};
+};
+
+}  // namespace
+
+TEST_CASE("after finish() a recording has every row, in order") {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "trace.h5";
+  constexpr std::size_t kRows = 20'000;  // more than its queue holds
+  {
+    RecorderThread recorder(path, header(1));
+    recorder.start();
+    for (std::size_t k = 0; k < kRows; ++k) {
+      REQUIRE(eventually([&] { return recorder.sink().has_room(); }));
+      recorder.sink().put(record(k));
+    }
+    recorder.finish();
+    CHECK(recorder.rows() == kRows);
+    CHECK(recorder.sink().lost() == 0);
+    CHECK(recorder.error().empty());
+  }
+  const hdf5::File file = hdf5::File::open(path);
+  const auto steps = file.read<std::uint64_t>("/step/force_step", {kRows});
+  for (std::size_t k = 0; k < kRows; ++k) REQUIRE(steps[k] == k);
+}
+
+TEST_CASE("a recorder that is not drained counts what does not fit") {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "trace.h5";
+  RecorderThread recorder(path, header(1));
+  std::size_t taken = 0;
+  for (; recorder.sink().has_room(); ++taken) recorder.sink().put(record(taken));
+  for (std::size_t k = 0; k < 10; ++k) recorder.sink().put(record(taken + k));
+  CHECK(recorder.sink().lost() == 10);
+  recorder.start();
+  recorder.finish();
+  CHECK(recorder.rows() == taken);
+}
+
+TEST_CASE("a full disk ends the recording with an error, and disturbs nobody") {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "trace.h5";
+  RecorderThread recorder(path, header(1));
+  constexpr rlim_t kRoom = 200'000;
+  const FullDisk full(kRoom);
+  SECTION("while it runs") {
+    recorder.start();
+    for (std::size_t k = 0; k < 20'000; ++k) {
+      // What comes after the error is taken and dropped: the queue never stays full.
+      REQUIRE(eventually([&] { return recorder.sink().has_room(); }));
+      recorder.sink().put(record(k));
+    }
+  }
+  SECTION("with its last rows") {
+    for (std::size_t k = 0; k < 5000; ++k) recorder.sink().put(record(k));
+    recorder.start();
+  }
+  recorder.finish();
+  CHECK_THAT(recorder.error(), Contains("trace.h5") && Contains("check free space"));
+  CHECK(recorder.sink().lost() == 0);
+}

@@ -1,0 +1,176 @@
+#include <catch2/catch.hpp>
+
+#include "common/error.hpp"
+#include "server/config/scene.hpp"
+
+using Catch::Matchers::Equals;
+using Catch::Matchers::StartsWith;
+using namespace irdm;
+
+namespace {
+
+SceneConfig scene(const std::string& text) {
+  return read_scene(TomlTable::parse_text(text, "s.toml"));
+}
+
+// The message of the error that a scene of this text must give.
+std::string rejection(const std::string& text) {
+  try {
+    scene(text);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+const std::string kObject = "[[object]]\nmodel = \"cube.h5\"\n";
+
+}  // namespace
+
+TEST_CASE("every key of a scene arrives where it belongs") {
+  const SceneConfig read = scene(
+      "[server]\naddress = \"127.0.0.2\"\nport = 4711\nstyluses = 3\ndeformation_rate = 30\n"
+      "deformation_threads = 2\n[world]\ngravity = [1, 2, 3]\n"
+      "[contact]\ncoupling_stiffness = 1500\n"
+      "[[object]]\nname = \"liver\"\nmodel = \"/models/liver.h5\"\nengine = \"dense\"\n"
+      "position = [4, 5, 6]\norientation = [0, 3, 0, 0]\nvelocity = [7, 8, 9]\n"
+      "angular_velocity = [10, 11, 12]\n");
+  CHECK(read.server.address == "127.0.0.2");
+  CHECK(read.server.port == 4711);
+  CHECK(read.server.styluses == 3);
+  CHECK(read.server.deformation_rate == 30.0);
+  CHECK(read.server.deformation_threads == 2);
+  CHECK(read.world.gravity == Vector3(1, 2, 3));
+  CHECK(read.contact.coupling_stiffness == 1500.0);
+  REQUIRE(read.objects.size() == 1);
+  const ObjectConfig& object = read.objects[0];
+  CHECK(object.name == "liver");
+  CHECK(object.model == "/models/liver.h5");
+  CHECK(object.engine == EngineKind::kDense);
+  CHECK(object.position == Vector3(4, 5, 6));
+  CHECK(object.orientation.isApprox(Quaternion(0, 1, 0, 0)));
+  CHECK(object.velocity == Vector3(7, 8, 9));
+  CHECK(object.angular_velocity == Vector3(10, 11, 12));
+}
+
+TEST_CASE("a scene needs only a model; the rest has defaults") {
+  const SceneConfig read = scene(kObject);
+  CHECK(read.server.address == "127.0.0.1");
+  CHECK(read.server.port == 0);
+  CHECK(read.server.styluses == 1);
+  CHECK(read.server.deformation_rate == 60.0);
+  CHECK(read.server.deformation_threads == 0);
+  CHECK(read.world.gravity.isZero(0.0));
+  CHECK(read.contact.coupling_stiffness == 0.0);
+  const ObjectConfig& object = read.objects.at(0);
+  CHECK(object.model == std::filesystem::current_path() / "cube.h5");
+  CHECK(object.engine == EngineKind::kModal);
+  CHECK(object.position.isZero(0.0));
+  CHECK(object.orientation.isApprox(Quaternion::Identity()));
+  CHECK(object.velocity.isZero(0.0));
+  CHECK(object.angular_velocity.isZero(0.0));
+}
+
+TEST_CASE("each limit of a scene: the last good value passes, the first bad one is told") {
+  struct Limit {
+    const char* table;
+    const char* key;
+    const char* good;
+    const char* bad;
+    const char* message;
+  };
+  const auto limit = GENERATE(values<Limit>({
+      {"server", "port", "65535", "65536", "is 65536; give a whole number from 0 to 65535"},
+      {"server", "port", "0", "-1", "is -1; give a whole number from 0 to 65535"},
+      {"server", "styluses", "1", "0", "is 0; give a whole number from 1 to 4"},
+      {"server", "styluses", "4", "5", "is 5; give a whole number from 1 to 4"},
+      {"server", "deformation_rate", "1", "0.9", "is 0.9; give a finite number >= 1 and <= 1000"},
+      {"server", "deformation_rate", "1000", "1001",
+       "is 1001; give a finite number >= 1 and <= 1000"},
+      {"server", "deformation_threads", "0", "-1", "is -1; give a whole number from 0 to 64"},
+      {"server", "deformation_threads", "64", "65", "is 65; give a whole number from 0 to 64"},
+      {"contact", "coupling_stiffness", "0", "-0.1", "is -0.1; give a finite number >= 0"},
+  }));
+  const auto text = [&](const char* value) {
+    return std::string("[") + limit.table + "]\n" + limit.key + " = " + value + "\n" + kObject;
+  };
+  CHECK(rejection(text(limit.good)) == "no error");
+  CHECK_THAT(rejection(text(limit.bad)), Equals(std::string("s.toml:2: ") + limit.table + "." +
+                                                limit.key + " " + limit.message));
+}
+
+TEST_CASE("each wrong type or value in a scene is told with file, line, key and remedy") {
+  CHECK(rejection("") == "s.toml:1: object is missing; add [[object]] with a model");
+  CHECK_THAT(rejection(kObject + kObject),
+             StartsWith("s.toml:1: object appears more than once; this version plays one object"));
+  CHECK(rejection("[[object]]\nname = \"x\"\n") == "s.toml:1: object[0].model is missing; add it");
+  CHECK(rejection("[[object]]\nmodel = \"\"\n") ==
+        "s.toml:2: object[0].model is empty; give a path");
+  CHECK(rejection("[[object]]\nmodel = 3\n") ==
+        "s.toml:2: object[0].model is not text; give text in quotes");
+  CHECK(rejection("[object]\nmodel = \"x\"\n") ==
+        "s.toml:1: object is not a list of tables; write it as [[object]]");
+  CHECK(rejection(kObject + "engine = \"steam\"\n") ==
+        "s.toml:3: object[0].engine is 'steam'; give one of: modal | dense");
+  CHECK(rejection(kObject + "name = 1\n") ==
+        "s.toml:3: object[0].name is not text; give text in quotes");
+  CHECK(rejection("server = 1\n" + kObject) ==
+        "s.toml:1: server is not a table; write it as [server]");
+  CHECK(rejection("[server]\naddress = 1\n" + kObject) ==
+        "s.toml:2: server.address is not text; give text in quotes");
+  CHECK(rejection("[server]\nport = 1.5\n" + kObject) ==
+        "s.toml:2: server.port is not a whole number; give a whole number from 0 to 65535");
+  CHECK(rejection("[contact]\ncoupling_stiffness = \"stiff\"\n" + kObject) ==
+        "s.toml:2: contact.coupling_stiffness is not a number; give a finite number >= 0");
+}
+
+TEST_CASE("each vector of a scene must have its numbers, all finite") {
+  for (const char* key : {"position", "velocity", "angular_velocity"}) {
+    const std::string start = "s.toml:3: object[0]." + std::string(key) + " ";
+    const auto with = [&](const char* value) {
+      return rejection(kObject + key + " = " + value + "\n");
+    };
+    CHECK(with("[1, 2]") == start + "has 2 entries; give a list of 3 numbers");
+    CHECK(with("[1, 2, 3, 4]") == start + "has 4 entries; give a list of 3 numbers");
+    CHECK(with("1") == start + "is not a list; give a list of 3 numbers");
+    CHECK(with("[1, \"2\", 3]") == start + "is not a number; give a finite number");
+    CHECK(with("[1, nan, 3]") == start + "is nan; give a finite number");
+    CHECK(with("[1, 2, -inf]") == start + "is -inf; give a finite number");
+  }
+  CHECK(rejection("[world]\ngravity = [0, inf, 0]\n" + kObject) ==
+        "s.toml:2: world.gravity is inf; give a finite number");
+  CHECK(rejection(kObject + "orientation = [1, 0, 0]\n") ==
+        "s.toml:3: object[0].orientation has 3 entries; give a list of 4 numbers");
+  CHECK(rejection(kObject + "orientation = [0, 0, 0, 0]\n") ==
+        "s.toml:3: object[0].orientation has no length; give a quaternion w, x, y, z, for "
+        "instance [1, 0, 0, 0]");
+  CHECK(rejection(kObject + "orientation = [1, nan, 0, 0]\n") ==
+        "s.toml:3: object[0].orientation is nan; give a finite number");
+}
+
+TEST_CASE("a key that no table of a scene knows is an error") {
+  const auto unknown = [](const std::string& name) {
+    return name + " is not a known key; remove it or correct its name";
+  };
+  CHECK(rejection("colour = 1\n" + kObject) == "s.toml:1: " + unknown("colour"));
+  CHECK(rejection("[server]\nprot = 1\n" + kObject) == "s.toml:2: " + unknown("server.prot"));
+  CHECK(rejection("[world]\nwind = 1\n" + kObject) == "s.toml:2: " + unknown("world.wind"));
+  CHECK(rejection("[contact]\nk = 1\n" + kObject) == "s.toml:2: " + unknown("contact.k"));
+  CHECK(rejection(kObject + "mesh = 1\n") == "s.toml:3: " + unknown("object[0].mesh"));
+}
+
+TEST_CASE("every scene in configs is a scene") {
+  int scenes = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(IRDM_SOURCE_DIR "/configs/scenes")) {
+    if (entry.path().extension() != ".toml") continue;
+    CAPTURE(entry.path());
+    CHECK_NOTHROW(read_scene(TomlTable::parse_file(entry.path())));
+    ++scenes;
+  }
+  CHECK(scenes >= 2);
+}
+
+TEST_CASE("a file that cannot be read is told") {
+  CHECK_THROWS_WITH(read_text("/nowhere/at/all"),
+                    "/nowhere/at/all: cannot be read; check the path and its permissions");
+}

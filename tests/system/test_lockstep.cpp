@@ -1,0 +1,105 @@
+#include <atomic>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstring>
+#include <thread>
+#include <vector>
+
+#include "tests/system/stage.hpp"
+#include "tests/system/trace.hpp"
+
+using Catch::Matchers::Contains;
+using namespace irdm;
+using namespace irdm::test;
+
+namespace {
+
+/// Threads that do nothing as hard as they can.
+class Load {
+ public:
+  explicit Load(int threads) {
+    for (int i = 0; i < threads; ++i) {
+      threads_.emplace_back([](const std::stop_token& stop) {
+        volatile std::uint64_t count = 0;
+        while (!stop.stop_requested()) count = count + 1;
+      });
+    }
+  }
+
+ private:
+  std::vector<std::jthread> threads_;
+};
+
+// One run of the whole script in lockstep, with `threads` wherever threads can be set.
+Trace play(const std::string& engine, int threads) {
+  const Stage stage;
+  const std::string count = std::to_string(threads);
+  std::string scene = scene_text("[world]\ngravity = [0, -0.02, 0.01]\n", engine);
+  scene.replace(scene.find("threads = 1"), 11, "threads = " + count);
+  stage.write("scene.toml", scene);
+  const ChildOptions options{
+      .environment = {"OMP_NUM_THREADS=" + count, "OPENBLAS_NUM_THREADS=" + count}};
+  Server server =
+      stage.start_server({"--lockstep", "--record", stage.path("trace.h5").string()}, options);
+  ChildProcess bridge = stage.start_bridge(server, {}, options);
+  REQUIRE(bridge.wait() == 0);
+  REQUIRE(server.process.wait() == 0);  // the run is over when its bridge leaves
+  CHECK_THAT(bridge.out(), Contains("lockstep") && Contains("sessions 1") && Contains(" 0 gaps"));
+  return read_trace(stage.path("trace.h5"));
+}
+
+template <typename T>
+bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+}
+
+void check_same_bits(const Trace& a, const Trace& b) {
+  REQUIRE(a.rows() == b.rows());
+  CHECK(same_bits(a.time, b.time));
+  CHECK(same_bits(a.force_step, b.force_step));
+  for (const auto& [set, values] : a.numbers) {
+    CAPTURE(set);
+    CHECK(same_bits(values, b.numbers.at(set)));
+  }
+  CHECK(same_bits(a.contact, b.contact));
+  CHECK(same_bits(a.contact_nodes, b.contact_nodes));
+  CHECK(same_bits(a.buttons, b.buttons));
+}
+
+}  // namespace
+
+TEST_CASE("lockstep: the same script leaves the same bits with 1 or 2 threads, idle or loaded") {
+  const std::string engine = GENERATE("modal", "dense");
+  CAPTURE(engine);
+  const Trace first = play(engine, 1);
+  // The whole script, and it touched and held.
+  REQUIRE(first.rows() == static_cast<std::size_t>(std::lround(kPressAndSwing / 0.002)));
+  CHECK(std::count(first.contact.begin(), first.contact.end(), 1) > 50);
+  CHECK(std::count(first.contact.begin(), first.contact.end(), 2) > 250);
+  SECTION("again") {
+    check_same_bits(first, play(engine, 1));
+  }
+  SECTION("2 threads") {
+    check_same_bits(first, play(engine, 2));
+  }
+  SECTION("a loaded machine") {
+    const Load load(3);
+    check_same_bits(first, play(engine, 2));
+  }
+}
+
+TEST_CASE("lockstep: another script leaves other bits") {
+  // What the comparison above is worth: the least change of the input shows.
+  const Trace first = play("modal", 1);
+  const Stage stage;
+  std::string script = press_and_swing();
+  script.replace(script.find(",0.0605,"), 8, ",0.0605001,");
+  stage.write("script.csv", script);
+  Server server = stage.start_server({"--lockstep", "--record", stage.path("trace.h5").string()});
+  ChildProcess bridge = stage.start_bridge(server);
+  REQUIRE(bridge.wait() == 0);
+  REQUIRE(server.process.wait() == 0);
+  const Trace other = read_trace(stage.path("trace.h5"));
+  CHECK(other.rows() == first.rows());
+  CHECK_FALSE(same_bits(first.numbers.at("/stylus/0/force"), other.numbers.at("/stylus/0/force")));
+}

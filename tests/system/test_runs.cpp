@@ -1,0 +1,122 @@
+#include <csignal>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+
+#include "common/checksum.hpp"
+#include "tests/support/eventually.hpp"
+#include "tests/system/stage.hpp"
+#include "tests/system/trace.hpp"
+
+using Catch::Matchers::Contains;
+using namespace irdm;
+using namespace irdm::test;
+
+namespace {
+
+constexpr int kTouching = 1;
+constexpr int kHeld = 2;
+
+std::size_t rows_in(const Trace& trace, int contact) {
+  return static_cast<std::size_t>(std::count(trace.contact.begin(), trace.contact.end(), contact));
+}
+
+double peak_force(const Trace& trace) {
+  double peak = 0.0;
+  for (std::size_t k = 0; k < trace.rows(); ++k) {
+    peak = std::max(peak, trace.vector("/stylus/0/force", k).norm());
+  }
+  return peak;
+}
+
+// A trace that lacks nothing: as many rows as the server says, numbered from 0.
+void check_whole(const Trace& trace, const std::string& server_output) {
+  CHECK(static_cast<double>(trace.rows()) == number_after(server_output, "steps: "));
+  CHECK(static_cast<double>(trace.rows()) == number_after(server_output, "recorded: "));
+  for (std::size_t k = 0; k < trace.rows(); ++k) REQUIRE(trace.force_step[k] == k);
+}
+
+void check_ended_well(ChildProcess& process) {
+  CHECK(process.wait() == 0);
+  CHECK_THAT(process.err(), !Contains("error"));
+}
+
+}  // namespace
+
+TEST_CASE("a run in real time: both end in order, and the trace says what they say") {
+  const Stage stage;
+  Server server = stage.start_server({"--record", stage.path("trace.h5").string()});
+  ChildProcess bridge = stage.start_bridge(server);
+  check_ended_well(bridge);
+  server.process.signal(SIGTERM);
+  check_ended_well(server.process);
+
+  const Trace trace = read_trace(stage.path("trace.h5"));
+  check_whole(trace, server.process.out());
+  CHECK(trace.model_file == cube_model().filename());
+  CHECK(trace.model_checksum == sha256_of_file(cube_model()));
+  CHECK(trace.scene == file_content(stage.path("scene.toml")));
+  CHECK(rows_in(trace, kTouching) > 0);
+  CHECK(rows_in(trace, kHeld) > 0);
+  CHECK(std::abs(peak_force(trace) - number_after(server.process.out(), "peak force: ")) <= 5e-4);
+  CHECK(number_after(server.process.out(), "steps without a finite solution: ") == 0);
+  CHECK_THAT(server.process.out(), Contains("sessions: 1 accepted, 0 refused, 0 closed"));
+  CHECK_THAT(bridge.out(), Contains("sessions 1, reconnects 0, protocol errors 0"));
+  CHECK(number_after(bridge.out(), "forces: ") > 0);
+  CHECK(number_after(bridge.out(), "peak force: ") > 0.1);
+}
+
+TEST_CASE("a server runs for its duration, to the step, and tells the bridge when it ends") {
+  const Stage stage;
+  stage.write("script.csv", hold_and_circle());
+  const bool lockstep = GENERATE(true, false);
+  CAPTURE(lockstep);
+  std::vector<std::string> arguments{"--record", stage.path("trace.h5").string(), "--duration",
+                                     "0.301"};
+  if (lockstep) arguments.push_back("--lockstep");
+  Server server = stage.start_server(arguments);
+  ChildProcess bridge = stage.start_bridge(server);
+  check_ended_well(server.process);
+  if (!lockstep) bridge.signal(SIGTERM);  // it would wait for another server
+  CHECK(bridge.wait() == 0);
+  const Trace trace = read_trace(stage.path("trace.h5"));
+  CHECK(trace.rows() == 151);
+  CHECK(trace.time.back() == Approx(0.302));
+  check_whole(trace, server.process.out());
+}
+
+TEST_CASE("SIGINT and SIGTERM, to either of them first, leave a whole trace and status 0") {
+  const Stage stage;
+  stage.write("script.csv", hold_and_circle());
+  const std::filesystem::path path = stage.path("trace.h5");
+  const int number = GENERATE(SIGINT, SIGTERM);
+  const bool server_first = GENERATE(true, false);
+  CAPTURE(number, server_first);
+  Server server = stage.start_server({"--record", path.string()});
+  ChildProcess bridge = stage.start_bridge(server);
+  REQUIRE(eventually([&] { return rows_so_far(path, "contact", kHeld) > 50; }));
+  ChildProcess& first = server_first ? server.process : bridge;
+  ChildProcess& second = server_first ? bridge : server.process;
+  first.signal(number);
+  check_ended_well(first);
+  CHECK(second.running());
+  second.signal(number);
+  check_ended_well(second);
+  CHECK_THAT(bridge.out(), Contains("sessions 1"));
+  const Trace trace = read_trace(path);
+  check_whole(trace, server.process.out());
+  CHECK(rows_in(trace, kHeld) > 50);
+}
+
+TEST_CASE("a file that exists is not recorded over") {
+  const Stage stage;
+  const std::string before = "a trace, perhaps";
+  stage.write("trace.h5", before);
+  const FinishedProgram server = run_to_end({IRDM_SERVER, stage.path("scene.toml").string(),
+                                             "--record", stage.path("trace.h5").string()});
+  CHECK(server.status == 1);
+  CHECK(server.err == "irdm-server: error: " + stage.path("trace.h5").string() +
+                          ": exists already; choose another name or remove it\n");
+  CHECK(server.out.empty());
+  CHECK(file_content(stage.path("trace.h5")) == before);
+}

@@ -122,6 +122,7 @@ void NetworkClient::Impl::start() {
   await_tick();
   connect();
   thread_ = std::thread([this] { run(); });
+  apply_scheduling(settings_.scheduling, thread_, kNetworkPriority);
 }
 
 void NetworkClient::Impl::stop(bool finished) {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "common/realtime/histogram.hpp"
+#include "common/realtime/scheduling.hpp"
 #include "common/realtime/wakeup.hpp"
 #include "device_bridge/bridge_config.hpp"
 #include "device_bridge/servo_link.hpp"
@@ -18,7 +19,8 @@ struct ClientSettings {
   int connect_timeout_ms = 100;      ///< of one attempt
   int back_off_ms = 50;              ///< between attempts
   int answer_timeout_ms = 1000;      ///< from Hello to Welcome
-  int silence_timeout_ms = 2000;     ///< without a force; real time only
+  RealTimeScheduling scheduling = RealTimeScheduling::kIgnore;
+  int silence_timeout_ms = 2000;  ///< without a force; real time only
 };
 
 struct ClientReport {

@@ -39,6 +39,11 @@ SimulationConfig simulation_config(const SceneConfig& scene) {
   return config;
 }
 
+// In lockstep nobody waits for the machine's clock.
+RealTimeScheduling scheduling(const SceneConfig& scene, const ServerOptions& options) {
+  return options.lockstep ? RealTimeScheduling::kIgnore : scene.server.realtime;
+}
+
 NetworkSettings network_settings(const SceneConfig& scene, const ServerOptions& options,
                                  double dt) {
   NetworkSettings settings;
@@ -47,6 +52,7 @@ NetworkSettings network_settings(const SceneConfig& scene, const ServerOptions& 
   settings.dt = dt;
   settings.lockstep = options.lockstep;
   settings.styluses = scene.server.styluses;
+  settings.scheduling = scheduling(scene, options);
   return settings;
 }
 
@@ -93,8 +99,7 @@ int run_server(const ServerOptions& options) {
   std::cout << "listening on " << network.endpoint() << std::endl;
   if (recorder) recorder->start();
   deformation.start();
-  // In lockstep nobody waits for the clock.
-  force.start(options.lockstep ? RealTimeScheduling::kIgnore : scene.server.realtime);
+  force.start(scheduling(scene, options));
   stop.wait(force.finished().descriptor());
 
   force.finish();

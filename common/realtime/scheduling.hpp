@@ -12,9 +12,11 @@ enum class RealTimeScheduling {
   kIgnore,   ///< not asked for
 };
 
-/// Priorities under SCHED_FIFO: the servo loop goes before the force step.
+/// Priorities under SCHED_FIFO: the servo loop goes before the force step, and both go before the
+/// network threads that serve them.
 inline constexpr int kServoPriority = 70;
 inline constexpr int kForcePriority = 60;
+inline constexpr int kNetworkPriority = 50;
 
 /// "require", "prefer" or "ignore". Throws std::out_of_range for other words.
 RealTimeScheduling scheduling_from_word(const std::string& word);

@@ -106,6 +106,7 @@ void NetworkServer::Impl::start() {
   await_forces();
   await_tick();
   thread_ = std::thread([this] { run(); });
+  apply_scheduling(settings_.scheduling, thread_, kNetworkPriority);
 }
 
 void NetworkServer::Impl::stop() {

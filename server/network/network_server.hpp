@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "common/realtime/scheduling.hpp"
 #include "common/realtime/wakeup.hpp"
 #include "server/network/stylus_port.hpp"
 
@@ -20,7 +21,8 @@ struct NetworkSettings {
   int handshake_timeout_ms = 1000;  ///< from connection to Hello
   int frame_timeout_ms = 1000;      ///< from the first byte of a frame to its last
   int absent_after_ms = 100;        ///< without a sample the stylus is absent; not in lockstep
-  int silence_timeout_ms = 2000;    ///< without a byte the session ends; not in lockstep
+  RealTimeScheduling scheduling = RealTimeScheduling::kIgnore;
+  int silence_timeout_ms = 2000;  ///< without a byte the session ends; not in lockstep
 };
 
 /// Counters of the network thread; read from any thread.
@@ -61,7 +63,7 @@ class NetworkServer {
   Wakeup& forces_ready() noexcept;
   const NetworkStats& stats() const noexcept;
 
-  /// Starts the thread.
+  /// Starts the thread. Throws Error when real-time scheduling is required and not permitted.
   void start();
   /// Says goodbye to every bridge, waits at most half a second for them to hang up, and joins the
   /// thread. Every stylus is absent afterwards. Further calls do nothing.

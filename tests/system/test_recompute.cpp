@@ -55,7 +55,9 @@ Vector3 free_angular_velocity(const Body& body, const Matrix3& inertia, double d
   return w;
 }
 
-/// The force on the object [N], B, by steps 1 to 4 of design.md section 4 for one contact.
+/// The force on the object [N], B, for one contact: docs/architecture.md, one force step. Where the
+/// point is wanted is taken into the frame that free motion leads to, with the whole of its
+/// rotation.
 Vector3 contact_force(const Model& model, const SceneConfig& scene, const Body& body,
                       const SurfacePoint& point, const Vector3& tip, const Vector3& offset,
                       ResponseEngine& engine) {
@@ -70,8 +72,9 @@ Vector3 contact_force(const Model& model, const SceneConfig& scene, const Body& 
   }
   const Vector3 v_free = body.velocity + dt * scene.world.gravity;
   const Vector3 w_free = free_angular_velocity(body, model.body.inertia, dt);
-  const Vector3 x = tip - Q * offset;
-  const Vector3 p = Q.transpose() * (x - body.position - dt * v_free - dt * w_free.cross(Q * r));
+  Matrix3 Q_free = Q;
+  if (w_free.norm() > 0) Q_free = Eigen::AngleAxisd(dt * w_free.norm(), w_free.normalized()) * Q;
+  const Vector3 p = Q_free.transpose() * (tip - body.position - dt * v_free) - offset;
   const Matrix3 cross = skew(r);
   const Matrix3 W =
       Matrix3(elastic) +

@@ -31,6 +31,14 @@ hid_t native_type<std::uint64_t>() {
 
 namespace {
 
+// Before every other use of the library in this process. Files are closed by their owners; the
+// library's own closing at exit would crash on a file whose closing failed because the disk is
+// full.
+void prepare_library() {
+  [[maybe_unused]] static const herr_t once = H5dont_atexit();
+  silence_this_thread();
+}
+
 Handle make_space(const Shape& shape, const hsize_t* maximum = nullptr) {
   if (shape.empty()) return {H5Screate(H5S_SCALAR), H5Sclose};
   return {H5Screate_simple(static_cast<int>(shape.size()), shape.data(), maximum), H5Sclose};
@@ -71,7 +79,7 @@ void File::fail_write(const std::string& what) const {
 }
 
 File File::create(const std::filesystem::path& path) {
-  silence_this_thread();
+  prepare_library();
   if (std::filesystem::exists(path)) {
     throw Error(path.string(), "exists already", "choose another name or remove it");
   }
@@ -83,7 +91,7 @@ File File::create(const std::filesystem::path& path) {
 }
 
 File File::open(const std::filesystem::path& path) {
-  silence_this_thread();
+  prepare_library();
   if (!std::filesystem::exists(path)) {
     throw Error(path.string(), "no such file", "check the path");
   }

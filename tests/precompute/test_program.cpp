@@ -1,20 +1,14 @@
-#include <signal.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <chrono>
-#include <cstdlib>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
-#include <thread>
+#include <sstream>
 
 #include "common/model/model_file.hpp"
 #include "precompute/modal/held_responses.hpp"
-#include "precompute/process/temporary_folder.hpp"
+#include "tests/support/child_process.hpp"
+#include "tests/support/eventually.hpp"
 
 using Catch::Matchers::Contains;
 using namespace irdm;
@@ -33,31 +27,29 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text.replace(text.find(from), from.size(), to);
 }
 
-std::string content(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 // Runs the real program in a folder of its own.
-struct Run : TemporaryFolder {
+struct Run : irdm::test::TemporaryFolder {
   int status = -1;
   std::string out;
   std::string err;
 
-  Run() : TemporaryFolder("irdm-test-program") {
-    std::filesystem::create_directory(path() / "made");
-  }
+  Run() { std::filesystem::create_directory(path() / "made"); }
   void write(const std::string& name, const std::string& text) const {
     std::ofstream(path() / name) << text;
   }
   std::filesystem::path model() const { return path() / "made" / "model.h5"; }
+  // The program with these words, separated by spaces, on its way.
+  irdm::test::ChildProcess begin(const std::string& arguments) const {
+    std::vector<std::string> command{IRDM_PROGRAM};
+    std::istringstream words(arguments);
+    for (std::string word; words >> word;) command.push_back(word);
+    return irdm::test::ChildProcess(command, {.folder = path()});
+  }
   void start(const std::string& arguments) {
-    const std::string command = "cd '" + path().string() + "' && " IRDM_PROGRAM " " + arguments +
-                                " > out 2> err < /dev/null";
-    const int raw = std::system(command.c_str());
-    status = WIFEXITED(raw) ? WEXITSTATUS(raw) : -1;
-    out = content(path() / "out");
-    err = content(path() / "err");
+    irdm::test::ChildProcess process = begin(arguments);
+    status = process.wait();
+    out = process.out();
+    err = process.err();
   }
   void check_refused(const std::string& message) {
     start("c.toml -o made/model.h5");
@@ -245,27 +237,16 @@ TEST_CASE("SIGINT and SIGTERM leave neither the model nor its temporary file") {
     // Long enough to be interrupted while dense R is written.
     run.write("c.toml", "[mesh]\nbox = { size = [1, 1, 1], cells = [6, 6, 6] }\n" + kMaterial +
                             "[response]\nsteps = 500\nstorage = \"dense\"\n");
-    const std::string config = (run.path() / "c.toml").string();
-    const std::string model = run.model().string();
-    const char* const argv[] = {IRDM_PROGRAM, config.c_str(), "-o", model.c_str(), nullptr};
-    pid_t child = 0;
-    REQUIRE(posix_spawn(&child, IRDM_PROGRAM, nullptr, nullptr, const_cast<char**>(argv),
-                        ::environ) == 0);
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    irdm::test::ChildProcess process = run.begin("c.toml -o made/model.h5");
     const auto writing = [&] {
       for (const auto& entry : std::filesystem::directory_iterator(run.path() / "made")) {
         if (std::filesystem::file_size(entry.path()) > 1'000'000) return true;
       }
       return false;
     };
-    while (!writing() && std::chrono::steady_clock::now() < deadline) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-    REQUIRE(::kill(child, signal) == 0);
-    int status = 0;
-    REQUIRE(::waitpid(child, &status, 0) == child);
-    CHECK(WIFSIGNALED(status));
-    CHECK(WTERMSIG(status) == signal);
+    REQUIRE(irdm::test::eventually(writing, irdm::test::ChildProcess::kDeadlineMs));
+    process.signal(signal);
+    CHECK(process.wait() == -signal);
     CHECK(std::filesystem::is_empty(run.path() / "made"));
   }
 }

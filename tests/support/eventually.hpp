@@ -9,9 +9,10 @@ namespace irdm::test {
 inline constexpr int kDeadlineMs = 10'000;
 
 /// Waits until `condition()` holds; false when it still does not at the deadline.
+/// @param deadline_ms [ms]; longer for what real programs have to work for
 template <typename Condition>
-bool eventually(Condition condition) {
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::milliseconds(kDeadlineMs);
+bool eventually(Condition condition, int deadline_ms = kDeadlineMs) {
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::milliseconds(deadline_ms);
   while (!condition()) {
     if (std::chrono::steady_clock::now() > deadline) return false;
     std::this_thread::sleep_for(std::chrono::milliseconds(1));

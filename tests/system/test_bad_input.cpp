@@ -121,8 +121,12 @@ TEST_CASE("model file with wrong content: one line, status 1, no trace") {
   refused(
       [](Model& model) {
         auto& response = std::get<ModalResponse>(model.response);
-        std::visit([](auto& shapes) { shapes(0, 0) = std::numeric_limits<float>::infinity(); },
-                   response.shapes);
+        std::visit(
+            [](auto& shapes) {
+              shapes.data()[0] =
+                  std::numeric_limits<std::decay_t<decltype(shapes.data()[0])>>::infinity();
+            },
+            response.shapes);
       },
       "/response/modal/shapes has numbers that are not finite");
   write_model(stage.path("cube.h5"), [](Model&) {});

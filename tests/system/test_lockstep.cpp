@@ -1,10 +1,12 @@
-#include <atomic>
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <csignal>
 #include <cstring>
 #include <thread>
 #include <vector>
 
+#include "tests/support/eventually.hpp"
 #include "tests/system/stage.hpp"
 #include "tests/system/trace.hpp"
 
@@ -102,4 +104,31 @@ TEST_CASE("lockstep: another script leaves other bits") {
   const Trace other = read_trace(stage.path("trace.h5"));
   CHECK(other.rows() == first.rows());
   CHECK_FALSE(same_bits(first.numbers.at("/stylus/0/force"), other.numbers.at("/stylus/0/force")));
+}
+
+TEST_CASE("lockstep: a bridge that is killed ends the run, and the trace is whole") {
+  const Stage stage;
+  stage.write("script.csv", hold_and_circle());
+  const std::filesystem::path path = stage.path("trace.h5");
+  Server server = stage.start_server({"--lockstep", "--record", path.string()});
+  ChildProcess bridge = stage.start_bridge(server);
+  REQUIRE(eventually([&] { return rows_so_far(path, "contact", 2) > 100; }));
+  bridge.signal(SIGKILL);
+  CHECK(bridge.wait() == -SIGKILL);
+  CHECK(server.process.wait() == 0);
+  CHECK(static_cast<double>(read_trace(path).rows()) ==
+        number_after(server.process.out(), "steps: "));
+}
+
+TEST_CASE("lockstep: a server that is killed ends its bridge with one line and status 1") {
+  const Stage stage;
+  stage.write("script.csv", hold_and_circle());
+  const std::filesystem::path path = stage.path("trace.h5");
+  Server server = stage.start_server({"--lockstep", "--record", path.string()});
+  ChildProcess bridge = stage.start_bridge(server);
+  REQUIRE(eventually([&] { return rows_so_far(path, "contact", 2) > 100; }));
+  server.process.signal(SIGKILL);
+  CHECK(server.process.wait() == -SIGKILL);
+  CHECK(bridge.wait() == 1);
+  CHECK_THAT(bridge.err(), Contains("irdm-bridge: error: ") && Contains("lost in lockstep"));
 }

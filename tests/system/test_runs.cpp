@@ -120,3 +120,39 @@ TEST_CASE("a file that exists is not recorded over") {
   CHECK(server.out.empty());
   CHECK(file_content(stage.path("trace.h5")) == before);
 }
+
+TEST_CASE("a server that nobody comes to is stopped in order, in real time and in lockstep") {
+  const Stage stage;
+  const bool lockstep = GENERATE(true, false);
+  std::vector<std::string> arguments{"--record", stage.path("trace.h5").string()};
+  if (lockstep) arguments.push_back("--lockstep");
+  Server server = stage.start_server(arguments);
+  server.process.signal(SIGTERM);
+  check_ended_well(server.process);
+  const Trace trace = read_trace(stage.path("trace.h5"));
+  check_whole(trace, server.process.out());
+  if (lockstep) CHECK(trace.rows() == 0);
+}
+
+// The thread sanitizer maps files of its own, larger than the limit of this test, and crashes.
+#if defined(__has_feature)
+#if __has_feature(thread_sanitizer)
+#define IRDM_THREAD_SANITIZER
+#endif
+#endif
+#ifndef IRDM_THREAD_SANITIZER
+TEST_CASE("a disk that gets full is told in one line at the end, with status 1") {
+  const Stage stage;
+  stage.write("script.csv", hold_and_circle());
+  // No file of the server may grow beyond 100 kB; a second of its trace needs more.
+  const std::string limited = "trap '' XFSZ; ulimit -f 200; exec \"$0\" \"$@\"";
+  const FinishedProgram server =
+      run_to_end({"/bin/sh", "-c", limited, IRDM_SERVER, stage.path("scene.toml").string(),
+                  "--record", stage.path("trace.h5").string(), "--duration", "2"});
+  CHECK(server.status == 1);
+  CHECK(std::count(server.err.begin(), server.err.end(), '\n') == 1);
+  CHECK_THAT(server.err, Catch::StartsWith("irdm-server: error: recording ended early: ") &&
+                             Contains("trace.h5") && Contains("check free space"));
+  CHECK(number_after(server.out, "steps: ") == 1000);
+}
+#endif

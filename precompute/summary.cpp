@@ -35,6 +35,7 @@ std::string format_summary(const Summary& s) {
   return row("free nodes (n)", std::to_string(s.free_nodes)) +
          row("triangle patches", std::to_string(s.triangles)) +
          row("entire nodes", std::to_string(s.nodes)) +
+         (s.clamped_nodes > 0 ? row("clamped nodes", std::to_string(s.clamped_nodes)) : "") +
          row("tetrahedral elements", std::to_string(s.tetrahedra)) +
          row("degrees of freedom (3n)", std::to_string(s.degrees_of_freedom())) +
          row("elastic modes", std::to_string(s.modes)) +

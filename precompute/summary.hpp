@@ -10,6 +10,7 @@ struct Summary {
   int free_nodes = 0;  ///< n, at the surface
   int triangles = 0;   ///< at the surface
   int nodes = 0;       ///< N, all
+  int clamped_nodes = 0;
   int tetrahedra = 0;
   int modes = 0;
   double seconds = 0.0;  ///< of the whole run

@@ -26,6 +26,11 @@ BoxConfig read_box(TomlTable table) {
   return box;
 }
 
+double unit_from_word(const std::string& word) {
+  static const std::map<std::string, double> words{{"m", 1.0}, {"cm", 1e-2}, {"mm", 1e-3}};
+  return words.at(word);
+}
+
 MeshConfig read_mesh(TomlTable table) {
   MeshConfig mesh;
   if (table.has("box") == table.has("file")) {
@@ -33,9 +38,13 @@ MeshConfig read_mesh(TomlTable table) {
                "give one of box = { size = [..], cells = [..] } and file = \"name\"");
   }
   if (table.has("box")) {
+    if (table.has("unit")) {
+      table.fail("unit", "belongs to a mesh file", "leave it out: a box is given in metres");
+    }
     mesh.source = read_box(table.table("box"));
   } else {
     mesh.source = table.path("file");
+    mesh.unit = unit_from_word(table.choice("unit", {"m", "cm", "mm"}, "m"));
   }
   mesh.order = table.integer("order", 1, 2, mesh.order);
   table.finish();

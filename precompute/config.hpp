@@ -21,6 +21,9 @@ struct BoxConfig {
 /// [mesh]: either `box = { size = [..], cells = [..] }` or `file = "name"` (.msh, .node, .ele).
 struct MeshConfig {
   std::variant<BoxConfig, std::filesystem::path> source;
+  /// Length of the mesh file's unit [m]: `unit = "m" | "cm" | "mm"`, "m" unless given. A box is in
+  /// m.
+  double unit = 1.0;
   /// 1: linear, 2: quadratic tetrahedra, whose mid-side nodes are made here; the cells of a box are
   /// those of the tetrahedra, so that 6 cells an edge have the surface nodes of 12 linear ones
   int order = 1;
@@ -48,7 +51,7 @@ struct PrecomputeConfig {
   ResponseConfig response;
   /// Which nodes are clamped, with `response.support = "fixed"`; none: the body floats. [support]
   /// has one of `half_space = { point = [..], normal = [..] }`, `box = { min = [..], max = [..] }`
-  /// and `group = "name"`, in m and the coordinates of the input mesh.
+  /// and `group = "name"`, in m and the coordinates of the input mesh (times its unit).
   std::optional<Region> support;
 };
 

@@ -14,6 +14,7 @@
 #include "precompute/mesh/box_mesh.hpp"
 #include "precompute/mesh/mesh_check.hpp"
 #include "precompute/mesh/mesh_file.hpp"
+#include "precompute/mesh/mesh_report.hpp"
 #include "precompute/mesh/quadratic_mesh.hpp"
 #include "precompute/mesh/region.hpp"
 #include "precompute/mesh/surface.hpp"
@@ -43,6 +44,7 @@ TetMesh make_linear_mesh(const MeshConfig& config) {
   }
   const auto& path = std::get<std::filesystem::path>(config.source);
   TetMesh mesh = read_mesh_file(path);
+  mesh.nodes *= config.unit;
   const int unused = drop_unused_nodes(mesh);
   check_mesh(mesh, path.string());
   if (unused > 0) {
@@ -167,6 +169,7 @@ void warn_about(const PrecomputeConfig& config, const Summary& summary) {
         "poisson_ratio above 0.45: linear tetrahedra lock, the body comes out too stiff; use "
         "mesh.order = 2 with half the cells an edge");
   }
+  if (const auto hint = unit_hint(summary.mesh.extent)) warn(*hint);
   if (summary.decay_left > kMaxDecayLeft) {
     warn("more than 1 % of R is left at the last step; raise response.steps or the damping");
   }
@@ -195,6 +198,9 @@ Summary precompute_model(const PrecomputeConfig& config, const std::filesystem::
   summary.nodes = mesh.node_count();
   summary.clamped_nodes = static_cast<int>(clamped.size());
   summary.tetrahedra = mesh.tet_count();
+  summary.order = mesh.order();
+  summary.mesh = report_mesh(mesh);
+  summary.mass = model.body.mass;
   summary.modes = response.mode_count();
   summary.lowest_frequency = response.angular_frequency(0) / (2.0 * std::numbers::pi);
   summary.decay_left = decay_left(response, model.dt, model.steps);

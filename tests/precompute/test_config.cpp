@@ -89,6 +89,8 @@ TEST_CASE("a mesh file is found beside its configuration") {
   const auto config = read("[mesh]\nfile = \"x/liver.msh\"\n" + kMaterial);
   CHECK(std::get<std::filesystem::path>(config.mesh.source) ==
         std::filesystem::current_path() / "x" / "liver.msh");
+  CHECK(config.mesh.unit == 1.0);
+  CHECK(read("[mesh]\nfile = \"a.msh\"\nunit = \"mm\"\n" + kMaterial).mesh.unit == 1e-3);
 }
 
 TEST_CASE("configuration refuses each bad mesh entry") {
@@ -109,6 +111,8 @@ TEST_CASE("configuration refuses each bad mesh entry") {
                 "not whole");
   check_refused("[mesh]\nbox = { size = [1, 1, 1], cells = [1, 1, 3], x = 1 }\n" + kMaterial,
                 "mesh.box.x is not a known key");
+  check_refused(kMesh + "unit = \"mm\"\n" + kMaterial, "unit belongs to a mesh file");
+  check_refused("[mesh]\nfile = \"a.msh\"\nunit = \"inch\"\n" + kMaterial, "m | cm | mm");
   check_refused(kMesh + "order = 3\n" + kMaterial, "mesh.order is 3");
   check_refused(kMesh + "typo = 2\n" + kMaterial, "mesh.typo is not a known key");
 }

@@ -180,6 +180,30 @@ TEST_CASE("a fixed body does not move where it is clamped and has all other mode
   }
 }
 
+TEST_CASE("a mesh file in millimetres becomes metres; the wrong unit is hinted at") {
+  Run run;
+  std::string large = kMsh;
+  for (const char* line : {"2 1 0 0\n", "3 0 1 0\n", "4 0 0 1\n", "5 1 1 1\n"}) {
+    std::string scaled = line;
+    for (std::size_t i = 2; i < scaled.size(); ++i) {
+      if (scaled[i] == '1') scaled.replace(i++, 1, "120");
+    }
+    large = replaced(large, line, scaled);
+  }
+  run.write("m.msh", large);
+  run.write("c.toml", "[mesh]\nfile = \"m.msh\"\n" + kMaterial);
+  run.start("c.toml -o made/model.h5");
+  CHECK(run.status == 0);
+  CHECK_THAT(run.err, Contains("the body is 120 x 120 x 120 m") && Contains("mesh.unit = \"mm\""));
+  run.write("c.toml", "[mesh]\nfile = \"m.msh\"\nunit = \"mm\"\n" + kMaterial);
+  run.start("c.toml -o made/model.h5");
+  CHECK(run.status == 0);
+  CHECK_THAT(run.err, !Contains("mesh.unit"));
+  CHECK_THAT(run.out, Contains("bounding box                      0.12 x 0.12 x 0.12 m"));
+  const Model model = read_model(run.model(), ResponseKind::kModal);
+  CHECK(model.body.mass == Approx(110 * 0.12 * 0.12 * 0.12 / 2.0));
+}
+
 TEST_CASE("wrong usage ends with status 2, help and version with 0") {
   Run run;
   for (const char* arguments :

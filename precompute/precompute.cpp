@@ -28,7 +28,7 @@
 namespace irdm::precompute {
 namespace {
 
-// Above this, linear tetrahedra are far too stiff (they lock): on the cube of the paper by a third.
+// Above this, linear tetrahedra are far too stiff: they lock (docs/convergence.md).
 constexpr double kLockingPoissonRatio = 0.45;
 constexpr double kMaxDecayLeft = 0.01;
 

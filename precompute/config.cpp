@@ -26,6 +26,11 @@ BoxConfig read_box(TomlTable table) {
   return box;
 }
 
+double unit_from_word(const std::string& word) {
+  static const std::map<std::string, double> words{{"m", 1.0}, {"cm", 1e-2}, {"mm", 1e-3}};
+  return words.at(word);
+}
+
 MeshConfig read_mesh(TomlTable table) {
   MeshConfig mesh;
   if (table.has("box") == table.has("file")) {
@@ -33,9 +38,13 @@ MeshConfig read_mesh(TomlTable table) {
                "give one of box = { size = [..], cells = [..] } and file = \"name\"");
   }
   if (table.has("box")) {
+    if (table.has("unit")) {
+      table.fail("unit", "belongs to a mesh file", "leave it out: a box is given in metres");
+    }
     mesh.source = read_box(table.table("box"));
   } else {
     mesh.source = table.path("file");
+    mesh.unit = unit_from_word(table.choice("unit", {"m", "cm", "mm"}, "m"));
   }
   mesh.order = table.integer("order", 1, 2, mesh.order);
   table.finish();
@@ -69,11 +78,54 @@ ResponseConfig read_response(TomlTable table) {
   response.precision = table.choice("precision", {"single", "double"}, "single") == "single"
                            ? Precision::kSingle
                            : Precision::kDouble;
-  if (table.choice("support", {"floating", "fixed"}, "floating") != "floating") {
-    table.fail("support", "is 'fixed'", "only \"floating\" is available in this version");
-  }
+  table.choice("support", {"floating", "fixed"}, "floating");  // see read_support
   table.finish();
   return response;
+}
+
+Vector3 vector(TomlTable& table, const std::string& key) {
+  return Eigen::Map<const Vector3>(table.numbers(key, 3, Range{}).data());
+}
+
+HalfSpace read_half_space(TomlTable table) {
+  HalfSpace half{vector(table, "point"), vector(table, "normal")};
+  if (half.normal.isZero(0.0)) table.fail("normal", "is zero", "give it a direction");
+  table.finish();
+  return half;
+}
+
+BoxRegion read_box_region(TomlTable table) {
+  BoxRegion box{vector(table, "min"), vector(table, "max")};
+  if ((box.lowest.array() > box.highest.array()).any()) {
+    table.fail("min", "is above max", "exchange them");
+  }
+  table.finish();
+  return box;
+}
+
+Region read_region(TomlTable table) {
+  if (table.has("half_space") + table.has("box") + table.has("group") != 1) {
+    table.fail("", "has not exactly one of half_space, box and group",
+               "give half_space = { point = [..], normal = [..] }, "
+               "box = { min = [..], max = [..] } or group = \"name\"");
+  }
+  Region region;
+  if (table.has("half_space")) region = read_half_space(table.table("half_space"));
+  if (table.has("box")) region = read_box_region(table.table("box"));
+  if (table.has("group")) region = GroupRegion{table.text("group")};
+  table.finish();
+  return region;
+}
+
+std::optional<Region> read_support(TomlTable& root) {
+  const std::string word =
+      root.table("response").choice("support", {"floating", "fixed"}, "floating");
+  if (word == "fixed") return read_region(root.table("support", true));
+  if (root.has("support")) {
+    root.fail("support", "is there but the body is floating",
+              "set response.support = \"fixed\" or leave the table out");
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -95,6 +147,7 @@ PrecomputeConfig read_config(TomlTable root, const std::string& name) {
   config.mesh = read_mesh(root.table("mesh", true));
   config.material = read_material(root.table("material", true));
   config.response = read_response(root.table("response"));
+  config.support = read_support(root);
   root.finish();
   return config;
 }

@@ -2,11 +2,13 @@
 
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <variant>
 
 #include "common/config/toml_reader.hpp"
 #include "common/model/model.hpp"
 #include "common/model/model_file.hpp"
+#include "precompute/mesh/region.hpp"
 
 namespace irdm::precompute {
 
@@ -19,6 +21,9 @@ struct BoxConfig {
 /// [mesh]: either `box = { size = [..], cells = [..] }` or `file = "name"` (.msh, .node, .ele).
 struct MeshConfig {
   std::variant<BoxConfig, std::filesystem::path> source;
+  /// Length of the mesh file's unit [m]: `unit = "m" | "cm" | "mm"`, "m" unless given. A box is in
+  /// m.
+  double unit = 1.0;
   /// 1: linear, 2: quadratic tetrahedra, whose mid-side nodes are made here; the cells of a box are
   /// those of the tetrahedra, so that 6 cells an edge have the surface nodes of 12 linear ones
   int order = 1;
@@ -33,7 +38,7 @@ struct ResponseConfig {
   int steps = 500;                           ///< T, 1..1 000 000
   Storage storage = Storage::kModal;         ///< "modal" | "dense" | "both"
   Precision precision = Precision::kSingle;  ///< of stored numbers of R: "single" | "double"
-  // method = "modal" and support = "floating" are the only ones in this version
+  // method = "modal" is the only one in this version
 };
 
 /// A configuration file of irdm-precompute.
@@ -44,6 +49,10 @@ struct PrecomputeConfig {
   /// required; rayleigh_alpha [1/s] >= 0 and rayleigh_beta [s] >= 0 are 8.0 and 2e-4 unless given.
   Material material;
   ResponseConfig response;
+  /// Which nodes are clamped, with `response.support = "fixed"`; none: the body floats. [support]
+  /// has one of `half_space = { point = [..], normal = [..] }`, `box = { min = [..], max = [..] }`
+  /// and `group = "name"`, in m and the coordinates of the input mesh (times its unit).
+  std::optional<Region> support;
 };
 
 /// The word of a configuration file or command line. Throws std::out_of_range for others.

@@ -14,7 +14,9 @@
 #include "precompute/mesh/box_mesh.hpp"
 #include "precompute/mesh/mesh_check.hpp"
 #include "precompute/mesh/mesh_file.hpp"
+#include "precompute/mesh/mesh_report.hpp"
 #include "precompute/mesh/quadratic_mesh.hpp"
+#include "precompute/mesh/region.hpp"
 #include "precompute/mesh/surface.hpp"
 #include "precompute/mesh/tetgen_program.hpp"
 #include "precompute/modal/dense_columns.hpp"
@@ -26,7 +28,7 @@
 namespace irdm::precompute {
 namespace {
 
-// Above this, linear tetrahedra are far too stiff (they lock): on the cube of the paper by a third.
+// Above this, linear tetrahedra are far too stiff: they lock (docs/convergence.md).
 constexpr double kLockingPoissonRatio = 0.45;
 constexpr double kMaxDecayLeft = 0.01;
 
@@ -42,6 +44,7 @@ TetMesh make_linear_mesh(const MeshConfig& config) {
   }
   const auto& path = std::get<std::filesystem::path>(config.source);
   TetMesh mesh = read_mesh_file(path);
+  mesh.nodes *= config.unit;
   const int unused = drop_unused_nodes(mesh);
   check_mesh(mesh, path.string());
   if (unused > 0) {
@@ -67,11 +70,20 @@ Model describe(const TetMesh& mesh, const std::string& name, const PrecomputeCon
   model.mesh.tets = mesh.tets;
   model.mesh.surface_nodes = std::move(surface.nodes);
   model.mesh.triangles = std::move(surface.triangles);
-  model.body = {body.mass, body.inertia, Support::kFloating};
+  model.body = {body.mass, body.inertia, config.support ? Support::kFixed : Support::kFloating};
   model.material = config.material;
   model.dt = config.response.dt;
   model.steps = config.response.steps;
   return model;
+}
+
+// Nodes that do not move; none of a floating body.
+std::vector<int> clamped_nodes(const PrecomputeConfig& config, const TetMesh& mesh,
+                               const Model& model) {
+  if (!config.support) return {};
+  std::vector<int> clamped = nodes_in(mesh, *config.support, config.name);
+  check_clamped(mesh, clamped, model.mesh.surface_nodes, config.name);
+  return clamped;
 }
 
 double inertia_excess(const Matrix3& nodal, const Matrix3& solid) {
@@ -106,14 +118,17 @@ void check_resources(const PrecomputeConfig& config, const TetMesh& mesh, const 
   }
 }
 
-ModalResponse compute_modes(const TetMesh& mesh, const Model& model, const Console& console) {
+ModalResponse compute_modes(const TetMesh& mesh, const std::vector<int>& clamped,
+                            const Model& model, const Console& console) {
   const SparseMatrix stiffness = assemble_stiffness(mesh, lame_parameters(model.material));
   // Measured: 26 s for 4080 unknowns on two cores.
-  const double estimate = 26.0 * std::pow(3.0 * mesh.node_count() / 4080.0, 3);
-  console.line("modes: " + std::to_string(3 * mesh.node_count()) +
-               " unknowns, all modes by LAPACK; about " + format_duration(estimate) +
-               " on two cores");
-  const ElasticModes modes = elastic_modes(stiffness, model.mesh.nodes, model.mesh.node_mass);
+  const auto unknowns = 3 * (static_cast<std::size_t>(mesh.node_count()) - clamped.size());
+  const double estimate = 26.0 * std::pow(static_cast<double>(unknowns) / 4080.0, 3);
+  console.line("modes: " + std::to_string(unknowns) + " unknowns, all modes by LAPACK; about " +
+               format_duration(estimate) + " on two cores");
+  const ElasticModes modes = model.body.support == Support::kFixed
+                                 ? fixed_modes(stiffness, model.mesh.node_mass, clamped)
+                                 : elastic_modes(stiffness, model.mesh.nodes, model.mesh.node_mass);
   return modal_response(modes, model.mesh.surface_nodes, model.material);
 }
 
@@ -154,6 +169,7 @@ void warn_about(const PrecomputeConfig& config, const Summary& summary) {
         "poisson_ratio above 0.45: linear tetrahedra lock, the body comes out too stiff; use "
         "mesh.order = 2 with half the cells an edge");
   }
+  if (const auto hint = unit_hint(summary.mesh.extent)) warn(*hint);
   if (summary.decay_left > kMaxDecayLeft) {
     warn("more than 1 % of R is left at the last step; raise response.steps or the damping");
   }
@@ -166,6 +182,7 @@ Summary precompute_model(const PrecomputeConfig& config, const std::filesystem::
   const auto start = std::chrono::steady_clock::now();
   const TetMesh mesh = make_mesh(config.mesh);
   const Model model = describe(mesh, config.name, config);
+  const std::vector<int> clamped = clamped_nodes(config, mesh, model);
   check_resources(config, mesh, model, output);
   console.line("mesh: " + std::to_string(mesh.node_count()) + " nodes, " +
                std::to_string(mesh.tet_count()) + " tetrahedra, " +
@@ -174,12 +191,16 @@ Summary precompute_model(const PrecomputeConfig& config, const std::filesystem::
   ModelFileWriter writer(output);
   const RemoveOnSignal cleanup(writer.temporary_path());
   writer.write_description(model);
-  ModalResponse response = compute_modes(mesh, model, console);
+  ModalResponse response = compute_modes(mesh, clamped, model, console);
   Summary summary;
   summary.free_nodes = model.mesh.surface_node_count();
   summary.triangles = static_cast<int>(model.mesh.triangles.rows());
   summary.nodes = mesh.node_count();
+  summary.clamped_nodes = static_cast<int>(clamped.size());
   summary.tetrahedra = mesh.tet_count();
+  summary.order = mesh.order();
+  summary.mesh = report_mesh(mesh);
+  summary.mass = model.body.mass;
   summary.modes = response.mode_count();
   summary.lowest_frequency = response.angular_frequency(0) / (2.0 * std::numbers::pi);
   summary.decay_left = decay_left(response, model.dt, model.steps);

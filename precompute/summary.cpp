@@ -24,6 +24,12 @@ std::string bytes(double value) {
   return text;
 }
 
+std::string quality(const MeshReport& mesh) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%.3f %.3f", mesh.worst_quality, mesh.median_quality);
+  return text;
+}
+
 std::string row(const std::string& name, const std::string& value) {
   return "  " + name + std::string(34 - name.size(), ' ') + value + "\n";
 }
@@ -35,7 +41,13 @@ std::string format_summary(const Summary& s) {
   return row("free nodes (n)", std::to_string(s.free_nodes)) +
          row("triangle patches", std::to_string(s.triangles)) +
          row("entire nodes", std::to_string(s.nodes)) +
+         row("inner nodes", std::to_string(s.nodes - s.free_nodes)) +
+         (s.clamped_nodes > 0 ? row("clamped nodes", std::to_string(s.clamped_nodes)) : "") +
          row("tetrahedral elements", std::to_string(s.tetrahedra)) +
+         row("order of the elements", std::to_string(s.order)) +
+         row("quality, worst and median (0..1)", quality(s.mesh)) +
+         row("bounding box", format_extent(s.mesh.extent)) +
+         row("mass", significant(s.mass, "kg")) +
          row("degrees of freedom (3n)", std::to_string(s.degrees_of_freedom())) +
          row("elastic modes", std::to_string(s.modes)) +
          row("lowest elastic frequency", significant(s.lowest_frequency, "Hz")) +

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <string>
 
+#include "precompute/mesh/mesh_report.hpp"
+
 namespace irdm::precompute {
 
 /// What was computed and what it cost: the table at the end of a run, like the paper's Table 1.
@@ -10,7 +12,11 @@ struct Summary {
   int free_nodes = 0;  ///< n, at the surface
   int triangles = 0;   ///< at the surface
   int nodes = 0;       ///< N, all
+  int clamped_nodes = 0;
   int tetrahedra = 0;
+  int order = 1;  ///< of the tetrahedra
+  MeshReport mesh;
+  double mass = 0.0;  ///< of the body [kg]
   int modes = 0;
   double seconds = 0.0;  ///< of the whole run
   std::uint64_t file_bytes = 0;

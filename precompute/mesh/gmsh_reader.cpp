@@ -1,8 +1,12 @@
 #include "precompute/mesh/gmsh_reader.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cstdlib>
+#include <map>
 #include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "precompute/mesh/token_reader.hpp"
@@ -12,26 +16,30 @@ namespace {
 
 constexpr std::int64_t kMany = 100'000'000;  // bound of every count in a file
 
-// Gmsh's element types: how many nodes, and what the type means to us.
+// Gmsh's element types: how many nodes, how many of them corners, and what the type means to us.
 struct ElementType {
   std::int64_t nodes;
+  int corners;
+  int dimension;
   const char* refused;  // nullptr: linear tetrahedron or not a volume element
 };
 const std::unordered_map<std::int64_t, ElementType> element_types{
-    {1, {2, nullptr}},
-    {2, {3, nullptr}},
-    {3, {4, nullptr}},
-    {4, {4, nullptr}},
-    {5, {8, "hexahedron"}},
-    {6, {6, "prism"}},
-    {7, {5, "pyramid"}},
-    {8, {3, nullptr}},
-    {9, {6, nullptr}},
-    {10, {9, nullptr}},
-    {11, {10, "second-order tetrahedron"}},
-    {15, {1, nullptr}},
-    {16, {8, nullptr}}};
+    {1, {2, 2, 1, nullptr}},
+    {2, {3, 3, 2, nullptr}},
+    {3, {4, 4, 2, nullptr}},
+    {4, {4, 4, 3, nullptr}},
+    {5, {8, 8, 3, "hexahedron"}},
+    {6, {6, 6, 3, "prism"}},
+    {7, {5, 5, 3, "pyramid"}},
+    {8, {3, 2, 1, nullptr}},
+    {9, {6, 3, 2, nullptr}},
+    {10, {9, 4, 2, nullptr}},
+    {11, {10, 4, 3, "second-order tetrahedron"}},
+    {15, {1, 1, 0, nullptr}},
+    {16, {8, 4, 2, nullptr}}};
 constexpr std::int64_t kLinearTet = 4;
+
+using Tag = std::pair<std::int64_t, std::int64_t>;  // dimension and number
 
 class GmshReader {
  public:
@@ -50,6 +58,10 @@ class GmshReader {
         if (!nodes) in_.fail("$Elements comes before $Nodes", "write the mesh again with gmsh");
         version_ == "2.2" ? read_elements_2() : read_elements_4();
         elements = true;
+      } else if (section == "$PhysicalNames") {
+        read_group_names();
+      } else if (section == "$Entities" && version_ == "4.1") {
+        read_entities();
       } else if (section.starts_with("$")) {
         in_.skip_past("$End" + section.substr(1));
         continue;
@@ -83,6 +95,34 @@ class GmshReader {
     if (in_.integer() != 0) in_.fail("binary MSH files are not read", "save it as ASCII");
     in_.integer();  // size of a number
     expect("$EndMeshFormat");
+  }
+
+  void read_group_names() {
+    const std::int64_t count = in_.integer(0, kMany, "number of physical names");
+    for (std::int64_t i = 0; i < count; ++i) {
+      const std::int64_t dimension = in_.integer(0, 3, "dimension of a physical group");
+      const std::int64_t tag = in_.integer();
+      std::string name(in_.word());
+      while (name.size() < 2 || !name.ends_with('"')) name.append(" ").append(in_.word());
+      group_names_[{dimension, std::abs(tag)}] = name.substr(1, name.size() - 2);
+    }
+  }
+
+  // Which physical groups each point, curve, surface and volume of the geometry belongs to.
+  void read_entities() {
+    std::array<std::int64_t, 4> counts{};
+    for (std::int64_t& count : counts) count = in_.integer(0, kMany, "number of entities");
+    for (std::int64_t dimension = 0; dimension < 4; ++dimension) {
+      for (std::int64_t i = 0; i < counts[static_cast<std::size_t>(dimension)]; ++i) {
+        const std::int64_t tag = in_.integer();
+        in_.skip(dimension == 0 ? 3 : 6);  // bounding box
+        const std::int64_t groups = in_.integer(0, kMany, "number of physical groups");
+        for (std::int64_t g = 0; g < groups; ++g) {
+          entity_groups_[{dimension, tag}].push_back(in_.integer());
+        }
+        if (dimension > 0) in_.skip(in_.integer(0, kMany, "number of bounding entities"));
+      }
+    }
   }
 
   void add_node(std::int64_t tag, double x, double y, double z) {
@@ -134,19 +174,26 @@ class GmshReader {
     return found->second;
   }
 
-  void read_element(std::int64_t type, std::int64_t nodes) {
-    if (type != kLinearTet) return in_.skip(nodes);
-    std::array<int, 4> tet{};
-    for (int& corner : tet) {
-      const std::int64_t tag = in_.integer();
-      const auto found = number_.find(tag);
-      if (found == number_.end()) {
-        in_.fail("node " + std::to_string(tag) + " does not exist",
-                 "write the mesh again with gmsh");
-      }
-      corner = found->second;
+  int node_number() {
+    const std::int64_t tag = in_.integer();
+    const auto found = number_.find(tag);
+    if (found == number_.end()) {
+      in_.fail("node " + std::to_string(tag) + " does not exist", "write the mesh again with gmsh");
     }
-    tets_.push_back(tet);
+    return found->second;
+  }
+
+  // The nodes of an element that lies in the given physical groups.
+  void read_element(std::int64_t type, const std::vector<std::int64_t>& groups) {
+    const ElementType& element = element_type(type);
+    if (type != kLinearTet && groups.empty()) return in_.skip(element.nodes);
+    std::vector<int> corners;
+    for (int i = 0; i < element.corners; ++i) corners.push_back(node_number());
+    in_.skip(element.nodes - element.corners);
+    if (type == kLinearTet) tets_.push_back({corners[0], corners[1], corners[2], corners[3]});
+    for (const std::int64_t group : groups) {
+      groups_[{element.dimension, std::abs(group)}].push_back(corners);
+    }
   }
 
   void read_elements_2() {
@@ -154,9 +201,13 @@ class GmshReader {
     for (std::int64_t i = 0; i < count; ++i) {
       in_.integer();  // tag
       const std::int64_t type = in_.integer();
-      const std::int64_t nodes = element_type(type).nodes;
-      in_.skip(in_.integer(0, 1000, "number of tags"));
-      read_element(type, nodes);
+      element_type(type);
+      const std::int64_t tags = in_.integer(0, 1000, "number of tags");
+      std::vector<std::int64_t> groups;  // the first tag is the physical group, 0 for none
+      if (tags > 0) groups.push_back(in_.integer());
+      if (tags > 0 && groups.front() == 0) groups.clear();
+      in_.skip(std::max<std::int64_t>(tags - 1, 0));
+      read_element(type, groups);
     }
   }
 
@@ -164,13 +215,15 @@ class GmshReader {
     const std::int64_t blocks = in_.integer(0, kMany, "number of element blocks");
     in_.skip(3);  // number of elements, lowest and highest tag
     for (std::int64_t b = 0; b < blocks; ++b) {
-      in_.skip(2);  // dimension and entity
+      const std::int64_t dimension = in_.integer();
+      const std::int64_t entity = in_.integer();
+      const std::vector<std::int64_t>& groups = entity_groups_[{dimension, entity}];
       const std::int64_t type = in_.integer();
-      const std::int64_t nodes = element_type(type).nodes;
+      element_type(type);
       const std::int64_t count = in_.integer(0, kMany, "number of elements");
       for (std::int64_t i = 0; i < count; ++i) {
         in_.integer();  // tag
-        read_element(type, nodes);
+        read_element(type, groups);
       }
     }
   }
@@ -187,6 +240,12 @@ class GmshReader {
       const auto& [a, b, c, d] = tets_[i];
       mesh.tets.row(static_cast<Eigen::Index>(i)) << a, b, c, d;
     }
+    for (const auto& [key, group] : groups_) {
+      const auto named = group_names_.find(key);
+      MeshGroup& target =
+          mesh.groups[named == group_names_.end() ? std::to_string(key.second) : named->second];
+      target.insert(target.end(), group.begin(), group.end());
+    }
     return mesh;
   }
 
@@ -195,6 +254,9 @@ class GmshReader {
   std::unordered_map<std::int64_t, int> number_;
   std::vector<std::array<double, 3>> coordinates_;
   std::vector<std::array<int, 4>> tets_;
+  std::map<Tag, std::string> group_names_;
+  std::map<Tag, std::vector<std::int64_t>> entity_groups_;
+  std::map<Tag, MeshGroup> groups_;
 };
 
 }  // namespace

@@ -6,12 +6,29 @@
 #include <vector>
 
 namespace irdm::precompute {
+namespace {
+
+using Edge = std::pair<int, int>;  // the smaller node first
+
+void add_middles(MeshGroup& group, const std::map<Edge, int>& middles) {
+  for (std::vector<int>& nodes : group) {
+    const std::size_t corners = nodes.size();
+    for (std::size_t i = 0; i < corners; ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        const auto found = middles.find(std::minmax(nodes[i], nodes[j]));
+        if (found != middles.end()) nodes.push_back(found->second);
+      }
+    }
+  }
+}
+
+}  // namespace
 
 TetMesh quadratic_mesh(const TetMesh& linear) {
-  std::map<std::pair<int, int>, int> middles;
-  std::vector<std::pair<int, int>> edges;
+  std::map<Edge, int> middles;
+  std::vector<Edge> edges;
   const auto middle = [&](int a, int b) {
-    const std::pair<int, int> edge = std::minmax(a, b);
+    const Edge edge = std::minmax(a, b);
     const int next = linear.node_count() + static_cast<int>(edges.size());
     const auto [place, is_new] = middles.try_emplace(edge, next);
     if (is_new) edges.push_back(edge);
@@ -34,6 +51,8 @@ TetMesh quadratic_mesh(const TetMesh& linear) {
     mesh.nodes.row(linear.nodes.rows() + static_cast<Eigen::Index>(i)) =
         0.5 * (linear.nodes.row(a) + linear.nodes.row(b));
   }
+  mesh.groups = linear.groups;
+  for (auto& [name, group] : mesh.groups) add_middles(group, middles);
   return mesh;
 }
 

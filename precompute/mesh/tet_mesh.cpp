@@ -1,6 +1,6 @@
 #include "precompute/mesh/tet_mesh.hpp"
 
-#include <vector>
+#include <algorithm>
 
 namespace irdm::precompute {
 
@@ -18,6 +18,14 @@ int drop_unused_nodes(TetMesh& mesh) {
   mesh.nodes.conservativeResize(kept, 3);
   for (Eigen::Index i = 0; i < mesh.tets.size(); ++i) {
     mesh.tets.data()[i] = number(mesh.tets.data()[i]);
+  }
+  for (auto& [name, group] : mesh.groups) {
+    std::erase_if(group, [&](const std::vector<int>& nodes) {
+      return std::any_of(nodes.begin(), nodes.end(), [&](int node) { return number(node) < 0; });
+    });
+    for (std::vector<int>& nodes : group) {
+      for (int& node : nodes) node = number(node);
+    }
   }
   return dropped;
 }

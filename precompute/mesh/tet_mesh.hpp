@@ -1,6 +1,9 @@
 #pragma once
 
 #include <array>
+#include <map>
+#include <string>
+#include <vector>
 
 #include "common/geometry.hpp"
 #include "common/model/model.hpp"
@@ -13,12 +16,16 @@ namespace irdm::precompute {
 inline constexpr std::array<std::array<int, 2>, 6> kTetEdges{
     {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}}};
 
+/// Points, edges, faces or tetrahedra that the maker of a mesh named together: the nodes of each.
+using MeshGroup = std::vector<std::vector<int>>;
+
 /// A mesh of tetrahedra, all linear or all quadratic, with straight edges. N nodes, E elements. The
 /// corners of an element (a, b, c, d) are ordered so that (b-a) x (c-a) points towards d: positive
 /// volume. They come first; in a quadratic element the mid-side nodes follow (see kTetEdges).
 struct TetMesh {
-  Points nodes;         ///< (N, 3) [m], coordinates of the input
-  RowMatrix<int> tets;  ///< (E, 4 or 10), into nodes
+  Points nodes;                             ///< (N, 3) [m], coordinates of the input
+  RowMatrix<int> tets;                      ///< (E, 4 or 10), into nodes
+  std::map<std::string, MeshGroup> groups;  ///< by name; most formats have none
 
   int node_count() const { return static_cast<int>(nodes.rows()); }
   int tet_count() const { return static_cast<int>(tets.rows()); }
@@ -37,8 +44,8 @@ inline double signed_volume(const TetMesh& mesh, int e) {
   return ab.cross(ac).dot(ad) / 6.0;
 }
 
-/// Removes the nodes that belong to no tetrahedron, keeping the order of the others; returns how
-/// many there were. Indices must be in range.
+/// Removes the nodes that belong to no tetrahedron, and what groups have there, keeping the order
+/// of the others; returns how many there were. Indices must be in range.
 int drop_unused_nodes(TetMesh& mesh);
 
 }  // namespace irdm::precompute

@@ -62,7 +62,7 @@ TetMesh read_tetgen(const std::filesystem::path& path) {
   std::filesystem::path node_path = path;
   std::filesystem::path ele_path = path;
   const NodeFile nodes = read_nodes(node_path.replace_extension(".node"));
-  return {nodes.nodes, read_tets(ele_path.replace_extension(".ele"), nodes)};
+  return {nodes.nodes, read_tets(ele_path.replace_extension(".ele"), nodes), {}};
 }
 
 }  // namespace irdm::precompute

@@ -7,8 +7,8 @@
 namespace irdm::precompute {
 
 /// Reads a mesh that TetGen wrote: a .node and an .ele file of the same name, either of which may
-/// be given; numbered from 0 or from 1; coordinates in metres. Attributes and markers are passed
-/// over. Throws Error with file and line for missing, truncated or damaged files and for
+/// be given; numbered from 0 or from 1; coordinates as they are there. Attributes and markers are
+/// passed over. Throws Error with file and line for missing, truncated or damaged files and for
 /// second-order elements.
 TetMesh read_tetgen(const std::filesystem::path& path);
 

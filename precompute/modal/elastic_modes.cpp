@@ -1,5 +1,6 @@
 #include "precompute/modal/elastic_modes.hpp"
 
+#include <algorithm>
 #include <string>
 
 #include "common/error.hpp"
@@ -18,6 +19,35 @@ Eigen::VectorXd per_degree_of_freedom(const Eigen::VectorXd& per_node) {
 
 int count_zero(const Eigen::VectorXd& values) {
   return static_cast<int>((values.array() <= kZeroShare * values.maxCoeff()).count());
+}
+
+// M^-1/2 K M^-1/2
+Eigen::MatrixXd scaled_stiffness(const SparseMatrix& stiffness,
+                                 const Eigen::VectorXd& inverse_root_mass) {
+  const SparseMatrix scaled =
+      inverse_root_mass.asDiagonal() * stiffness * inverse_root_mass.asDiagonal();
+  return Eigen::MatrixXd(scaled);
+}
+
+// Degrees of freedom of the nodes that are not clamped.
+std::vector<int> moving_degrees_of_freedom(Eigen::Index nodes, const std::vector<int>& clamped) {
+  std::vector<int> moving;
+  for (int node = 0; node < nodes; ++node) {
+    if (std::binary_search(clamped.begin(), clamped.end(), node)) continue;
+    for (int axis = 0; axis < 3; ++axis) moving.push_back(3 * node + axis);
+  }
+  return moving;
+}
+
+// Rows and columns of the given degrees of freedom, which increase.
+SparseMatrix restricted(const SparseMatrix& matrix, const std::vector<int>& kept) {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    entries.emplace_back(kept[i], static_cast<int>(i), 1.0);
+  }
+  SparseMatrix selection(matrix.rows(), static_cast<Eigen::Index>(kept.size()));
+  selection.setFromTriplets(entries.begin(), entries.end());
+  return selection.transpose() * matrix * selection;
 }
 
 void check_rigid_modes(const EigenPairs& pairs, const Eigen::MatrixXd& rigid) {
@@ -42,8 +72,7 @@ ElasticModes elastic_modes(const SparseMatrix& stiffness, const Points& nodes,
                            const Eigen::VectorXd& mass) {
   const Eigen::VectorXd root_mass = per_degree_of_freedom(mass).cwiseSqrt();
   const Eigen::VectorXd inverse_root = root_mass.cwiseInverse();
-  const SparseMatrix scaled = inverse_root.asDiagonal() * stiffness * inverse_root.asDiagonal();
-  EigenPairs pairs = symmetric_eigen(Eigen::MatrixXd(scaled));
+  EigenPairs pairs = symmetric_eigen(scaled_stiffness(stiffness, inverse_root));
 
   // In the coordinates M^1/2 u the rigid motions are orthonormal columns.
   const Eigen::MatrixXd rigid = root_mass.asDiagonal() * rigid_motions(nodes, mass);
@@ -54,6 +83,24 @@ ElasticModes elastic_modes(const SparseMatrix& stiffness, const Points& nodes,
   elastic.noalias() -= rigid * rigid_part;
   elastic = inverse_root.asDiagonal() * elastic;
   return {pairs.values.tail(count).cwiseSqrt(), elastic};
+}
+
+ElasticModes fixed_modes(const SparseMatrix& stiffness, const Eigen::VectorXd& mass,
+                         const std::vector<int>& clamped) {
+  const std::vector<int> moving = moving_degrees_of_freedom(mass.size(), clamped);
+  const Eigen::VectorXd root_mass = per_degree_of_freedom(mass).cwiseSqrt();
+  const Eigen::VectorXd inverse_root = root_mass(moving).cwiseInverse();
+  const EigenPairs pairs =
+      symmetric_eigen(scaled_stiffness(restricted(stiffness, moving), inverse_root));
+  if (const int zero = count_zero(pairs.values); zero > 0) {
+    throw Error("mesh",
+                "the fixed body has " + std::to_string(zero) + " modes without elastic energy",
+                "check for elements that hang on a single node or edge, and for very thin parts");
+  }
+  ElasticModes modes{pairs.values.cwiseSqrt(),
+                     Eigen::MatrixXd::Zero(stiffness.rows(), pairs.values.size())};
+  modes.shapes(moving, Eigen::all) = inverse_root.asDiagonal() * pairs.vectors;
+  return modes;
 }
 
 ModalResponse modal_response(const ElasticModes& modes, const std::vector<int>& surface_nodes,

@@ -8,7 +8,8 @@
 
 namespace irdm::precompute {
 
-/// Elastic modes of the free mesh: K phi = omega^2 M phi. r = 3N - 6 of them.
+/// Elastic modes of the mesh: K phi = omega^2 M phi. r of them: 3N - 6 of a free body, three less a
+/// clamped node of a fixed one.
 struct ElasticModes {
   Eigen::VectorXd angular_frequency;  ///< omega (r), increasing, > 0 [rad/s]
   Eigen::MatrixXd shapes;             ///< (3N, r), Phi^T M Phi = Id [kg^-1/2]
@@ -23,6 +24,12 @@ struct ElasticModes {
 /// @param mass lumped (N) [kg]
 ElasticModes elastic_modes(const SparseMatrix& stiffness, const Points& nodes,
                            const Eigen::VectorXd& mass);
+
+/// All modes of a body with clamped nodes, whose rows of the shapes are zero. Throws Error when one
+/// of them has no elastic energy.
+/// @param clamped into the nodes, increasing; three of them not on a line
+ElasticModes fixed_modes(const SparseMatrix& stiffness, const Eigen::VectorXd& mass,
+                         const std::vector<int>& clamped);
 
 /// R in modal form: shapes at the surface, decay rates sigma = (alpha + beta omega^2) / 2.
 /// @param surface_nodes (n) into the mesh's nodes

@@ -40,7 +40,8 @@ double decay_left(const ModalResponse& response, double dt, int steps) {
   }
   const RowMatrix<double> diagonal = squares * held_responses(response, dt, steps).transpose();
   const Eigen::VectorXd peak = diagonal.cwiseAbs().rowwise().maxCoeff();
-  return (squares * bound).cwiseQuotient(peak).maxCoeff();
+  const Eigen::VectorXd left = squares * bound;
+  return (peak.array() > 0.0).select(left.cwiseQuotient(peak), 0.0).maxCoeff();  // 0: clamped
 }
 
 }  // namespace irdm::precompute

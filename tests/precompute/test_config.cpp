@@ -89,6 +89,8 @@ TEST_CASE("a mesh file is found beside its configuration") {
   const auto config = read("[mesh]\nfile = \"x/liver.msh\"\n" + kMaterial);
   CHECK(std::get<std::filesystem::path>(config.mesh.source) ==
         std::filesystem::current_path() / "x" / "liver.msh");
+  CHECK(config.mesh.unit == 1.0);
+  CHECK(read("[mesh]\nfile = \"a.msh\"\nunit = \"mm\"\n" + kMaterial).mesh.unit == 1e-3);
 }
 
 TEST_CASE("configuration refuses each bad mesh entry") {
@@ -109,6 +111,8 @@ TEST_CASE("configuration refuses each bad mesh entry") {
                 "not whole");
   check_refused("[mesh]\nbox = { size = [1, 1, 1], cells = [1, 1, 3], x = 1 }\n" + kMaterial,
                 "mesh.box.x is not a known key");
+  check_refused(kMesh + "unit = \"mm\"\n" + kMaterial, "unit belongs to a mesh file");
+  check_refused("[mesh]\nfile = \"a.msh\"\nunit = \"inch\"\n" + kMaterial, "m | cm | mm");
   check_refused(kMesh + "order = 3\n" + kMaterial, "mesh.order is 3");
   check_refused(kMesh + "typo = 2\n" + kMaterial, "mesh.typo is not a known key");
 }
@@ -147,11 +151,42 @@ TEST_CASE("configuration refuses each bad response entry") {
   refused("method = \"magic\"", "modal | time-stepping");
   refused("storage = \"sparse\"", "modal | dense | both");
   refused("precision = \"half\"", "single | double");
-  refused("support = \"fixed\"", "only \"floating\" is available");
+  refused("support = \"fixed\"", "support is missing");
   refused("support = \"nailed\"", "floating | fixed");
   refused("typo = 1", "response.typo is not a known key");
   check_refused(kMesh + kMaterial + "[respnse]\n", "respnse is not a known key");
   check_refused("mesh = 3\n" + kMaterial, "mesh is not a table");
+}
+
+TEST_CASE("configuration takes each kind of support") {
+  const auto support = [](const std::string& line) {
+    return *read(kMesh + kMaterial + "[response]\nsupport = \"fixed\"\n[support]\n" + line + "\n")
+                .support;
+  };
+  CHECK(!read(kMesh + kMaterial).support);
+  const auto half =
+      std::get<HalfSpace>(support("half_space = { point = [1, 2, 3], normal = [0, 0, 2] }"));
+  CHECK(half.point == Vector3(1, 2, 3));
+  CHECK(half.normal == Vector3(0, 0, 2));
+  const auto box = std::get<BoxRegion>(support("box = { min = [-1, 0, 0], max = [0, 1, 2] }"));
+  CHECK(box.lowest == Vector3(-1, 0, 0));
+  CHECK(box.highest == Vector3(0, 1, 2));
+  CHECK(std::get<GroupRegion>(support("group = \"base\"")).group == "base");
+}
+
+TEST_CASE("configuration refuses each bad support") {
+  const std::string fixed = kMesh + kMaterial + "[response]\nsupport = \"fixed\"\n";
+  const auto refused = [&](const std::string& text, const std::string& message) {
+    check_refused(fixed + text + "\n", message);
+  };
+  refused("[support]", "exactly one of half_space, box and group");
+  refused("[support]\ngroup = \"a\"\nbox = { min = [0, 0, 0], max = [1, 1, 1] }", "exactly one");
+  refused("[support]\nhalf_space = { point = [0, 0, 0], normal = [0, 0, 0] }", "normal is zero");
+  refused("[support]\nhalf_space = { point = [0, 0, 0] }", "normal is missing");
+  refused("[support]\nbox = { min = [0, 0, 2], max = [1, 1, 1] }", "min is above max");
+  refused("[support]\ngroup = 3", "group is not text");
+  refused("[support]\ngroup = \"a\"\ntypo = 3", "support.typo is not a known key");
+  check_refused(kMesh + kMaterial + "[support]\ngroup = \"a\"\n", "the body is floating");
 }
 
 TEST_CASE("configuration refuses files that are missing, empty or truncated") {

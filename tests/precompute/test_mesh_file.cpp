@@ -6,6 +6,8 @@
 
 #include "precompute/mesh/mesh_check.hpp"
 #include "precompute/mesh/mesh_file.hpp"
+#include "precompute/mesh/quadratic_mesh.hpp"
+#include "precompute/mesh/region.hpp"
 #include "precompute/process/temporary_folder.hpp"
 
 using Catch::Matchers::Contains;
@@ -77,6 +79,29 @@ TEST_CASE("Gmsh files with parametric coordinates are read") {
   drop_unused_nodes(mesh);
   CHECK_NOTHROW(check_mesh(mesh, "cube.msh"));
   CHECK(volume(mesh) == Approx(1.0));
+}
+
+TEST_CASE("physical groups of real Gmsh files become groups of the mesh") {
+  const Files files;
+  files.write("cube.geo",
+              "SetFactory(\"OpenCASCADE\");\nBox(1) = {0, 0, 0, 1, 1, 1};\n"
+              "Mesh.MeshSizeMax = 0.4;\nbase() = Surface In BoundingBox{-1, -1, -0.1, 2, 2, 0.1};\n"
+              "Physical Surface(\"the base\") = {base()};\nPhysical Volume(7) = {1};\n");
+  for (const std::string format : {"msh22", "msh41"}) {
+    files.run("gmsh -3 cube.geo -o cube.msh -format " + format);
+    const TetMesh mesh = read_mesh_file(files.path() / "cube.msh");
+    REQUIRE(mesh.groups.size() == 2);
+    CHECK(mesh.groups.at("7").size() == static_cast<std::size_t>(mesh.tet_count()));
+    const std::vector<int> base = nodes_in(mesh, GroupRegion{"the base"}, "m");
+    CHECK(base == nodes_in(mesh, HalfSpace{}, "m"));
+    CHECK(base.size() > 8);
+    const TetMesh quadratic = quadratic_mesh(mesh);
+    const std::vector<int> more = nodes_in(quadratic, GroupRegion{"the base"}, "m");
+    CHECK(more == nodes_in(quadratic, HalfSpace{}, "m"));
+    CHECK(more.size() > 3 * base.size());
+    CHECK_THROWS_WITH(nodes_in(mesh, GroupRegion{"top"}, "m"),
+                      Contains("no group 'top'") && Contains("'7', 'the base'"));
+  }
 }
 
 TEST_CASE("Gmsh files that cannot be used are refused with the way out") {

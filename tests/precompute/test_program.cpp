@@ -153,6 +153,49 @@ TEST_CASE("a model of quadratic tetrahedra has their mid-side nodes at the surfa
   CHECK(std::get<ModalResponse>(model.response).mode_count() == 3 * model.mesh.nodes.rows() - 6);
 }
 
+TEST_CASE("a fixed body does not move where it is clamped and has all other modes") {
+  Run run;
+  run.write("c.toml", kBox + kMaterial +
+                          "[response]\nsupport = \"fixed\"\n[support]\n"
+                          "half_space = { point = [0, 0, 0], normal = [0, 0, 1] }\n");
+  run.start("c.toml -o made/model.h5");
+  REQUIRE(run.status == 0);
+  CHECK_THAT(run.out, Contains("clamped nodes                     12"));
+  const Model model = read_model(run.model(), ResponseKind::kModal);
+  CHECK(model.body.support == Support::kFixed);
+  const auto& response = std::get<ModalResponse>(model.response);
+  CHECK(response.mode_count() == 3 * (model.mesh.nodes.rows() - 12));
+  const auto& phi = std::get<RowMatrix<float>>(response.shapes);
+  for (int i = 0; i < model.mesh.surface_node_count(); ++i) {
+    const bool clamped = std::abs(model.mesh.rest_position(i).z() + 0.04) < 1e-9;
+    CHECK(phi.middleRows<3>(3 * i).isZero(0.0f) == clamped);
+  }
+}
+
+TEST_CASE("a mesh file in millimetres becomes metres; the wrong unit is hinted at") {
+  Run run;
+  std::string large = kMsh;
+  for (const char* line : {"2 1 0 0\n", "3 0 1 0\n", "4 0 0 1\n", "5 1 1 1\n"}) {
+    std::string scaled = line;
+    for (std::size_t i = 2; i < scaled.size(); ++i) {
+      if (scaled[i] == '1') scaled.replace(i++, 1, "120");
+    }
+    large = replaced(large, line, scaled);
+  }
+  run.write("m.msh", large);
+  run.write("c.toml", "[mesh]\nfile = \"m.msh\"\n" + kMaterial);
+  run.start("c.toml -o made/model.h5");
+  CHECK(run.status == 0);
+  CHECK_THAT(run.err, Contains("the body is 120 x 120 x 120 m") && Contains("mesh.unit = \"mm\""));
+  run.write("c.toml", "[mesh]\nfile = \"m.msh\"\nunit = \"mm\"\n" + kMaterial);
+  run.start("c.toml -o made/model.h5");
+  CHECK(run.status == 0);
+  CHECK_THAT(run.err, !Contains("mesh.unit"));
+  CHECK_THAT(run.out, Contains("bounding box                      0.12 x 0.12 x 0.12 m"));
+  const Model model = read_model(run.model(), ResponseKind::kModal);
+  CHECK(model.body.mass == Approx(110 * 0.12 * 0.12 * 0.12 / 2.0));
+}
+
 TEST_CASE("wrong usage ends with status 2, help and version with 0") {
   Run run;
   for (const char* arguments :
@@ -187,7 +230,12 @@ TEST_CASE("bad configuration: one line on stderr, status 1, no output") {
   refused(kBox + replaced(kMaterial, "110", "-110"), "material.density is -110");
   refused(kBox + kMaterial + "[response]\ndt = 0\n", "response.dt is 0");
   refused(kBox + kMaterial + "[response]\nmethod = \"time-stepping\"\n", "only \"modal\"");
-  refused(kBox + kMaterial + "[response]\nsupport = \"fixed\"\n", "only \"floating\"");
+  const std::string fixed = kBox + kMaterial + "[response]\nsupport = \"fixed\"\n[support]\n";
+  refused(kBox + kMaterial + "[response]\nsupport = \"fixed\"\n", "support is missing");
+  refused(fixed + "group = \"base\"\n", "has no group 'base'");
+  refused(fixed + "box = { min = [5, 5, 5], max = [6, 6, 6] }\n", "holds no node");
+  refused(fixed + "box = { min = [0, 0, 0], max = [6, 6, 6] }\n", "every node of the surface");
+  refused(fixed + "box = { min = [0, 0, 0], max = [1, 0, 0] }\n", "can still turn");
 }
 
 TEST_CASE("bad mesh: one line on stderr, status 1, no output") {

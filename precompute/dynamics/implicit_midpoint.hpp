@@ -16,9 +16,11 @@ namespace irdm::precompute {
 /// Second order; A-stable (unconditionally stable for linear elasticity), the same as Newmark's
 /// average acceleration there when forces are constant over a step. Because the internal forces at
 /// the midpoint have neither resultant nor torque, linear and angular momentum are conserved
-/// exactly, up to the tolerance of the solution, for any step; energy is conserved exactly for the
-/// linear body, and for the corotational one up to a bounded error of second order (the rule is
-/// symplectic). Source: J. C. Simo, N. Tarnow and K. K. Wong, Exact energy-momentum conserving
+/// exactly, up to the tolerance of the solution, for any step. Energy is conserved exactly for the
+/// linear body only. For the corotational one without damping it has an error of second order that
+/// builds up: a box of 3 x 2 x 2 cells, stretched by a fifth and spinning at 10 rad/s, gains 0.09 %
+/// in 1 s and 0.2 % in 8 s at steps of 1 ms (4 times that at 2 ms, a quarter at 0.5 ms), whatever
+/// the tolerance. Source: J. C. Simo, N. Tarnow and K. K. Wong, Exact energy-momentum conserving
 /// algorithms and symplectic schemes for nonlinear dynamics, Comput. Methods Appl. Mech. Eng. 100
 /// (1992).
 ///

@@ -7,6 +7,7 @@
 #include "common/config/toml_reader.hpp"
 #include "common/model/model.hpp"
 #include "common/model/model_file.hpp"
+#include "precompute/dynamics/time_stepping_config.hpp"
 
 namespace irdm::precompute {
 
@@ -22,6 +23,9 @@ struct MeshConfig {
   int order = 1;  ///< 1: linear tetrahedra, the only ones in this version
 };
 
+/// How R is obtained.
+enum class Method { kModal, kTimeStepping };
+
 /// Which form of R the model file gets.
 enum class Storage { kModal, kDense, kBoth };
 
@@ -29,9 +33,10 @@ enum class Storage { kModal, kDense, kBoth };
 struct ResponseConfig {
   double dt = 0.002;                         ///< response interval [s], above 0 up to 1
   int steps = 500;                           ///< T, 1..1 000 000
+  Method method = Method::kModal;            ///< "modal" | "time-stepping"
   Storage storage = Storage::kModal;         ///< "modal" | "dense" | "both"
   Precision precision = Precision::kSingle;  ///< of stored numbers of R: "single" | "double"
-  // method = "modal" and support = "floating" are the only ones in this version
+  // support = "floating" is the only one in this version
 };
 
 /// A configuration file of irdm-precompute.
@@ -42,13 +47,15 @@ struct PrecomputeConfig {
   /// required; rayleigh_alpha [1/s] >= 0 and rayleigh_beta [s] >= 0 are 8.0 and 2e-4 unless given.
   Material material;
   ResponseConfig response;
+  TimeSteppingConfig time_stepping;  ///< used by method = "time-stepping"
+  int threads = 0;                   ///< of the command line; 0: all cores
 };
 
 /// The word of a configuration file or command line. Throws std::out_of_range for others.
 Storage storage_from_word(const std::string& word);
 
-/// Throws Error, naming what is available, unless the method is "modal".
-void check_method(const std::string& method);
+/// The word of a configuration file or command line. Throws std::out_of_range for others.
+Method method_from_word(const std::string& word);
 
 /// Reads and checks a whole configuration. Throws Error with file and line.
 PrecomputeConfig read_config(TomlTable root, const std::string& name);

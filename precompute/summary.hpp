@@ -11,7 +11,7 @@ struct Summary {
   int triangles = 0;   ///< at the surface
   int nodes = 0;       ///< N, all
   int tetrahedra = 0;
-  int modes = 0;
+  int modes = 0;         ///< 0: R was obtained without modes
   double seconds = 0.0;  ///< of the whole run
   std::uint64_t file_bytes = 0;
   double lowest_frequency = 0.0;  ///< of the elastic modes [Hz]

@@ -11,6 +11,14 @@ Eigen::Map<const Points> as_points(const Eigen::VectorXd& field) {
   return {field.data(), field.size() / 3, 3};
 }
 
+// S - Id of the stretch S, without the cancellation that would leave 1e-16 of noise in strains of
+// any size: (S - Id)(S + Id) = F^T F - Id, and that is H + H^T + H^T H.
+Matrix3 stretch_strain(const Matrix3& du_dX, const Matrix3& S) {
+  const Matrix3 squared = du_dX + du_dX.transpose() + du_dX.transpose() * du_dX;
+  const Matrix3 strain = squared * (S + Matrix3::Identity()).inverse();
+  return 0.5 * (strain + strain.transpose());
+}
+
 // The vector a with skew(a) = m - m^T.
 Vector3 twice_axial(const Matrix3& m) {
   return {m(2, 1) - m(1, 2), m(0, 2) - m(2, 0), m(1, 0) - m(0, 1)};
@@ -71,7 +79,7 @@ Matrix3 SoftBody::first_piola(const Matrix3& du_dX, const Matrix3& dv_dX) const 
   const Matrix3 R = polar_rotation(F);
   Matrix3 S = R.transpose() * F;
   S = 0.5 * (S + S.transpose()).eval();
-  const Matrix3 elastic = stress(S - Matrix3::Identity());
+  const Matrix3 elastic = stress(stretch_strain(du_dX, S));
   if (beta == 0.0) return R * elastic;
   // A = R^T dF/dt = dS/dt + W S with W = R^T dR/dt skew; that dS/dt is symmetric gives
   // (tr(S) Id - S) w = twice_axial(A). The stress whose power is T : dS/dt is R (T + skew(c)).
@@ -106,12 +114,11 @@ double SoftBody::elastic_energy(const Eigen::VectorXd& u) const {
   double sum = 0.0;
   for (const Element& element : elements_) {
     const Matrix3 du_dX = gradient(element, u);
-    Matrix3 strain = du_dX;
+    Matrix3 strain = 0.5 * (du_dX + du_dX.transpose());
     if (elasticity_ == Elasticity::kCorotational) {
       const Matrix3 F = Matrix3::Identity() + du_dX;
-      strain = polar_rotation(F).transpose() * F - Matrix3::Identity();
+      strain = stretch_strain(du_dX, polar_rotation(F).transpose() * F);
     }
-    strain = 0.5 * (strain + strain.transpose()).eval();
     sum += element.geometry.volume *
            (lame_.mu * strain.squaredNorm() + 0.5 * lame_.lambda * strain.trace() * strain.trace());
   }

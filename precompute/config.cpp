@@ -69,10 +69,7 @@ ResponseConfig read_response(TomlTable table) {
   response.dt =
       table.number("dt", {.lowest = 0.0, .highest = 1.0, .lowest_included = false}, response.dt);
   response.steps = table.integer("steps", 1, kMaxSteps, response.steps);
-  const std::string method = table.choice("method", {"modal", "time-stepping"}, "modal");
-  if (method != "modal") {
-    table.fail("method", "is '" + method + "'", "only \"modal\" is available in this version");
-  }
+  response.method = method_from_word(table.choice("method", {"modal", "time-stepping"}, "modal"));
   response.storage =
       storage_from_word(table.choice("storage", {"modal", "dense", "both"}, "modal"));
   response.precision = table.choice("precision", {"single", "double"}, "single") == "single"
@@ -136,9 +133,10 @@ Storage storage_from_word(const std::string& word) {
   return words.at(word);
 }
 
-void check_method(const std::string& method) {
-  if (method == "modal") return;
-  throw Error("--method", "'" + method + "' is not available in this version", "use modal");
+Method method_from_word(const std::string& word) {
+  static const std::map<std::string, Method> words{{"modal", Method::kModal},
+                                                   {"time-stepping", Method::kTimeStepping}};
+  return words.at(word);
 }
 
 PrecomputeConfig read_config(TomlTable root, const std::string& name) {
@@ -148,6 +146,7 @@ PrecomputeConfig read_config(TomlTable root, const std::string& name) {
   config.material = read_material(root.table("material", true));
   config.response = read_response(root.table("response"));
   config.support = read_support(root);
+  config.time_stepping = read_time_stepping(root.table("time_stepping"), config.response.dt);
   root.finish();
   return config;
 }

@@ -8,6 +8,7 @@
 #include "common/config/toml_reader.hpp"
 #include "common/model/model.hpp"
 #include "common/model/model_file.hpp"
+#include "precompute/dynamics/time_stepping_config.hpp"
 #include "precompute/mesh/region.hpp"
 
 namespace irdm::precompute {
@@ -29,6 +30,9 @@ struct MeshConfig {
   int order = 1;
 };
 
+/// How R is obtained.
+enum class Method { kModal, kTimeStepping };
+
 /// Which form of R the model file gets.
 enum class Storage { kModal, kDense, kBoth };
 
@@ -36,9 +40,9 @@ enum class Storage { kModal, kDense, kBoth };
 struct ResponseConfig {
   double dt = 0.002;                         ///< response interval [s], above 0 up to 1
   int steps = 500;                           ///< T, 1..1 000 000
+  Method method = Method::kModal;            ///< "modal" | "time-stepping"
   Storage storage = Storage::kModal;         ///< "modal" | "dense" | "both"
   Precision precision = Precision::kSingle;  ///< of stored numbers of R: "single" | "double"
-  // method = "modal" is the only one in this version
 };
 
 /// A configuration file of irdm-precompute.
@@ -53,13 +57,15 @@ struct PrecomputeConfig {
   /// has one of `half_space = { point = [..], normal = [..] }`, `box = { min = [..], max = [..] }`
   /// and `group = "name"`, in m and the coordinates of the input mesh (times its unit).
   std::optional<Region> support;
+  TimeSteppingConfig time_stepping;  ///< used by method = "time-stepping"
+  int threads = 0;                   ///< of the command line; 0: all cores
 };
 
 /// The word of a configuration file or command line. Throws std::out_of_range for others.
 Storage storage_from_word(const std::string& word);
 
-/// Throws Error, naming what is available, unless the method is "modal".
-void check_method(const std::string& method);
+/// The word of a configuration file or command line. Throws std::out_of_range for others.
+Method method_from_word(const std::string& word);
 
 /// Reads and checks a whole configuration. Throws Error with file and line.
 PrecomputeConfig read_config(TomlTable root, const std::string& name);

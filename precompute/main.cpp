@@ -28,9 +28,10 @@ int main(int argc, char** argv) {
 
   return run_program(app, argc, argv, [&] {
     precompute::PrecomputeConfig config = precompute::load_config(config_path);
-    if (!method.empty()) precompute::check_method(method);
+    if (!method.empty()) config.response.method = precompute::method_from_word(method);
     if (!storage.empty()) config.response.storage = precompute::storage_from_word(storage);
     precompute::set_blas_threads(threads);
+    config.threads = threads;
     const precompute::Console console{std::cout, ::isatty(STDOUT_FILENO) != 0};
     const precompute::Summary summary = precompute::precompute_model(config, output, console);
     console.line(output + ":\n" + precompute::format_summary(summary));

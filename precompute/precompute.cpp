@@ -9,6 +9,7 @@
 
 #include "common/error.hpp"
 #include "precompute/blas_kernel.hpp"
+#include "precompute/dynamics/write_stepped.hpp"
 #include "precompute/fem/assembly.hpp"
 #include "precompute/fem/mass_properties.hpp"
 #include "precompute/mesh/box_mesh.hpp"
@@ -96,7 +97,8 @@ void check_resources(const PrecomputeConfig& config, const TetMesh& mesh, const 
   const double memory =
       static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
   const Eigen::Index unknowns = 3 * static_cast<Eigen::Index>(mesh.node_count());
-  if (unknowns > kMaxEigenSize || symmetric_eigen_bytes(unknowns) > memory) {
+  if (config.response.method == Method::kModal &&
+      (unknowns > kMaxEigenSize || symmetric_eigen_bytes(unknowns) > memory)) {
     throw Error(config.name,
                 std::to_string(mesh.node_count()) +
                     " nodes are too many for all modes on this "
@@ -182,6 +184,9 @@ Summary precompute_model(const PrecomputeConfig& config, const std::filesystem::
   const auto start = std::chrono::steady_clock::now();
   const TetMesh mesh = make_mesh(config.mesh);
   const Model model = describe(mesh, config.name, config);
+  if (config.response.method == Method::kTimeStepping) {
+    check_time_stepping(config.name, mesh, model, config.response.storage == Storage::kDense);
+  }
   const std::vector<int> clamped = clamped_nodes(config, mesh, model);
   check_resources(config, mesh, model, output);
   console.line("mesh: " + std::to_string(mesh.node_count()) + " nodes, " +
@@ -191,7 +196,6 @@ Summary precompute_model(const PrecomputeConfig& config, const std::filesystem::
   ModelFileWriter writer(output);
   const RemoveOnSignal cleanup(writer.temporary_path());
   writer.write_description(model);
-  ModalResponse response = compute_modes(mesh, clamped, model, console);
   Summary summary;
   summary.free_nodes = model.mesh.surface_node_count();
   summary.triangles = static_cast<int>(model.mesh.triangles.rows());
@@ -201,13 +205,20 @@ Summary precompute_model(const PrecomputeConfig& config, const std::filesystem::
   summary.order = mesh.order();
   summary.mesh = report_mesh(mesh);
   summary.mass = model.body.mass;
-  summary.modes = response.mode_count();
-  summary.lowest_frequency = response.angular_frequency(0) / (2.0 * std::numbers::pi);
-  summary.decay_left = decay_left(response, model.dt, model.steps);
   summary.inertia_excess = inertia_excess(
       model.body.inertia, solid_mass_properties(mesh, config.material.density).inertia);
   summary.blas_kernel = blas_kernel();
-  write_responses(writer, std::move(response), model, config.response, console);
+  if (config.response.method == Method::kTimeStepping) {
+    summary.decay_left = write_stepped_columns(
+        writer, mesh, model,
+        {config.name, config.time_stepping, config.response.precision, config.threads}, console);
+  } else {
+    ModalResponse response = compute_modes(mesh, clamped, model, console);
+    summary.modes = response.mode_count();
+    summary.lowest_frequency = response.angular_frequency(0) / (2.0 * std::numbers::pi);
+    summary.decay_left = decay_left(response, model.dt, model.steps);
+    write_responses(writer, std::move(response), model, config.response, console);
+  }
   writer.commit();
   summary.file_bytes = std::filesystem::file_size(output);
   summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -49,8 +49,10 @@ std::string format_summary(const Summary& s) {
          row("bounding box", format_extent(s.mesh.extent)) +
          row("mass", significant(s.mass, "kg")) +
          row("degrees of freedom (3n)", std::to_string(s.degrees_of_freedom())) +
-         row("elastic modes", std::to_string(s.modes)) +
-         row("lowest elastic frequency", significant(s.lowest_frequency, "Hz")) +
+         (s.modes == 0
+              ? std::string()
+              : row("elastic modes", std::to_string(s.modes)) +
+                    row("lowest elastic frequency", significant(s.lowest_frequency, "Hz"))) +
          row("decay left at the last step", significant(100.0 * s.decay_left, "%")) +
          row("nodal over solid inertia", significant(100.0 * s.inertia_excess, "% more")) +
          row("pre-computation time", significant(s.seconds, "s")) +

@@ -16,8 +16,8 @@ struct Summary {
   int tetrahedra = 0;
   int order = 1;  ///< of the tetrahedra
   MeshReport mesh;
-  double mass = 0.0;  ///< of the body [kg]
-  int modes = 0;
+  double mass = 0.0;     ///< of the body [kg]
+  int modes = 0;         ///< 0: R was obtained without modes
   double seconds = 0.0;  ///< of the whole run
   std::uint64_t file_bytes = 0;
   double lowest_frequency = 0.0;  ///< of the elastic modes [Hz]

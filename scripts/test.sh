@@ -21,7 +21,7 @@ if [ $quick = no ]; then
   for preset in asan tsan; do
     scripts/build.sh "$preset"
     echo "test: preset $preset"
-    ctest --preset "$preset" --label-exclude slow --parallel 2 --quiet
+    ctest --preset "$preset" --label-exclude slow --parallel 2
   done
 fi
 echo "test: preset ci"

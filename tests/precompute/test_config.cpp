@@ -82,6 +82,7 @@ TEST_CASE("configuration takes every documented word") {
   CHECK(response("storage = \"dense\"").storage == Storage::kDense);
   CHECK(response("storage = \"both\"").storage == Storage::kBoth);
   CHECK(response("precision = \"double\"").precision == Precision::kDouble);
+  CHECK(response("method = \"time-stepping\"").method == Method::kTimeStepping);
   CHECK(response("method = \"modal\"\nsupport = \"floating\"\ndt = 0.001").dt == 0.001);
 }
 
@@ -147,13 +148,14 @@ TEST_CASE("configuration refuses each bad response entry") {
   refused("dt = 2.0", "response.dt is 2");
   refused("steps = 0", "response.steps is 0");
   refused("steps = 1.5", "response.steps is not a whole number");
-  refused("method = \"time-stepping\"", "only \"modal\" is available");
   refused("method = \"magic\"", "modal | time-stepping");
   refused("storage = \"sparse\"", "modal | dense | both");
   refused("precision = \"half\"", "single | double");
   refused("support = \"fixed\"", "support is missing");
   refused("support = \"nailed\"", "floating | fixed");
   refused("typo = 1", "response.typo is not a known key");
+  check_refused(kMesh + kMaterial + "[time_stepping]\nfirst_step = 3e-4\n",
+                "c.toml:8: time_stepping.first_step does not divide response.dt");
   check_refused(kMesh + kMaterial + "[respnse]\n", "respnse is not a known key");
   check_refused("mesh = 3\n" + kMaterial, "mesh is not a table");
 }

@@ -229,13 +229,22 @@ TEST_CASE("bad configuration: one line on stderr, status 1, no output") {
   refused(kBox + replaced(kMaterial, "0.3", "0.5"), "material.poisson_ratio is 0.5");
   refused(kBox + replaced(kMaterial, "110", "-110"), "material.density is -110");
   refused(kBox + kMaterial + "[response]\ndt = 0\n", "response.dt is 0");
-  refused(kBox + kMaterial + "[response]\nmethod = \"time-stepping\"\n", "only \"modal\"");
   const std::string fixed = kBox + kMaterial + "[response]\nsupport = \"fixed\"\n[support]\n";
   refused(kBox + kMaterial + "[response]\nsupport = \"fixed\"\n", "support is missing");
   refused(fixed + "group = \"base\"\n", "has no group 'base'");
   refused(fixed + "box = { min = [5, 5, 5], max = [6, 6, 6] }\n", "holds no node");
   refused(fixed + "box = { min = [0, 0, 0], max = [6, 6, 6] }\n", "every node of the surface");
   refused(fixed + "box = { min = [0, 0, 0], max = [1, 0, 0] }\n", "can still turn");
+  const std::string stepped = "[response]\nmethod = \"time-stepping\"\n";
+  refused(kBox + kMaterial + stepped, "time-stepping gives R in dense form only");
+  refused(kBox + kMaterial + stepped + "storage = \"both\"\n",
+          "time-stepping gives R in dense form only");
+  refused(kBox + "order = 2\n" + kMaterial + stepped + "storage = \"dense\"\n",
+          "linear tetrahedra only");
+  refused(kBox + kMaterial + stepped +
+              "storage = \"dense\"\nsupport = \"fixed\"\n[support]\n"
+              "box = { min = [0, 0, 0], max = [0, 1, 1] }\n",
+          "floating bodies only");
 }
 
 TEST_CASE("bad mesh: one line on stderr, status 1, no output") {
@@ -261,13 +270,32 @@ TEST_CASE("bad mesh: one line on stderr, status 1, no output") {
   refused(replaced(eight_nodes, "2 3 4 5", "5 6 7 8"), "2 pieces");
 }
 
-TEST_CASE("time-stepping asked for on the command line is refused in one line") {
+TEST_CASE("time stepping gives the dense R of the modes, the same for any number of threads") {
   Run run;
-  run.write("c.toml", kBox + kMaterial);
-  run.start("c.toml -o made/model.h5 --method time-stepping");
-  CHECK(run.status == 1);
-  CHECK_THAT(run.err, Contains("'time-stepping' is not available in this version"));
-  CHECK(std::filesystem::is_empty(run.path() / "made"));
+  const std::string box = replaced(kBox, "[3, 2, 2]", "[2, 1, 1]");
+  run.write("c.toml", box + kMaterial +
+                          "[response]\nsteps = 12\nprecision = \"double\"\nstorage = \"dense\"\n"
+                          "[time_stepping]\nfirst_step = 1e-5\nlast_step = 1e-5\n");
+  const auto numbers = [&](const std::string& options) {
+    run.start("c.toml -o made/model.h5 " + options);
+    CAPTURE(run.err);
+    REQUIRE(run.status == 0);
+    const Model model = read_model(run.model(), ResponseKind::kDense);
+    return std::get<std::vector<double>>(std::get<DenseResponse>(model.response).values);
+  };
+  const std::vector<double> modal = numbers("");
+  CHECK_THAT(run.out, Contains("elastic modes"));
+  const std::vector<double> stepped = numbers("--method time-stepping --threads 1");
+  CHECK_THAT(run.out, !Contains("elastic modes") && Contains("time stepping: "));
+  CHECK(stepped == numbers("--method time-stepping --threads 2"));
+  REQUIRE(stepped.size() == modal.size());
+  double error = 0.0;
+  double largest = 0.0;
+  for (std::size_t i = 0; i < modal.size(); ++i) {
+    error = std::max(error, std::abs(stepped[i] - modal[i]));
+    largest = std::max(largest, std::abs(modal[i]));
+  }
+  CHECK(error < 1e-3 * largest);
 }
 
 TEST_CASE("an output folder that does not exist is told") {

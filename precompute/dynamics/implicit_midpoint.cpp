@@ -1,0 +1,100 @@
+#include "precompute/dynamics/implicit_midpoint.hpp"
+
+#include <cmath>
+
+#include "common/error.hpp"
+#include "precompute/dynamics/rigid_extraction.hpp"
+
+namespace irdm::precompute {
+namespace {
+
+constexpr int kMaxIterations = 60;
+// A correction larger than this share of the one before calls for a better matrix.
+constexpr double kSlow = 0.3;
+
+}  // namespace
+
+ImplicitMidpoint::ImplicitMidpoint(const SoftBody& body, double tolerance)
+    : body_(&body),
+      tolerance_(tolerance),
+      mass3_(body.mass().replicate(1, 3).transpose().reshaped()) {}
+
+Eigen::SparseMatrix<double> ImplicitMidpoint::matrix(const Eigen::SparseMatrix<double>& stiffness,
+                                                     double h) const {
+  Eigen::SparseMatrix<double> sum = (0.5 * h + body_->rayleigh_beta()) * stiffness;
+  const double factor = 2.0 / h + body_->rayleigh_alpha();
+  for (Eigen::Index i = 0; i < mass3_.size(); ++i) sum.coeffRef(i, i) += factor * mass3_(i);
+  return sum;
+}
+
+void ImplicitMidpoint::prepare(double h) {
+  auto& solver = solvers_[h];
+  if (solver) return;
+  solver = make_sparse_solver();
+  solver->factorise(matrix(body_->stiffness(body_->at_rest().u), h));
+}
+
+double ImplicitMidpoint::speed(const Eigen::VectorXd& v) const {
+  return std::sqrt(v.dot(mass3_.cwiseProduct(v)));
+}
+
+Eigen::VectorXd ImplicitMidpoint::correction(const SparseSolver& solver, const Matrix3& Q,
+                                             const BodyState& middle,
+                                             const Eigen::VectorXd& residual, double h) const {
+  Eigen::VectorXd turned = residual;
+  turned.reshaped(3, residual.size() / 3) =
+      Q.transpose() * residual.reshaped(3, residual.size() / 3);
+  const Eigen::VectorXd solved = solver.solve(turned);
+  Eigen::VectorXd w(residual.size());
+  w.reshaped(3, residual.size() / 3) = Q * solved.reshaped(3, residual.size() / 3);
+  // The matrix has alpha M for all motions; rigid ones are not damped.
+  const double alpha = body_->rayleigh_alpha();
+  if (alpha > 0.0) {
+    w += (0.5 * h - 1.0 / (2.0 / h + alpha)) *
+         body_->rigid_velocity(middle.u, residual.cwiseQuotient(mass3_));
+  }
+  return w;
+}
+
+void ImplicitMidpoint::step(BodyState& state, const Eigen::VectorXd& force, double h,
+                            Workspace& workspace) const {
+  const bool linear = body_->elasticity() == Elasticity::kLinear;
+  const SparseSolver* solver = solvers_.at(h).get();
+  Matrix3 Q = Matrix3::Identity();
+  if (!linear) {
+    const Eigen::Map<const Points> u(state.u.data(), body_->rest().rows(), 3);
+    Q = extract_rigid_motion(body_->rest(), u, body_->mass(), RotationWeights::kMass).rotation;
+  }
+  workspace.largest_speed = std::max(workspace.largest_speed, speed(state.v));
+  BodyState middle{state.u + 0.5 * h * state.v, state.v};  // velocity: w
+  double last = 0.0;
+  bool own_matrix = false;
+  for (int i = 0;; ++i) {
+    const Eigen::VectorXd residual =
+        body_->internal_force(middle) + force - (2.0 / h) * mass3_.cwiseProduct(middle.v - state.v);
+    if (own_matrix) {
+      if (!workspace.solver) workspace.solver = make_sparse_solver();
+      workspace.solver->factorise(matrix(body_->stiffness(middle.u), h));
+      ++workspace.factorisations;
+      solver = workspace.solver.get();
+      Q.setIdentity();
+    }
+    const Eigen::VectorXd delta = correction(*solver, Q, middle, residual, h);
+    ++workspace.solutions;
+    middle.v += delta;
+    middle.u = state.u + 0.5 * h * middle.v;
+    const double size = speed(delta);
+    workspace.largest_speed = std::max(workspace.largest_speed, speed(middle.v));
+    if (linear || size <= tolerance_ * workspace.largest_speed) break;
+    if (i >= kMaxIterations || !std::isfinite(size)) {
+      throw Error("time stepping", "a step of " + std::to_string(h) + " s cannot be solved",
+                  "use smaller steps or a smaller force");
+    }
+    own_matrix = own_matrix || (i > 0 && size > kSlow * last);
+    last = size;
+  }
+  state.u += h * middle.v;
+  state.v = 2.0 * middle.v - state.v;
+}
+
+}  // namespace irdm::precompute

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <Eigen/Sparse>
+#include <array>
+#include <vector>
+
+#include "common/geometry.hpp"
+#include "common/model/model.hpp"
+#include "precompute/fem/material.hpp"
+#include "precompute/fem/tet4.hpp"
+#include "precompute/mesh/tet_mesh.hpp"
+
+namespace irdm::precompute {
+
+/// kLinear: infinitesimal displacements and rotations. kCorotational: linear elasticity in a frame
+/// that turns with each element, rotations of any size.
+enum class Elasticity { kLinear, kCorotational };
+
+/// Where the nodes are and how they move, both (3N), index 3 node + axis.
+struct BodyState {
+  Eigen::VectorXd u;  ///< displacement from rest [m], W
+  Eigen::VectorXd v;  ///< velocity [m/s], W
+};
+
+/// A free-floating body of linear tetrahedra: masses, internal forces and energy. Const after
+/// construction, for any number of threads. N nodes.
+///
+/// Corotational: with F the deformation gradient of an element and R its polar rotation, the nodal
+/// forces -R K0 (R^T x - X) are those of the stress P = R (2 mu (S - Id) + lambda tr(S - Id) Id),
+/// S = R^T F, and for linear tetrahedra exactly the gradient of the energy
+/// V (mu |S - Id|^2 + lambda/2 tr(S - Id)^2): they are conservative and free of resultant force and
+/// torque (Etzmuss, Keckeisen, Strasser, A fast finite element solution for cloth modelling, 2003;
+/// Mueller and Gross, Interactive virtual materials, 2004).
+///
+/// Damping: alpha resists the velocity less its rigid part (the momentum-free remainder), so that
+/// free flight is not slowed. beta resists the rate of the stretch S, which is the usual
+/// beta R K0 R^T v wherever the strain is small, and without torque where it is not.
+class SoftBody {
+ public:
+  /// @param mesh linear tetrahedra of positive volume; moved so that the centre of mass is at 0
+  SoftBody(const TetMesh& mesh, const Material& material, Elasticity elasticity);
+
+  int node_count() const { return static_cast<int>(rest_.rows()); }
+  const Points& rest() const { return rest_; }           ///< X (N, 3) [m]
+  const Eigen::VectorXd& mass() const { return mass_; }  ///< (N) [kg]
+  Elasticity elasticity() const { return elasticity_; }
+  double rayleigh_alpha() const { return material_.rayleigh_alpha; }
+  double rayleigh_beta() const { return material_.rayleigh_beta; }
+  /// Volume of the rest shape [m^3].
+  double volume() const;
+
+  BodyState at_rest() const;
+  /// Elastic plus damping force [N], (3N), W.
+  Eigen::VectorXd internal_force(const BodyState& state) const;
+  double elastic_energy(const Eigen::VectorXd& u) const;   ///< [J]
+  double kinetic_energy(const Eigen::VectorXd& v) const;   ///< [J]
+  Vector3 momentum(const Eigen::VectorXd& v) const;        ///< [kg m/s]
+  Vector3 angular_momentum(const BodyState& state) const;  ///< about the origin of W [kg m^2/s]
+
+  /// Warped stiffness sum_e R_e K0_e R_e^T [N/m], (3N, 3N): the Jacobian of the elastic force but
+  /// for the turning of the R_e, which vanishes with the strain. Symmetric, positive semidefinite,
+  /// always of the same pattern.
+  Eigen::SparseMatrix<double> stiffness(const Eigen::VectorXd& u) const;
+  /// Rigid velocity with the momentum and angular momentum of the given velocities, per node (3N);
+  /// of the linear body about its rest shape.
+  Eigen::VectorXd rigid_velocity(const Eigen::VectorXd& u, const Eigen::VectorXd& v) const;
+
+ private:
+  struct Element {
+    std::array<int, 4> nodes;
+    tet4::Geometry geometry;
+  };
+  Matrix3 gradient(const Element& element, const Eigen::VectorXd& field) const;
+  Matrix3 stress(const Matrix3& strain) const;
+  Matrix3 first_piola(const Matrix3& du_dX, const Matrix3& dv_dX) const;
+
+  Elasticity elasticity_;
+  Material material_;
+  Lame lame_;
+  Points rest_;
+  Eigen::VectorXd mass_;
+  std::vector<Element> elements_;
+};
+
+}  // namespace irdm::precompute

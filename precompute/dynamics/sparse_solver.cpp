@@ -1,0 +1,34 @@
+#include "precompute/dynamics/sparse_solver.hpp"
+
+#include <Eigen/SparseCholesky>
+
+#include "common/error.hpp"
+
+namespace irdm::precompute {
+namespace {
+
+class EigenSolver final : public SparseSolver {
+ public:
+  void factorise(const Eigen::SparseMatrix<double>& matrix) override {
+    if (!analysed_) ldlt_.analyzePattern(matrix);
+    analysed_ = true;
+    ldlt_.factorize(matrix);
+    if (ldlt_.info() != Eigen::Success || !(ldlt_.vectorD().minCoeff() > 0.0)) {
+      throw Error("time stepping", "the matrix of a step is not positive definite",
+                  "check the mesh for extremely distorted elements, or use smaller steps");
+    }
+  }
+  Eigen::VectorXd solve(const Eigen::VectorXd& right) const override { return ldlt_.solve(right); }
+
+ private:
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> ldlt_;
+  bool analysed_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<SparseSolver> make_sparse_solver() {
+  return std::make_unique<EigenSolver>();
+}
+
+}  // namespace irdm::precompute

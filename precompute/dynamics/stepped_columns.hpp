@@ -1,0 +1,39 @@
+#pragma once
+
+#include <vector>
+
+#include "common/model/model.hpp"
+#include "precompute/dynamics/implicit_midpoint.hpp"
+#include "precompute/dynamics/time_stepping_config.hpp"
+
+namespace irdm::precompute {
+
+/// Columns of R as the paper has them: a force on one surface degree of freedom of the
+/// free-floating body, held during the first interval, then none; the elastic part recorded after
+/// every interval.
+class SteppedColumns {
+ public:
+  /// Factorises for all steps of the schedule.
+  /// @param mesh linear tetrahedra
+  /// @param surface_nodes (n), into the nodes of the mesh
+  SteppedColumns(const TetMesh& mesh, const Material& material, const TimeSteppingConfig& config,
+                 std::vector<int> surface_nodes, double dt, int intervals);
+
+  /// R[s](a, b) for all s and a: shape (T, 3n) [m/N]. For any number of threads at a time; the
+  /// result does not depend on them.
+  RowMatrix<double> column(int b) const;
+
+  double force() const { return force_; }  ///< that columns are simulated with [N]
+  int step_count() const;                  ///< of one column
+
+ private:
+  SoftBody body_;
+  ImplicitMidpoint stepper_;
+  RotationWeights rotation_weights_;
+  std::vector<int> surface_nodes_;
+  double dt_;
+  std::vector<int> schedule_;
+  double force_;
+};
+
+}  // namespace irdm::precompute

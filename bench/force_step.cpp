@@ -28,7 +28,10 @@ struct Timing {
 };
 
 Timing measure(std::shared_ptr<const Model> model) {
-  Simulation simulation(std::move(model), {});
+  SimulationConfig config;
+  config.objects.resize(1);
+  config.objects[0].model = std::move(model);
+  Simulation simulation(config);
   StepRecord record;
   std::vector<double> times;
   for (int k = 0; k < kSteps + kMeasured; ++k) {

@@ -27,15 +27,14 @@ std::shared_ptr<const Model> load_model(const ObjectConfig& object) {
 }
 
 SimulationConfig simulation_config(const SceneConfig& scene) {
-  const ObjectConfig& object = scene.objects.front();
   SimulationConfig config;
   config.gravity = scene.world.gravity;
-  config.position = object.position;
-  config.orientation = object.orientation;
-  config.velocity = object.velocity;
-  config.angular_velocity = object.angular_velocity;
-  config.coupling_stiffness = scene.contact.coupling_stiffness;
-  config.stylus_count = scene.server.styluses;
+  for (const ObjectConfig& object : scene.objects) {
+    config.objects.push_back({load_model(object), object.position, object.orientation,
+                              object.velocity, object.angular_velocity, object.friction,
+                              object.damping, object.tether});
+  }
+  config.styluses = scene.styluses;
   return config;
 }
 
@@ -51,7 +50,7 @@ NetworkSettings network_settings(const SceneConfig& scene, const ServerOptions& 
   settings.port = static_cast<std::uint16_t>(options.port.value_or(scene.server.port));
   settings.dt = dt;
   settings.lockstep = options.lockstep;
-  settings.styluses = scene.server.styluses;
+  settings.styluses = static_cast<int>(scene.styluses.size());
   settings.scheduling = scheduling(scene, options);
   return settings;
 }
@@ -59,10 +58,15 @@ NetworkSettings network_settings(const SceneConfig& scene, const ServerOptions& 
 std::unique_ptr<RecorderThread> make_recorder(const SceneConfig& scene,
                                               const ServerOptions& options, double dt) {
   if (!options.record) return nullptr;
-  const std::filesystem::path& model = scene.objects.front().model;
-  return std::make_unique<RecorderThread>(
-      *options.record, TraceHeader{model.filename().string(), sha256_of_file(model),
-                                   read_text(options.scene), dt, scene.server.styluses});
+  TraceHeader header;
+  for (const ObjectConfig& object : scene.objects) {
+    header.objects.push_back(
+        {object.name, object.model.filename().string(), sha256_of_file(object.model)});
+  }
+  header.scene = read_text(options.scene);
+  header.dt = dt;
+  header.stylus_count = static_cast<int>(scene.styluses.size());
+  return std::make_unique<RecorderThread>(*options.record, header);
 }
 
 std::unique_ptr<StepClock> make_clock(bool lockstep, NetworkServer& network,
@@ -81,18 +85,19 @@ int deformation_threads(const ServerConfig& config) {
 int run_server(const ServerOptions& options) {
   StopSignal stop;
   const SceneConfig scene = read_scene(TomlTable::parse_file(options.scene));
-  const std::shared_ptr<const Model> model = load_model(scene.objects.front());
-  Simulation simulation(model, simulation_config(scene));
-  NetworkServer network(network_settings(scene, options, model->dt));
-  DeformationThread deformation(model, scene.server.deformation_rate,
+  const SimulationConfig config = simulation_config(scene);
+  Simulation simulation(config);
+  const double dt = simulation.dt();
+  NetworkServer network(network_settings(scene, options, dt));
+  DeformationThread deformation(config, scene.server.deformation_rate,
                                 deformation_threads(scene.server));
-  const std::unique_ptr<RecorderThread> recorder = make_recorder(scene, options, model->dt);
+  const std::unique_ptr<RecorderThread> recorder = make_recorder(scene, options, dt);
 
   std::vector<StepSink*> sinks{&deformation.sink()};
   if (recorder) sinks.push_back(&recorder->sink());
-  const std::unique_ptr<StepClock> clock = make_clock(options.lockstep, network, sinks, model->dt);
+  const std::unique_ptr<StepClock> clock = make_clock(options.lockstep, network, sinks, dt);
   const auto steps = static_cast<std::uint64_t>(
-      std::llround(std::ceil(options.duration.value_or(0.0) / model->dt - 1e-9)));
+      std::llround(std::ceil(options.duration.value_or(0.0) / dt - 1e-9)));
   ForceThread force(simulation, network, *clock, sinks, steps);
 
   network.start();

@@ -1,43 +1,62 @@
 #include "common/contact/contact_problem.hpp"
 
+#include <algorithm>
+#include <cmath>
+
+#include "common/contact/single_contact.hpp"
+
 namespace irdm {
 namespace {
 
+using DirectMatrix = ContactMatrix;
+using DirectVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3 * kMaxContacts, 1>;
 using Active = std::array<bool, kMaxContacts>;
 
-// Solves the system of the active contacts; the others have no force.
-ContactVector solve_active(const ContactProblem& problem, const Active& active) noexcept {
-  std::array<Eigen::Index, kMaxContacts> chosen{};
-  Eigen::Index m = 0;
-  for (int a = 0; a < problem.count; ++a) {
+// Displacement of a contact's point by all forces.
+Vector3 moved(const ContactProblem& problem, int a) noexcept {
+  Vector3 sum = Vector3::Zero();
+  for (int b = 0; b < problem.count(); ++b) {
+    sum += problem.compliance(a, b) * problem.contact(b).force;
+  }
+  return sum;
+}
+
+bool given(const ContactProblem& problem, int a) noexcept {
+  return problem.contact(a).law == ContactLaw::kGiven;
+}
+
+// Forces with which all active contacts stick; the others have none, but those that are given.
+void stick_active(ContactProblem& problem, const Active& active) noexcept {
+  std::array<int, kMaxContacts> chosen{};
+  int m = 0;
+  for (int a = 0; a < problem.count(); ++a) {
+    if (given(problem, a)) continue;
+    problem.contact(a).force.setZero();
     if (active[static_cast<std::size_t>(a)]) chosen[static_cast<std::size_t>(m++)] = a;
   }
-  ContactMatrix W(3 * m, 3 * m);
-  ContactVector gap(3 * m);
-  for (Eigen::Index i = 0; i < m; ++i) {
-    const Eigen::Index row = 3 * chosen[static_cast<std::size_t>(i)];
-    gap.segment<3>(3 * i) = problem.gap.segment<3>(row);
-    for (Eigen::Index j = 0; j < m; ++j) {
-      W.block<3, 3>(3 * i, 3 * j) =
-          problem.W.block<3, 3>(row, 3 * chosen[static_cast<std::size_t>(j)]);
+  DirectMatrix W(3 * m, 3 * m);
+  DirectVector gap(3 * m);
+  for (int i = 0; i < m; ++i) {
+    const int a = chosen[static_cast<std::size_t>(i)];
+    gap.segment<3>(3 * i) = problem.contact(a).gap - moved(problem, a);
+    for (int j = 0; j < m; ++j) {
+      W.block<3, 3>(3 * i, 3 * j) = problem.compliance(a, chosen[static_cast<std::size_t>(j)]);
     }
   }
-  const ContactVector solved = Eigen::LDLT<ContactMatrix>(W).solve(gap);
-  ContactVector force = ContactVector::Zero(3 * problem.count);
-  for (Eigen::Index i = 0; i < m; ++i) {
-    force.segment<3>(3 * chosen[static_cast<std::size_t>(i)]) = solved.segment<3>(3 * i);
+  const DirectVector force = Eigen::LDLT<DirectMatrix>(W).solve(gap);
+  for (int i = 0; i < m; ++i) {
+    problem.contact(chosen[static_cast<std::size_t>(i)]).force = force.segment<3>(3 * i);
   }
-  return force;
 }
 
 // The touching contact that pulls hardest, or -1.
-int strongest_pull(const ContactProblem& problem, const ContactSolution& solution) noexcept {
+int strongest_pull(const ContactProblem& problem, const Active& active) noexcept {
   int worst = -1;
   double pull = 0.0;
-  for (int a = 0; a < problem.count; ++a) {
-    const auto index = static_cast<std::size_t>(a);
-    if (!solution.active[index] || problem.law[index] != ContactLaw::kTouching) continue;
-    const double outward = solution.force.segment<3>(3 * a).dot(problem.normal[index]);
+  for (int a = 0; a < problem.count(); ++a) {
+    const ContactUnknown& contact = problem.contact(a);
+    if (!active[static_cast<std::size_t>(a)] || contact.law != ContactLaw::kTouching) continue;
+    const double outward = contact.force.dot(contact.normal);
     if (outward > pull) {
       pull = outward;
       worst = a;
@@ -46,35 +65,145 @@ int strongest_pull(const ContactProblem& problem, const ContactSolution& solutio
   return worst;
 }
 
-double largest_error(const ContactProblem& problem, const ContactSolution& solution) noexcept {
-  const ContactVector error = problem.W * solution.force - problem.gap;
+bool inside_cone(const ContactUnknown& contact) noexcept {
+  if (contact.law != ContactLaw::kTouching || std::isinf(contact.friction.static_)) return true;
+  const double push = -contact.force.dot(contact.normal);
+  const Vector3 along = contact.force + push * contact.normal;
+  return along.norm() <= contact.friction.static_ * push;
+}
+
+void give_up(ContactProblem& problem) noexcept {
+  for (int a = 0; a < problem.count(); ++a) {
+    problem.contact(a).force.setZero();
+    problem.contact(a).slip.setZero();
+    problem.contact(a).mode = ContactMode::kOpen;
+  }
+}
+
+double largest_error(const ContactProblem& problem) noexcept {
   double largest = 0.0;
-  for (int a = 0; a < problem.count; ++a) {
-    if (solution.active[static_cast<std::size_t>(a)]) {
-      largest = std::max(largest, error.segment<3>(3 * a).norm());
-    }
+  for (int a = 0; a < problem.count(); ++a) {
+    const ContactUnknown& contact = problem.contact(a);
+    if (contact.law == ContactLaw::kGiven || contact.mode != ContactMode::kSticking) continue;
+    largest = std::max(largest, (contact.gap - moved(problem, a)).norm());
   }
   return largest;
 }
 
+bool finite(const ContactProblem& problem) noexcept {
+  for (int a = 0; a < problem.count(); ++a) {
+    if (!problem.contact(a).force.allFinite()) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
-ContactSolution solve_contacts(const ContactProblem& problem) noexcept {
+ContactProblem::ContactProblem(int capacity)
+    : elastic_(Eigen::MatrixXd::Zero(3 * capacity, 3 * capacity)),
+      contacts_(static_cast<std::size_t>(capacity)) {}
+
+void ContactProblem::begin(int count) noexcept {
+  count_ = count;
+  std::fill_n(contacts_.begin(), count, ContactUnknown{});
+}
+
+ContactSolver::ContactSolver(int capacity)
+    : elastic_displacement_(Eigen::VectorXd::Zero(3 * capacity)) {}
+
+ContactSolution ContactSolver::solve(ContactProblem& problem, const SolverLimits& limits) noexcept {
   ContactSolution solution;
-  for (int a = 0; a < problem.count; ++a) solution.active[static_cast<std::size_t>(a)] = true;
-  for (int round = 0; round <= problem.count; ++round) {
-    solution.force = solve_active(problem, solution.active);
-    const int pulling = strongest_pull(problem, solution);
+  if (problem.count() == 0) return solution;
+  if (problem.count() <= kMaxContacts && stick(problem)) {
+    solution.residual = largest_error(problem);
+  } else {
+    solution = iterate(problem, limits);
+  }
+  if (!finite(problem)) {
+    give_up(problem);
+    return {solution.sweeps, 0.0, false};
+  }
+  return solution;
+}
+
+// True when forces without slip are the solution. Otherwise the forces that were given are kept.
+bool ContactSolver::stick(ContactProblem& problem) noexcept {
+  std::array<Vector3, kMaxContacts> start;
+  Active active{};
+  for (int a = 0; a < problem.count(); ++a) {
+    start[static_cast<std::size_t>(a)] = problem.contact(a).force;
+    active[static_cast<std::size_t>(a)] = problem.contact(a).law != ContactLaw::kReleased;
+    problem.contact(a).slip.setZero();
+  }
+  for (int round = 0; round <= problem.count(); ++round) {
+    stick_active(problem, active);
+    const int pulling = strongest_pull(problem, active);
     if (pulling < 0) break;
-    solution.active[static_cast<std::size_t>(pulling)] = false;
+    active[static_cast<std::size_t>(pulling)] = false;
   }
-  if (!solution.force.allFinite()) {
-    solution.force.setZero(3 * problem.count);
-    solution.active.fill(false);
-    solution.finite = false;
-    return solution;
+  bool sticks = true;
+  for (int a = 0; a < problem.count(); ++a) {
+    ContactUnknown& contact = problem.contact(a);
+    const bool on = active[static_cast<std::size_t>(a)];
+    contact.mode = on ? ContactMode::kSticking : ContactMode::kOpen;
+    if (on && !inside_cone(contact)) sticks = false;
+    // A point that was let go must be left alone by the others, unless friction is without bound:
+    // then a point that would have to be pulled sideways lets go.
+    if (!on && contact.law != ContactLaw::kReleased && !std::isinf(contact.friction.static_) &&
+        (contact.gap - moved(problem, a)).dot(contact.normal) < 0) {
+      sticks = false;
+    }
   }
-  solution.residual = largest_error(problem, solution);
+  if (sticks) return true;
+  for (int a = 0; a < problem.count(); ++a) {
+    problem.contact(a).force = start[static_cast<std::size_t>(a)];
+  }
+  return false;
+}
+
+ContactSolution ContactSolver::iterate(ContactProblem& problem,
+                                       const SolverLimits& limits) noexcept {
+  const int m = problem.count();
+  auto u = elastic_displacement_.head(3 * m);
+  u.setZero();
+  Vector3 push = Vector3::Zero();
+  Vector3 turn = Vector3::Zero();
+  for (int b = 0; b < m; ++b) {
+    const ContactUnknown& contact = problem.contact(b);
+    if (contact.force.isZero(0.0)) continue;
+    u.noalias() += problem.elastic_column(b) * contact.force;
+    push += contact.force;
+    turn += contact.arm.cross(contact.force);
+  }
+  ContactSolution solution;
+  while (solution.sweeps < limits.max_sweeps) {
+    ++solution.sweeps;
+    double change = 0.0;
+    for (int a = 0; a < m; ++a) {
+      ContactUnknown& contact = problem.contact(a);
+      if (contact.law == ContactLaw::kGiven) {
+        contact.mode = ContactMode::kSticking;
+        continue;
+      }
+      const Matrix3 W = problem.compliance(a, a);
+      const Vector3 displacement = u.segment<3>(3 * a) + problem.rigid.translation * push -
+                                   contact.arm.cross(problem.rigid.rotation * turn);
+      const Vector3 own = contact.gap - displacement + W * contact.force;
+      const SingleContact found =
+          solve_single_contact(W, own, contact.law, contact.normal, contact.friction);
+      const Vector3 step = found.force - contact.force;
+      contact.mode = found.mode;
+      contact.slip = found.slip;
+      if (step.isZero(0.0)) continue;
+      contact.force = found.force;
+      u.noalias() += problem.elastic_column(a) * step;
+      push += step;
+      turn += contact.arm.cross(step);
+      change = std::max(change, (W * step).norm());
+    }
+    solution.residual = change;
+    if (!(change > limits.tolerance)) break;
+  }
   return solution;
 }
 

@@ -2,46 +2,129 @@
 
 #include <Eigen/Dense>
 #include <array>
+#include <limits>
 #include <span>
+#include <vector>
 
 #include "common/geometry.hpp"
 
 namespace irdm {
 
-/// Contacts that one step can solve together.
+/// Contacts of styluses that one object can have in one step.
 inline constexpr int kMaxContacts = 8;
 
-/// Square matrix or vector over the contacts of one step: 3 rows a contact, no memory taken.
+/// Square matrix over the stylus contacts of one step: 3 rows a contact, no memory taken.
 using ContactMatrix =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3 * kMaxContacts, 3 * kMaxContacts>;
-using ContactVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3 * kMaxContacts, 1>;
 
 /// How a contact may push on the object.
 enum class ContactLaw {
   kHeld,      ///< in any direction
-  kTouching,  ///< sticks to its point as long as it pushes; lets go rather than pull
+  kReleased,  ///< not at all
+  kGiven,     ///< with the force that is there
+  kTouching,  ///< towards the inside, and sideways inside the Coulomb cone
 };
 
-/// The contact problem of one step: find forces on the object f [N] with W f = gap, every component
-/// in one frame (B at the server).
-struct ContactProblem {
-  int count = 0;      ///< m contacts, 0..kMaxContacts
-  ContactMatrix W;    ///< (3m, 3m) compliance within the step [m/N], symmetric positive definite
-  ContactVector gap;  ///< (3m) p - r: from where each point would be to where the tip wants it [m]
-  std::array<ContactLaw, kMaxContacts> law{};
-  std::array<Vector3, kMaxContacts> normal{};  ///< outward unit normal of the surface
+/// Coulomb friction: a contact sticks while the force along the surface is at most `static_`
+/// times the one across it, and slips with `kinetic` times that; kinetic <= static_.
+struct Friction {
+  double static_ = std::numeric_limits<double>::infinity();
+  double kinetic = std::numeric_limits<double>::infinity();
 };
 
+/// What a contact does in the solution.
+enum class ContactMode {
+  kOpen,      ///< no force
+  kSticking,  ///< its point is where it is wanted
+  kSlipping,  ///< on the cone; its point lags sideways behind where it is wanted
+};
+
+/// One contact of a problem: what is asked and what was found.
+struct ContactUnknown {
+  ContactLaw law = ContactLaw::kHeld;
+  Vector3 normal = Vector3::Zero();  ///< outward unit normal of the object's surface; of touching
+  Friction friction;
+  Vector3 arm = Vector3::Zero();  ///< lever arm from the centre of mass [m]; used with `rigid`
+  Vector3 gap =
+      Vector3::Zero();  ///< p - r: from where the point would be to where it is wanted [m]
+  /// In: what the iteration starts from. Out: the solution [N], on the object.
+  Vector3 force = Vector3::Zero();
+  ContactMode mode = ContactMode::kOpen;
+  Vector3 slip = Vector3::Zero();  ///< sideways, from the point to where it was wanted [m]
+};
+
+/// The rigid body's own answer within the step: displacement at arm a per force at arm b,
+/// translation Id - [a]x rotation [b]x.
+struct RigidMobility {
+  double translation = 0.0;            ///< dt^2 / M [m/N]
+  Matrix3 rotation = Matrix3::Zero();  ///< dt^2 I^-1 [1/(N m)]
+  Matrix3 between(const Vector3& a, const Vector3& b) const noexcept {
+    return translation * Matrix3::Identity() - skew(a) * rotation * skew(b);
+  }
+};
+
+/// The contact problem of one step: forces on the object f [N] with W f = gap for every contact
+/// that sticks or is held, no force where a point is left, and friction where it slips. Every
+/// component in one frame (B at the server). W = elastic + rigid between(a, b). Room for `capacity`
+/// contacts is made once; the rest is real-time safe.
+class ContactProblem {
+ public:
+  explicit ContactProblem(int capacity);
+
+  int capacity() const noexcept { return static_cast<int>(contacts_.size()); }
+  int count() const noexcept { return count_; }
+  /// Starts a problem of `count` contacts, all of them blank; elastic blocks keep their values.
+  void begin(int count) noexcept;
+
+  ContactUnknown& contact(int a) noexcept { return contacts_[static_cast<std::size_t>(a)]; }
+  const ContactUnknown& contact(int a) const noexcept {
+    return contacts_[static_cast<std::size_t>(a)];
+  }
+  /// Elastic compliance within the step between contacts a and b (coupling springs included) [m/N].
+  auto elastic(int a, int b) noexcept { return elastic_.block<3, 3>(3 * a, 3 * b); }
+  auto elastic(int a, int b) const noexcept { return elastic_.block<3, 3>(3 * a, 3 * b); }
+  /// All rows of the elastic compliance that a force at contact b moves: (3 count, 3).
+  auto elastic_column(int b) const noexcept { return elastic_.block(0, 3 * b, 3 * count_, 3); }
+  RigidMobility rigid;
+
+  /// W_ab.
+  Matrix3 compliance(int a, int b) const noexcept {
+    return elastic(a, b) + rigid.between(contact(a).arm, contact(b).arm);
+  }
+
+ private:
+  int count_ = 0;
+  Eigen::MatrixXd elastic_;
+  std::vector<ContactUnknown> contacts_;
+};
+
+/// How a problem was solved.
 struct ContactSolution {
-  ContactVector force;  ///< (3m) on the object [N]; zero where a contact let go
-  std::array<bool, kMaxContacts> active{};
-  double residual = 0.0;  ///< largest |W f - gap| over the active contacts [m]
-  bool finite = true;     ///< false: the input was not solvable and all forces are zero
+  int sweeps = 0;         ///< of the iteration; 0: solved directly
+  double residual = 0.0;  ///< largest violation of a contact's law [m]
+  bool finite = true;     ///< false: not solvable; all forces are zero, all contacts open
 };
 
-/// Solves all contacts together. Touching contacts that would have to pull let go one after the
-/// other, the strongest pull first, so that at most m + 1 systems are solved. Real-time safe, no
-/// exceptions.
-ContactSolution solve_contacts(const ContactProblem& problem) noexcept;
+struct SolverLimits {
+  int max_sweeps = 200;
+  double tolerance = 1e-12;  ///< the iteration ends below this residual [m]
+};
+
+/// Solves all contacts of a problem together. When sticking and being held suffices for all of at
+/// most kMaxContacts contacts (the strongest pull lets go first), that is the solution, found
+/// directly. Otherwise the laws are met by nonlinear block Gauss-Seidel: one contact after the
+/// other is solved exactly with the others' forces as they stand, from the forces given in.
+/// Bounded, real-time safe, no exceptions.
+class ContactSolver {
+ public:
+  explicit ContactSolver(int capacity);
+  ContactSolution solve(ContactProblem& problem, const SolverLimits& limits = {}) noexcept;
+
+ private:
+  bool stick(ContactProblem& problem) noexcept;
+  ContactSolution iterate(ContactProblem& problem, const SolverLimits& limits) noexcept;
+
+  Eigen::VectorXd elastic_displacement_;  ///< (3 capacity) [m]
+};
 
 }  // namespace irdm

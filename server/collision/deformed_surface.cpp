@@ -7,14 +7,14 @@ namespace irdm {
 namespace {
 // Enough to cross a dozen triangles from a good start, and a bound on the cost of a bad one.
 constexpr int kMaxMoves = 16;
+// Triangles along the way of a tip in one step that are looked at.
+constexpr std::size_t kMaxCandidates = 64;
 }  // namespace
 
-DeformedSurface::DeformedSurface(const ModelMesh& mesh)
-    : mesh_(mesh),
-      tree_(mesh),
-      topology_(mesh),
-      known_in_(static_cast<std::size_t>(mesh.surface_node_count()), 0),
-      positions_(static_cast<std::size_t>(mesh.surface_node_count()), Vector3::Zero()) {}
+DeformedSurface::DeformedSurface(const RestSurface& rest)
+    : rest_(rest),
+      known_in_(static_cast<std::size_t>(rest.node_count()), 0),
+      positions_(static_cast<std::size_t>(rest.node_count()), Vector3::Zero()) {}
 
 void DeformedSurface::begin_step(const ResponseEngine& engine) noexcept {
   engine_ = &engine;
@@ -24,14 +24,14 @@ void DeformedSurface::begin_step(const ResponseEngine& engine) noexcept {
 const Vector3& DeformedSurface::node(int i) noexcept {
   const auto index = static_cast<std::size_t>(i);
   if (known_in_[index] != step_) {
-    positions_[index] = mesh_.rest_position(i) + engine_->free_displacement(i);
+    positions_[index] = rest_.node(i) + engine_->free_displacement(i);
     known_in_[index] = step_;
   }
   return positions_[index];
 }
 
 TriangleCorners DeformedSurface::corners(int triangle) noexcept {
-  const std::array<int, 3>& nodes = topology_.corners(triangle);
+  const std::array<int, 3>& nodes = rest_.topology().corners(triangle);
   return {node(nodes[0]), node(nodes[1]), node(nodes[2])};
 }
 
@@ -43,7 +43,7 @@ SurfaceHit DeformedSurface::hit_on(int triangle, const Vector3& p) noexcept {
   const TriangleCorners deformed = corners(triangle);
   SurfaceHit hit;
   hit.triangle = triangle;
-  hit.point = {topology_.corners(triangle), closest_point(deformed, p)};
+  hit.point = {rest_.topology().corners(triangle), closest_point(deformed, p)};
   hit.position = at(deformed, hit.point.weights);
   hit.signed_distance = (p - hit.position).norm();
   return hit;
@@ -51,8 +51,8 @@ SurfaceHit DeformedSurface::hit_on(int triangle, const Vector3& p) noexcept {
 
 template <typename Visit>
 void DeformedSurface::visit_neighbours(int triangle, const Visit& visit) noexcept {
-  for (const int corner : topology_.corners(triangle)) {
-    for (const int neighbour : topology_.triangles_around(corner)) {
+  for (const int corner : rest_.topology().corners(triangle)) {
+    for (const int neighbour : rest_.topology().triangles_around(corner)) {
       if (neighbour != triangle) visit(neighbour);
     }
   }
@@ -80,8 +80,8 @@ Vector3 DeformedSurface::pseudonormal(const SurfaceHit& hit) noexcept {
   }
   if (count == 3) return normal(hit.triangle);
   Vector3 sum = Vector3::Zero();
-  for (const int triangle : topology_.triangles_around(on[0])) {
-    const std::array<int, 3>& nodes = topology_.corners(triangle);
+  for (const int triangle : rest_.topology().triangles_around(on[0])) {
+    const std::array<int, 3>& nodes = rest_.topology().corners(triangle);
     const TriangleCorners deformed = corners(triangle);
     const Vector3 unit = area_normal(deformed).normalized();
     if (count == 2) {
@@ -98,30 +98,40 @@ Vector3 DeformedSurface::pseudonormal(const SurfaceHit& hit) noexcept {
 }
 
 SurfaceHit DeformedSurface::closest(const Vector3& p) noexcept {
-  SurfaceHit best = hit_on(tree_.closest_triangle(p), p);
+  SurfaceHit best = hit_on(rest_.tree().closest_triangle(p), p);
   // Where the surface is displaced by u, the rest surface below p - u is the better place to start.
   const Vector3 u =
-      interpolate(best.point, [&](int i) -> Vector3 { return node(i) - mesh_.rest_position(i); });
-  const SurfaceHit shifted = hit_on(tree_.closest_triangle(p - u), p);
+      interpolate(best.point, [&](int i) -> Vector3 { return node(i) - rest_.node(i); });
+  const SurfaceHit shifted = hit_on(rest_.tree().closest_triangle(p - u), p);
   if (shifted.signed_distance < best.signed_distance) best = shifted;
   best = descend(best, p);
   if (pseudonormal(best).dot(p - best.position) < 0) best.signed_distance = -best.signed_distance;
   return best;
 }
 
-std::optional<SurfacePoint> DeformedSurface::entry(int near, const Vector3& from, const Vector3& to,
-                                                   int& triangle) noexcept {
-  std::optional<SurfacePoint> found;
+std::optional<SurfaceHit> DeformedSurface::first_crossing(const Vector3& from, const Vector3& to,
+                                                          const SurfaceHit& near) noexcept {
+  std::optional<SurfaceHit> found;
   double earliest = 2.0;
   const auto consider = [&](int candidate) {
-    const std::optional<Crossing> here = crossing(corners(candidate), from, to);
+    const TriangleCorners deformed = corners(candidate);
+    const std::optional<Crossing> here = crossing(deformed, from, to);
     if (!here || here->fraction >= earliest) return;
     earliest = here->fraction;
-    found = SurfacePoint{topology_.corners(candidate), here->weights};
-    triangle = candidate;
+    const SurfacePoint point{rest_.topology().corners(candidate), here->weights};
+    found = SurfaceHit{candidate, point, at(deformed, here->weights), 0.0};
   };
-  consider(near);
-  visit_neighbours(near, consider);
+  consider(near.triangle);
+  visit_neighbours(near.triangle, consider);
+  // The tree knows the rest shape: the way is moved to where it would be there.
+  const Vector3 u =
+      interpolate(near.point, [&](int i) -> Vector3 { return node(i) - rest_.node(i); });
+  Eigen::AlignedBox3d way(from - u);
+  way.extend(to - u);
+  const Vector3 margin = Vector3::Constant(0.25 * u.norm());
+  std::array<int, kMaxCandidates> candidates{};
+  const int count = rest_.tree().overlapping({way.min() - margin, way.max() + margin}, candidates);
+  for (int i = 0; i < count; ++i) consider(candidates[static_cast<std::size_t>(i)]);
   return found;
 }
 

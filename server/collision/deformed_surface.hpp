@@ -5,9 +5,7 @@
 #include <vector>
 
 #include "common/model/model.hpp"
-#include "server/collision/surface_topology.hpp"
-#include "server/collision/surface_tree.hpp"
-#include "server/collision/triangle.hpp"
+#include "server/collision/rest_surface.hpp"
 #include "server/engine/response_engine.hpp"
 
 namespace irdm {
@@ -29,8 +27,8 @@ struct SurfaceHit {
 /// triangle to start from; from it the search goes to whichever neighbour is nearer until none is.
 class DeformedSurface {
  public:
-  /// @param mesh must outlive this object
-  explicit DeformedSurface(const ModelMesh& mesh);
+  /// @param rest must outlive this object
+  explicit DeformedSurface(const RestSurface& rest);
 
   /// Starts a step: forgets the nodes of the last one. @param engine must outlive the step
   void begin_step(const ResponseEngine& engine) noexcept;
@@ -41,9 +39,10 @@ class DeformedSurface {
   /// The point nearest to p.
   SurfaceHit closest(const Vector3& p) noexcept;
 
-  /// Where the way from `from` to `to` first enters the surface, among the triangles around `near`.
-  std::optional<SurfacePoint> entry(int near, const Vector3& from, const Vector3& to,
-                                    int& triangle) noexcept;
+  /// Where the way from `from` to `to` first crosses the surface from outside, the triangles around
+  /// `near` and those along the way being looked at: a thin part is not passed through.
+  std::optional<SurfaceHit> first_crossing(const Vector3& from, const Vector3& to,
+                                           const SurfaceHit& near) noexcept;
 
   /// Outward unit normal of a deformed triangle.
   Vector3 normal(int triangle) noexcept;
@@ -56,9 +55,7 @@ class DeformedSurface {
   template <typename Visit>
   void visit_neighbours(int triangle, const Visit& visit) noexcept;
 
-  const ModelMesh& mesh_;
-  SurfaceTree tree_;
-  SurfaceTopology topology_;
+  const RestSurface& rest_;
   const ResponseEngine* engine_ = nullptr;
   std::uint64_t step_ = 0;
   std::vector<std::uint64_t> known_in_;  ///< step in which positions_ of a node was computed

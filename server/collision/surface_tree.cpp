@@ -95,4 +95,30 @@ int SurfaceTree::closest_triangle(const Vector3& p) const noexcept {
   return best;
 }
 
+int SurfaceTree::overlapping(const Eigen::AlignedBox3d& box, std::span<int> found) const noexcept {
+  std::array<int, kMaxDepth + 1> stack{};
+  int depth = 0;
+  stack[static_cast<std::size_t>(depth++)] = 0;
+  std::size_t count = 0;
+  while (depth > 0) {
+    const int index = stack[static_cast<std::size_t>(--depth)];
+    const Node& node = nodes_[static_cast<std::size_t>(index)];
+    if (!node.box.intersects(box)) continue;
+    if (node.count == 0) {
+      stack[static_cast<std::size_t>(depth++)] = node.first;
+      stack[static_cast<std::size_t>(depth++)] = index + 1;
+      continue;
+    }
+    for (int i = node.first; i < node.first + node.count; ++i) {
+      const int t = order_[static_cast<std::size_t>(i)];
+      Eigen::AlignedBox3d own;
+      for (const Vector3& corner : triangles_[static_cast<std::size_t>(t)]) own.extend(corner);
+      if (!own.intersects(box)) continue;
+      if (count == found.size()) return static_cast<int>(count);
+      found[count++] = t;
+    }
+  }
+  return static_cast<int>(count);
+}
+
 }  // namespace irdm

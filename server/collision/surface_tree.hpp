@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <span>
 #include <vector>
 
 #include "common/geometry.hpp"
@@ -16,6 +17,10 @@ class SurfaceTree {
 
   /// The triangle of the rest surface nearest to p (B); ties go to the lowest number.
   int closest_triangle(const Vector3& p) const noexcept;
+
+  /// Triangles whose bounding box at rest overlaps a box, as many as `found` has room for; returns
+  /// how many.
+  int overlapping(const Eigen::AlignedBox3d& box, std::span<int> found) const noexcept;
 
  private:
   struct Node {

@@ -1,6 +1,8 @@
 #include "server/config/scene.hpp"
 
+#include <algorithm>
 #include <fstream>
+#include <set>
 #include <sstream>
 
 #include "common/error.hpp"
@@ -14,8 +16,9 @@ Vector3 read_vector(TomlTable& table, const std::string& key) {
   return Vector3(table.numbers(key, 3, kAnyNumber, {0.0, 0.0, 0.0}).data());
 }
 
-ServerConfig read_server(TomlTable table) {
+ServerConfig read_server(TomlTable table, int styluses) {
   ServerConfig config;
+  config.styluses = styluses;
   config.address = table.text("address", config.address);
   config.port = table.integer("port", 0, 65535, config.port);
   config.styluses = table.integer("styluses", 1, kMaxStyluses, config.styluses);
@@ -55,6 +58,47 @@ Quaternion read_orientation(TomlTable& table) {
   return orientation.normalized();
 }
 
+Friction read_friction(TomlTable table, const Friction& fallback) {
+  constexpr double kLargest = 10.0;
+  Friction friction;
+  friction.static_ = table.number("static", between(0.0, kLargest), fallback.static_);
+  friction.kinetic =
+      table.number("kinetic", between(0.0, kLargest), std::min(fallback.kinetic, friction.static_));
+  if (friction.kinetic > friction.static_) {
+    table.fail("kinetic", "is larger than static", "lower it or raise static");
+  }
+  table.finish();
+  return friction;
+}
+
+RigidDamping read_damping(TomlTable table) {
+  constexpr double kLargest = 100.0;
+  RigidDamping damping;
+  damping.linear = table.number("linear", between(0.0, kLargest), damping.linear);
+  damping.angular = table.number("angular", between(0.0, kLargest), damping.angular);
+  table.finish();
+  return damping;
+}
+
+Tether read_tether(TomlTable table) {
+  Tether tether;
+  tether.stiffness = table.number("stiffness", at_least(0.0), tether.stiffness);
+  tether.angular_stiffness =
+      table.number("angular_stiffness", at_least(0.0), tether.angular_stiffness);
+  table.finish();
+  return tether;
+}
+
+SimulationStylus read_stylus(TomlTable table, const ContactConfig& contact) {
+  SimulationStylus stylus;
+  stylus.radius = table.number("radius", between(0.0, 1.0), stylus.radius);
+  stylus.coupling_stiffness =
+      table.number("coupling_stiffness", at_least(0.0), contact.coupling_stiffness);
+  stylus.reach = table.number("reach", between(0.0, 1.0), stylus.reach);
+  table.finish();
+  return stylus;
+}
+
 ObjectConfig read_object(TomlTable table) {
   ObjectConfig config;
   config.name = table.text("name", config.name);
@@ -66,6 +110,9 @@ ObjectConfig read_object(TomlTable table) {
   config.orientation = read_orientation(table);
   config.velocity = read_vector(table, "velocity");
   config.angular_velocity = read_vector(table, "angular_velocity");
+  config.friction = read_friction(table.table("friction"), config.friction);
+  config.damping = read_damping(table.table("damping"));
+  config.tether = read_tether(table.table("tether"));
   table.finish();
   return config;
 }
@@ -74,13 +121,33 @@ ObjectConfig read_object(TomlTable table) {
 
 SceneConfig read_scene(TomlTable file) {
   SceneConfig scene;
-  scene.server = read_server(file.table("server"));
   scene.world = read_world(file.table("world"));
   scene.contact = read_contact(file.table("contact"));
-  for (TomlTable& object : file.tables("object")) scene.objects.push_back(read_object(object));
+  for (TomlTable& stylus : file.tables("stylus")) {
+    scene.styluses.push_back(read_stylus(stylus, scene.contact));
+  }
+  const int described = static_cast<int>(scene.styluses.size());
+  if (described > kMaxStyluses) {
+    file.fail("stylus", "appears too often", "use at most " + std::to_string(kMaxStyluses));
+  }
+  scene.server = read_server(file.table("server"), std::max(1, described));
+  if (scene.server.styluses < described) {
+    file.fail("server", "has fewer styluses than there are [[stylus]] tables",
+              "raise server.styluses or leave it out");
+  }
+  scene.styluses.resize(static_cast<std::size_t>(scene.server.styluses),
+                        {0.0, scene.contact.coupling_stiffness, 0.0});
+  std::set<std::string> names;
+  for (TomlTable& object : file.tables("object")) {
+    scene.objects.push_back(read_object(object));
+    if (!names.insert(scene.objects.back().name).second) {
+      file.fail("object", "appears twice with the name '" + scene.objects.back().name + "'",
+                "give each object a name of its own");
+    }
+  }
   if (scene.objects.empty()) file.fail("object", "is missing", "add [[object]] with a model");
-  if (scene.objects.size() > 1) {
-    file.fail("object", "appears more than once", "this version plays one object a scene");
+  if (scene.objects.size() > kMaxObjects) {
+    file.fail("object", "appears too often", "use at most " + std::to_string(kMaxObjects));
   }
   file.finish();
   return scene;

@@ -7,6 +7,7 @@
 #include "common/config/toml_reader.hpp"
 #include "common/realtime/scheduling.hpp"
 #include "server/engine/response_engine.hpp"
+#include "server/step/simulation_config.hpp"
 #include "server/step/step_record.hpp"
 
 namespace irdm {
@@ -15,8 +16,9 @@ namespace irdm {
 struct ServerConfig {
   std::string address = "127.0.0.1";  ///< to listen on
   int port = 0;                       ///< 0..65535; 0: any free one
-  int styluses = 1;                   ///< how many styluses take part, 1..kMaxStyluses
-  double deformation_rate = 60.0;     ///< deformed surfaces a second, 1..1000 [Hz]
+  int styluses =
+      1;  ///< how many styluses take part, 1..kMaxStyluses; default: the [[stylus]] tables
+  double deformation_rate = 60.0;  ///< deformed surfaces a second, 1..1000 [Hz]
   RealTimeScheduling realtime = RealTimeScheduling::kPrefer;  ///< "require" | "prefer" | "ignore"
   int deformation_threads = 0;  ///< OpenMP threads for them, 0..64; 0: all cores but one
 };
@@ -28,7 +30,7 @@ struct WorldConfig {
 
 /// [contact]
 struct ContactConfig {
-  double coupling_stiffness = 0.0;  ///< k_vc, spring between tip and surface, >= 0 [N/m]; 0: none
+  double coupling_stiffness = 0.0;  ///< of styluses that do not say otherwise, >= 0 [N/m]; 0: none
 };
 
 /// [[object]]
@@ -40,15 +42,18 @@ struct ObjectConfig {
   Quaternion orientation = Quaternion::Identity();  ///< w x y z, normalised when read
   Vector3 velocity = Vector3::Zero();               ///< [m/s], W
   Vector3 angular_velocity = Vector3::Zero();       ///< [rad/s], W
+  Friction friction{0.6, 0.5};  ///< friction = { static, kinetic }, 0 <= kinetic <= static <= 10
+  RigidDamping damping;         ///< damping = { linear, angular }
+  Tether tether;                ///< tether = { stiffness, angular_stiffness }
 };
 
-/// What irdm-server is to run. One object in this version; the file's [[object]] leaves room for
-/// more.
+/// What irdm-server is to run.
 struct SceneConfig {
   ServerConfig server;
   WorldConfig world;
   ContactConfig contact;
-  std::vector<ObjectConfig> objects;
+  std::vector<SimulationStylus> styluses;  ///< [[stylus]], one for every slot
+  std::vector<ObjectConfig> objects;       ///< 1..kMaxObjects
 };
 
 /// Reads and checks a scene. Throws Error with file and line.

@@ -1,19 +1,39 @@
 #include "server/deformation/deformation.hpp"
 
-#include "server/step/nodal_forces.hpp"
-
 namespace irdm {
 
-Deformation::Deformation(std::shared_ptr<const Model> model)
-    : model_(std::move(model)), engine_(make_engine(model_)) {}
+SurfaceFrame rest_frame(const SimulationConfig& config) {
+  SurfaceFrame frame;
+  for (const SimulationObject& object : config.objects) {
+    frame.objects.push_back({object.position, object.orientation,
+                             Points::Zero(object.model->mesh.surface_node_count(), 3)});
+  }
+  return frame;
+}
+
+Deformation::Deformation(const SimulationConfig& config) {
+  std::vector<double> radii;
+  for (const SimulationStylus& stylus : config.styluses) radii.push_back(stylus.radius);
+  for (const SimulationObject& object : config.objects) {
+    Follower follower{object.model, make_engine(object.model), nullptr, nullptr};
+    follower.surface = std::make_unique<RestSurface>(object.model->mesh);
+    follower.forces = std::make_unique<RecordedForces>(*follower.surface, radii);
+    objects_.push_back(std::move(follower));
+  }
+}
+
+void Deformation::advance(const StepRecord& record) {
+  for (std::size_t i = 0; i < objects_.size(); ++i) {
+    objects_[i].engine->advance(objects_[i].forces->of(record.object[i]));
+  }
+}
 
 void Deformation::follow(const StepRecord& record) {
-  const NodalForces held = nodal_forces(last_);
   for (std::uint64_t k = started_ ? last_.force_step + 1 : 0; k < record.force_step; ++k) {
-    engine_->advance(held.view());
+    advance(last_);
     ++lost_steps_;
   }
-  engine_->advance(nodal_forces(record).view());
+  advance(record);
   last_ = record;
   started_ = true;
 }
@@ -21,9 +41,11 @@ void Deformation::follow(const StepRecord& record) {
 void Deformation::compute(SurfaceFrame& frame) const {
   frame.force_step = last_.force_step;
   frame.time = last_.time;
-  frame.position = last_.position;
-  frame.orientation = last_.orientation;
-  engine_->displacement(frame.displacement);
+  for (std::size_t i = 0; i < objects_.size(); ++i) {
+    frame.objects[i].position = last_.object[i].position;
+    frame.objects[i].orientation = last_.object[i].orientation;
+    objects_[i].engine->displacement(frame.objects[i].displacement);
+  }
 }
 
 }  // namespace irdm

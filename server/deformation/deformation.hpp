@@ -1,16 +1,17 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "server/engine/response_engine.hpp"
+#include "server/step/recorded_forces.hpp"
+#include "server/step/simulation_config.hpp"
 #include "server/step/step_record.hpp"
 
 namespace irdm {
 
-/// The deformed object at the end of a step.
-struct SurfaceFrame {
-  std::uint64_t force_step = 0;
-  double time = 0.0;                                ///< [s]
+/// One deformed object at the end of a step.
+struct ObjectSurface {
   Vector3 position = Vector3::Zero();               ///< of the body [m], W
   Quaternion orientation = Quaternion::Identity();  ///< B to W
   Points displacement;                              ///< u (n, 3) [m], B
@@ -22,25 +23,43 @@ struct SurfaceFrame {
   }
 };
 
-/// Follows the force thread's steps with an engine of its own. Because an engine's state depends on
+/// All deformed objects at the end of a step.
+struct SurfaceFrame {
+  std::uint64_t force_step = 0;
+  double time = 0.0;  ///< [s]
+  std::vector<ObjectSurface> objects;
+};
+
+/// A frame of the objects at rest.
+SurfaceFrame rest_frame(const SimulationConfig& config);
+
+/// Follows the force thread's steps with engines of its own. Because an engine's state depends on
 /// nothing but the forces, the two always agree, and nobody has to wait for a snapshot. Pure; one
 /// thread.
 class Deformation {
  public:
-  explicit Deformation(std::shared_ptr<const Model> model);
+  explicit Deformation(const SimulationConfig& config);
 
   /// Takes in the next step. Steps that were lost on the way are taken to have had the forces of
   /// the one before them; how many, is counted.
   void follow(const StepRecord& record);
 
-  /// Displacements of all nodes after the last step taken in (OpenMP).
+  /// Displacements of all nodes after the last step taken in (OpenMP). The frame has the objects'
+  /// number and sizes.
   void compute(SurfaceFrame& frame) const;
 
   std::uint64_t lost_steps() const noexcept { return lost_steps_; }
 
  private:
-  std::shared_ptr<const Model> model_;
-  std::unique_ptr<ResponseEngine> engine_;
+  struct Follower {
+    std::shared_ptr<const Model> model;
+    std::unique_ptr<ResponseEngine> engine;
+    std::unique_ptr<RestSurface> surface;
+    std::unique_ptr<RecordedForces> forces;
+  };
+  void advance(const StepRecord& record);
+
+  std::vector<Follower> objects_;
   StepRecord last_;
   bool started_ = false;
   std::uint64_t lost_steps_ = 0;

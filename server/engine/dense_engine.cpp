@@ -38,28 +38,33 @@ Vector3 DenseEngine<Scalar>::free_displacement(int node) const noexcept {
 }
 
 template <typename Scalar>
-void DenseEngine<Scalar>::predict(std::span<const SurfacePoint> points, std::span<Vector3> h,
-                                  ContactMatrix& compliance) noexcept {
-  const auto size = static_cast<Eigen::Index>(3 * points.size());
-  compliance.setZero(size, size);
-  for (std::size_t a = 0; a < points.size(); ++a) {
-    h[a] = interpolate(points[a], [&](int node) { return free_displacement(node); });
-    for (std::size_t b = 0; b < points.size(); ++b) {
-      for (std::size_t i = 0; i < 3; ++i) {
-        for (std::size_t j = 0; j < 3; ++j) {
-          const double weight = points[a].weights[i] * points[b].weights[j];
-          if (weight == 0.0) continue;
-          for (int row = 0; row < 3; ++row) {
-            for (int column = 0; column < 3; ++column) {
-              const Scalar entry =
-                  *response(3 * points[a].nodes[i] + row, 3 * points[b].nodes[j] + column);
-              compliance(static_cast<Eigen::Index>(3 * a) + row,
-                         static_cast<Eigen::Index>(3 * b) + column) +=
-                  weight * static_cast<double>(entry);
-            }
-          }
+Matrix3 DenseEngine<Scalar>::within_step(const ContactPatch& a,
+                                         const ContactPatch& b) const noexcept {
+  Matrix3 sum = Matrix3::Zero();
+  for (std::size_t i = 0; i < static_cast<std::size_t>(a.count); ++i) {
+    for (std::size_t j = 0; j < static_cast<std::size_t>(b.count); ++j) {
+      const double weight = a.weights[i] * b.weights[j];
+      for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 3; ++column) {
+          const Scalar entry = *response(3 * a.nodes[i] + row, 3 * b.nodes[j] + column);
+          sum(row, column) += weight * static_cast<double>(entry);
         }
       }
+    }
+  }
+  return sum;
+}
+
+template <typename Scalar>
+void DenseEngine<Scalar>::predict(std::span<const ContactPatch> patches, std::span<Vector3> h,
+                                  ContactMatrix& compliance) noexcept {
+  const auto size = static_cast<Eigen::Index>(3 * patches.size());
+  compliance.resize(size, size);
+  for (std::size_t a = 0; a < patches.size(); ++a) {
+    h[a] = mean(patches[a], [&](int node) { return free_displacement(node); });
+    for (std::size_t b = 0; b < patches.size(); ++b) {
+      compliance.block<3, 3>(static_cast<Eigen::Index>(3 * a), static_cast<Eigen::Index>(3 * b)) =
+          within_step(patches[a], patches[b]);
     }
   }
 }

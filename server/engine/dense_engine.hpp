@@ -15,13 +15,14 @@ class DenseEngine final : public ResponseEngine {
   explicit DenseEngine(std::shared_ptr<const Model> model);
 
   Vector3 free_displacement(int node) const noexcept override;
-  void predict(std::span<const SurfacePoint> points, std::span<Vector3> h,
+  void predict(std::span<const ContactPatch> patches, std::span<Vector3> h,
                ContactMatrix& compliance) noexcept override;
   void advance(std::span<const NodalForce> forces) noexcept override;
   void displacement(Points& u) const override;
   void reset() noexcept override;
 
  private:
+  Matrix3 within_step(const ContactPatch& a, const ContactPatch& b) const noexcept;
   /// R_ab[s] for s = 0..T-1: displacement of degree of freedom a by a force on b.
   const Scalar* response(int a, int b) const noexcept {
     return values_ + (static_cast<std::size_t>(b) * dof_ + static_cast<std::size_t>(a)) * steps_;

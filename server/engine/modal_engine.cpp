@@ -39,20 +39,39 @@ Vector3 ModalEngine<Scalar>::free_displacement(int node) const noexcept {
   return u;
 }
 
+// Three nodes at a time; where fewer are left, the last ones count with weight 0.
 template <typename Scalar>
-void ModalEngine<Scalar>::predict(std::span<const SurfacePoint> points, std::span<Vector3> h,
+void ModalEngine<Scalar>::mean_shape(const ContactPatch& patch, int axis,
+                                     double* shape) const noexcept {
+  for (int first = 0; first < patch.count; first += 3) {
+    std::array<double, 3> weights{};
+    std::array<const Scalar*, 3> rows{};
+    for (int i = 0; i < 3; ++i) {
+      const auto from = static_cast<std::size_t>(std::min(first + i, patch.count - 1));
+      weights[static_cast<std::size_t>(i)] = first + i < patch.count ? patch.weights[from] : 0.0;
+      rows[static_cast<std::size_t>(i)] = shape_row(3 * patch.nodes[from] + axis);
+    }
+    if (first == 0) {
+      combine(weights, rows[0], rows[1], rows[2], shape, modes_);
+    } else {
+      accumulate(weights, rows[0], rows[1], rows[2], shape, modes_);
+    }
+  }
+}
+
+template <typename Scalar>
+void ModalEngine<Scalar>::predict(std::span<const ContactPatch> patches, std::span<Vector3> h,
                                   ContactMatrix& compliance) noexcept {
   const auto row = [&](std::size_t index) { return contact_shapes_.data() + index * modes_; };
-  for (std::size_t a = 0; a < points.size(); ++a) {
+  for (std::size_t a = 0; a < patches.size(); ++a) {
     for (int axis = 0; axis < 3; ++axis) {
       double* shape = row(3 * a + static_cast<std::size_t>(axis));
-      const auto corner = [&](std::size_t i) { return shape_row(3 * points[a].nodes[i] + axis); };
-      combine(points[a].weights, corner(0), corner(1), corner(2), shape, modes_);
+      mean_shape(patches[a], axis, shape);
       h[a][axis] = dot(shape, free_coordinate_.data(), modes_);
     }
   }
   // R[0] = Phi diag(b1) Phi^T, symmetric.
-  const auto size = static_cast<Eigen::Index>(3 * points.size());
+  const auto size = static_cast<Eigen::Index>(3 * patches.size());
   compliance.resize(size, size);
   for (Eigen::Index i = 0; i < size; ++i) {
     const double* shape = row(static_cast<std::size_t>(i));

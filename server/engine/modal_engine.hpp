@@ -15,13 +15,14 @@ class ModalEngine final : public ResponseEngine {
   explicit ModalEngine(std::shared_ptr<const Model> model);
 
   Vector3 free_displacement(int node) const noexcept override;
-  void predict(std::span<const SurfacePoint> points, std::span<Vector3> h,
+  void predict(std::span<const ContactPatch> patches, std::span<Vector3> h,
                ContactMatrix& compliance) noexcept override;
   void advance(std::span<const NodalForce> forces) noexcept override;
   void displacement(Points& u) const override;
   void reset() noexcept override;
 
  private:
+  void mean_shape(const ContactPatch& patch, int axis, double* shape) const noexcept;
   const Scalar* shape_row(int dof) const noexcept {
     return shapes_->data() + static_cast<std::size_t>(dof) * modes_;
   }

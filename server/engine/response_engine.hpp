@@ -6,6 +6,7 @@
 #include "common/contact/contact_problem.hpp"
 #include "common/geometry.hpp"
 #include "common/model/model.hpp"
+#include "server/contact/contact_patch.hpp"
 
 namespace irdm {
 
@@ -26,10 +27,10 @@ class ResponseEngine {
   /// Displacement of a node at the end of the coming step if no force acts during it [m].
   virtual Vector3 free_displacement(int node) const noexcept = 0;
 
-  /// For contact points a = 0..m-1 (m <= kMaxContacts): their free displacement h_a at the end of
+  /// For contacts a = 0..m-1 (m <= kMaxContacts): their mean free displacement h_a at the end of
   /// the coming step [m], and the compliance between them within it, the blocks sum_ij w_i w_j
   /// R_ij[0] of the (3m, 3m) matrix [m/N].
-  virtual void predict(std::span<const SurfacePoint> points, std::span<Vector3> h,
+  virtual void predict(std::span<const ContactPatch> patches, std::span<Vector3> h,
                        ContactMatrix& compliance) noexcept = 0;
 
   /// Ends the coming step with these forces held during it.

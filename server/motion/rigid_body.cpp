@@ -54,9 +54,9 @@ Vector3 RigidBody::angular_momentum(const Quaternion& orientation,
   return orientation * (inertia_ * (orientation.conjugate() * angular_velocity));
 }
 
-Matrix3 RigidBody::compliance(const Vector3& at, const Vector3& from) const noexcept {
-  if (!moves_) return Matrix3::Zero();
-  return dt_ * dt_ * (Matrix3::Identity() / mass_ - skew(at) * inverse_inertia_ * skew(from));
+RigidMobility RigidBody::mobility() const noexcept {
+  if (!moves_) return {};
+  return {dt_ * dt_ / mass_, dt_ * dt_ * inverse_inertia_};
 }
 
 }  // namespace irdm

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "common/contact/contact_problem.hpp"
 #include "common/geometry.hpp"
 #include "common/model/model.hpp"
 
@@ -41,9 +42,9 @@ class RigidBody {
   Vector3 angular_momentum(const Quaternion& orientation,
                            const Vector3& angular_velocity) const noexcept;
 
-  /// Displacement [m] of the body's point `at` by the end of a step per force [N] held during it at
-  /// the body's point `from`: dt^2 (1/M Id - [at]x I_B^-1 [from]x). Everything in B.
-  Matrix3 compliance(const Vector3& at, const Vector3& from) const noexcept;
+  /// What forces held during a step move by its end: dt^2 / M and dt^2 I_B^-1, in B. Zero when
+  /// fixed.
+  RigidMobility mobility() const noexcept;
 
   double mass() const noexcept { return mass_; }
   bool moves() const noexcept { return moves_; }

@@ -20,7 +20,9 @@ void put(double* row, const Vector3& v) {
 }  // namespace
 
 TraceWriter::TraceWriter(const std::filesystem::path& path, const TraceHeader& header)
-    : file_(hdf5::File::create(path)), stylus_count_(header.stylus_count) {
+    : file_(hdf5::File::create(path)),
+      objects_(header.objects),
+      stylus_count_(header.stylus_count) {
   try {
     write_header(header);
     create_datasets();
@@ -36,8 +38,8 @@ void TraceWriter::write_header(const TraceHeader& header) {
   file_.write_attribute("/", "format", std::string("irdm-trace"));
   file_.write_attribute("/", "version", std::int64_t{1});
   file_.write_attribute("/", "created_by", std::string("irdm ") + IRDM_VERSION);
-  file_.write_attribute("/", "model_file", header.model_file);
-  file_.write_attribute("/", "model_checksum", header.model_checksum);
+  file_.write_attribute("/", "model_file", header.objects.front().model_file);
+  file_.write_attribute("/", "model_checksum", header.objects.front().model_checksum);
   file_.write_attribute("/", "scene", header.scene);
   file_.write_attribute("/", "dt", header.dt);
 }
@@ -45,20 +47,48 @@ void TraceWriter::write_header(const TraceHeader& header) {
 void TraceWriter::create_datasets() {
   file_.create_growing<double>("/step/time", {}, kChunkRows);
   file_.create_growing<std::uint64_t>("/step/force_step", {}, kChunkRows);
-  file_.create_growing<double>("/step/body_position", {3}, kChunkRows);
-  file_.create_growing<double>("/step/body_orientation", {4}, kChunkRows);
-  file_.create_growing<double>("/step/body_velocity", {3}, kChunkRows);
-  file_.create_growing<double>("/step/body_angular_velocity", {3}, kChunkRows);
-  file_.create_growing<double>("/step/residual", {}, kChunkRows);
+  for (std::size_t i = 0; i < objects_.size(); ++i) {
+    const std::string group = object_path(i);
+    create_object(group);
+    if (!several()) continue;
+    file_.write_attribute(group, "model_file", objects_[i].model_file);
+    file_.write_attribute(group, "model_checksum", objects_[i].model_checksum);
+    for (std::size_t s = 0; s < static_cast<std::size_t>(stylus_count_); ++s) {
+      file_.create_growing<double>(group + stylus_path(s) + "/proxy", {3}, kChunkRows);
+      file_.create_growing<double>(group + stylus_path(s) + "/force", {3}, kChunkRows);
+      create_contact(group + stylus_path(s));
+    }
+  }
   for (std::size_t s = 0; s < static_cast<std::size_t>(stylus_count_); ++s) {
     const std::string path = stylus_path(s);
-    for (const char* name : {"/tip", "/proxy", "/force", "/contact_weights", "/offset"}) {
+    for (const char* name : {"/tip", "/proxy", "/force"}) {
       file_.create_growing<double>(path + name, {3}, kChunkRows);
     }
-    file_.create_growing<std::uint8_t>(path + "/contact", {}, kChunkRows);
-    file_.create_growing<std::int32_t>(path + "/contact_nodes", {3}, kChunkRows);
+    create_contact(path);
     file_.create_growing<std::int32_t>(path + "/buttons", {}, kChunkRows);
+    if (several()) file_.create_growing<std::int32_t>(path + "/object", {}, kChunkRows);
   }
+}
+
+// One object's sets are those of the step; several have a group each.
+std::string TraceWriter::object_path(std::size_t object) const {
+  return several() ? "/object/" + objects_[object].name : "/step";
+}
+
+void TraceWriter::create_object(const std::string& group) {
+  file_.create_growing<double>(group + "/body_position", {3}, kChunkRows);
+  file_.create_growing<double>(group + "/body_orientation", {4}, kChunkRows);
+  file_.create_growing<double>(group + "/body_velocity", {3}, kChunkRows);
+  file_.create_growing<double>(group + "/body_angular_velocity", {3}, kChunkRows);
+  file_.create_growing<double>(group + "/residual", {}, kChunkRows);
+}
+
+void TraceWriter::create_contact(const std::string& group) {
+  file_.create_growing<double>(group + "/contact_weights", {3}, kChunkRows);
+  file_.create_growing<double>(group + "/offset", {3}, kChunkRows);
+  file_.create_growing<std::uint8_t>(group + "/contact", {}, kChunkRows);
+  file_.create_growing<std::uint8_t>(group + "/slipping", {}, kChunkRows);
+  file_.create_growing<std::int32_t>(group + "/contact_nodes", {3}, kChunkRows);
 }
 
 template <typename T, typename Fill>
@@ -75,20 +105,39 @@ void TraceWriter::append(std::span<const StepRecord> records) {
                              [](const StepRecord& r, std::uint64_t* row) { *row = r.force_step; });
   append_rows<double>("/step/time", 1, records,
                       [](const StepRecord& r, double* row) { *row = r.time; });
-  append_rows<double>("/step/body_position", 3, records,
-                      [](const StepRecord& r, double* row) { put(row, r.position); });
-  append_rows<double>("/step/body_orientation", 4, records, [](const StepRecord& r, double* row) {
-    row[0] = r.orientation.w();
-    put(row + 1, r.orientation.vec());
-  });
-  append_rows<double>("/step/body_velocity", 3, records,
-                      [](const StepRecord& r, double* row) { put(row, r.velocity); });
-  append_rows<double>("/step/body_angular_velocity", 3, records,
-                      [](const StepRecord& r, double* row) { put(row, r.angular_velocity); });
-  append_rows<double>("/step/residual", 1, records,
-                      [](const StepRecord& r, double* row) { *row = r.residual; });
+  for (std::size_t i = 0; i < objects_.size(); ++i) append_object(records, i);
   for (std::size_t s = 0; s < static_cast<std::size_t>(stylus_count_); ++s) {
     append_stylus(records, s);
+  }
+}
+
+void TraceWriter::append_object(std::span<const StepRecord> records, std::size_t i) {
+  const std::string group = object_path(i);
+  const auto vectors = [&](const char* name, const auto& member) {
+    append_rows<double>(group + name, 3, records,
+                        [&](const StepRecord& r, double* row) { put(row, r.object[i].*member); });
+  };
+  vectors("/body_position", &ObjectRecord::position);
+  vectors("/body_velocity", &ObjectRecord::velocity);
+  vectors("/body_angular_velocity", &ObjectRecord::angular_velocity);
+  append_rows<double>(group + "/body_orientation", 4, records,
+                      [&](const StepRecord& r, double* row) {
+                        row[0] = r.object[i].orientation.w();
+                        put(row + 1, r.object[i].orientation.vec());
+                      });
+  append_rows<double>(group + "/residual", 1, records,
+                      [&](const StepRecord& r, double* row) { *row = r.object[i].residual; });
+  if (!several()) return;
+  for (std::size_t s = 0; s < static_cast<std::size_t>(stylus_count_); ++s) {
+    const std::string path = group + stylus_path(s);
+    const auto contact = [&](const StepRecord& r) -> const ContactRecord& {
+      return r.object[i].contact[s];
+    };
+    append_contact(records, path, contact);
+    append_rows<double>(path + "/proxy", 3, records,
+                        [&](const StepRecord& r, double* row) { put(row, contact(r).proxy); });
+    append_rows<double>(path + "/force", 3, records,
+                        [&](const StepRecord& r, double* row) { put(row, contact(r).force); });
   }
 }
 
@@ -101,24 +150,46 @@ void TraceWriter::append_stylus(std::span<const StepRecord> records, std::size_t
   vectors("/tip", &StylusRecord::tip);
   vectors("/proxy", &StylusRecord::proxy);
   vectors("/force", &StylusRecord::force);
-  vectors("/offset", &StylusRecord::offset);
-  append_rows<std::uint8_t>(path + "/contact", 1, records,
-                            [&](const StepRecord& r, std::uint8_t* row) {
-                              *row = static_cast<std::uint8_t>(r.stylus[s].contact);
-                            });
-  append_rows<double>(path + "/contact_weights", 3, records, [&](const StepRecord& r, double* row) {
-    const bool free = r.stylus[s].contact == ContactState::kFree;
-    for (std::size_t i = 0; i < 3; ++i) row[i] = free ? 0.0 : r.stylus[s].point.weights[i];
+  append_contact(records, path, [s](const StepRecord& r) -> const ContactRecord& {
+    static const ContactRecord kNone;
+    const int object = r.stylus[s].object;
+    return object < 0 ? kNone : r.object[static_cast<std::size_t>(object)].contact[s];
   });
-  append_rows<std::int32_t>(path + "/contact_nodes", 3, records,
-                            [&](const StepRecord& r, std::int32_t* row) {
-                              const bool free = r.stylus[s].contact == ContactState::kFree;
-                              for (std::size_t i = 0; i < 3; ++i)
-                                row[i] = free ? -1 : r.stylus[s].point.nodes[i];
-                            });
   append_rows<std::int32_t>(path + "/buttons", 1, records,
                             [&](const StepRecord& r, std::int32_t* row) {
                               *row = static_cast<std::int32_t>(r.stylus[s].buttons);
+                            });
+  if (!several()) return;
+  append_rows<std::int32_t>(
+      path + "/object", 1, records,
+      [&](const StepRecord& r, std::int32_t* row) { *row = r.stylus[s].object; });
+}
+
+template <typename Contact>
+void TraceWriter::append_contact(std::span<const StepRecord> records, const std::string& group,
+                                 const Contact& contact) {
+  append_rows<std::uint8_t>(group + "/contact", 1, records,
+                            [&](const StepRecord& r, std::uint8_t* row) {
+                              *row = static_cast<std::uint8_t>(contact(r).state);
+                            });
+  append_rows<std::uint8_t>(
+      group + "/slipping", 1, records,
+      [&](const StepRecord& r, std::uint8_t* row) { *row = contact(r).slipping ? 1 : 0; });
+  append_rows<double>(group + "/offset", 3, records,
+                      [&](const StepRecord& r, double* row) { put(row, contact(r).offset); });
+  append_rows<double>(group + "/contact_weights", 3, records,
+                      [&](const StepRecord& r, double* row) {
+                        const bool free = contact(r).state == ContactState::kFree;
+                        for (std::size_t i = 0; i < 3; ++i) {
+                          row[i] = free ? 0.0 : contact(r).point.weights[i];
+                        }
+                      });
+  append_rows<std::int32_t>(group + "/contact_nodes", 3, records,
+                            [&](const StepRecord& r, std::int32_t* row) {
+                              const bool free = contact(r).state == ContactState::kFree;
+                              for (std::size_t i = 0; i < 3; ++i) {
+                                row[i] = free ? -1 : contact(r).point.nodes[i];
+                              }
                             });
 }
 

@@ -3,18 +3,25 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "common/hdf5/file.hpp"
 #include "server/step/step_record.hpp"
 
 namespace irdm {
 
-/// What a trace says of its run besides the steps.
-struct TraceHeader {
+/// What a trace says of an object besides its steps.
+struct TraceObject {
+  std::string name;
   std::string model_file;      ///< name of the model file
   std::string model_checksum;  ///< its SHA-256
-  std::string scene;           ///< the scene file's text
-  double dt = 0.0;             ///< [s]
+};
+
+/// What a trace says of its run besides the steps.
+struct TraceHeader {
+  std::vector<TraceObject> objects;
+  std::string scene;  ///< the scene file's text
+  double dt = 0.0;    ///< [s]
   int stylus_count = 1;
 };
 
@@ -34,13 +41,22 @@ class TraceWriter {
  private:
   void write_header(const TraceHeader& header);
   void create_datasets();
+  bool several() const { return objects_.size() > 1; }
+  std::string object_path(std::size_t object) const;
+  void create_object(const std::string& group);
+  void create_contact(const std::string& group);
+  void append_object(std::span<const StepRecord> records, std::size_t object);
   void append_stylus(std::span<const StepRecord> records, std::size_t stylus);
+  template <typename Contact>
+  void append_contact(std::span<const StepRecord> records, const std::string& group,
+                      const Contact& contact);
   /// Appends one row of `width` numbers a record; `fill` writes a record's row.
   template <typename T, typename Fill>
   void append_rows(const std::string& dataset, std::size_t width,
                    std::span<const StepRecord> records, const Fill& fill);
 
   hdf5::File file_;
+  std::vector<TraceObject> objects_;
   int stylus_count_;
 };
 

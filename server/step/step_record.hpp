@@ -4,12 +4,14 @@
 #include <cstdint>
 #include <optional>
 
+#include "common/contact/contact_problem.hpp"
 #include "common/geometry.hpp"
 #include "common/stylus.hpp"
 
 namespace irdm {
 
 inline constexpr int kMaxStyluses = 4;
+inline constexpr int kMaxObjects = 4;
 
 /// A force that was decided elsewhere (by a bridge that solved the contact itself); the step
 /// applies it.
@@ -17,6 +19,7 @@ struct GivenForce {
   ContactState contact = ContactState::kTouching;
   SurfacePoint point;
   Vector3 force = Vector3::Zero();  ///< on the object [N], W
+  int object = 0;
 };
 
 /// What one stylus asks of one step.
@@ -28,32 +31,48 @@ struct StylusCommand {
   std::optional<GivenForce> given;  ///< ... unless it is given
 };
 
-/// What became of one stylus in one step.
-struct StylusRecord {
-  bool present = false;
-  ContactState contact = ContactState::kFree;
-  std::uint32_t buttons = 0;
-  Vector3 tip = Vector3::Zero();  ///< [m], W
-  Vector3 proxy =
-      Vector3::Zero();  ///< god-object: the contact's point of the surface, free: the tip [m], W
-  Vector3 force = Vector3::Zero();            ///< on the stylus [N], W
-  Vector3 force_on_object = Vector3::Zero();  ///< [N], B
-  SurfacePoint point;                         ///< of the contact; means nothing when free
-  Vector3 offset = Vector3::Zero();           ///< from the held point to the tip [m], B
+/// What one stylus did to one object in one step.
+struct ContactRecord {
+  ContactState state = ContactState::kFree;
+  bool slipping = false;
+  SurfacePoint point;  ///< middle of the contact; this and what follows means nothing when free
+  Vector3 force = Vector3::Zero();   ///< on the object [N], B
+  Vector3 offset = Vector3::Zero();  ///< from the held point to the tip [m], B
+  Vector3 proxy = Vector3::Zero();   ///< god-object: the point at the end of the step [m], W
 };
 
-/// What happened in one step: everything that the trace, the deformation and the bridges need.
-struct StepRecord {
-  std::uint64_t force_step = 0;                     ///< k
-  double time = 0.0;                                ///< (k + 1) dt, the end of the step [s]
+/// What became of one object in one step.
+struct ObjectRecord {
   Vector3 position = Vector3::Zero();               ///< of the body at the end of the step [m], W
   Quaternion orientation = Quaternion::Identity();  ///< B to W
   Vector3 velocity = Vector3::Zero();               ///< [m/s], W
   Vector3 angular_velocity = Vector3::Zero();       ///< [rad/s], W
-  int stylus_count = 0;
-  std::array<StylusRecord, kMaxStyluses> stylus;
+  std::array<ContactRecord, kMaxStyluses> contact;
   double residual = 0.0;  ///< of the contact problem [m]
+  int sweeps = 0;         ///< of its solver; 0: solved directly
   bool solved = true;     ///< false: the contact problem had no finite solution and no force acted
+};
+
+/// What became of one stylus in one step.
+struct StylusRecord {
+  bool present = false;
+  std::uint32_t buttons = 0;
+  int object =
+      -1;  ///< the one that it touches (the one with the largest force, if several); -1: none
+  ContactState contact = ContactState::kFree;  ///< with that object
+  Vector3 tip = Vector3::Zero();               ///< [m], W
+  Vector3 proxy = Vector3::Zero();             ///< of that contact; free: the tip [m], W
+  Vector3 force = Vector3::Zero();             ///< on the stylus, of all objects [N], W
+};
+
+/// What happened in one step: everything that the trace, the deformation and the bridges need.
+struct StepRecord {
+  std::uint64_t force_step = 0;  ///< k
+  double time = 0.0;             ///< (k + 1) dt, the end of the step [s]
+  int object_count = 0;
+  int stylus_count = 0;
+  std::array<ObjectRecord, kMaxObjects> object;
+  std::array<StylusRecord, kMaxStyluses> stylus;
 };
 
 }  // namespace irdm

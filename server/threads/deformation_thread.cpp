@@ -7,23 +7,17 @@
 namespace irdm {
 namespace {
 
-constexpr std::size_t kQueueCapacity = 4096;  // 4 s at 1 kHz
+constexpr std::size_t kQueueCapacity = 2048;  // 2 s at 1 kHz
 constexpr std::int64_t kNanosecondsPerMillisecond = 1'000'000;
-
-SurfaceFrame empty_frame(const Model& model) {
-  SurfaceFrame frame;
-  frame.displacement = Points::Zero(model.mesh.surface_node_count(), 3);
-  return frame;
-}
 
 }  // namespace
 
-DeformationThread::DeformationThread(std::shared_ptr<const Model> model, double rate, int threads)
-    : deformation_(model),
+DeformationThread::DeformationThread(const SimulationConfig& config, double rate, int threads)
+    : deformation_(config),
       period_ns_(static_cast<std::int64_t>(1e9 / rate)),
       threads_(threads),
       sink_(kQueueCapacity),
-      surfaces_(empty_frame(*model)) {}
+      surfaces_(rest_frame(config)) {}
 
 DeformationThread::~DeformationThread() {
   finish();

@@ -19,7 +19,7 @@ class DeformationThread {
  public:
   /// @param rate surfaces a second [Hz]
   /// @param threads OpenMP threads, >= 1
-  DeformationThread(std::shared_ptr<const Model> model, double rate, int threads);
+  DeformationThread(const SimulationConfig& config, double rate, int threads);
   ~DeformationThread();
 
   /// Where the force thread puts its steps.

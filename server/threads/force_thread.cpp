@@ -67,7 +67,9 @@ void ForceThread::step() noexcept {
     report_.peak_force = std::max(report_.peak_force, record_.stylus[s].force.norm());
   }
   network_.forces_ready().signal();
-  if (!record_.solved) ++report_.unsolved;
+  for (int i = 0; i < record_.object_count; ++i) {
+    if (!record_.object[static_cast<std::size_t>(i)].solved) ++report_.unsolved;
+  }
   for (StepSink* sink : sinks_) sink->put(record_);
 }
 

@@ -4,7 +4,7 @@
 
 namespace irdm {
 namespace {
-constexpr std::size_t kQueueCapacity = 8192;  // 8 s at 1 kHz
+constexpr std::size_t kQueueCapacity = 4096;  // 4 s at 1 kHz
 constexpr std::size_t kBatch = 512;
 constexpr int kPeriodMs = 50;
 }  // namespace

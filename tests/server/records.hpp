@@ -7,7 +7,7 @@
 namespace irdm::test {
 
 inline TraceHeader header(int styluses) {
-  return {"cube.h5", "c0ffee", "[[object]]\n", 0.002, styluses};
+  return {{{"cube", "cube.h5", "c0ffee"}}, "[[object]]\n", 0.002, styluses};
 }
 
 /// Step k of no simulation: every number another. Contact states take turns, free in row 0.
@@ -20,23 +20,29 @@ inline StepRecord record(std::size_t k) {
   StepRecord record;
   record.force_step = k;
   record.time = 0.002 * static_cast<double>(k + 1);
-  record.position = vector();
-  record.orientation = Quaternion(0.5, -0.5, 0.5, -0.5);
-  record.orientation.coeffs() *= k % 2 == 0 ? 1.0 : -1.0;
-  record.velocity = vector();
-  record.angular_velocity = vector();
-  record.residual = 1e-9 * static_cast<double>(k + 1);
+  record.object_count = 1;
+  ObjectRecord& object = record.object[0];
+  object.position = vector();
+  object.orientation = Quaternion(0.5, -0.5, 0.5, -0.5);
+  object.orientation.coeffs() *= k % 2 == 0 ? 1.0 : -1.0;
+  object.velocity = vector();
+  object.angular_velocity = vector();
+  object.residual = 1e-9 * static_cast<double>(k + 1);
   record.stylus_count = 2;
   for (std::size_t s = 0; s < 2; ++s) {
     StylusRecord& stylus = record.stylus[s];
     stylus.contact = static_cast<ContactState>((k + s) % 3);
+    stylus.object = stylus.contact == ContactState::kFree ? -1 : 0;
     stylus.buttons = static_cast<std::uint32_t>(k + 2 * s);
     stylus.tip = vector();
     stylus.proxy = vector();
     stylus.force = vector();
-    stylus.offset = vector();
+    ContactRecord& contact = object.contact[s];
+    contact.state = stylus.contact;
+    contact.slipping = k % 2 == 1;
+    contact.offset = vector();
     const int node = static_cast<int>(10 * k + s);
-    stylus.point = {{node, node + 1, node + 2}, {0.5, 0.375, 0.125}};
+    contact.point = {{node, node + 1, node + 2}, {0.5, 0.375, 0.125}};
   }
   return record;
 }

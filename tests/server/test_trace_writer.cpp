@@ -101,30 +101,31 @@ TEST_CASE("a trace gives back every number of every row") {
     const StepRecord r = record(k);
     CHECK(file.read<double>("/step/time", {kRows})[k] == r.time);
     CHECK(file.read<std::uint64_t>("/step/force_step", {kRows})[k] == r.force_step);
-    CHECK(file.read<double>("/step/residual", {kRows})[k] == r.residual);
-    CHECK(vector("/step/body_position", k) == r.position);
-    CHECK(vector("/step/body_velocity", k) == r.velocity);
-    CHECK(vector("/step/body_angular_velocity", k) == r.angular_velocity);
+    CHECK(file.read<double>("/step/residual", {kRows})[k] == r.object[0].residual);
+    CHECK(vector("/step/body_position", k) == r.object[0].position);
+    CHECK(vector("/step/body_velocity", k) == r.object[0].velocity);
+    CHECK(vector("/step/body_angular_velocity", k) == r.object[0].angular_velocity);
     const auto wxyz = file.read<double>("/step/body_orientation", {kRows, 4});
     CHECK(Quaternion(wxyz[4 * k], wxyz[4 * k + 1], wxyz[4 * k + 2], wxyz[4 * k + 3]).coeffs() ==
-          r.orientation.coeffs());
+          r.object[0].orientation.coeffs());
     for (std::size_t s = 0; s < 2; ++s) {
       const StylusRecord& stylus = r.stylus[s];
+      const ContactRecord& contact = r.object[0].contact[s];
+      const bool free = stylus.contact == ContactState::kFree;
       const std::string path_in_file = "/stylus/" + std::to_string(s) + "/";
       CHECK(vector(path_in_file + "tip", k) == stylus.tip);
       CHECK(vector(path_in_file + "proxy", k) == stylus.proxy);
       CHECK(vector(path_in_file + "force", k) == stylus.force);
-      CHECK(vector(path_in_file + "offset", k) == stylus.offset);
+      CHECK(vector(path_in_file + "offset", k) == (free ? Vector3(0, 0, 0) : contact.offset));
       CHECK(file.read<std::uint8_t>(path_in_file + "contact", {kRows})[k] ==
             static_cast<std::uint8_t>(stylus.contact));
       CHECK(file.read<std::int32_t>(path_in_file + "buttons", {kRows})[k] ==
             static_cast<std::int32_t>(stylus.buttons));
       const auto nodes = file.read<std::int32_t>(path_in_file + "contact_nodes", {kRows, 3});
-      const bool free = stylus.contact == ContactState::kFree;
       for (std::size_t i = 0; i < 3; ++i) {
-        CHECK(nodes[3 * k + i] == (free ? -1 : stylus.point.nodes[i]));
+        CHECK(nodes[3 * k + i] == (free ? -1 : contact.point.nodes[i]));
         CHECK(vector(path_in_file + "contact_weights", k)[static_cast<Eigen::Index>(i)] ==
-              (free ? 0.0 : stylus.point.weights[i]));
+              (free ? 0.0 : contact.point.weights[i]));
       }
     }
   }

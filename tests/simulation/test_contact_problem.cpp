@@ -3,84 +3,207 @@
 #include <random>
 
 #include "common/contact/contact_problem.hpp"
+#include "common/contact/single_contact.hpp"
 
 using namespace irdm;
 
 namespace {
 
+// Contacts on a body whose elastic answers are weakly coupled, as those of distant points are.
 ContactProblem random_problem(int count, unsigned seed) {
   std::srand(seed);  // Eigen::Random
-  ContactProblem problem;
-  problem.count = count;
+  ContactProblem problem(std::max(count, 1));
+  problem.begin(count);
   const Eigen::MatrixXd a = Eigen::MatrixXd::Random(3 * count, 3 * count);
-  problem.W = 1e-3 * (a * a.transpose() + Eigen::MatrixXd::Identity(3 * count, 3 * count));
-  problem.gap = 1e-3 * Eigen::VectorXd::Random(3 * count);
-  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-    problem.law[i] = ContactLaw::kHeld;
-    problem.normal[i] = Vector3::Random().normalized();
+  const Eigen::MatrixXd W =
+      1e-3 * (0.2 * a * a.transpose() + Eigen::MatrixXd::Identity(3 * count, 3 * count));
+  problem.rigid = {2e-5, 1e-3 * Matrix3::Identity()};
+  for (int i = 0; i < count; ++i) {
+    for (int j = 0; j < count; ++j) problem.elastic(i, j) = W.block<3, 3>(3 * i, 3 * j);
+    problem.contact(i).gap = 1e-3 * Vector3::Random();
+    problem.contact(i).arm = 0.06 * Vector3::Random();
+    problem.contact(i).normal = Vector3::Random().normalized();
   }
   return problem;
+}
+
+Vector3 moved(const ContactProblem& problem, int a) {
+  Vector3 sum = Vector3::Zero();
+  for (int b = 0; b < problem.count(); ++b) {
+    sum += problem.compliance(a, b) * problem.contact(b).force;
+  }
+  return sum;
+}
+
+ContactSolution solve(ContactProblem& problem) {
+  return ContactSolver(problem.capacity()).solve(problem);
+}
+
+// Coulomb's law, stated without the solver: how far a touching contact is from fulfilling it [m].
+double violation(const ContactProblem& problem, int a) {
+  const ContactUnknown& contact = problem.contact(a);
+  const Vector3 open = contact.gap - moved(problem, a);
+  const double push = -contact.force.dot(contact.normal);
+  const Vector3 along = contact.force + push * contact.normal;
+  const double size = problem.compliance(a, a).trace();
+  double worst = std::max(0.0, -push) * size;          // never pulls
+  worst = std::max(worst, -open.dot(contact.normal));  // never left inside
+  if (push > 0) worst = std::max(worst, std::abs(open.dot(contact.normal)));
+  if (contact.mode == ContactMode::kSticking) {
+    worst = std::max(worst, open.norm());
+    worst = std::max(worst, (along.norm() - contact.friction.static_ * push) * size);
+  }
+  if (contact.mode == ContactMode::kSlipping) {
+    const Vector3 slip = open - open.dot(contact.normal) * contact.normal;
+    worst = std::max(worst, std::abs(along.norm() - contact.friction.kinetic * push) * size);
+    worst = std::max(worst, along.norm() > 0
+                                ? (slip - slip.dot(along) * along / along.squaredNorm()).norm()
+                                : 0.0);
+    if (slip.dot(along) < 0) worst = std::max(worst, slip.norm());
+    worst = std::max(worst, (slip - contact.slip).norm());
+  }
+  return worst;
 }
 
 }  // namespace
 
 TEST_CASE("held contacts take their points where they are wanted") {
   for (int count = 1; count <= kMaxContacts; ++count) {
-    const ContactProblem problem = random_problem(count, static_cast<unsigned>(count));
-    const ContactSolution solution = solve_contacts(problem);
-    CHECK((problem.W * solution.force - problem.gap).norm() < 1e-12 * problem.gap.norm());
+    ContactProblem problem = random_problem(count, static_cast<unsigned>(count));
+    const ContactSolution solution = solve(problem);
+    for (int a = 0; a < count; ++a) {
+      CHECK((moved(problem, a) - problem.contact(a).gap).norm() < 1e-15);
+    }
     CHECK(solution.residual < 1e-14);
+    CHECK(solution.sweeps == 0);
   }
 }
 
 TEST_CASE("a touching contact pushes with what closes its gap") {
   ContactProblem problem = random_problem(1, 3);
-  problem.law[0] = ContactLaw::kTouching;
-  problem.normal[0] = Vector3::UnitZ();
-  problem.gap = problem.W * Vector3(0.1, 0.2, -1.0);
-  const ContactSolution solution = solve_contacts(problem);
-  CHECK(solution.active[0]);
-  CHECK((solution.force - Vector3(0.1, 0.2, -1.0)).norm() < 1e-12);
+  problem.contact(0).law = ContactLaw::kTouching;
+  problem.contact(0).normal = Vector3::UnitZ();
+  problem.contact(0).gap = problem.compliance(0, 0) * Vector3(0.1, 0.2, -1.0);
+  solve(problem);
+  CHECK(problem.contact(0).mode == ContactMode::kSticking);
+  CHECK((problem.contact(0).force - Vector3(0.1, 0.2, -1.0)).norm() < 1e-12);
 }
 
 TEST_CASE("a touching contact lets go rather than pull") {
   ContactProblem problem = random_problem(1, 3);
-  problem.law[0] = ContactLaw::kTouching;
-  problem.normal[0] = Vector3::UnitZ();
-  problem.gap = problem.W * Vector3(0.1, 0.2, 1.0);
-  const ContactSolution solution = solve_contacts(problem);
-  CHECK_FALSE(solution.active[0]);
-  CHECK(solution.force.norm() == 0.0);
+  problem.contact(0).law = ContactLaw::kTouching;
+  problem.contact(0).normal = Vector3::UnitZ();
+  problem.contact(0).gap = problem.compliance(0, 0) * Vector3(0.1, 0.2, 1.0);
+  solve(problem);
+  CHECK(problem.contact(0).mode == ContactMode::kOpen);
+  CHECK(problem.contact(0).force.norm() == 0.0);
 }
 
-TEST_CASE("no touching contact ever pulls, and those that stay close their gaps") {
-  for (unsigned seed = 0; seed < 200; ++seed) {
-    ContactProblem problem = random_problem(1 + static_cast<int>(seed % kMaxContacts), seed);
-    for (std::size_t i = 0; i < kMaxContacts; ++i) {
-      if ((seed + i) % 3 != 0) problem.law[i] = ContactLaw::kTouching;
-    }
-    const ContactSolution solution = solve_contacts(problem);
-    for (int a = 0; a < problem.count; ++a) {
-      const auto index = static_cast<std::size_t>(a);
-      const Vector3 force = solution.force.segment<3>(3 * a);
-      if (problem.law[index] == ContactLaw::kTouching) {
-        REQUIRE(force.dot(problem.normal[index]) <= 0.0);
-      }
-      if (!solution.active[index]) REQUIRE(force.norm() == 0.0);
-    }
-    REQUIRE(solution.residual < 1e-12);
+TEST_CASE("a given force acts as it is, and the others know of it") {
+  ContactProblem problem = random_problem(3, 5);
+  problem.contact(1).law = ContactLaw::kGiven;
+  problem.contact(1).force = Vector3(0.3, -0.2, 0.1);
+  solve(problem);
+  CHECK(problem.contact(1).force == Vector3(0.3, -0.2, 0.1));
+  CHECK((moved(problem, 0) - problem.contact(0).gap).norm() < 1e-15);
+  CHECK((moved(problem, 2) - problem.contact(2).gap).norm() < 1e-15);
+}
+
+TEST_CASE("a released contact has no force") {
+  ContactProblem problem = random_problem(2, 6);
+  problem.contact(0).law = ContactLaw::kReleased;
+  solve(problem);
+  CHECK(problem.contact(0).mode == ContactMode::kOpen);
+  CHECK(problem.contact(0).force.norm() == 0.0);
+  CHECK((moved(problem, 1) - problem.contact(1).gap).norm() < 1e-15);
+}
+
+TEST_CASE("one contact: at the limit of static friction it sticks, beyond it slips on the cone") {
+  const Vector3 n = Vector3::UnitZ();
+  const Matrix3 W = 1e-3 * Matrix3::Identity();  // isotropic: the answer is known
+  const Friction friction{0.5, 0.4};
+  const auto at = [&](double along) {
+    return solve_single_contact(W, W * Vector3(along, 0, -1.0), ContactLaw::kTouching, n, friction);
+  };
+  CHECK(at(0.499).mode == ContactMode::kSticking);
+  const SingleContact slipping = at(0.501);
+  CHECK(slipping.mode == ContactMode::kSlipping);
+  CHECK((slipping.force - Vector3(0.4, 0, -1.0)).norm() < 1e-12);
+  CHECK((slipping.slip - Vector3(0.101e-3, 0, 0)).norm() < 1e-15);
+}
+
+TEST_CASE("one contact meets Coulomb's law for any compliance, gap and friction") {
+  std::mt19937 random(17);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  int sticking = 0;
+  int slipping = 0;
+  int open = 0;
+  for (unsigned seed = 0; seed < 5000; ++seed) {
+    ContactProblem problem = random_problem(1, seed);
+    ContactUnknown& contact = problem.contact(0);
+    contact.law = ContactLaw::kTouching;
+    const double mu = 1.2 * uniform(random);
+    contact.friction = {mu, mu};
+    solve(problem);
+    sticking += contact.mode == ContactMode::kSticking ? 1 : 0;
+    slipping += contact.mode == ContactMode::kSlipping ? 1 : 0;
+    open += contact.mode == ContactMode::kOpen ? 1 : 0;
+    INFO("seed " << seed << ", mu " << mu << ", mode " << static_cast<int>(contact.mode));
+    REQUIRE(violation(problem, 0) < 1e-12);
   }
+  CHECK(sticking > 300);
+  CHECK(slipping > 500);
+  CHECK(open > 500);
+}
+
+TEST_CASE("many contacts together meet Coulomb's law, and no friction force gives energy") {
+  for (unsigned seed = 0; seed < 400; ++seed) {
+    ContactProblem problem = random_problem(2 + static_cast<int>(seed % 20), seed);
+    for (int a = 0; a < problem.count(); ++a) {
+      if ((seed + static_cast<unsigned>(a)) % 3 != 0)
+        problem.contact(a).law = ContactLaw::kTouching;
+      problem.contact(a).friction = {0.5, 0.5};
+    }
+    const ContactSolution solution = solve(problem);
+    REQUIRE(solution.finite);
+    for (int a = 0; a < problem.count(); ++a) {
+      const ContactUnknown& contact = problem.contact(a);
+      INFO("seed " << seed << ", contact " << a << " of " << problem.count() << ", sweeps "
+                   << solution.sweeps);
+      if (contact.law == ContactLaw::kHeld) {
+        REQUIRE((moved(problem, a) - contact.gap).norm() < 1e-10);
+      } else {
+        REQUIRE(violation(problem, a) < 1e-10);
+        REQUIRE(contact.force.dot(contact.slip) >= 0.0);
+      }
+    }
+  }
+}
+
+TEST_CASE("the iteration starts from the forces that it is given") {
+  ContactProblem problem = random_problem(20, 8);
+  for (int a = 0; a < problem.count(); ++a) {
+    problem.contact(a).law = ContactLaw::kTouching;
+    problem.contact(a).friction = {0.3, 0.3};
+  }
+  const int cold = solve(problem).sweeps;
+  const int warm = solve(problem).sweeps;
+  CHECK(cold > 2);
+  CHECK(warm <= 2);
 }
 
 TEST_CASE("a problem that cannot be solved gives no force and says so") {
   ContactProblem problem = random_problem(2, 9);
-  problem.gap[4] = std::numeric_limits<double>::quiet_NaN();
-  const ContactSolution solution = solve_contacts(problem);
+  problem.contact(1).gap[1] = std::numeric_limits<double>::quiet_NaN();
+  const ContactSolution solution = solve(problem);
   CHECK_FALSE(solution.finite);
-  CHECK(solution.force.norm() == 0.0);
+  CHECK(problem.contact(0).force.norm() == 0.0);
+  CHECK(problem.contact(1).force.norm() == 0.0);
 }
 
 TEST_CASE("no contacts, no forces") {
-  const ContactProblem problem = random_problem(0, 1);
-  CHECK(solve_contacts(problem).force.size() == 0);
+  ContactProblem problem = random_problem(0, 1);
+  const ContactSolution solution = solve(problem);
+  CHECK(solution.finite);
+  CHECK(solution.sweeps == 0);
 }

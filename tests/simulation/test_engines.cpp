@@ -132,8 +132,8 @@ TEST_CASE("engines predict the coming step: free displacement, and R[0] between 
   RandomContacts contacts(modal.mesh.surface_node_count());
   for (int k = 0; k < 30; ++k) engine->advance(contacts.next());
 
-  const std::array<SurfacePoint, 2> points{SurfacePoint{{0, 1, 2}, {0.2, 0.3, 0.5}},
-                                           SurfacePoint{{7, 3, 9}, {1.0, 0.0, 0.0}}};
+  const std::array<ContactPatch, 2> points{ContactPatch(SurfacePoint{{0, 1, 2}, {0.2, 0.3, 0.5}}),
+                                           ContactPatch(SurfacePoint{{7, 3, 9}, {1.0, 0.0, 0.0}})};
   std::array<Vector3, 2> h;
   ContactMatrix W;
   engine->predict(points, h, W);
@@ -141,7 +141,7 @@ TEST_CASE("engines predict the coming step: free displacement, and R[0] between 
   const std::array<Vector3, 2> f{Vector3(0.3, -0.2, 0.1), Vector3(-0.5, 0.4, 0.6)};
   std::vector<NodalForce> nodal;
   for (std::size_t a = 0; a < 2; ++a) {
-    for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t i = 0; i < static_cast<std::size_t>(points[a].count); ++i)
       nodal.push_back({points[a].nodes[i], points[a].weights[i] * f[a]});
   }
   engine->advance(nodal);
@@ -153,7 +153,7 @@ TEST_CASE("engines predict the coming step: free displacement, and R[0] between 
   CHECK((W - W.transpose()).norm() < 1e-12 * W.norm());
   for (std::size_t a = 0; a < 2; ++a) {
     const Vector3 moved =
-        interpolate(points[a], [&](int i) -> Vector3 { return u.row(i).transpose(); });
+        mean(points[a], [&](int i) -> Vector3 { return u.row(i).transpose(); });
     const Vector3 predicted = h[a] + answer.segment<3>(static_cast<Eigen::Index>(3 * a));
     CHECK((moved - predicted).norm() < 1e-12 * u.norm());
   }

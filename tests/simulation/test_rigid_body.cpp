@@ -88,8 +88,9 @@ TEST_CASE("rigid body: compliance is what a force held during one step does") {
   const Vector3 force(1e-4, -2e-4, 3e-4);  // small: the compliance is the linear part
   const RigidState state = body.advance(RigidState{}, force, from.cross(force));
   const Vector3 moved = state.position + state.orientation * at - at;
-  CHECK((moved - body.compliance(at, from) * force).norm() < 1e-6 * moved.norm());
-  CHECK((body.compliance(at, from) - body.compliance(from, at).transpose()).norm() < 1e-18);
+  CHECK((moved - body.mobility().between(at, from) * force).norm() < 1e-6 * moved.norm());
+  CHECK((body.mobility().between(at, from) - body.mobility().between(from, at).transpose()).norm() <
+        1e-18);
 }
 
 TEST_CASE("rigid body: a fixed object does not move") {
@@ -99,7 +100,7 @@ TEST_CASE("rigid body: a fixed object does not move") {
   const RigidState state = body.advance(RigidState{}, Vector3(1, 2, 3), Vector3(1, 2, 3));
   CHECK(state.position == Vector3::Zero());
   CHECK(state.orientation.coeffs() == Quaternion::Identity().coeffs());
-  CHECK(body.compliance(Vector3(1, 0, 0), Vector3(0, 1, 0)).norm() == 0.0);
+  CHECK(body.mobility().between(Vector3(1, 0, 0), Vector3(0, 1, 0)).norm() == 0.0);
 }
 
 TEST_CASE("rotation by a vector equals the rotation by its angle about its axis, small ones too") {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "server/deformation/deformation.hpp"
-#include "server/step/nodal_forces.hpp"
+#include "server/step/recorded_forces.hpp"
 #include "tests/support/fem_cube.hpp"
 
 using namespace irdm;
@@ -19,6 +19,18 @@ namespace {
 
 constexpr double kHalfEdge = 0.06;
 const Vector3 kUp(0, 1, 0);
+
+// One object that tips stick to, as in the paper.
+SimulationConfig one(const std::shared_ptr<const Model>& model) {
+  SimulationConfig config;
+  config.objects.resize(1);
+  config.objects[0].model = model;
+  return config;
+}
+
+const RigidState& body_of(const Simulation& simulation) {
+  return simulation.object().state();
+}
 
 StylusCommand at_tip(const Vector3& tip, bool grab = false) {
   return {true, grab ? kGrabButton : 0u, tip, std::nullopt};
@@ -65,20 +77,21 @@ double largest_force(const std::vector<StepRecord>& records) {
 
 TEST_CASE("step: an untouched object falls with gravity and spins on") {
   const auto model = fem_cube({});
-  SimulationConfig config;
+  SimulationConfig config = one(model);
   config.gravity = Vector3(0, -9.81, 0);
-  config.angular_velocity = Vector3(1, 2, 3);
-  Simulation simulation(model, config);
+  config.objects[0].angular_velocity = Vector3(1, 2, 3);
+  Simulation simulation(config);
   const auto records = play(
       simulation, [](double) { return StylusCommand{}; }, 500);
-  const StepRecord& last = records.back();
+  const StepRecord& end = records.back();
+  const ObjectRecord& last = end.object[0];
   CHECK((last.velocity - Vector3(0, -9.81, 0)).norm() < 1e-12);
   // Symplectic Euler: half a step ahead of the parabola.
   CHECK(last.position.y() == Approx(-0.5 * 9.81 * (1.0 + simulation.dt())).epsilon(1e-12));
-  CHECK(last.time == Approx(1.0));
-  CHECK(last.stylus[0].contact == ContactState::kFree);
+  CHECK(end.time == Approx(1.0));
+  CHECK(end.stylus[0].contact == ContactState::kFree);
   Points u;
-  simulation.engine().displacement(u);
+  simulation.object().engine().displacement(u);
   CHECK(u.norm() == 0.0);
 }
 
@@ -89,7 +102,7 @@ TEST_CASE("step: a held node follows a swung stylus within 0.5 mm, with a smooth
       cube.youngs_modulus = youngs_modulus;
       cube.dt = dt;
       const auto model = fem_cube(cube);
-      Simulation simulation(model, {});
+      Simulation simulation(one(model));
       const int steps = static_cast<int>(std::lround(3.0 / dt));
       const auto records = play(simulation, swing, steps);
       const double peak = largest_force(records);
@@ -120,10 +133,12 @@ TEST_CASE("step: a held node follows a swung stylus within 0.5 mm, with a smooth
 TEST_CASE("step: momentum and angular momentum change exactly by the impulses of the contacts") {
   const auto model = fem_cube({});
   for (const Path& path : {Path(swing), Path(tap)}) {
-    Simulation simulation(model, {});
+    Simulation simulation(one(model));
     const RigidBody body(model->body, model->dt);
     // An engine of the test's own gives the deformed lever arms.
     const auto engine = make_engine(model);
+    const RestSurface surface(model->mesh);
+    RecordedForces forces(surface, {0.0});
     Vector3 momentum = Vector3::Zero();
     Vector3 angular = Vector3::Zero();
     double impulses = 0.0;
@@ -132,13 +147,12 @@ TEST_CASE("step: momentum and angular momentum change exactly by the impulses of
     double worst_angular = 0.0;
     StepRecord record;
     for (int k = 0; k < 10'000; ++k) {
-      const Quaternion Q = simulation.body_state().orientation;
+      const Quaternion Q = body_of(simulation).orientation;
       const StylusCommand command = path((k + 1) * simulation.dt());
       simulation.step({&command, 1}, record);
       const StylusRecord& stylus = record.stylus[0];
-      NodalForces nodal;
       if (stylus.contact != ContactState::kFree) {
-        const Vector3 arm = interpolate(stylus.point, [&](int i) -> Vector3 {
+        const Vector3 arm = interpolate(record.object[0].contact[0].point, [&](int i) -> Vector3 {
           return model->mesh.rest_position(i) + engine->free_displacement(i);
         });
         const Vector3 impulse = -model->dt * stylus.force;
@@ -147,9 +161,10 @@ TEST_CASE("step: momentum and angular momentum change exactly by the impulses of
         impulses += impulse.norm();
         angular_impulses += (Q * arm).cross(impulse).norm();
       }
-      engine->advance(nodal_forces(record).view());
-      const Vector3 L = body.angular_momentum(record.orientation, record.angular_velocity);
-      worst = std::max(worst, (model->body.mass * record.velocity - momentum).norm());
+      engine->advance(forces.of(record.object[0]));
+      const Vector3 L =
+          body.angular_momentum(record.object[0].orientation, record.object[0].angular_velocity);
+      worst = std::max(worst, (model->body.mass * record.object[0].velocity - momentum).norm());
       worst_angular = std::max(worst_angular, (L - angular).norm());
     }
     CHECK(impulses > 1e-3);
@@ -160,7 +175,7 @@ TEST_CASE("step: momentum and angular momentum change exactly by the impulses of
 
 TEST_CASE("step: a tap touches, pushes only, lets go, and leaves the cube moving and ringing") {
   const auto model = fem_cube({});
-  Simulation simulation(model, {});
+  Simulation simulation(one(model));
   const auto records = play(simulation, tap, 400);
   int touched = 0;
   int first = -1;
@@ -181,15 +196,15 @@ TEST_CASE("step: a tap touches, pushes only, lets go, and leaves the cube moving
   CHECK(first == 25);  // 1 cm at 0.2 m/s is reached at 50 ms
   CHECK(touched > 5);
   CHECK(records.back().stylus[0].contact == ContactState::kFree);
-  CHECK(records.back().velocity.x() > 0.05);
-  CHECK(records.back().angular_velocity.norm() > 0.1);
+  CHECK(records.back().object[0].velocity.x() > 0.05);
+  CHECK(records.back().object[0].angular_velocity.norm() > 0.1);
   Points u;
-  simulation.engine().displacement(u);
+  simulation.object().engine().displacement(u);
   CHECK(u.cwiseAbs().maxCoeff() > 1e-6);
 }
 
 TEST_CASE("step: a tip that was never outside makes no contact") {
-  Simulation simulation(fem_cube({}), {});
+  Simulation simulation(one(fem_cube({})));
   const auto records = play(
       simulation,
       [](double t) {
@@ -201,7 +216,7 @@ TEST_CASE("step: a tip that was never outside makes no contact") {
 
 TEST_CASE("step: letting go of a held point makes no jump while the stylus still pushes") {
   const auto model = fem_cube({});
-  Simulation simulation(model, {});
+  Simulation simulation(one(model));
   // Pushed along with 3 m/s^2, so that it presses all the time; held between 0.2 s and 0.3 s.
   const auto records = play(
       simulation,
@@ -226,7 +241,7 @@ TEST_CASE("step: letting go of a held point makes no jump while the stylus still
 }
 
 TEST_CASE("step: a stylus that goes absent ends its contact") {
-  Simulation simulation(fem_cube({}), {});
+  Simulation simulation(one(fem_cube({})));
   auto records = play(simulation, swing, 300);
   REQUIRE(records.back().stylus[0].contact == ContactState::kHeld);
   records = play(
@@ -244,31 +259,32 @@ TEST_CASE("step: a stylus that goes absent ends its contact") {
 }
 
 TEST_CASE("step: input that is not finite is nobody's stylus") {
-  Simulation simulation(fem_cube({}), {});
+  Simulation simulation(one(fem_cube({})));
   play(simulation, swing, 300);
   const auto records = play(
       simulation, [](double) { return at_tip(Vector3(0, std::nan(""), 0), true); }, 5);
   CHECK(largest_force(records) == 0.0);
-  CHECK(records.back().position.allFinite());
+  CHECK(records.back().object[0].position.allFinite());
 }
 
 TEST_CASE("step: a force given by the bridge does what the same force found by the step does") {
   const auto model = fem_cube({});
-  Simulation solving(model, {});
-  Simulation given(model, {});
+  Simulation solving(one(model));
+  Simulation given(one(model));
   StepRecord found, repeated;
   for (int k = 0; k < 1000; ++k) {
     StylusCommand command = swing((k + 1) * model->dt);
     solving.step({&command, 1}, found);
     const StylusRecord& stylus = found.stylus[0];
     if (stylus.contact != ContactState::kFree) {
-      command.given = GivenForce{stylus.contact, stylus.point, -stylus.force};
+      command.given =
+          GivenForce{stylus.contact, found.object[0].contact[0].point, -stylus.force, 0};
     } else {
       command.present = false;
     }
     given.step({&command, 1}, repeated);
-    REQUIRE((repeated.position - found.position).norm() < 1e-12);
-    REQUIRE(repeated.orientation.angularDistance(found.orientation) < 1e-10);
+    REQUIRE((repeated.object[0].position - found.object[0].position).norm() < 1e-12);
+    REQUIRE(repeated.object[0].orientation.angularDistance(found.object[0].orientation) < 1e-10);
     REQUIRE((repeated.stylus[0].proxy - found.stylus[0].proxy).norm() <
             (command.given ? 1e-10 : 1.0));
   }
@@ -277,13 +293,13 @@ TEST_CASE("step: a force given by the bridge does what the same force found by t
 TEST_CASE("step: the same commands give the same bits") {
   for (const ResponseKind kind : {ResponseKind::kModal, ResponseKind::kDense}) {
     const auto model = fem_cube({3, 2000.0, 8.0, 0.002, 100}, kind);
-    Simulation one(model, {});
-    Simulation two(model, {});
-    const auto first = play(one, swing, 600);
-    const auto second = play(two, swing, 600);
+    Simulation a(one(model));
+    Simulation b(one(model));
+    const auto first = play(a, swing, 600);
+    const auto second = play(b, swing, 600);
     for (std::size_t k = 0; k < first.size(); ++k) {
-      REQUIRE(first[k].position == second[k].position);
-      REQUIRE(first[k].orientation.coeffs() == second[k].orientation.coeffs());
+      REQUIRE(first[k].object[0].position == second[k].object[0].position);
+      REQUIRE(first[k].object[0].orientation.coeffs() == second[k].object[0].orientation.coeffs());
       REQUIRE(first[k].stylus[0].force == second[k].stylus[0].force);
     }
     CHECK(largest_force(first) > 0.5);
@@ -291,7 +307,7 @@ TEST_CASE("step: the same commands give the same bits") {
 }
 
 TEST_CASE("step: reset puts everything back") {
-  Simulation simulation(fem_cube({}), {});
+  Simulation simulation(one(fem_cube({})));
   const auto first = play(simulation, swing, 400);
   simulation.reset();
   const auto second = play(simulation, swing, 400);
@@ -307,8 +323,8 @@ TEST_CASE("step: dense and modal engines give the same forces and motion over 3 
   cube.cells = 3;
   cube.rayleigh_alpha = 50.0;
   cube.steps = 300;
-  Simulation modal(fem_cube(cube), {});
-  Simulation dense(fem_cube(cube, ResponseKind::kDense), {});
+  Simulation modal(one(fem_cube(cube)));
+  Simulation dense(one(fem_cube(cube, ResponseKind::kDense)));
   // Comes, pokes here and there on the top face wherever the cube has gone, holds, lets go, comes
   // again.
   const auto path = [](double t, const RigidState& body) {
@@ -336,8 +352,8 @@ TEST_CASE("step: dense and modal engines give the same forces and motion over 3 
   Points u, v;
   for (int k = 0; k < 3 * cube.steps; ++k) {
     if (k % 150 == 0) {
-      modal_start = modal.body_state();
-      dense_start = dense.body_state();
+      modal_start = body_of(modal);
+      dense_start = body_of(dense);
     }
     const double time = (k + 1) * modal.dt();
     const StylusCommand modal_command = path(time, modal_start);
@@ -346,11 +362,12 @@ TEST_CASE("step: dense and modal engines give the same forces and motion over 3 
     dense.step({&dense_command, 1}, found);
     REQUIRE(found.stylus[0].contact == expected.stylus[0].contact);
     const Vector3 difference = found.stylus[0].force - expected.stylus[0].force;
-    modal.engine().displacement(u);
-    dense.engine().displacement(v);
+    modal.object().engine().displacement(u);
+    dense.object().engine().displacement(v);
     peak = std::max(peak, expected.stylus[0].force.norm());
     worst_force = std::max(worst_force, difference.norm());
-    worst_position = std::max(worst_position, (found.position - expected.position).norm());
+    worst_position =
+        std::max(worst_position, (found.object[0].position - expected.object[0].position).norm());
     worst_displacement = std::max(worst_displacement, (u - v).cwiseAbs().maxCoeff());
     largest_displacement = std::max(largest_displacement, u.cwiseAbs().maxCoeff());
     if (expected.stylus[0].contact != last) ++changes;
@@ -367,25 +384,26 @@ TEST_CASE("step: dense and modal engines give the same forces and motion over 3 
 
 TEST_CASE("deformation follows the force thread's engine exactly, and survives lost steps") {
   const auto model = fem_cube({});
-  Simulation simulation(model, {});
-  Deformation whole(model);
-  Deformation holed(model);
+  Simulation simulation(one(model));
+  Deformation whole(one(model));
+  Deformation holed(one(model));
   const auto records = play(simulation, swing, 800);
   for (const StepRecord& record : records) {
     whole.follow(record);
     if (record.force_step % 10 != 3) holed.follow(record);
   }
   Points u;
-  simulation.engine().displacement(u);
-  SurfaceFrame frame;
+  simulation.object().engine().displacement(u);
+  SurfaceFrame frame = rest_frame(one(model));
   whole.compute(frame);
-  CHECK(frame.displacement == u);
-  CHECK(frame.position == records.back().position);
+  CHECK(frame.objects[0].displacement == u);
+  CHECK(frame.objects[0].position == records.back().object[0].position);
   const StylusRecord& stylus = records.back().stylus[0];
-  const Vector3 touched =
-      interpolate(stylus.point, [&](int i) { return frame.world(model->mesh, i); });
+  const Vector3 touched = interpolate(records.back().object[0].contact[0].point, [&](int i) {
+    return frame.objects[0].world(model->mesh, i);
+  });
   CHECK((touched - stylus.proxy).norm() < 1e-9);
   holed.compute(frame);
   CHECK(holed.lost_steps() == 80);
-  CHECK((frame.displacement - u).norm() < 0.05 * u.norm());
+  CHECK((frame.objects[0].displacement - u).norm() < 0.05 * u.norm());
 }

@@ -12,8 +12,11 @@ TEST_CASE("step: nothing allocates, free, touching or held, with two styluses an
   if (!AllocationGuard::active()) return;
   const ResponseKind kind = GENERATE(ResponseKind::kModal, ResponseKind::kDense);
   SimulationConfig config;
-  config.stylus_count = 2;
-  Simulation simulation(fem_cube({3, 2000.0, 8.0, 0.002, 200}, kind), config);
+  config.objects.resize(1);
+  config.objects[0].model = fem_cube({3, 2000.0, 8.0, 0.002, 200}, kind);
+  config.objects[0].friction = {0.6, 0.5};
+  config.styluses = {{0.0, 0.0, 0.0}, {0.015, 1000.0, 0.005}};
+  Simulation simulation(config);
   StepRecord record;
   int touching = 0;
   int held = 0;

@@ -20,7 +20,7 @@ class FakeEngine final : public ResponseEngine {
     ++evaluations;
     return u_[static_cast<std::size_t>(node)];
   }
-  void predict(std::span<const SurfacePoint>, std::span<Vector3>,
+  void predict(std::span<const ContactPatch>, std::span<Vector3>,
                ContactMatrix&) noexcept override {}
   void advance(std::span<const NodalForce>) noexcept override {}
   void displacement(Points&) const override {}
@@ -107,7 +107,8 @@ TEST_CASE("surface tree finds the triangle that a search through all finds") {
 
 TEST_CASE("deformed surface gives the signed distance of the cube at rest") {
   const Model model = test::synthetic_cube(6, 1, 1);
-  DeformedSurface surface(model.mesh);
+  const RestSurface rest(model.mesh);
+  DeformedSurface surface(rest);
   const FakeEngine engine(model.mesh, [](const Vector3&) -> Vector3 { return Vector3::Zero(); });
   std::mt19937 random(4);
   for (int i = 0; i < 1000; ++i) {
@@ -120,7 +121,8 @@ TEST_CASE("deformed surface gives the signed distance of the cube at rest") {
 
 TEST_CASE("deformed surface follows displacements much larger than its triangles") {
   const Model model = test::synthetic_cube(6, 1, 1);
-  DeformedSurface surface(model.mesh);
+  const RestSurface rest(model.mesh);
+  DeformedSurface surface(rest);
   // Squeezed to half, and shifted by a third of the edge: still a box, of which the distance is
   // known.
   const Vector3 scale(1.2, 0.5, 0.8);
@@ -147,7 +149,8 @@ TEST_CASE("deformed surface computes a bounded number of nodes, each once a step
   int most = 0;
   for (const int cells : {4, 8, 16}) {
     const Model model = test::synthetic_cube(cells, 1, 1);
-    DeformedSurface surface(model.mesh);
+    const RestSurface rest(model.mesh);
+    DeformedSurface surface(rest);
     const FakeEngine engine(model.mesh, [](const Vector3&) -> Vector3 { return Vector3::Zero(); });
     surface.begin_step(engine);
     surface.closest({0.01, 0.012, 0.065});

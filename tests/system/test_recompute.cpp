@@ -65,7 +65,8 @@ Vector3 contact_force(const Model& model, const SceneConfig& scene, const Body& 
   const Matrix3 Q = body.orientation.toRotationMatrix();
   Vector3 h;
   ContactMatrix elastic;
-  engine.predict({&point, 1}, {&h, 1}, elastic);
+  const ContactPatch patch(point);
+  engine.predict({&patch, 1}, {&h, 1}, elastic);
   Vector3 r = h;
   for (std::size_t i = 0; i < 3; ++i) {
     r += point.weights[i] * model.mesh.rest_position(point.nodes[i]);

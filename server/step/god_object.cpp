@@ -1,0 +1,95 @@
+#include "server/step/god_object.hpp"
+
+#include <cmath>
+
+namespace irdm {
+
+void GodObject::find(const Input& input, DeformedSurface& surface) noexcept {
+  if (state_ == ContactState::kFree && !reach_for(input, surface)) touch(input.tip, surface);
+  if (state_ == ContactState::kFree) {
+    grabbed_before_ = input.grab;
+    return;
+  }
+  // The touched point goes on from where it is, so that taking hold makes no jump.
+  if (input.grab) {
+    state_ = ContactState::kHeld;
+    releasing_ = false;
+  } else if (state_ == ContactState::kHeld) {
+    release_steps_ = releasing_ ? release_steps_ + 1 : 0;
+    releasing_ = true;
+  }
+  grabbed_before_ = input.grab;
+}
+
+// A tip whose way crosses the surface from outside touches it there.
+void GodObject::touch(const Vector3& tip, DeformedSurface& surface) noexcept {
+  const SurfaceHit hit = surface.closest(tip);
+  std::optional<SurfaceHit> entry;
+  if (outside_) entry = surface.first_crossing(last_tip_, tip, hit);
+  if (entry || (outside_ && hit.signed_distance <= 0)) {
+    const SurfaceHit& at = entry ? *entry : hit;
+    state_ = ContactState::kTouching;
+    triangle_ = at.triangle;
+    point_ = at.point;
+    offset_.setZero();
+    slipping_ = false;
+  }
+  if (hit.signed_distance > 0) outside_ = true;
+  last_tip_ = tip;
+}
+
+// A button pressed near the surface takes hold of the nearest node at its offset.
+bool GodObject::reach_for(const Input& input, DeformedSurface& surface) noexcept {
+  if (!input.grab || grabbed_before_ || input.reach <= 0) return false;
+  const SurfaceHit hit = surface.closest(input.tip);
+  if (std::abs(hit.signed_distance) > input.reach) return false;
+  std::size_t nearest = 0;
+  for (std::size_t i = 1; i < 3; ++i) {
+    if (hit.point.weights[i] > hit.point.weights[nearest]) nearest = i;
+  }
+  state_ = ContactState::kHeld;
+  triangle_ = hit.triangle;
+  point_.nodes = hit.point.nodes;
+  point_.weights = {0.0, 0.0, 0.0};
+  point_.weights[nearest] = 1.0;
+  offset_ = input.tip - surface.node(hit.point.nodes[nearest]);
+  slipping_ = false;
+  return true;
+}
+
+void GodObject::impose(ContactState state, const SurfacePoint& point) noexcept {
+  state_ = state;
+  point_ = point;
+  offset_.setZero();
+  slipping_ = false;
+  releasing_ = false;
+}
+
+void GodObject::stay(const Vector3& slip, const Vector3& tip_free,
+                     const RestSurface& rest) noexcept {
+  slipping_ = !slip.isZero(0.0);
+  if (slipping_) {
+    const Vector3 here = at(rest.corners(triangle_), point_.weights);
+    const SurfaceLocation there = rest.walk(triangle_, here + slip);
+    triangle_ = there.triangle;
+    point_ = there.point;
+  }
+  outside_ = true;
+  last_tip_ = tip_free;
+}
+
+void GodObject::turn_to_touching() noexcept {
+  state_ = ContactState::kTouching;
+  offset_.setZero();
+  releasing_ = false;
+}
+
+void GodObject::let_go(const Vector3& tip) noexcept {
+  state_ = ContactState::kFree;
+  slipping_ = false;
+  releasing_ = false;
+  outside_ = true;
+  last_tip_ = tip;
+}
+
+}  // namespace irdm

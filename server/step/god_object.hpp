@@ -1,0 +1,65 @@
+#pragma once
+
+#include "common/stylus.hpp"
+#include "server/collision/deformed_surface.hpp"
+#include "server/collision/rest_surface.hpp"
+
+namespace irdm {
+
+/// The god-object of one stylus on one object: where on the surface it is, from step to step. It
+/// comes into being where the tip's way crosses the deformed surface from outside, stays at its
+/// material point while it sticks or is held, and moves along the surface by its slip. Geometry
+/// alone; the forces are found elsewhere. Real-time safe.
+class GodObject {
+ public:
+  /// What the stylus does in this step.
+  struct Input {
+    Vector3 tip = Vector3::Zero();  ///< in the frame that free motion leads to [m], B
+    bool grab = false;
+    double reach = 0.0;  ///< a tip that grabs within it holds the nearest node [m]
+  };
+
+  /// Decides whether there is a contact in this step.
+  void find(const Input& input, DeformedSurface& surface) noexcept;
+  /// The stylus is gone; when it comes back, it has to come from outside.
+  void forget() noexcept { *this = GodObject{}; }
+  /// A contact that was decided elsewhere.
+  void impose(ContactState state, const SurfacePoint& point) noexcept;
+
+  /// After the step: still in contact, having slipped by `slip` [m, B] along the surface;
+  /// `tip_free` is where the point was without force [m, B].
+  void stay(const Vector3& slip, const Vector3& tip_free, const RestSurface& rest) noexcept;
+  /// After the step: a point that is given up is pushed on, so that it can be touched on.
+  void turn_to_touching() noexcept;
+  /// After the step: the contact let go, and the tip [m, B] is outside.
+  void let_go(const Vector3& tip) noexcept;
+
+  ContactState state() const noexcept { return state_; }
+  int triangle() const noexcept { return triangle_; }
+  const SurfacePoint& point() const noexcept { return point_; }
+  const Vector3& offset() const noexcept { return offset_; }
+  /// It slipped in the last step.
+  bool slipping() const noexcept { return slipping_; }
+  /// The button is up, but the point is not given up yet.
+  bool releasing() const noexcept { return releasing_; }
+  /// How many steps ago the button went up.
+  int steps_since_release() const noexcept { return release_steps_; }
+
+ private:
+  void touch(const Vector3& tip, DeformedSurface& surface) noexcept;
+  bool reach_for(const Input& input, DeformedSurface& surface) noexcept;
+
+  ContactState state_ = ContactState::kFree;
+  int triangle_ = 0;
+  SurfacePoint point_;
+  Vector3 offset_ = Vector3::Zero();
+  bool slipping_ = false;
+  bool releasing_ = false;
+  int release_steps_ = 0;
+  bool grabbed_before_ = false;  ///< the button was down in the last step
+  /// The tip was outside the surface when last seen near it. Only from there can it make a contact.
+  bool outside_ = false;
+  Vector3 last_tip_ = Vector3::Zero();  ///< relative to the free motion [m], B
+};
+
+}  // namespace irdm

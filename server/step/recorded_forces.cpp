@@ -1,0 +1,21 @@
+#include "server/step/recorded_forces.hpp"
+
+namespace irdm {
+
+RecordedForces::RecordedForces(const RestSurface& surface, const std::vector<double>& radii)
+    : forces_(radii.size() * kMaxPatchNodes) {
+  for (const double radius : radii) masks_.emplace_back(surface, radius);
+}
+
+std::span<const NodalForce> RecordedForces::of(const ObjectRecord& record) noexcept {
+  forces_.clear();
+  for (std::size_t s = 0; s < masks_.size(); ++s) {
+    const ContactRecord& contact = record.contact[s];
+    if (contact.state == ContactState::kFree) continue;
+    masks_[s].spread(contact.point, patch_);
+    forces_.add(patch_, contact.force);
+  }
+  return forces_.view();
+}
+
+}  // namespace irdm

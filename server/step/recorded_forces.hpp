@@ -1,0 +1,28 @@
+#pragma once
+
+#include <vector>
+
+#include "server/contact/pressure_mask.hpp"
+#include "server/step/nodal_forces.hpp"
+#include "server/step/step_record.hpp"
+
+namespace irdm {
+
+/// The nodal forces of recorded steps: what the force step gave to its engine, to the bit. One
+/// thread; real-time safe after construction.
+class RecordedForces {
+ public:
+  /// @param surface must outlive this object
+  /// @param radii of the styluses' fingertips [m]; kMaxStyluses at most
+  RecordedForces(const RestSurface& surface, const std::vector<double>& radii);
+
+  /// Valid until the next call.
+  std::span<const NodalForce> of(const ObjectRecord& record) noexcept;
+
+ private:
+  std::vector<PressureMask> masks_;
+  ContactPatch patch_;
+  NodalForces forces_;
+};
+
+}  // namespace irdm

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "common/contact/contact_problem.hpp"
+#include "common/geometry.hpp"
+#include "common/model/model.hpp"
+
+namespace irdm {
+
+/// How the free motion of an object is held back. Both act on the rigid motion alone.
+struct RigidDamping {
+  double linear = 0.0;   ///< velocity decays with this rate [1/s]; times dt at most 0.5
+  double angular = 0.0;  ///< angular momentum decays with this rate [1/s]; times dt at most 0.5
+};
+
+/// A soft spring from the object to its pose at the start. 0: none.
+struct Tether {
+  double stiffness = 0.0;          ///< [N/m]
+  double angular_stiffness = 0.0;  ///< [N m/rad]
+};
+
+/// One object at the start.
+struct SimulationObject {
+  std::shared_ptr<const Model> model;
+  Vector3 position = Vector3::Zero();               ///< of the centre of mass [m], W
+  Quaternion orientation = Quaternion::Identity();  ///< B to W
+  Vector3 velocity = Vector3::Zero();               ///< [m/s], W
+  Vector3 angular_velocity = Vector3::Zero();       ///< [rad/s], W
+  Friction friction;                                ///< of tips on its surface
+  RigidDamping damping;
+  Tether tether;
+};
+
+/// How one stylus touches.
+struct SimulationStylus {
+  double radius = 0.0;              ///< of the fingertip [m]; 0: a point
+  double coupling_stiffness = 0.0;  ///< k_vc, spring between tip and surface [N/m]; 0: none (rigid)
+  double reach = 0.0;  ///< pressed within it, the grab button holds the nearest node [m]
+};
+
+/// Objects among their styluses. All models have the same dt.
+struct SimulationConfig {
+  Vector3 gravity = Vector3::Zero();  ///< [m/s^2], W
+  std::vector<SimulationObject> objects;
+  std::vector<SimulationStylus> styluses{1};
+  double release_time = 0.03;  ///< in which a held point that pulls is given up [s]
+};
+
+}  // namespace irdm

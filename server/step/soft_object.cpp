@@ -1,0 +1,246 @@
+#include "server/step/soft_object.hpp"
+
+#include <cmath>
+
+#include "common/error.hpp"
+
+namespace irdm {
+namespace {
+
+// First row of contact i in matrices over the contacts.
+Eigen::Index row(int i) {
+  return static_cast<Eigen::Index>(3 * i);
+}
+
+// The rotation vector of a rotation, |v| at most pi.
+Vector3 rotation_vector(const Quaternion& q) noexcept {
+  const Quaternion short_way = q.w() < 0 ? Quaternion(-q.coeffs()) : q;
+  const double sine = short_way.vec().norm();
+  if (sine == 0.0) return Vector3::Zero();
+  return 2.0 * std::atan2(sine, short_way.w()) / sine * short_way.vec();
+}
+
+// Inside the cone of a touching contact.
+bool pushes(const ContactUnknown& contact) noexcept {
+  const double push = -contact.force.dot(contact.normal);
+  const Vector3 along = contact.force + push * contact.normal;
+  return push >= 0 &&
+         (std::isinf(contact.friction.static_) || along.norm() <= contact.friction.static_ * push);
+}
+
+}  // namespace
+
+SoftObject::SoftObject(const SimulationObject& object, const SimulationConfig& config, int number)
+    : model_(object.model),
+      object_(object),
+      config_(config),
+      number_(number),
+      engine_(make_engine(model_)),
+      rest_(model_->mesh),
+      surface_(rest_),
+      body_(model_->body, model_->dt),
+      styluses_(config.styluses.size()),
+      problem_(kMaxContacts),
+      solver_(kMaxContacts),
+      nodal_(kMaxContacts * kMaxPatchNodes) {
+  start_.position = object.position;
+  start_.orientation = object.orientation.normalized();
+  start_.velocity = object.velocity;
+  start_.angular_momentum = body_.angular_momentum(start_.orientation, object.angular_velocity);
+  state_ = start_;
+  for (const SimulationStylus& stylus : config.styluses) {
+    const double largest = PressureMask::largest_radius(rest_);
+    if (stylus.radius > largest) {
+      throw Error("stylus",
+                  "radius " + std::to_string(stylus.radius) +
+                      " m is too large for an object whose triangles are this small",
+                  "use at most " + std::to_string(largest) + " m or a coarser mesh");
+    }
+    masks_.emplace_back(rest_, stylus.radius);
+  }
+}
+
+void SoftObject::reset() noexcept {
+  state_ = start_;
+  engine_->reset();
+  for (GodObject& stylus : styluses_) stylus.forget();
+}
+
+void SoftObject::step(std::span<const StylusCommand> commands, ObjectRecord& record) noexcept {
+  surface_.begin_step(*engine_);
+  motion_ = predict_free_motion();
+  collect(commands);
+  solve(commands, record);
+  write(record);
+  settle(commands);
+  advance();
+  record.position = state_.position;
+  record.orientation = state_.orientation;
+  record.velocity = state_.velocity;
+  record.angular_velocity = body_.angular_velocity(state_);
+  for (ContactRecord& contact : record.contact) {
+    if (contact.state != ContactState::kFree) {
+      contact.proxy = state_.position + state_.orientation * contact.proxy;
+    }
+  }
+}
+
+SoftObject::FreeMotion SoftObject::predict_free_motion() const noexcept {
+  FreeMotion motion;
+  motion.force = body_.mass() * (config_.gravity - object_.damping.linear * state_.velocity) -
+                 object_.tether.stiffness * (state_.position - start_.position);
+  motion.torque = -object_.damping.angular * state_.angular_momentum;
+  if (object_.tether.angular_stiffness > 0) {
+    motion.torque -= object_.tether.angular_stiffness *
+                     rotation_vector(state_.orientation * start_.orientation.conjugate());
+  }
+  const RigidState end = body_.advance(state_, motion.force, motion.torque);
+  motion.position = end.position;
+  motion.orientation = end.orientation;
+  return motion;
+}
+
+// Decides which styluses are in contact in this step, and where.
+void SoftObject::collect(std::span<const StylusCommand> commands) noexcept {
+  contact_count_ = 0;
+  for (std::size_t s = 0; s < styluses_.size(); ++s) {
+    const StylusCommand& command = commands[s];
+    GodObject& stylus = styluses_[s];
+    if (!command.present || !command.tip.allFinite()) {
+      stylus.forget();
+      continue;
+    }
+    if (command.given) {
+      if (command.given->object != number_) continue;
+      stylus.impose(command.given->contact, command.given->point);
+    } else {
+      const bool grab = (command.buttons & kGrabButton) != 0;
+      stylus.find({motion_.to_body(command.tip), grab, config_.styluses[s].reach}, surface_);
+    }
+    if (stylus.state() == ContactState::kFree) continue;
+    const auto a = static_cast<std::size_t>(contact_count_++);
+    contacts_[a] = {static_cast<int>(s), command.given.has_value(), Vector3::Zero()};
+    points_[a] = stylus.point();
+    masks_[s].spread(points_[a], patches_[a]);
+  }
+}
+
+// Steps 1 and 3: where the contacts' points would be without force, and the elastic compliance
+// between them.
+void SoftObject::predict_contacts() noexcept {
+  const auto count = static_cast<std::size_t>(contact_count_);
+  std::array<Vector3, kMaxContacts> h;
+  engine_->predict({patches_.data(), count}, {h.data(), count}, elastic_);
+  for (std::size_t a = 0; a < count; ++a) {
+    contacts_[a].arm = h[a] + interpolate(points_[a], [&](int i) { return rest_.node(i); });
+  }
+}
+
+// Step 2 and the rest of 3.
+void SoftObject::pose_problem(std::span<const StylusCommand> commands) noexcept {
+  problem_.begin(contact_count_);
+  problem_.rigid = body_.mobility();
+  for (int a = 0; a < contact_count_; ++a) {
+    const Contact& contact = contacts_[static_cast<std::size_t>(a)];
+    const auto s = static_cast<std::size_t>(contact.stylus);
+    const GodObject& stylus = styluses_[s];
+    ContactUnknown& unknown = problem_.contact(a);
+    for (int b = 0; b < contact_count_; ++b) {
+      problem_.elastic(a, b) = elastic_.block<3, 3>(row(a), row(b));
+    }
+    unknown.arm = contact.arm;
+    if (contact.given) {
+      unknown.law = ContactLaw::kGiven;
+      unknown.force = state_.orientation.conjugate() * commands[s].given->force;
+      continue;
+    }
+    unknown.law = stylus.state() == ContactState::kHeld ? ContactLaw::kHeld : ContactLaw::kTouching;
+    unknown.normal = rest_.smooth_normal(points_[static_cast<std::size_t>(a)]);
+    unknown.friction = object_.friction;
+    // What slips goes on slipping until kinetic friction can hold it.
+    if (stylus.slipping()) unknown.friction.static_ = unknown.friction.kinetic;
+    unknown.gap = motion_.to_body(commands[s].tip) - stylus.offset() - contact.arm;
+    const double stiffness = config_.styluses[s].coupling_stiffness;
+    if (stiffness > 0) problem_.elastic(a, a).diagonal().array() += 1.0 / stiffness;
+    if (stylus.releasing()) {
+      // What is left of the hold, from 1 to 0: a spring in series that grows softer and softer.
+      const double left = 1.0 - stylus.steps_since_release() * model_->dt / config_.release_time;
+      if (left > 0) {
+        problem_.elastic(a, a) += (1.0 / left - 1.0) * problem_.compliance(a, a);
+      } else {
+        unknown.law = ContactLaw::kReleased;
+      }
+    }
+  }
+}
+
+// Step 4: the forces that take the contacts' points to the tips.
+void SoftObject::solve(std::span<const StylusCommand> commands, ObjectRecord& record) noexcept {
+  record.residual = 0.0;
+  record.sweeps = 0;
+  record.solved = true;
+  problem_.begin(0);
+  if (contact_count_ == 0) return;
+  predict_contacts();
+  pose_problem(commands);
+  const ContactSolution solution = solver_.solve(problem_);
+  record.residual = solution.residual;
+  record.sweeps = solution.sweeps;
+  record.solved = solution.finite;
+}
+
+// The contacts of the step, in B; the proxies are turned to W by the caller.
+void SoftObject::write(ObjectRecord& record) const noexcept {
+  record.contact.fill(ContactRecord{});
+  for (int a = 0; a < contact_count_; ++a) {
+    const ContactUnknown& solved = problem_.contact(a);
+    if (solved.mode == ContactMode::kOpen) continue;
+    const Contact& contact = contacts_[static_cast<std::size_t>(a)];
+    const GodObject& stylus = styluses_[static_cast<std::size_t>(contact.stylus)];
+    ContactRecord& out = record.contact[static_cast<std::size_t>(contact.stylus)];
+    out.state = stylus.state();
+    out.slipping = solved.mode == ContactMode::kSlipping;
+    out.point = points_[static_cast<std::size_t>(a)];
+    out.force = solved.force;
+    out.offset = stylus.offset();
+    out.proxy = contact.arm;
+    for (int b = 0; b < contact_count_; ++b) {
+      out.proxy += elastic_.block<3, 3>(row(a), row(b)) * problem_.contact(b).force;
+    }
+  }
+}
+
+void SoftObject::settle(std::span<const StylusCommand> commands) noexcept {
+  for (int a = 0; a < contact_count_; ++a) {
+    const Contact& contact = contacts_[static_cast<std::size_t>(a)];
+    const auto s = static_cast<std::size_t>(contact.stylus);
+    const ContactUnknown& solved = problem_.contact(a);
+    if (solved.mode == ContactMode::kOpen) {
+      styluses_[s].let_go(motion_.to_body(commands[s].tip));
+    } else {
+      styluses_[s].stay(solved.slip, contact.arm, rest_);
+      if (styluses_[s].releasing() && pushes(solved) && styluses_[s].offset().isZero(0.0)) {
+        styluses_[s].turn_to_touching();
+      }
+    }
+  }
+}
+
+// Step 5: the forces enter the history, and the rigid motion goes on.
+void SoftObject::advance() noexcept {
+  nodal_.clear();
+  Vector3 force = Vector3::Zero();
+  Vector3 torque = Vector3::Zero();
+  for (int a = 0; a < contact_count_; ++a) {
+    const ContactUnknown& solved = problem_.contact(a);
+    if (solved.mode == ContactMode::kOpen) continue;
+    nodal_.add(patches_[static_cast<std::size_t>(a)], solved.force);
+    force += solved.force;
+    torque += solved.arm.cross(solved.force);
+  }
+  engine_->advance(nodal_.view());
+  const Quaternion Q = state_.orientation;
+  state_ = body_.advance(state_, motion_.force + Q * force, motion_.torque + Q * torque);
+}
+
+}  // namespace irdm

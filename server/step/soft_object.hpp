@@ -1,0 +1,91 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "common/contact/contact_problem.hpp"
+#include "server/collision/deformed_surface.hpp"
+#include "server/contact/pressure_mask.hpp"
+#include "server/engine/response_engine.hpp"
+#include "server/motion/rigid_body.hpp"
+#include "server/step/god_object.hpp"
+#include "server/step/nodal_forces.hpp"
+#include "server/step/simulation_config.hpp"
+#include "server/step/step_record.hpp"
+
+namespace irdm {
+
+/// One object and the contacts that styluses have with it: the force step (docs/architecture.md,
+/// one force step) of that object. Pure: no clock, thread, file or socket. Real-time safe after
+/// construction; one thread. What a step costs does not depend on the size of the object.
+class SoftObject {
+ public:
+  /// Throws Error when the model lacks the response that its engine needs, or a fingertip is too
+  /// large for its surface.
+  SoftObject(const SimulationObject& object, const SimulationConfig& config, int number);
+
+  /// One step of dt. `commands`: one a stylus.
+  void step(std::span<const StylusCommand> commands, ObjectRecord& record) noexcept;
+  void reset() noexcept;
+
+  const Model& model() const noexcept { return *model_; }
+  const RigidState& state() const noexcept { return state_; }
+  const ResponseEngine& engine() const noexcept { return *engine_; }
+  const RestSurface& surface() const noexcept { return rest_; }
+
+ private:
+  /// A contact of this step.
+  struct Contact {
+    int stylus = 0;
+    bool given = false;
+    Vector3 arm = Vector3::Zero();  ///< r_a = X_a + h_a [m], B
+  };
+  /// Where everything but the styluses takes the body frame by the end of the step.
+  struct FreeMotion {
+    Vector3 force = Vector3::Zero();                  ///< of gravity, damping, tether [N], W
+    Vector3 torque = Vector3::Zero();                 ///< about the centre of mass [N m], W
+    Vector3 position = Vector3::Zero();               ///< c + dt v_free [m], W
+    Quaternion orientation = Quaternion::Identity();  ///< exp(dt w_free) Q
+    /// A point of W in that frame.
+    Vector3 to_body(const Vector3& x) const noexcept {
+      return orientation.conjugate() * (x - position);
+    }
+  };
+
+  FreeMotion predict_free_motion() const noexcept;
+  void collect(std::span<const StylusCommand> commands) noexcept;
+  void predict_contacts() noexcept;
+  void pose_problem(std::span<const StylusCommand> commands) noexcept;
+  void solve(std::span<const StylusCommand> commands, ObjectRecord& record) noexcept;
+  void settle(std::span<const StylusCommand> commands) noexcept;
+  void advance() noexcept;
+  void write(ObjectRecord& record) const noexcept;
+
+  std::shared_ptr<const Model> model_;
+  SimulationObject object_;
+  SimulationConfig config_;
+  int number_;
+  std::unique_ptr<ResponseEngine> engine_;
+  RestSurface rest_;
+  DeformedSurface surface_;
+  RigidBody body_;
+  RigidState start_;
+  RigidState state_;
+  std::vector<GodObject> styluses_;
+  std::vector<PressureMask> masks_;
+
+  // Of the step under way.
+  FreeMotion motion_;
+  int contact_count_ = 0;
+  std::array<Contact, kMaxContacts> contacts_{};
+  std::array<SurfacePoint, kMaxContacts> points_{};
+  std::array<ContactPatch, kMaxContacts> patches_{};
+  ContactMatrix elastic_;  ///< elastic compliance between the contacts, (3m, 3m) [m/N], B
+  ContactProblem problem_;
+  ContactSolver solver_;
+  NodalForces nodal_;
+};
+
+}  // namespace irdm

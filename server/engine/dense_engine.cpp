@@ -85,6 +85,16 @@ void DenseEngine<Scalar>::displacement(Points& u) const {
 }
 
 template <typename Scalar>
+Eigen::MatrixXd DenseEngine<Scalar>::instant_compliance() const {
+  const auto dof = static_cast<int>(dof_);
+  Eigen::MatrixXd R(dof, dof);
+  for (int b = 0; b < dof; ++b) {
+    for (int a = 0; a < dof; ++a) R(a, b) = static_cast<double>(*response(a, b));
+  }
+  return R;
+}
+
+template <typename Scalar>
 void DenseEngine<Scalar>::reset() noexcept {
   history_.clear();
 }

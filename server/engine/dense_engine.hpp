@@ -19,6 +19,7 @@ class DenseEngine final : public ResponseEngine {
                ContactMatrix& compliance) noexcept override;
   void advance(std::span<const NodalForce> forces) noexcept override;
   void displacement(Points& u) const override;
+  Eigen::MatrixXd instant_compliance() const override;
   void reset() noexcept override;
 
  private:

@@ -115,6 +115,18 @@ void ModalEngine<Scalar>::displacement(Points& u) const {
   }
 }
 
+// Phi diag(b1) Phi^T.
+template <typename Scalar>
+Eigen::MatrixXd ModalEngine<Scalar>::instant_compliance() const {
+  const Eigen::Map<const Eigen::VectorXd> weights(b1_.data(), static_cast<Eigen::Index>(modes_));
+  const Eigen::MatrixXd weighted =
+      shapes_->template cast<double>() * weights.cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  const Eigen::Index dof = weighted.rows();
+  Eigen::MatrixXd R = Eigen::MatrixXd::Zero(dof, dof);
+  R.template selfadjointView<Eigen::Lower>().rankUpdate(weighted);
+  return R.template selfadjointView<Eigen::Lower>();
+}
+
 template <typename Scalar>
 void ModalEngine<Scalar>::reset() noexcept {
   for (auto* values : {&coordinate_, &velocity_, &free_coordinate_, &free_velocity_}) {

@@ -40,6 +40,10 @@ class ResponseEngine {
   /// result does not depend on the number of threads. Not for the force thread.
   virtual void displacement(Points& u) const = 0;
 
+  /// R[0], the displacement within the step of all nodes per force on each: (3n, 3n) [m/N]. Takes
+  /// its time; not for the force thread.
+  virtual Eigen::MatrixXd instant_compliance() const = 0;
+
   /// Forgets all forces.
   virtual void reset() noexcept = 0;
 };

@@ -1,10 +1,16 @@
 #include "server/step/god_object.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace irdm {
+namespace {
+constexpr double kSameSide = 0.85;  // cosine of 32 degrees
+}
 
 void GodObject::find(const Input& input, DeformedSurface& surface) noexcept {
+  tip_moved_ = (input.tip - tip_).norm();
+  tip_ = input.tip;
   if (state_ == ContactState::kFree && !reach_for(input, surface)) touch(input.tip, surface);
   if (state_ == ContactState::kFree) {
     grabbed_before_ = input.grab;
@@ -65,17 +71,32 @@ void GodObject::impose(ContactState state, const SurfacePoint& point) noexcept {
   releasing_ = false;
 }
 
-void GodObject::stay(const Vector3& slip, const Vector3& tip_free,
+void GodObject::stay(const Vector3& slip, double share, const Vector3& point_free,
                      const RestSurface& rest) noexcept {
-  slipping_ = !slip.isZero(0.0);
+  const double length = slip.norm();
+  slipping_ = length > 0.0;
   if (slipping_) {
+    const double at_once = std::min(length, tip_moved_);
+    const double along = at_once + share * (length - at_once);
     const Vector3 here = at(rest.corners(triangle_), point_.weights);
-    const SurfaceLocation there = rest.walk(triangle_, here + slip);
+    const SurfaceLocation there = rest.walk(triangle_, here + along / length * slip);
     triangle_ = there.triangle;
     point_ = there.point;
   }
   outside_ = true;
-  last_tip_ = tip_free;
+  last_tip_ = point_free;
+}
+
+void GodObject::follow(const Vector3& tip, double share, const RestSurface& rest) noexcept {
+  const SurfaceLocation nearest = rest.walk(triangle_, tip);
+  const Vector3 here = at(rest.corners(triangle_), point_.weights);
+  const bool same_side =
+      rest.smooth_normal(nearest.point).dot(rest.smooth_normal(point_)) > kSameSide;
+  if (same_side || (tip - nearest.position).norm() > 0.7 * (tip - here).norm()) return;
+  const SurfaceLocation there = rest.walk(triangle_, here + share * (nearest.position - here));
+  triangle_ = there.triangle;
+  point_ = there.point;
+  slipping_ = true;
 }
 
 void GodObject::turn_to_touching() noexcept {

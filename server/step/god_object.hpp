@@ -26,9 +26,16 @@ class GodObject {
   /// A contact that was decided elsewhere.
   void impose(ContactState state, const SurfacePoint& point) noexcept;
 
-  /// After the step: still in contact, having slipped by `slip` [m, B] along the surface;
-  /// `tip_free` is where the point was without force [m, B].
-  void stay(const Vector3& slip, const Vector3& tip_free, const RestSurface& rest) noexcept;
+  /// After the step: still in contact, having to slip by `slip` [m, B] along the surface. As far as
+  /// the tip itself has moved it does so at once; of what is more (an edge let go, say) it goes a
+  /// `share`, so that the force does not jump. `point_free` is where the point was without force
+  /// [m, B].
+  void stay(const Vector3& slip, double share, const Vector3& point_free,
+            const RestSurface& rest) noexcept;
+  /// After the step, where friction is finite: when the tip has come nearer to another side of the
+  /// object (a normal more than 32 degrees off, and much nearer), the contact goes a `share` of the
+  /// way over there. Without this a tip could hook a soft edge and pull it along from beyond.
+  void follow(const Vector3& tip, double share, const RestSurface& rest) noexcept;
   /// After the step: a point that is given up is pushed on, so that it can be touched on.
   void turn_to_touching() noexcept;
   /// After the step: the contact let go, and the tip [m, B] is outside.
@@ -60,6 +67,8 @@ class GodObject {
   /// The tip was outside the surface when last seen near it. Only from there can it make a contact.
   bool outside_ = false;
   Vector3 last_tip_ = Vector3::Zero();  ///< relative to the free motion [m], B
+  Vector3 tip_ = Vector3::Zero();       ///< of this step [m], B
+  double tip_moved_ = 0.0;              ///< since the step before [m]
 };
 
 }  // namespace irdm

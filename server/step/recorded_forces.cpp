@@ -3,7 +3,7 @@
 namespace irdm {
 
 RecordedForces::RecordedForces(const RestSurface& surface, const std::vector<double>& radii)
-    : forces_(radii.size() * kMaxPatchNodes) {
+    : forces_(radii.size() * kMaxPatchNodes + kMaxFloorContacts) {
   for (const double radius : radii) masks_.emplace_back(surface, radius);
 }
 
@@ -14,6 +14,9 @@ std::span<const NodalForce> RecordedForces::of(const ObjectRecord& record) noexc
     if (contact.state == ContactState::kFree) continue;
     masks_[s].spread(contact.point, patch_);
     forces_.add(patch_, contact.force);
+  }
+  for (std::size_t i = 0; i < static_cast<std::size_t>(record.floor_count); ++i) {
+    forces_.add(record.floor[i].node, record.floor[i].force.cast<double>());
   }
   return forces_.view();
 }

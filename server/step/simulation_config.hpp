@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "common/contact/contact_problem.hpp"
@@ -33,6 +34,13 @@ struct SimulationObject {
   Tether tether;
 };
 
+/// A plane on which objects rest; the side that the normal points to is free.
+struct FloorConfig {
+  Vector3 normal = Vector3(0, 1, 0);  ///< unit, W
+  double height = 0.0;                ///< n . x of its points [m]
+  Friction friction{0.5, 0.5};
+};
+
 /// How one stylus touches.
 struct SimulationStylus {
   double radius = 0.0;              ///< of the fingertip [m]; 0: a point
@@ -45,6 +53,7 @@ struct SimulationConfig {
   Vector3 gravity = Vector3::Zero();  ///< [m/s^2], W
   std::vector<SimulationObject> objects;
   std::vector<SimulationStylus> styluses{1};
+  std::optional<FloorConfig> floor;
   double release_time = 0.03;  ///< in which a held point that pulls is given up [s]
 };
 

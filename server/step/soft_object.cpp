@@ -28,6 +28,12 @@ bool pushes(const ContactUnknown& contact) noexcept {
          (std::isinf(contact.friction.static_) || along.norm() <= contact.friction.static_ * push);
 }
 
+// In which a contact catches up with a tip that has passed an edge [s].
+constexpr double kEdgeTime = 0.05;
+
+// The iteration goes on in the next step from where it was left, so a few sweeps are enough.
+constexpr SolverLimits kFloorLimits{8, 1e-10};
+
 }  // namespace
 
 SoftObject::SoftObject(const SimulationObject& object, const SimulationConfig& config, int number)
@@ -40,9 +46,9 @@ SoftObject::SoftObject(const SimulationObject& object, const SimulationConfig& c
       surface_(rest_),
       body_(model_->body, model_->dt),
       styluses_(config.styluses.size()),
-      problem_(kMaxContacts),
-      solver_(kMaxContacts),
-      nodal_(kMaxContacts * kMaxPatchNodes) {
+      problem_(kMaxContacts + (config.floor ? kMaxFloorContacts : 0)),
+      solver_(problem_.capacity()),
+      nodal_(kMaxContacts * kMaxPatchNodes + kMaxFloorContacts) {
   start_.position = object.position;
   start_.orientation = object.orientation.normalized();
   start_.velocity = object.velocity;
@@ -58,20 +64,26 @@ SoftObject::SoftObject(const SimulationObject& object, const SimulationConfig& c
     }
     masks_.emplace_back(rest_, stylus.radius);
   }
+  if (config.floor && body_.moves()) {
+    floor_ = std::make_unique<FloorContacts>(*config.floor, rest_, *engine_);
+  }
 }
 
 void SoftObject::reset() noexcept {
   state_ = start_;
   engine_->reset();
   for (GodObject& stylus : styluses_) stylus.forget();
+  if (floor_) floor_->reset();
 }
 
 void SoftObject::step(std::span<const StylusCommand> commands, ObjectRecord& record) noexcept {
   surface_.begin_step(*engine_);
   motion_ = predict_free_motion();
   collect(commands);
+  floor_count_ = floor_ ? floor_->find(motion_, surface_) : 0;
   solve(commands, record);
   write(record);
+  write_floor(record);
   settle(commands);
   advance();
   record.position = state_.position;
@@ -85,7 +97,7 @@ void SoftObject::step(std::span<const StylusCommand> commands, ObjectRecord& rec
   }
 }
 
-SoftObject::FreeMotion SoftObject::predict_free_motion() const noexcept {
+FreeMotion SoftObject::predict_free_motion() const noexcept {
   FreeMotion motion;
   motion.force = body_.mass() * (config_.gravity - object_.damping.linear * state_.velocity) -
                  object_.tether.stiffness * (state_.position - start_.position);
@@ -138,15 +150,17 @@ void SoftObject::predict_contacts() noexcept {
 
 // Step 2 and the rest of 3.
 void SoftObject::pose_problem(std::span<const StylusCommand> commands) noexcept {
-  problem_.begin(contact_count_);
+  problem_.begin(floor_count_ + contact_count_);
   problem_.rigid = body_.mobility();
+  if (floor_count_ > 0) pose_floor();
   for (int a = 0; a < contact_count_; ++a) {
+    const int row_a = floor_count_ + a;
     const Contact& contact = contacts_[static_cast<std::size_t>(a)];
     const auto s = static_cast<std::size_t>(contact.stylus);
     const GodObject& stylus = styluses_[s];
-    ContactUnknown& unknown = problem_.contact(a);
+    ContactUnknown& unknown = problem_.contact(row_a);
     for (int b = 0; b < contact_count_; ++b) {
-      problem_.elastic(a, b) = elastic_.block<3, 3>(row(a), row(b));
+      problem_.elastic(row_a, floor_count_ + b) = elastic_.block<3, 3>(row(a), row(b));
     }
     unknown.arm = contact.arm;
     if (contact.given) {
@@ -161,15 +175,27 @@ void SoftObject::pose_problem(std::span<const StylusCommand> commands) noexcept 
     if (stylus.slipping()) unknown.friction.static_ = unknown.friction.kinetic;
     unknown.gap = motion_.to_body(commands[s].tip) - stylus.offset() - contact.arm;
     const double stiffness = config_.styluses[s].coupling_stiffness;
-    if (stiffness > 0) problem_.elastic(a, a).diagonal().array() += 1.0 / stiffness;
+    if (stiffness > 0) problem_.elastic(row_a, row_a).diagonal().array() += 1.0 / stiffness;
     if (stylus.releasing()) {
       // What is left of the hold, from 1 to 0: a spring in series that grows softer and softer.
       const double left = 1.0 - stylus.steps_since_release() * model_->dt / config_.release_time;
       if (left > 0) {
-        problem_.elastic(a, a) += (1.0 / left - 1.0) * problem_.compliance(a, a);
+        problem_.elastic(row_a, row_a) += (1.0 / left - 1.0) * problem_.compliance(row_a, row_a);
       } else {
         unknown.law = ContactLaw::kReleased;
       }
+    }
+  }
+}
+
+// The floor's contacts come first; what it has in common with the styluses follows.
+void SoftObject::pose_floor() noexcept {
+  floor_->pose(motion_, surface_, problem_);
+  for (int a = 0; a < contact_count_; ++a) {
+    for (int i = 0; i < floor_count_; ++i) {
+      const Matrix3 shared = floor_->between(patches_[static_cast<std::size_t>(a)], i);
+      problem_.elastic(floor_count_ + a, i) = shared;
+      problem_.elastic(i, floor_count_ + a) = shared.transpose();
     }
   }
 }
@@ -180,10 +206,11 @@ void SoftObject::solve(std::span<const StylusCommand> commands, ObjectRecord& re
   record.sweeps = 0;
   record.solved = true;
   problem_.begin(0);
-  if (contact_count_ == 0) return;
-  predict_contacts();
+  if (contact_count_ + floor_count_ == 0) return;
+  if (contact_count_ > 0) predict_contacts();
   pose_problem(commands);
-  const ContactSolution solution = solver_.solve(problem_);
+  const ContactSolution solution =
+      solver_.solve(problem_, floor_count_ > 0 ? kFloorLimits : SolverLimits{});
   record.residual = solution.residual;
   record.sweeps = solution.sweeps;
   record.solved = solution.finite;
@@ -193,7 +220,7 @@ void SoftObject::solve(std::span<const StylusCommand> commands, ObjectRecord& re
 void SoftObject::write(ObjectRecord& record) const noexcept {
   record.contact.fill(ContactRecord{});
   for (int a = 0; a < contact_count_; ++a) {
-    const ContactUnknown& solved = problem_.contact(a);
+    const ContactUnknown& solved = problem_.contact(floor_count_ + a);
     if (solved.mode == ContactMode::kOpen) continue;
     const Contact& contact = contacts_[static_cast<std::size_t>(a)];
     const GodObject& stylus = styluses_[static_cast<std::size_t>(contact.stylus)];
@@ -205,8 +232,25 @@ void SoftObject::write(ObjectRecord& record) const noexcept {
     out.offset = stylus.offset();
     out.proxy = contact.arm;
     for (int b = 0; b < contact_count_; ++b) {
-      out.proxy += elastic_.block<3, 3>(row(a), row(b)) * problem_.contact(b).force;
+      out.proxy += elastic_.block<3, 3>(row(a), row(b)) * problem_.contact(floor_count_ + b).force;
     }
+    for (int i = 0; i < floor_count_; ++i) {
+      out.proxy += problem_.elastic(floor_count_ + a, i) * problem_.contact(i).force;
+    }
+  }
+}
+
+// The floor's forces, rounded to what is recorded; this is what acts.
+void SoftObject::write_floor(ObjectRecord& record) noexcept {
+  record.floor_count = 0;
+  record.floor_force.setZero();
+  for (int i = 0; i < floor_count_; ++i) {
+    ContactUnknown& solved = problem_.contact(i);
+    if (solved.mode == ContactMode::kOpen) continue;
+    FloorForce& out = record.floor[static_cast<std::size_t>(record.floor_count++)];
+    out = {floor_->node(i), solved.force.cast<float>()};
+    solved.force = out.force.cast<double>();
+    record.floor_force += state_.orientation * solved.force;
   }
 }
 
@@ -214,16 +258,20 @@ void SoftObject::settle(std::span<const StylusCommand> commands) noexcept {
   for (int a = 0; a < contact_count_; ++a) {
     const Contact& contact = contacts_[static_cast<std::size_t>(a)];
     const auto s = static_cast<std::size_t>(contact.stylus);
-    const ContactUnknown& solved = problem_.contact(a);
+    const ContactUnknown& solved = problem_.contact(floor_count_ + a);
     if (solved.mode == ContactMode::kOpen) {
       styluses_[s].let_go(motion_.to_body(commands[s].tip));
     } else {
-      styluses_[s].stay(solved.slip, contact.arm, rest_);
+      styluses_[s].stay(solved.slip, model_->dt / kEdgeTime, contact.arm, rest_);
+      if (solved.law == ContactLaw::kTouching && !std::isinf(solved.friction.kinetic)) {
+        styluses_[s].follow(motion_.to_body(commands[s].tip), model_->dt / kEdgeTime, rest_);
+      }
       if (styluses_[s].releasing() && pushes(solved) && styluses_[s].offset().isZero(0.0)) {
         styluses_[s].turn_to_touching();
       }
     }
   }
+  if (floor_) floor_->settle(motion_, problem_);
 }
 
 // Step 5: the forces enter the history, and the rigid motion goes on.
@@ -232,9 +280,16 @@ void SoftObject::advance() noexcept {
   Vector3 force = Vector3::Zero();
   Vector3 torque = Vector3::Zero();
   for (int a = 0; a < contact_count_; ++a) {
-    const ContactUnknown& solved = problem_.contact(a);
+    const ContactUnknown& solved = problem_.contact(floor_count_ + a);
     if (solved.mode == ContactMode::kOpen) continue;
     nodal_.add(patches_[static_cast<std::size_t>(a)], solved.force);
+    force += solved.force;
+    torque += solved.arm.cross(solved.force);
+  }
+  for (int i = 0; i < floor_count_; ++i) {
+    const ContactUnknown& solved = problem_.contact(i);
+    if (solved.mode == ContactMode::kOpen) continue;
+    nodal_.add(floor_->node(i), solved.force);
     force += solved.force;
     torque += solved.arm.cross(solved.force);
   }

@@ -10,6 +10,8 @@
 #include "server/contact/pressure_mask.hpp"
 #include "server/engine/response_engine.hpp"
 #include "server/motion/rigid_body.hpp"
+#include "server/step/floor_contacts.hpp"
+#include "server/step/free_motion.hpp"
 #include "server/step/god_object.hpp"
 #include "server/step/nodal_forces.hpp"
 #include "server/step/simulation_config.hpp"
@@ -19,7 +21,8 @@ namespace irdm {
 
 /// One object and the contacts that styluses have with it: the force step (docs/architecture.md,
 /// one force step) of that object. Pure: no clock, thread, file or socket. Real-time safe after
-/// construction; one thread. What a step costs does not depend on the size of the object.
+/// construction; one thread. What a step costs does not depend on the size of the object, but for
+/// contacts with the floor.
 class SoftObject {
  public:
   /// Throws Error when the model lacks the response that its engine needs, or a fingertip is too
@@ -42,26 +45,16 @@ class SoftObject {
     bool given = false;
     Vector3 arm = Vector3::Zero();  ///< r_a = X_a + h_a [m], B
   };
-  /// Where everything but the styluses takes the body frame by the end of the step.
-  struct FreeMotion {
-    Vector3 force = Vector3::Zero();                  ///< of gravity, damping, tether [N], W
-    Vector3 torque = Vector3::Zero();                 ///< about the centre of mass [N m], W
-    Vector3 position = Vector3::Zero();               ///< c + dt v_free [m], W
-    Quaternion orientation = Quaternion::Identity();  ///< exp(dt w_free) Q
-    /// A point of W in that frame.
-    Vector3 to_body(const Vector3& x) const noexcept {
-      return orientation.conjugate() * (x - position);
-    }
-  };
-
   FreeMotion predict_free_motion() const noexcept;
   void collect(std::span<const StylusCommand> commands) noexcept;
   void predict_contacts() noexcept;
   void pose_problem(std::span<const StylusCommand> commands) noexcept;
   void solve(std::span<const StylusCommand> commands, ObjectRecord& record) noexcept;
+  void pose_floor() noexcept;
   void settle(std::span<const StylusCommand> commands) noexcept;
   void advance() noexcept;
   void write(ObjectRecord& record) const noexcept;
+  void write_floor(ObjectRecord& record) noexcept;
 
   std::shared_ptr<const Model> model_;
   SimulationObject object_;
@@ -75,10 +68,12 @@ class SoftObject {
   RigidState state_;
   std::vector<GodObject> styluses_;
   std::vector<PressureMask> masks_;
+  std::unique_ptr<FloorContacts> floor_;  ///< null: no floor
 
   // Of the step under way.
   FreeMotion motion_;
-  int contact_count_ = 0;
+  int contact_count_ = 0;  ///< of styluses; in the problem they come after those of the floor
+  int floor_count_ = 0;
   std::array<Contact, kMaxContacts> contacts_{};
   std::array<SurfacePoint, kMaxContacts> points_{};
   std::array<ContactPatch, kMaxContacts> patches_{};

@@ -41,6 +41,16 @@ struct ContactRecord {
   Vector3 proxy = Vector3::Zero();   ///< god-object: the point at the end of the step [m], W
 };
 
+/// Contacts with the floor that an object can have in one step.
+inline constexpr int kMaxFloorContacts = 192;
+
+/// Force of the floor on one surface node. Single precision, and applied as such: what is recorded
+/// is what acted.
+struct FloorForce {
+  int node = 0;
+  Eigen::Vector3f force = Eigen::Vector3f::Zero();  ///< on the object [N], B
+};
+
 /// What became of one object in one step.
 struct ObjectRecord {
   Vector3 position = Vector3::Zero();               ///< of the body at the end of the step [m], W
@@ -48,9 +58,12 @@ struct ObjectRecord {
   Vector3 velocity = Vector3::Zero();               ///< [m/s], W
   Vector3 angular_velocity = Vector3::Zero();       ///< [rad/s], W
   std::array<ContactRecord, kMaxStyluses> contact;
-  double residual = 0.0;  ///< of the contact problem [m]
-  int sweeps = 0;         ///< of its solver; 0: solved directly
-  bool solved = true;     ///< false: the contact problem had no finite solution and no force acted
+  int floor_count = 0;
+  std::array<FloorForce, kMaxFloorContacts> floor;  ///< the first floor_count
+  Vector3 floor_force = Vector3::Zero();            ///< their sum [N], W
+  double residual = 0.0;                            ///< of the contact problem [m]
+  int sweeps = 0;                                   ///< of its solver; 0: solved directly
+  bool solved = true;  ///< false: the contact problem had no finite solution and no force acted
 };
 
 /// What became of one stylus in one step.

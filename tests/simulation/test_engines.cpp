@@ -152,8 +152,7 @@ TEST_CASE("engines predict the coming step: free displacement, and R[0] between 
   const Eigen::Matrix<double, 6, 1> answer = W * force;
   CHECK((W - W.transpose()).norm() < 1e-12 * W.norm());
   for (std::size_t a = 0; a < 2; ++a) {
-    const Vector3 moved =
-        mean(points[a], [&](int i) -> Vector3 { return u.row(i).transpose(); });
+    const Vector3 moved = mean(points[a], [&](int i) -> Vector3 { return u.row(i).transpose(); });
     const Vector3 predicted = h[a] + answer.segment<3>(static_cast<Eigen::Index>(3 * a));
     CHECK((moved - predicted).norm() < 1e-12 * u.norm());
   }

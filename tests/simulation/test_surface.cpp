@@ -24,6 +24,7 @@ class FakeEngine final : public ResponseEngine {
                ContactMatrix&) noexcept override {}
   void advance(std::span<const NodalForce>) noexcept override {}
   void displacement(Points&) const override {}
+  Eigen::MatrixXd instant_compliance() const override { return {}; }
   void reset() noexcept override {}
   mutable int evaluations = 0;
 

@@ -11,7 +11,8 @@ namespace irdm::test {
 namespace {
 
 auto key(const FemCube& cube) {
-  return std::tie(cube.cells, cube.youngs_modulus, cube.rayleigh_alpha, cube.dt, cube.steps);
+  return std::tie(cube.cells, cube.youngs_modulus, cube.rayleigh_alpha, cube.dt, cube.steps,
+                  cube.poisson_ratio, cube.order);
 }
 
 precompute::PrecomputeConfig configuration(const FemCube& cube, ResponseKind kind) {
@@ -19,7 +20,8 @@ precompute::PrecomputeConfig configuration(const FemCube& cube, ResponseKind kin
   config.name = "test cube";
   config.mesh.source =
       precompute::BoxConfig{Vector3::Constant(0.12), {cube.cells, cube.cells, cube.cells}};
-  config.material = {cube.youngs_modulus, 0.49, 110.0, cube.rayleigh_alpha, 2e-4};
+  config.mesh.order = cube.order;
+  config.material = {cube.youngs_modulus, cube.poisson_ratio, 110.0, cube.rayleigh_alpha, 2e-4};
   config.response.dt = cube.dt;
   config.response.steps = cube.steps;
   config.response.storage =

@@ -14,6 +14,8 @@ struct FemCube {
   double rayleigh_alpha = 8.0;
   double dt = 0.002;
   int steps = 500;
+  double poisson_ratio = 0.49;
+  int order = 1;  ///< of the tetrahedra
 
   bool operator<(const FemCube& other) const;
 };

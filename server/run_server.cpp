@@ -96,7 +96,8 @@ int run_server(const ServerOptions& options) {
   ForceThread force(simulation, network, *clock, sinks, steps);
 
   network.start();
-  std::cout << "listening on " << network.endpoint() << std::endl;
+  // In one piece, so that no other thread's line comes between.
+  std::cout << "listening on " + network.endpoint() + "\n" << std::flush;
   if (recorder) recorder->start();
   deformation.start();
   force.start(scheduling(scene, options));

@@ -6,6 +6,7 @@
 
 #include "common/error.hpp"
 #include "precompute/mesh/format/gmsh_reader.hpp"
+#include "precompute/mesh/mesh_report.hpp"
 #include "precompute/process/child_process.hpp"
 #include "precompute/process/temporary_folder.hpp"
 
@@ -13,6 +14,7 @@ namespace irdm::precompute {
 namespace {
 
 constexpr double kMaxVolumeChange = 0.1;  // share of the volume
+constexpr double kFlat = 0.01;            // mean ratio; sound meshes of gmsh are above 0.2
 
 // Angle of edges that stay: 40 degrees. The patches between them are cut until each has a map into
 // the plane (1, 1), and curves are cut nowhere (Pi).
@@ -82,6 +84,30 @@ void write_stl(const SurfaceMesh& surface, const std::filesystem::path& path) {
   if (!file.flush()) throw Error(path.string(), "cannot be written", "check the space left there");
 }
 
+// Very thin triangles, as of marching cubes, lead gmsh to flat tetrahedra.
+void check_remeshed(const TetMesh& mesh, const SurfaceMesh& surface, const std::string& name) {
+  double volume = 0.0;
+  int flat = 0;
+  for (int e = 0; e < mesh.tet_count(); ++e) {
+    volume += std::abs(signed_volume(mesh, e));
+    flat += mean_ratio(mesh, e) > kFlat ? 0 : 1;
+  }
+  if (flat > 0) {
+    throw Error(name,
+                "with this mesh.edge_length gmsh makes " + std::to_string(flat) +
+                    " flat tetrahedra, mostly because the surface has very thin triangles",
+                "give it evenly shaped triangles (isotropic remeshing), or leave "
+                "mesh.edge_length out");
+  }
+  const double change = volume / enclosed_volume(surface) - 1.0;
+  if (std::abs(change) > kMaxVolumeChange) {
+    throw Error(name,
+                "with this mesh.edge_length the body changes its volume by " +
+                    std::to_string(std::lround(100.0 * change)) + " %",
+                "make mesh.edge_length smaller");
+  }
+}
+
 }  // namespace
 
 TetMesh mesh_geometry(const std::filesystem::path& script, const std::string& program,
@@ -107,15 +133,7 @@ TetMesh remesh_surface(const SurfaceMesh& surface, double edge_length, const std
                            "try another mesh.edge_length, leave it out to keep the surface's own "
                            "triangles, or give a smoother surface"},
                           folder, program, time_limit_s);
-  double volume = 0.0;
-  for (int e = 0; e < mesh.tet_count(); ++e) volume += std::abs(signed_volume(mesh, e));
-  const double change = volume / enclosed_volume(surface) - 1.0;
-  if (std::abs(change) > kMaxVolumeChange) {
-    throw Error(name,
-                "with this mesh.edge_length the body changes its volume by " +
-                    std::to_string(std::lround(100.0 * change)) + " %",
-                "make mesh.edge_length smaller");
-  }
+  check_remeshed(mesh, surface, name);
   return mesh;
 }
 

@@ -18,8 +18,8 @@ TetMesh mesh_geometry(const std::filesystem::path& script, const std::string& pr
 
 /// Makes new triangles with the given edge length on a closed surface and fills it with tetrahedra
 /// of that size, by the program `gmsh`. Edges sharper than 40 degrees stay edges. Throws Error
-/// (about `name`) as mesh_geometry does, and when the body loses or gains more than a tenth of its
-/// volume.
+/// (about `name`) as mesh_geometry does, when there are flat tetrahedra, and when the body loses or
+/// gains more than a tenth of its volume.
 /// @param surface that passed checked_surface
 /// @param edge_length target, in the unit of the surface
 TetMesh remesh_surface(const SurfaceMesh& surface, double edge_length, const std::string& name,

@@ -206,6 +206,22 @@ TEST_CASE("damaged surface files are refused with the fault") {
   refuse("c.stl", replaced(ascii, "endloop", "endlop"), "'endlop' stands where endloop should");
 }
 
+TEST_CASE("flat tetrahedra where the surface is remeshed are refused") {
+  // A program in the place of gmsh, whose mesh has a flat tetrahedron below the body.
+  const MeshFiles files;
+  const SurfaceMesh body =
+      checked_surface(weld(read_obj(files.write("t.obj", tetrahedron(0, 1)))), "t");
+  files.write("flat.msh",
+              "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n1 0 0 0\n2 1 0 0\n3 0 1 0\n"
+              "4 0 0 1\n5 0.3 0.3 -1e-7\n$EndNodes\n$Elements\n2\n1 4 2 0 1 1 2 3 4\n"
+              "2 4 2 0 1 1 3 2 5\n$EndElements\n");
+  const auto program =
+      files.write("gmsh", "#!/bin/sh\ncp '" + (files.path() / "flat.msh").string() + "' \"$6\"\n");
+  files.run("chmod +x gmsh");
+  CHECK_THROWS_WITH(remesh_surface(body, 0.5, "t.obj", program.string()),
+                    Contains("t.obj: with this mesh.edge_length gmsh makes 1 flat tetrahedra"));
+}
+
 TEST_CASE("missing or failing programs are told") {
   const MeshFiles files;
   const SurfaceMesh cube = checked_surface(weld(read_obj(files.write("c.obj", kCube))), "c");

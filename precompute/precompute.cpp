@@ -44,7 +44,9 @@ TetMesh make_linear_mesh(const MeshConfig& config) {
     return mesh;
   }
   const auto& path = std::get<std::filesystem::path>(config.source);
-  TetMesh mesh = read_mesh_file(path);
+  std::optional<double> edge_length = config.edge_length;
+  if (edge_length) *edge_length /= config.unit;
+  TetMesh mesh = read_mesh_file(path, edge_length);
   mesh.nodes *= config.unit;
   const int unused = drop_unused_nodes(mesh);
   check_mesh(mesh, path.string());
@@ -103,7 +105,8 @@ void check_resources(const PrecomputeConfig& config, const TetMesh& mesh, const 
                 std::to_string(mesh.node_count()) +
                     " nodes are too many for all modes on this "
                     "machine",
-                "use a coarser mesh (at most " + std::to_string(kMaxEigenSize / 3) + " nodes)");
+                "use a coarser mesh (at most " + std::to_string(kMaxEigenSize / 3) +
+                    " nodes); of a surface, with a larger mesh.edge_length");
   }
   if (config.response.storage == Storage::kModal) return;
   const double dof = model.degrees_of_freedom();

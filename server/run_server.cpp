@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "common/checksum.hpp"
+#include "common/error.hpp"
 #include "common/model/model_file.hpp"
 #include "common/program/stop_signal.hpp"
 #include "server/config/scene.hpp"
@@ -24,6 +25,17 @@ std::shared_ptr<const Model> load_model(const ObjectConfig& object) {
   const bool dense = object.engine == EngineKind::kDense;
   return std::make_shared<const Model>(
       read_model(object.model, dense ? ResponseKind::kDense : ResponseKind::kModal));
+}
+
+// Where a fixed object is clamped its surface does not yield at all: without a spring between tip
+// and surface no force takes the one to the other.
+void check_coupling(const SceneConfig& scene, const Model& model, const std::string& name) {
+  if (model.body.support != Support::kFixed || scene.contact.coupling_stiffness > 0.0) return;
+  throw Error(name,
+              "object '" + scene.objects.front().name +
+                  "' is fixed and contact.coupling_stiffness is 0, so that nothing yields where it "
+                  "is clamped",
+              "set contact.coupling_stiffness, for instance to 2000 (N/m)");
 }
 
 SimulationConfig simulation_config(const SceneConfig& scene) {
@@ -82,6 +94,7 @@ int run_server(const ServerOptions& options) {
   StopSignal stop;
   const SceneConfig scene = read_scene(TomlTable::parse_file(options.scene));
   const std::shared_ptr<const Model> model = load_model(scene.objects.front());
+  check_coupling(scene, *model, options.scene.string());
   Simulation simulation(model, simulation_config(scene));
   NetworkServer network(network_settings(scene, options, model->dt));
   DeformationThread deformation(model, scene.server.deformation_rate,

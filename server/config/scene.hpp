@@ -28,7 +28,9 @@ struct WorldConfig {
 
 /// [contact]
 struct ContactConfig {
-  double coupling_stiffness = 0.0;  ///< k_vc, spring between tip and surface, >= 0 [N/m]; 0: none
+  /// k_vc, spring between tip and surface, >= 0 [N/m]; 0: none, which a fixed object is refused
+  /// with
+  double coupling_stiffness = 0.0;
 };
 
 /// [[object]]

@@ -19,8 +19,10 @@ struct SimulationConfig {
   Quaternion orientation = Quaternion::Identity();  ///< at the start, B to W
   Vector3 velocity = Vector3::Zero();               ///< at the start [m/s], W
   Vector3 angular_velocity = Vector3::Zero();       ///< at the start [rad/s], W
-  double coupling_stiffness = 0.0;  ///< k_vc, spring between tip and surface [N/m]; 0: none (rigid)
-  int stylus_count = 1;             ///< 1..kMaxStyluses
+  /// k_vc, spring between tip and surface [N/m]; 0: none (rigid). A fixed object needs one: where
+  /// it is clamped W is zero without it.
+  double coupling_stiffness = 0.0;
+  int stylus_count = 1;  ///< 1..kMaxStyluses
 };
 
 /// The force step (docs/architecture.md, one force step): a pure function of the commands and of

@@ -53,7 +53,8 @@ void write_description(hdf5::File& file, const Model& model) {
 
   file.create_group("/body");
   file.write_attribute("/body", "mass", model.body.mass);
-  file.write_attribute("/body", "inertia", {3, 3}, model.body.inertia.data());  // symmetric
+  const Matrix3 rows_of_inertia = model.body.inertia.transpose();  // symmetric but for rounding
+  file.write_attribute("/body", "inertia", {3, 3}, rows_of_inertia.data());
   file.write_attribute("/body", "support",
                        std::string(model.body.support == Support::kFixed ? "fixed" : "floating"));
 

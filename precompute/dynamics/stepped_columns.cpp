@@ -6,19 +6,26 @@ namespace irdm::precompute {
 
 SteppedColumns::SteppedColumns(const TetMesh& mesh, const Material& material,
                                const TimeSteppingConfig& config, std::vector<int> surface_nodes,
-                               double dt, int intervals)
+                               double dt, int intervals, Precision precision)
     : body_(mesh, material, config.model),
       stepper_(body_),
       rotation_weights_(config.rotation_weights),
       surface_nodes_(std::move(surface_nodes)),
       dt_(dt),
       schedule_(step_schedule(config, dt, intervals)),
-      force_(config.force > 0.0 ? config.force : default_force(body_, material.youngs_modulus)) {
+      force_(config.force > 0.0 ? config.force : default_force(body_, material.youngs_modulus)),
+      precision_(precision) {
   for (const int count : schedule_) stepper_.prepare(dt / count);
 }
 
 int SteppedColumns::step_count() const {
   return std::accumulate(schedule_.begin(), schedule_.end(), 0);
+}
+
+Columns SteppedColumns::block(int k) const {
+  RowMatrix<double> values = column(k);
+  if (precision_ == Precision::kDouble) return values;
+  return RowMatrix<float>(values.cast<float>());
 }
 
 RowMatrix<double> SteppedColumns::column(int b) const {

@@ -2,7 +2,8 @@
 
 #include <vector>
 
-#include "common/model/model.hpp"
+#include "common/model/model_writer.hpp"
+#include "precompute/columns/column_source.hpp"
 #include "precompute/dynamics/implicit_midpoint.hpp"
 #include "precompute/dynamics/time_stepping_config.hpp"
 
@@ -11,13 +12,19 @@ namespace irdm::precompute {
 /// Columns of R as the paper has them: a force on one surface degree of freedom of the
 /// free-floating body, held during the first interval, then none; the elastic part recorded after
 /// every interval.
-class SteppedColumns {
+class SteppedColumns final : public ColumnSource {
  public:
   /// Factorises for all steps of the schedule.
   /// @param mesh linear tetrahedra
   /// @param surface_nodes (n), into the nodes of the mesh
+  /// @param precision of block()
   SteppedColumns(const TetMesh& mesh, const Material& material, const TimeSteppingConfig& config,
-                 std::vector<int> surface_nodes, double dt, int intervals);
+                 std::vector<int> surface_nodes, double dt, int intervals,
+                 Precision precision = Precision::kDouble);
+
+  int columns() const override { return 3 * static_cast<int>(surface_nodes_.size()); }
+  int block_size() const override { return 1; }
+  Columns block(int k) const override;
 
   /// R[s](a, b) for all s and a: shape (T, 3n) [m/N]. For any number of threads at a time; the
   /// result does not depend on them.
@@ -34,6 +41,7 @@ class SteppedColumns {
   double dt_;
   std::vector<int> schedule_;
   double force_;
+  Precision precision_;
 };
 
 }  // namespace irdm::precompute

@@ -7,6 +7,8 @@
 namespace irdm::precompute {
 namespace {
 
+constexpr int kColumnsAtOnce = 8;
+
 // c = a b^T, all with contiguous rows.
 void multiply_transposed(const RowMatrix<float>& a, const RowMatrix<float>& b,
                          RowMatrix<float>& c) {
@@ -29,14 +31,28 @@ template <typename Scalar>
 DenseColumns<Scalar>::DenseColumns(const ModalResponse& response, double dt, int steps)
     : shapes_(std::get<RowMatrix<double>>(response.shapes).template cast<Scalar>()),
       responses_(held_responses(response, dt, steps).cast<Scalar>()),
-      weighted_(steps, shapes_.cols()),
-      column_(steps, shapes_.rows()) {}
+      block_size_(limited_block_size(kColumnsAtOnce, steps, static_cast<int>(shapes_.rows()),
+                                     sizeof(Scalar))) {}
 
 template <typename Scalar>
-const RowMatrix<Scalar>& DenseColumns<Scalar>::column(int b) {
-  weighted_ = responses_.array().rowwise() * shapes_.row(b).array();
-  multiply_transposed(weighted_, shapes_, column_);
-  return column_;
+Columns DenseColumns<Scalar>::block(int k) const {
+  const ColumnRange range = block_range(k);
+  const Eigen::Index steps = responses_.rows();
+  RowMatrix<Scalar> weighted(range.count() * steps, shapes_.cols());  // h diag(Phi_b)
+  for (int b = range.begin; b < range.end; ++b) {
+    weighted.middleRows((b - range.begin) * steps, steps) =
+        responses_.array().rowwise() * shapes_.row(b).array();
+  }
+  RowMatrix<Scalar> columns(weighted.rows(), shapes_.rows());
+  multiply_transposed(weighted, shapes_, columns);
+  return columns;
+}
+
+template <typename Scalar>
+RowMatrix<Scalar> DenseColumns<Scalar>::column(int b) const {
+  const int k = b / block_size_;
+  const Eigen::Index steps = responses_.rows();
+  return std::get<RowMatrix<Scalar>>(block(k)).middleRows((b - k * block_size_) * steps, steps);
 }
 
 template class DenseColumns<float>;

@@ -66,12 +66,13 @@ void ImplicitMidpoint::step(BodyState& state, const Eigen::VectorXd& force, doub
     Q = extract_rigid_motion(body_->rest(), u, body_->mass(), RotationWeights::kMass).rotation;
   }
   workspace.largest_speed = std::max(workspace.largest_speed, speed(state.v));
+  const StepStart start = body_->start_of_step(state.u);
   BodyState middle{state.u + 0.5 * h * state.v, state.v};  // velocity: w
   double last = 0.0;
   bool own_matrix = false;
   for (int i = 0;; ++i) {
-    const Eigen::VectorXd residual =
-        body_->internal_force(middle) + force - (2.0 / h) * mass3_.cwiseProduct(middle.v - state.v);
+    const Eigen::VectorXd residual = body_->mean_force(start, middle.v, h) + force -
+                                     (2.0 / h) * mass3_.cwiseProduct(middle.v - state.v);
     if (own_matrix) {
       if (!workspace.solver) workspace.solver = make_sparse_solver();
       workspace.solver->factorise(matrix(body_->stiffness(middle.u), h));

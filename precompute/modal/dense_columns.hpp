@@ -1,12 +1,18 @@
 #pragma once
 
+#include <vector>
+
 #include "precompute/columns/column_source.hpp"
 
 namespace irdm::precompute {
 
-/// R out of its modal form, one matrix product a block of columns: a column holds the displacement
-/// of every surface degree of freedom at every step after a force on one of them.
-/// Scalar is float or double and rules both storage and arithmetic.
+/// R out of its modal form by matrix products over several columns and steps at once: a column
+/// holds the displacement of every surface degree of freedom at every step after a force on one of
+/// them. Scalar is float or double and rules both storage and arithmetic.
+///
+/// Most modes die away within a few steps. Those at the end of the list (the fastest) that have
+/// become smaller than rounding, all together at most an eighth of Scalar's epsilon of what the
+/// modes may add up to at that step, are left out of the products from then on.
 template <typename Scalar>
 class DenseColumns final : public ColumnSource {
  public:
@@ -19,11 +25,14 @@ class DenseColumns final : public ColumnSource {
 
   /// R[s](a, b) for all s and a: shape (T, 3n).
   RowMatrix<Scalar> column(int b) const;
+  /// Modes that take part in step s.
+  int modes_at(int s) const;
 
  private:
   RowMatrix<Scalar> shapes_;     // Phi (3n, r)
   RowMatrix<Scalar> responses_;  // h (T, r)
   int block_size_;
+  std::vector<int> modes_;  // of each group of steps
 };
 
 extern template class DenseColumns<float>;

@@ -50,7 +50,6 @@ class ImplicitMidpoint {
   void step(BodyState& state, const Eigen::VectorXd& force, double h, Workspace& workspace) const;
 
  private:
-  Eigen::SparseMatrix<double> matrix(const Eigen::SparseMatrix<double>& stiffness, double h) const;
   double speed(const Eigen::VectorXd& v) const;
   Eigen::VectorXd correction(const SparseSolver& solver, const Matrix3& Q, const BodyState& middle,
                              const Eigen::VectorXd& residual, double h) const;

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "common/model/model_writer.hpp"
 #include "precompute/columns/column_source.hpp"
 #include "precompute/dynamics/implicit_midpoint.hpp"
+#include "precompute/dynamics/linear_midpoint.hpp"
 #include "precompute/dynamics/time_stepping_config.hpp"
 
 namespace irdm::precompute {
@@ -23,7 +25,8 @@ class SteppedColumns final : public ColumnSource {
                  Precision precision = Precision::kDouble);
 
   int columns() const override { return 3 * static_cast<int>(surface_nodes_.size()); }
-  int block_size() const override { return 1; }
+  /// Columns of the linear body are stepped together.
+  int block_size() const override { return block_size_; }
   Columns block(int k) const override;
 
   /// R[s](a, b) for all s and a: shape (T, 3n) [m/N]. For any number of threads at a time; the
@@ -34,14 +37,22 @@ class SteppedColumns final : public ColumnSource {
   int step_count() const;                  ///< of one column
 
  private:
+  Eigen::MatrixXd forces(const ColumnRange& range) const;
+  RowMatrix<double> linear_block(const ColumnRange& range) const;
+  RowMatrix<double> corotational_column(int b) const;
+  RowMatrix<double> values(int k) const;
+  void record(const Points& elastic, Eigen::Index row, RowMatrix<double>& columns) const;
+
   SoftBody body_;
-  ImplicitMidpoint stepper_;
+  std::optional<LinearMidpoint> linear_;
+  std::optional<ImplicitMidpoint> corotational_;
   RotationWeights rotation_weights_;
   std::vector<int> surface_nodes_;
   double dt_;
   std::vector<int> schedule_;
   double force_;
   Precision precision_;
+  int block_size_;
 };
 
 }  // namespace irdm::precompute

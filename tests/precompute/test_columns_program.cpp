@@ -35,20 +35,20 @@ struct Run : irdm::test::TemporaryFolder {
   void write(const std::string& name, const std::string& text) const {
     std::ofstream(path() / name) << text;
   }
-  ChildProcess begin(const std::string& arguments) const {
-    std::vector<std::string> command{IRDM_PROGRAM};
-    std::istringstream words(arguments);
+  ChildProcess begin(const std::string& arguments, const std::string& launcher = "") const {
+    std::vector<std::string> command;
+    std::istringstream words(launcher + " " + IRDM_PROGRAM + " " + arguments);
     for (std::string word; words >> word;) command.push_back(word);
     return ChildProcess(command, {.folder = path()});
   }
-  void start(const std::string& arguments) {
-    ChildProcess process = begin(arguments);
+  void start(const std::string& arguments, const std::string& launcher = "") {
+    ChildProcess process = begin(arguments, launcher);
     status = process.wait();
     out = process.out();
     err = process.err();
   }
-  void good(const std::string& arguments) {
-    start(arguments);
+  void good(const std::string& arguments, const std::string& launcher = "") {
+    start(arguments, launcher);
     CAPTURE(arguments, err);
     REQUIRE(status == 0);
   }
@@ -203,6 +203,28 @@ TEST_CASE("SIGINT keeps the work file and says how to go on; the same command go
   run.good("c.toml -o model.h5");
   CHECK(columns_kept(run.out) >= 2);
 }
+
+#ifdef IRDM_MPIRUN
+TEST_CASE("two ranks share the columns and one file comes out, that of a single process",
+          "[slow]") {
+  const std::string two = IRDM_MPIRUN " -n 2 --oversubscribe --allow-run-as-root";
+  for (const std::string& config :
+       {kStepping, kStepping + "[time_stepping]\nmodel = \"linear\"\n"}) {
+    Run run(config);
+    run.good("c.toml -o single.h5");
+    run.good("c.toml -o shared.h5 --threads 1", two);
+    CHECK((run.content("shared.h5") == run.content("single.h5")));
+    CHECK_FALSE(run.has("shared.h5.columns.0-of-2"));
+    CHECK_FALSE(run.has("shared.h5.columns.1-of-2"));
+    run.start("c.toml -o nowhere/shared.h5", two);
+    CHECK(run.status != 0);
+    CHECK_THAT(run.err, Contains("nowhere/shared.h5"));
+    run.start("c.toml -o a.part --columns 0:5", two);
+    CHECK(run.status != 0);
+    CHECK_THAT(run.err, Contains("do not go together"));
+  }
+}
+#endif
 
 // Each moment of death: while columns are computed, while the model file is written, and between.
 TEST_CASE("killed at 20 random moments, the run ends with the file of an undisturbed one",

@@ -4,9 +4,7 @@
 #include <unistd.h>
 
 #include <chrono>
-#include <cstdio>
 #include <iostream>
-#include <memory>
 #include <numbers>
 
 #include "common/error.hpp"
@@ -14,8 +12,7 @@
 #include "precompute/columns/assemble.hpp"
 #include "precompute/columns/settings.hpp"
 #include "precompute/columns/work_file.hpp"
-#include "precompute/dynamics/stepped_check.hpp"
-#include "precompute/dynamics/stepped_columns.hpp"
+#include "precompute/dynamics/stepping_method.hpp"
 #include "precompute/fem/assembly.hpp"
 #include "precompute/fem/mass_properties.hpp"
 #include "precompute/mesh/box_mesh.hpp"
@@ -134,19 +131,6 @@ ColumnFileHeader column_header(const PrecomputeConfig& config, const Model& mode
           config.response.compression_error,
           settings_text(config, clamped),
           description_of(model)};
-}
-
-std::unique_ptr<ColumnSource> stepped_columns(const PrecomputeConfig& config, const TetMesh& mesh,
-                                              const Model& model, int threads,
-                                              const Console& console) {
-  auto columns = std::make_unique<SteppedColumns>(mesh, model.material, config.time_stepping,
-                                                  model.mesh.surface_nodes, model.dt, model.steps,
-                                                  config.response.precision);
-  char text[128];
-  std::snprintf(text, sizeof text, "time stepping: %d steps a column, force %.3g N, %d threads",
-                columns->step_count(), columns->force(), threads);
-  console.line(text);
-  return columns;
 }
 
 // The columns that are asked for, of all of them.

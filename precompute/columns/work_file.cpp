@@ -1,5 +1,7 @@
 #include "precompute/columns/work_file.hpp"
 
+#include <exception>
+
 #include "common/error.hpp"
 #include "precompute/columns/assemble.hpp"
 #include "precompute/columns/column_file_writer.hpp"
@@ -68,7 +70,21 @@ int complete(ColumnFileWriter& file, const std::filesystem::path& path, const Co
   return left.count();
 }
 
-std::optional<double> join(const ColumnWork& work, int size, const Console& console) {
+// One part of the work of all ranks: none goes on before all have done it. Throws when one failed.
+template <typename Part>
+void together(const Ranks& ranks, const std::filesystem::path& output, const Part& part) {
+  std::exception_ptr failure;
+  try {
+    part();
+  } catch (...) {
+    failure = std::current_exception();
+  }
+  const bool good = ranks.all(!failure);
+  if (failure) std::rethrow_exception(failure);
+  if (!good) throw Error(output.string(), "another rank failed", "see its message");
+}
+
+double join(const ColumnWork& work, int size, const Console& console) {
   std::vector<std::filesystem::path> parts;
   for (int rank = 0; rank < size; ++rank) parts.push_back(work_name(work.output, rank, size));
   // Nobody else writes under this name while the work file is locked.
@@ -87,27 +103,22 @@ ColumnsDone write_by_columns(const ColumnSource& source, const ColumnWork& work,
   mine.range = share_of(work.header.range, ranks.rank(), ranks.size(), source.block_size());
   const std::filesystem::path path = work_name(work.output, ranks.rank(), ranks.size());
   ColumnsDone done;
-  std::optional<ColumnFileWriter> file;
-  try {
+  std::optional<ColumnFileWriter> file;  // locked until the parts are joined
+  together(ranks, work.output, [&] {
     if (mine.range.count() == 0) {
       throw Error(work.output.string(), "there are more ranks than blocks of columns",
                   "use fewer ranks");
     }
     file.emplace(path, mine);
     done.computed = complete(*file, path, source, mine, work.threads, console);
-  } catch (...) {
-    ranks.all(false);
-    throw;
-  }
-  if (!ranks.all(true)) {
-    throw Error(work.output.string(), "another rank failed", "see its message");
-  }
-  if (work.slice) {
-    file->commit(work.output);
-  } else if (ranks.rank() == 0) {
-    done.decay_left = join(work, ranks.size(), console);
-  }
-  ranks.all(true);  // keeps the locks until the parts are joined
+  });
+  together(ranks, work.output, [&] {
+    if (work.slice) {
+      file->commit(work.output);
+    } else if (ranks.rank() == 0) {
+      done.decay_left = join(work, ranks.size(), console);
+    }
+  });
   return done;
 }
 

@@ -127,6 +127,40 @@ TEST_CASE("merge refuses slices that do not fit together, one by one") {
   run.good("merge a.part b.part -o m.h5");
 }
 
+TEST_CASE("compression keeps to its error, of the whole file and of joined slices alike") {
+  const std::string zfp = "compression = \"zfp\"\ncompression_error = 1e-4\n";
+  for (const std::string& config : {kStepping, modal()}) {
+    Run run(config + zfp);
+    if (!hdf5::zfp_available()) {
+      run.refused("c.toml -o m.h5", "install HDF5's zfp plugin");
+      CHECK_FALSE(run.has("m.h5.columns"));
+      return;
+    }
+    run.write("plain.toml", config);
+    run.good("c.toml -o m.h5");
+    run.good("plain.toml -o plain.h5");
+    run.good("c.toml -o a.part --columns 0:20");
+    run.good("c.toml -o b.part --columns 20:54");
+    run.good("merge a.part b.part -o joined.h5");
+    CHECK((run.content("joined.h5") == run.content("m.h5")));
+    CHECK(run.content("m.h5").size() < 0.9 * static_cast<double>(run.content("plain.h5").size()));
+    const auto numbers = [&](const std::string& name) {
+      const Model model = read_model(run.path() / name, ResponseKind::kDense);
+      return std::get<std::vector<float>>(std::get<DenseResponse>(model.response).values);
+    };
+    const std::vector<float> exact = numbers("plain.h5");
+    const std::vector<float> lossy = numbers("m.h5");
+    float error = 0.0F;
+    float largest = 0.0F;
+    for (std::size_t i = 0; i < exact.size(); ++i) {
+      error = std::max(error, std::abs(lossy[i] - exact[i]));
+      largest = std::max(largest, std::abs(exact[i]));
+    }
+    CHECK(error > 0.0F);
+    CHECK(error <= 1e-4F * largest);
+  }
+}
+
 TEST_CASE("--columns takes A:B within R, of dense R only") {
   Run run;
   for (const std::string bad : {"5", "5:", ":5", "5:5", "6:5", "-1:5", "1:2x", "a:b"}) {

@@ -68,7 +68,7 @@ Flight fly(const SoftBody& b, double h) {
 
 }  // namespace
 
-TEST_CASE("corotational free flight conserves both momenta; damped, it gains no energy") {
+TEST_CASE("damped corotational free flight conserves both momenta and gains no energy") {
   const Flight flight = fly(body(Elasticity::kCorotational, 8.0, 2e-4), 0.001);
   CHECK(flight.momentum_error < 1e-12);
   CHECK(flight.angular_error < 1e-11);

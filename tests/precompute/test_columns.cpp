@@ -95,7 +95,7 @@ TEST_CASE("columns are stored in order, those that are wanted, for any number of
   }
 }
 
-TEST_CASE("a block that fails ends the work with its error; what came before it is stored") {
+TEST_CASE("a block that fails ends the work with its error, and what came before it is stored") {
   for (const int threads : {1, 3}) {
     Kept kept;
     CHECK_THROWS_WITH(compute_columns(CountedColumns(2), {0, 10}, threads, kept), "block fails");

@@ -161,7 +161,7 @@ TEST_CASE("compression keeps to its error, of the whole file and of joined slice
   }
 }
 
-TEST_CASE("--columns takes A:B within R, of dense R only") {
+TEST_CASE("option --columns takes A:B within R, of dense R only") {
   Run run;
   for (const std::string bad : {"5", "5:", ":5", "5:5", "6:5", "-1:5", "1:2x", "a:b"}) {
     run.start("c.toml -o a.part --columns=" + bad);
@@ -217,7 +217,7 @@ TEST_CASE("a work file of another configuration is given up") {
   CHECK((run.content("model.h5") == run.content("other.h5")));
 }
 
-TEST_CASE("SIGINT keeps the work file and says how to go on; the same command goes on") {
+TEST_CASE("SIGINT keeps the work file and says how to go on, and the same command goes on") {
   const std::string longer =
       std::string(kStepping).replace(kStepping.find("steps = 40"), 10, "steps = 4000");
   Run run(longer);

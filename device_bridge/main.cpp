@@ -8,6 +8,7 @@
 #include "common/program/program.hpp"
 #include "common/program/stop_signal.hpp"
 #include "device_bridge/bridge.hpp"
+#include "device_bridge/device_registry.hpp"
 
 int main(int argc, char** argv) {
   CLI::App app("Servo loop of the haptic device: relays stylus and force between device and server",
@@ -18,7 +19,7 @@ int main(int argc, char** argv) {
   app.add_option("BRIDGE.toml", config_path, "Configuration: the devices")->required();
   app.add_option("--server", overrides.server, "HOST:PORT of irdm-server");
   app.add_option("--device", overrides.device, "Type of all devices, instead of the configured one")
-      ->check(CLI::IsMember({"virtual", "openhaptics"}));
+      ->check(CLI::IsMember(irdm::device_types()));
   app.add_option("--script", overrides.script, "Motion of the virtual stylus (CSV)");
   app.add_option("--duration", duration, "End after this many seconds of session")
       ->check(irdm::positive_number());

@@ -27,7 +27,7 @@ trap stop_server EXIT
 scripts/setup.sh
 scripts/build.sh release irdm-precompute irdm-server irdm-bridge
 
-# The model is made again when its configuration or the program that makes it is newer.
+# The model is made again when its configuration is newer.
 config=configs/models/$model.toml
 if [ ! -f "$out/$model.h5" ] || [ "$config" -nt "$out/$model.h5" ]; then
   echo "demo: precomputing $model"

@@ -36,6 +36,12 @@ int print_report(const FinishedRun& run, const ServerOptions& options) {
             << "sessions: " << run.network.stats().accepted << " accepted, "
             << run.network.stats().refused << " refused, " << run.network.stats().protocol_errors
             << " closed for protocol errors\n";
+  const auto faults = [](const char* what, std::uint64_t count) {
+    if (count > 0) std::cout << what << ": " << count << '\n';
+  };
+  faults("forces that were not finite, sent as zero", run.network.stats().forces_not_finite);
+  faults("errors inside the network thread", run.network.stats().internal_errors);
+  faults("steps that the deformation did not see", run.deformation.lost_steps());
   if (run.recorder == nullptr) return 0;
   if (!run.recorder->error().empty()) {
     std::cerr << "irdm-server: error: recording ended early: " << run.recorder->error() << '\n';

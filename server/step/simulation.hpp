@@ -23,9 +23,10 @@ struct SimulationConfig {
   int stylus_count = 1;             ///< 1..kMaxStyluses
 };
 
-/// The force step (docs/design.md): a pure function of the commands and of the state in here. It
-/// knows no clock, thread, file or socket; the same commands give the same bits. One thread; step()
-/// is real-time safe and its cost does not depend on the size of the object.
+/// The force step (docs/architecture.md, one force step): a pure function of the commands and of
+/// the state in here. It knows no clock, thread, file or socket; the same commands give the same
+/// bits. One thread; step() is real-time safe and its cost does not depend on the size of the
+/// object.
 class Simulation {
  public:
   /// Throws Error when the model lacks the response that its engine needs.

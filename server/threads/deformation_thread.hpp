@@ -30,6 +30,8 @@ class DeformationThread {
   void start();
   void finish();
 
+  /// Steps that did not fit into its queue; after the thread has ended.
+  std::uint64_t lost_steps() const noexcept { return deformation_.lost_steps(); }
   std::uint64_t frames() const noexcept { return frames_.load(std::memory_order_relaxed); }
   /// Time to compute one surface; after finish().
   const Histogram& compute_time() const noexcept { return compute_time_; }

@@ -72,6 +72,16 @@ Material read_material(TomlTable table) {
   return material;
 }
 
+double read_compression(TomlTable& table) {
+  if (table.choice("compression", {"none", "zfp"}, "none") == "zfp") {
+    return table.number("compression_error", between(1e-9, 0.1), 1e-5);
+  }
+  if (table.has("compression_error")) {
+    table.fail("compression_error", "is there without compression", "set compression = \"zfp\"");
+  }
+  return 0.0;
+}
+
 ResponseConfig read_response(TomlTable table) {
   ResponseConfig response;
   response.dt =
@@ -83,6 +93,7 @@ ResponseConfig read_response(TomlTable table) {
   response.precision = table.choice("precision", {"single", "double"}, "single") == "single"
                            ? Precision::kSingle
                            : Precision::kDouble;
+  response.compression_error = read_compression(table);
   table.choice("support", {"floating", "fixed"}, "floating");  // see read_support
   table.finish();
   return response;

@@ -46,6 +46,10 @@ struct ResponseConfig {
   Method method = Method::kModal;            ///< "modal" | "time-stepping"
   Storage storage = Storage::kModal;         ///< "modal" | "dense" | "both"
   Precision precision = Precision::kSingle;  ///< of stored numbers of R: "single" | "double"
+  /// Error that compression of dense R may make, as a share of the largest |R[s](b, b)| over all b
+  /// and s, 1e-9..0.1; 0: none. `compression = "none" | "zfp"`, "none" unless given, and with "zfp"
+  /// `compression_error`, 1e-5 unless given.
+  double compression_error = 0.0;
 };
 
 /// A configuration file of irdm-precompute.

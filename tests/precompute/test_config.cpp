@@ -104,6 +104,10 @@ TEST_CASE("configuration takes every documented word") {
   CHECK(response("storage = \"both\"").storage == Storage::kBoth);
   CHECK(response("precision = \"double\"").precision == Precision::kDouble);
   CHECK(response("method = \"time-stepping\"").method == Method::kTimeStepping);
+  CHECK(response("").compression_error == 0.0);
+  CHECK(response("compression = \"none\"").compression_error == 0.0);
+  CHECK(response("compression = \"zfp\"").compression_error == 1e-5);
+  CHECK(response("compression = \"zfp\"\ncompression_error = 1e-3").compression_error == 1e-3);
   CHECK(response("method = \"modal\"\nsupport = \"floating\"\ndt = 0.001").dt == 0.001);
 }
 
@@ -179,6 +183,10 @@ TEST_CASE("configuration refuses each bad response entry") {
   refused("method = \"magic\"", "modal | time-stepping");
   refused("storage = \"sparse\"", "modal | dense | both");
   refused("precision = \"half\"", "single | double");
+  refused("compression = \"gzip\"", "none | zfp");
+  refused("compression_error = 1e-5", "compression_error is there without compression");
+  refused("compression = \"zfp\"\ncompression_error = 0.5", "compression_error is 0.5");
+  refused("compression = \"zfp\"\ncompression_error = 0", "compression_error is 0");
   refused("support = \"fixed\"", "support is missing");
   refused("support = \"nailed\"", "floating | fixed");
   refused("typo = 1", "response.typo is not a known key");

@@ -118,7 +118,7 @@ TEST_CASE("the body in a model file is what its nodes and masses make, about the
   CHECK_THROWS_WITH(read_model(run.model(), ResponseKind::kDense), Contains("no dense response"));
 }
 
-TEST_CASE("command line overrides storage; a mesh file works from end to end") {
+TEST_CASE("command line overrides storage, and a mesh file works from end to end") {
   Run run;
   run.write("m.msh", kMsh);
   run.write("c.toml", "[mesh]\nfile = \"m.msh\"\n" + kMaterial + "[response]\nsteps = 900\n");
@@ -172,7 +172,7 @@ TEST_CASE("a fixed body does not move where it is clamped and has all other mode
   }
 }
 
-TEST_CASE("a mesh file in millimetres becomes metres; the wrong unit is hinted at") {
+TEST_CASE("a mesh file in millimetres becomes metres, and the wrong unit is hinted at") {
   Run run;
   std::string large = kMsh;
   for (const char* line : {"2 1 0 0\n", "3 0 1 0\n", "4 0 0 1\n", "5 1 1 1\n"}) {

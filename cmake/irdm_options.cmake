@@ -8,6 +8,9 @@ target_compile_options(irdm_options INTERFACE
 # Identical inputs give identical bits: no contraction that depends on the optimiser's mood.
 target_compile_options(irdm_options INTERFACE -ffp-contract=off)
 target_compile_definitions(irdm_options INTERFACE IRDM_VERSION="${PROJECT_VERSION}")
+# Eigen's own threads wait in a spin that is a data race, and its sums would depend on their number.
+# Large products go to OpenBLAS; our own loops say themselves when they are parallel.
+target_compile_definitions(irdm_options INTERFACE EIGEN_DONT_PARALLELIZE)
 
 if(IRDM_SANITIZE)
   target_compile_options(irdm_options INTERFACE

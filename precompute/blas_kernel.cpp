@@ -59,4 +59,12 @@ void set_blas_threads(int threads) {
   if (threads > 0) openblas_set_num_threads(threads);
 }
 
+SingleThreadedBlas::SingleThreadedBlas() : before_(openblas_get_num_threads()) {
+  openblas_set_num_threads(1);
+}
+
+SingleThreadedBlas::~SingleThreadedBlas() {
+  openblas_set_num_threads(before_);
+}
+
 }  // namespace irdm::precompute

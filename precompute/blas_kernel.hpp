@@ -31,4 +31,16 @@ void use_fast_blas_kernel(char** argv);
 /// Number of threads of the BLAS; 0 leaves OpenBLAS's choice, all cores.
 void set_blas_threads(int threads);
 
+/// While it lives the BLAS uses one thread: for code that calls it from several threads of its own.
+class SingleThreadedBlas {
+ public:
+  SingleThreadedBlas();
+  SingleThreadedBlas(const SingleThreadedBlas&) = delete;
+  SingleThreadedBlas& operator=(const SingleThreadedBlas&) = delete;
+  ~SingleThreadedBlas();
+
+ private:
+  int before_;
+};
+
 }  // namespace irdm::precompute

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "common/error.hpp"
+#include "precompute/mesh/mesh_file.hpp"
 
 namespace irdm::precompute {
 namespace {
@@ -37,6 +38,12 @@ MeshConfig read_mesh(TomlTable table) {
     table.fail("", table.has("box") ? "has both box and file" : "has neither box nor file",
                "give one of box = { size = [..], cells = [..] } and file = \"name\"");
   }
+  const bool surface = table.has("file") && is_surface_file(table.path("file"));
+  if (table.has("edge_length") && !surface) {
+    table.fail("edge_length", "belongs to a surface (.stl, .obj, .ply)",
+               table.has("box") ? "leave it out: cells says how fine a box is"
+                                : "leave it out: this file says its own sizes");
+  }
   if (table.has("box")) {
     if (table.has("unit")) {
       table.fail("unit", "belongs to a mesh file", "leave it out: a box is given in metres");
@@ -45,6 +52,7 @@ MeshConfig read_mesh(TomlTable table) {
   } else {
     mesh.source = table.path("file");
     mesh.unit = unit_from_word(table.choice("unit", {"m", "cm", "mm"}, "m"));
+    if (table.has("edge_length")) mesh.edge_length = table.number("edge_length", above(0));
   }
   mesh.order = table.integer("order", 1, 2, mesh.order);
   table.finish();
@@ -64,6 +72,16 @@ Material read_material(TomlTable table) {
   return material;
 }
 
+double read_compression(TomlTable& table) {
+  if (table.choice("compression", {"none", "zfp"}, "none") == "zfp") {
+    return table.number("compression_error", between(1e-9, 0.1), 1e-5);
+  }
+  if (table.has("compression_error")) {
+    table.fail("compression_error", "is there without compression", "set compression = \"zfp\"");
+  }
+  return 0.0;
+}
+
 ResponseConfig read_response(TomlTable table) {
   ResponseConfig response;
   response.dt =
@@ -75,6 +93,7 @@ ResponseConfig read_response(TomlTable table) {
   response.precision = table.choice("precision", {"single", "double"}, "single") == "single"
                            ? Precision::kSingle
                            : Precision::kDouble;
+  response.compression_error = read_compression(table);
   table.choice("support", {"floating", "fixed"}, "floating");  // see read_support
   table.finish();
   return response;

@@ -19,12 +19,15 @@ struct BoxConfig {
   std::array<int, 3> cells = {0, 0, 0};  ///< grid cells along each edge, 1..100
 };
 
-/// [mesh]: either `box = { size = [..], cells = [..] }` or `file = "name"` (.msh, .node, .ele).
+/// [mesh]: either `box = { size = [..], cells = [..] }` or `file = "name"`, of a format that
+/// mesh_file.hpp and docs/meshes.md list.
 struct MeshConfig {
   std::variant<BoxConfig, std::filesystem::path> source;
   /// Length of the mesh file's unit [m]: `unit = "m" | "cm" | "mm"`, "m" unless given. A box is in
   /// m.
   double unit = 1.0;
+  /// Target edge length of the tetrahedra of a surface [m], > 0; none: its triangles are kept.
+  std::optional<double> edge_length;
   /// 1: linear, 2: quadratic tetrahedra, whose mid-side nodes are made here; the cells of a box are
   /// those of the tetrahedra, so that 6 cells an edge have the surface nodes of 12 linear ones
   int order = 1;
@@ -43,6 +46,10 @@ struct ResponseConfig {
   Method method = Method::kModal;            ///< "modal" | "time-stepping"
   Storage storage = Storage::kModal;         ///< "modal" | "dense" | "both"
   Precision precision = Precision::kSingle;  ///< of stored numbers of R: "single" | "double"
+  /// Error that compression of dense R may make, as a share of the largest |R[s](b, b)| over all b
+  /// and s, 1e-9..0.1; 0: none. `compression = "none" | "zfp"`, "none" unless given, and with "zfp"
+  /// `compression_error`, 1e-5 unless given.
+  double compression_error = 0.0;
 };
 
 /// A configuration file of irdm-precompute.

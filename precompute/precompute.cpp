@@ -1,15 +1,18 @@
 #include "precompute/precompute.hpp"
 
+#include <omp.h>
 #include <unistd.h>
 
 #include <chrono>
-#include <cmath>
 #include <iostream>
 #include <numbers>
 
 #include "common/error.hpp"
 #include "precompute/blas_kernel.hpp"
-#include "precompute/dynamics/write_stepped.hpp"
+#include "precompute/columns/assemble.hpp"
+#include "precompute/columns/settings.hpp"
+#include "precompute/columns/work_file.hpp"
+#include "precompute/dynamics/stepping_method.hpp"
 #include "precompute/fem/assembly.hpp"
 #include "precompute/fem/mass_properties.hpp"
 #include "precompute/mesh/box_mesh.hpp"
@@ -20,11 +23,10 @@
 #include "precompute/mesh/region.hpp"
 #include "precompute/mesh/surface.hpp"
 #include "precompute/mesh/tetgen_program.hpp"
-#include "precompute/modal/dense_columns.hpp"
-#include "precompute/modal/elastic_modes.hpp"
 #include "precompute/modal/held_responses.hpp"
+#include "precompute/modal/modal_method.hpp"
 #include "precompute/modal/symmetric_eigen.hpp"
-#include "precompute/process/remove_on_signal.hpp"
+#include "precompute/process/last_action.hpp"
 
 namespace irdm::precompute {
 namespace {
@@ -44,7 +46,9 @@ TetMesh make_linear_mesh(const MeshConfig& config) {
     return mesh;
   }
   const auto& path = std::get<std::filesystem::path>(config.source);
-  TetMesh mesh = read_mesh_file(path);
+  std::optional<double> edge_length = config.edge_length;
+  if (edge_length) *edge_length /= config.unit;
+  TetMesh mesh = read_mesh_file(path, edge_length);
   mesh.nodes *= config.unit;
   const int unused = drop_unused_nodes(mesh);
   check_mesh(mesh, path.string());
@@ -93,7 +97,8 @@ double inertia_excess(const Matrix3& nodal, const Matrix3& solid) {
 
 // Says early that the work cannot be done here, instead of dying of it later.
 void check_resources(const PrecomputeConfig& config, const TetMesh& mesh, const Model& model,
-                     const std::filesystem::path& output) {
+                     int columns, const std::filesystem::path& output) {
+  check_compression(config.response.compression_error, output);
   const double memory =
       static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
   const Eigen::Index unknowns = 3 * static_cast<Eigen::Index>(mesh.node_count());
@@ -103,12 +108,12 @@ void check_resources(const PrecomputeConfig& config, const TetMesh& mesh, const 
                 std::to_string(mesh.node_count()) +
                     " nodes are too many for all modes on this "
                     "machine",
-                "use a coarser mesh (at most " + std::to_string(kMaxEigenSize / 3) + " nodes)");
+                "use a coarser mesh (at most " + std::to_string(kMaxEigenSize / 3) +
+                    " nodes); of a surface, with a larger mesh.edge_length");
   }
   if (config.response.storage == Storage::kModal) return;
-  const double dof = model.degrees_of_freedom();
   const double size =
-      dof * dof * model.steps *
+      static_cast<double>(columns) * model.degrees_of_freedom() * model.steps *
       (config.response.precision == Precision::kSingle ? sizeof(float) : sizeof(double));
   std::error_code error;
   const auto space = std::filesystem::space(std::filesystem::absolute(output).parent_path(), error);
@@ -120,49 +125,54 @@ void check_resources(const PrecomputeConfig& config, const TetMesh& mesh, const 
   }
 }
 
-ModalResponse compute_modes(const TetMesh& mesh, const std::vector<int>& clamped,
-                            const Model& model, const Console& console) {
-  const SparseMatrix stiffness = assemble_stiffness(mesh, lame_parameters(model.material));
-  // Measured: 26 s for 4080 unknowns on two cores.
-  const auto unknowns = 3 * (static_cast<std::size_t>(mesh.node_count()) - clamped.size());
-  const double estimate = 26.0 * std::pow(static_cast<double>(unknowns) / 4080.0, 3);
-  console.line("modes: " + std::to_string(unknowns) + " unknowns, all modes by LAPACK; about " +
-               format_duration(estimate) + " on two cores");
-  const ElasticModes modes = model.body.support == Support::kFixed
-                                 ? fixed_modes(stiffness, model.mesh.node_mass, clamped)
-                                 : elastic_modes(stiffness, model.mesh.nodes, model.mesh.node_mass);
-  return modal_response(modes, model.mesh.surface_nodes, model.material);
+ColumnFileHeader column_header(const PrecomputeConfig& config, const Model& model,
+                               const std::vector<int>& clamped, const ColumnRange& range) {
+  return {range,
+          model.degrees_of_freedom(),
+          model.steps,
+          config.response.precision,
+          config.response.compression_error,
+          settings_text(config, clamped),
+          description_of(model)};
 }
 
-template <typename Scalar>
-void write_dense(ModelFileWriter& writer, const ModalResponse& response, const Model& model,
-                 Precision precision, const Console& console) {
-  const int dof = model.degrees_of_freedom();
-  DenseColumns<Scalar> columns(response, model.dt, model.steps);
-  writer.begin_dense(dof, model.steps, precision);
-  Progress progress(console, "columns of R", dof);
-  for (int b = 0; b < dof; ++b) {
-    writer.write_dense_column(b, columns.column(b).data());
-    progress.update(b + 1);
+// The columns that are asked for, of all of them.
+ColumnRange wanted_columns(const PrecomputeConfig& config, const Model& model,
+                           const std::optional<ColumnRange>& slice, const Ranks& ranks) {
+  const ColumnRange all{0, model.degrees_of_freedom()};
+  if (!slice && ranks.size() == 1) return all;
+  if (config.response.storage != Storage::kDense) {
+    throw Error(config.name, "only dense R has columns that can be shared out",
+                "set response.storage = \"dense\" (or --storage dense)");
   }
+  if (!slice) return all;
+  if (ranks.size() > 1) {
+    throw Error(config.name, "--columns and mpirun do not go together", "use one of them");
+  }
+  if (slice->end > all.end) {
+    throw Error(
+        config.name,
+        "columns " + to_text(*slice) + " are asked for and R has " + std::to_string(all.end),
+        "ask for some of " + to_text(all));
+  }
+  return *slice;
 }
 
-void write_responses(ModelFileWriter& writer, ModalResponse response, const Model& model,
-                     const ResponseConfig& config, const Console& console) {
-  const bool single = config.precision == Precision::kSingle;
-  if (config.storage != Storage::kModal) {
-    if (single) {
-      write_dense<float>(writer, response, model, config.precision, console);
-    } else {
-      write_dense<double>(writer, response, model, config.precision, console);
-    }
-  }
-  if (config.storage == Storage::kDense) return;
-  if (single) {
-    const RowMatrix<float> shapes = std::get<RowMatrix<double>>(response.shapes).cast<float>();
-    response.shapes = shapes;
-  }
-  writer.write_modal(response);
+Summary describe_work(const PrecomputeConfig& config, const TetMesh& mesh, const Model& model,
+                      std::size_t clamped) {
+  Summary summary;
+  summary.free_nodes = model.mesh.surface_node_count();
+  summary.triangles = static_cast<int>(model.mesh.triangles.rows());
+  summary.nodes = mesh.node_count();
+  summary.clamped_nodes = static_cast<int>(clamped);
+  summary.tetrahedra = mesh.tet_count();
+  summary.order = mesh.order();
+  summary.mesh = report_mesh(mesh);
+  summary.mass = model.body.mass;
+  summary.inertia_excess = inertia_excess(
+      model.body.inertia, solid_mass_properties(mesh, config.material.density).inertia);
+  summary.blas_kernel = blas_kernel();
+  return summary;
 }
 
 void warn_about(const PrecomputeConfig& config, const Summary& summary) {
@@ -172,7 +182,7 @@ void warn_about(const PrecomputeConfig& config, const Summary& summary) {
         "mesh.order = 2 with half the cells an edge");
   }
   if (const auto hint = unit_hint(summary.mesh.extent)) warn(*hint);
-  if (summary.decay_left > kMaxDecayLeft) {
+  if (summary.decay_left.value_or(0.0) > kMaxDecayLeft) {
     warn("more than 1 % of R is left at the last step; raise response.steps or the damping");
   }
 }
@@ -180,46 +190,52 @@ void warn_about(const PrecomputeConfig& config, const Summary& summary) {
 }  // namespace
 
 Summary precompute_model(const PrecomputeConfig& config, const std::filesystem::path& output,
-                         const Console& console) {
+                         const Console& console, const std::optional<ColumnRange>& slice,
+                         const Ranks& ranks) {
   const auto start = std::chrono::steady_clock::now();
+  const bool stepping = config.response.method == Method::kTimeStepping;
   const TetMesh mesh = make_mesh(config.mesh);
   const Model model = describe(mesh, config.name, config);
-  if (config.response.method == Method::kTimeStepping) {
+  if (stepping) {
     check_time_stepping(config.name, mesh, model, config.response.storage == Storage::kDense);
   }
   const std::vector<int> clamped = clamped_nodes(config, mesh, model);
-  check_resources(config, mesh, model, output);
+  const ColumnRange columns = wanted_columns(config, model, slice, ranks);
+  check_resources(config, mesh, model, columns.count(), output);
   console.line("mesh: " + std::to_string(mesh.node_count()) + " nodes, " +
                std::to_string(mesh.tet_count()) + " tetrahedra, " +
                std::to_string(model.mesh.surface_node_count()) + " surface nodes");
 
-  ModelFileWriter writer(output);
-  const RemoveOnSignal cleanup(writer.temporary_path());
-  writer.write_description(model);
-  Summary summary;
-  summary.free_nodes = model.mesh.surface_node_count();
-  summary.triangles = static_cast<int>(model.mesh.triangles.rows());
-  summary.nodes = mesh.node_count();
-  summary.clamped_nodes = static_cast<int>(clamped.size());
-  summary.tetrahedra = mesh.tet_count();
-  summary.order = mesh.order();
-  summary.mesh = report_mesh(mesh);
-  summary.mass = model.body.mass;
-  summary.inertia_excess = inertia_excess(
-      model.body.inertia, solid_mass_properties(mesh, config.material.density).inertia);
-  summary.blas_kernel = blas_kernel();
-  if (config.response.method == Method::kTimeStepping) {
-    summary.decay_left = write_stepped_columns(
-        writer, mesh, model,
-        {config.name, config.time_stepping, config.response.precision, config.threads}, console);
+  Summary summary = describe_work(config, mesh, model, clamped.size());
+  const int threads = config.threads > 0 ? config.threads : omp_get_num_procs();
+  const auto by_columns = [&](const ColumnSource& source) {
+    const ColumnsDone done = write_by_columns(
+        source,
+        {output, column_header(config, model, clamped, columns), slice.has_value(), threads}, ranks,
+        console);
+    summary.columns = done.computed;
+    summary.slice = slice.has_value();
+    if (stepping) summary.decay_left = done.decay_left;
+  };
+  if (stepping) {
+    by_columns(*stepped_columns(config, mesh, model, threads, console));
   } else {
     ModalResponse response = compute_modes(mesh, clamped, model, console);
     summary.modes = response.mode_count();
     summary.lowest_frequency = response.angular_frequency(0) / (2.0 * std::numbers::pi);
     summary.decay_left = decay_left(response, model.dt, model.steps);
-    write_responses(writer, std::move(response), model, config.response, console);
+    if (slice || ranks.size() > 1) {
+      by_columns(*modal_columns(response, model, config.response.precision));
+    } else {
+      ModelFileWriter writer(output);
+      const LastAction cleanup({.remove = writer.temporary_path()});
+      writer.write_description(model);
+      write_modal_response(writer, std::move(response), model, config.response, threads, console);
+      writer.commit();
+      summary.columns = columns.count();
+    }
   }
-  writer.commit();
+  if (ranks.rank() > 0) return summary;
   summary.file_bytes = std::filesystem::file_size(output);
   summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   warn_about(config, summary);

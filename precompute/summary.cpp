@@ -1,5 +1,6 @@
 #include "precompute/summary.hpp"
 
+#include <algorithm>
 #include <cstdio>
 
 namespace irdm::precompute {
@@ -37,7 +38,8 @@ std::string row(const std::string& name, const std::string& value) {
 }  // namespace
 
 std::string format_summary(const Summary& s) {
-  const double dof = s.degrees_of_freedom();
+  const double computed = std::max(1, s.columns);
+  const double stored = s.slice ? computed : s.degrees_of_freedom();
   return row("free nodes (n)", std::to_string(s.free_nodes)) +
          row("triangle patches", std::to_string(s.triangles)) +
          row("entire nodes", std::to_string(s.nodes)) +
@@ -53,12 +55,17 @@ std::string format_summary(const Summary& s) {
               ? std::string()
               : row("elastic modes", std::to_string(s.modes)) +
                     row("lowest elastic frequency", significant(s.lowest_frequency, "Hz"))) +
-         row("decay left at the last step", significant(100.0 * s.decay_left, "%")) +
+         (s.decay_left ? row("decay left at the last step", significant(100.0 * *s.decay_left, "%"))
+                       : std::string()) +
          row("nodal over solid inertia", significant(100.0 * s.inertia_excess, "% more")) +
+         (s.columns == s.degrees_of_freedom()
+              ? std::string()
+              : row("columns computed in this run", std::to_string(s.columns))) +
          row("pre-computation time", significant(s.seconds, "s")) +
-         row("pre-computation time per d.o.f.", significant(s.seconds / dof, "s")) +
-         row("model file", bytes(static_cast<double>(s.file_bytes))) +
-         row("data size per d.o.f.", bytes(static_cast<double>(s.file_bytes) / dof)) +
+         row("pre-computation time per d.o.f.", significant(s.seconds / computed, "s")) +
+         row(s.slice ? "part of a model file" : "model file",
+             bytes(static_cast<double>(s.file_bytes))) +
+         row("data size per d.o.f.", bytes(static_cast<double>(s.file_bytes) / stored)) +
          row("BLAS kernel", s.blas_kernel);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "precompute/mesh/mesh_report.hpp"
@@ -20,9 +21,11 @@ struct Summary {
   int modes = 0;         ///< 0: R was obtained without modes
   double seconds = 0.0;  ///< of the whole run
   std::uint64_t file_bytes = 0;
-  double lowest_frequency = 0.0;  ///< of the elastic modes [Hz]
-  double decay_left = 0.0;        ///< see decay_left(), 0..
-  double inertia_excess = 0.0;    ///< largest moment of inertia of the nodes over the solid's, - 1
+  double lowest_frequency = 0.0;     ///< of the elastic modes [Hz]
+  std::optional<double> decay_left;  ///< see decay_left(), 0..; unknown of a slice
+  int columns = 0;                   ///< of R that were computed in this run
+  bool slice = false;                ///< the file holds a slice of R
+  double inertia_excess = 0.0;  ///< largest moment of inertia of the nodes over the solid's, - 1
   std::string blas_kernel;
 
   int degrees_of_freedom() const { return 3 * free_nodes; }

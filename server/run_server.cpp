@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "common/checksum.hpp"
+#include "common/error.hpp"
 #include "common/model/model_file.hpp"
 #include "common/program/stop_signal.hpp"
 #include "server/config/scene.hpp"
@@ -35,7 +36,26 @@ SimulationConfig simulation_config(const SceneConfig& scene) {
                               object.damping, object.tether});
   }
   config.styluses = scene.styluses;
+  config.floor = scene.floor;
   return config;
+}
+
+// Where a fixed object is clamped its surface does not yield at all: without a spring between tip
+// and surface no force takes the one to the other.
+void check_coupling(const SceneConfig& scene, const SimulationConfig& config,
+                    const std::string& name) {
+  const bool rigid =
+      std::any_of(config.styluses.begin(), config.styluses.end(),
+                  [](const SimulationStylus& stylus) { return stylus.coupling_stiffness <= 0.0; });
+  for (std::size_t i = 0; rigid && i < config.objects.size(); ++i) {
+    if (config.objects[i].model->body.support != Support::kFixed) continue;
+    throw Error(
+        name,
+        "object '" + scene.objects[i].name +
+            "' is fixed and contact.coupling_stiffness is 0, so that nothing yields where it "
+            "is clamped",
+        "set contact.coupling_stiffness, for instance to 2000 (N/m)");
+  }
 }
 
 // In lockstep nobody waits for the machine's clock.
@@ -86,6 +106,7 @@ int run_server(const ServerOptions& options) {
   StopSignal stop;
   const SceneConfig scene = read_scene(TomlTable::parse_file(options.scene));
   const SimulationConfig config = simulation_config(scene);
+  check_coupling(scene, config, options.scene.string());
   Simulation simulation(config);
   const double dt = simulation.dt();
   NetworkServer network(network_settings(scene, options, dt));
@@ -101,7 +122,8 @@ int run_server(const ServerOptions& options) {
   ForceThread force(simulation, network, *clock, sinks, steps);
 
   network.start();
-  std::cout << "listening on " << network.endpoint() << std::endl;
+  // In one piece, so that no other thread's line comes between.
+  std::cout << "listening on " + network.endpoint() + "\n" << std::flush;
   if (recorder) recorder->start();
   deformation.start();
   force.start(scheduling(scene, options));

@@ -31,14 +31,6 @@ hid_t native_type<std::uint64_t>() {
 
 namespace {
 
-// Before every other use of the library in this process. Files are closed by their owners; the
-// library's own closing at exit would crash on a file whose closing failed because the disk is
-// full.
-void prepare_library() {
-  [[maybe_unused]] static const herr_t once = H5dont_atexit();
-  silence_this_thread();
-}
-
 Handle make_space(const Shape& shape, const hsize_t* maximum = nullptr) {
   if (shape.empty()) return {H5Screate(H5S_SCALAR), H5Sclose};
   return {H5Screate_simple(static_cast<int>(shape.size()), shape.data(), maximum), H5Sclose};
@@ -50,6 +42,13 @@ Handle make_link_properties() {
   H5Pset_create_intermediate_group(properties.get(), 1);
   return properties;
 }
+
+Handle make_access_properties() {
+  return {H5Pcreate(H5P_FILE_ACCESS), H5Pclose};
+}
+
+// Of the file in memory.
+constexpr std::size_t kImageGrowth = 1 << 16;
 
 hsize_t product(const Shape& shape) {
   return std::accumulate(shape.begin(), shape.end(), hsize_t{1}, std::multiplies<>());
@@ -64,6 +63,13 @@ std::string to_text(const Shape& shape) {
 }
 
 }  // namespace
+
+// Files are closed by their owners; the library's own closing at exit would crash on a file whose
+// closing failed because the disk is full.
+void prepare_library() {
+  [[maybe_unused]] static const herr_t once = H5dont_atexit();
+  silence_this_thread();
+}
 
 // HDF5 prints its own error stack to stderr by default; our errors are one line.
 void silence_this_thread() {
@@ -103,6 +109,37 @@ File File::open(const std::filesystem::path& path) {
   return {std::move(file), path.string()};
 }
 
+File File::in_memory(const std::string& name) {
+  prepare_library();
+  const Handle access = make_access_properties();
+  H5Pset_fapl_core(access.get(), kImageGrowth, 0);
+  Handle file(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), H5Fclose);
+  if (file.get() < 0) throw Error(name, "cannot be made in memory", "free memory");
+  return {std::move(file), name};
+}
+
+File File::from_image(const std::string& image, const std::string& name) {
+  prepare_library();
+  const Handle access = make_access_properties();
+  H5Pset_fapl_core(access.get(), kImageGrowth, 0);
+  std::string copy = image;  // HDF5 wants it writable and copies it
+  H5Pset_file_image(access.get(), copy.data(), copy.size());
+  Handle file(H5Fopen(name.c_str(), H5F_ACC_RDONLY, access.get()), H5Fclose);
+  if (file.get() < 0) throw Error(name, "is damaged", "make it again");
+  return {std::move(file), name};
+}
+
+std::string File::image() {
+  flush();
+  std::string bytes(
+      static_cast<std::size_t>(std::max<ssize_t>(0, H5Fget_file_image(file_.get(), nullptr, 0))),
+      '\0');
+  if (H5Fget_file_image(file_.get(), bytes.data(), bytes.size()) <= 0) {
+    fail_write("cannot be turned into bytes");
+  }
+  return bytes;
+}
+
 bool File::exists(const std::string& path) const {
   for (std::size_t end = path.find('/', 1);; end = path.find('/', end + 1)) {
     if (H5Lexists(file_.get(), path.substr(0, end).c_str(), H5P_DEFAULT) <= 0) return false;
@@ -138,10 +175,11 @@ Handle File::open_dataset(const std::string& path) const {
   return dataset;
 }
 
-Handle File::make_dataset(const std::string& path, hid_t type, hid_t space, hid_t creation) {
+Handle File::make_dataset(const std::string& path, hid_t type, hid_t space,
+                          const Handle& creation) {
   const Handle links = make_link_properties();
   Handle dataset(
-      H5Dcreate2(file_.get(), path.c_str(), type, space, links.get(), creation, H5P_DEFAULT),
+      H5Dcreate2(file_.get(), path.c_str(), type, space, links.get(), creation.get(), H5P_DEFAULT),
       H5Dclose);
   if (dataset.get() < 0) fail_write("cannot create " + path);
   return dataset;
@@ -260,13 +298,15 @@ std::size_t File::element_size(const std::string& dataset) const {
 }
 
 template <typename T>
-void File::create_dataset(const std::string& dataset, const Shape& shape) {
-  make_dataset(dataset, native_type<T>(), make_space(shape).get(), H5P_DEFAULT);
+void File::create_dataset(const std::string& dataset, const Shape& shape, const Layout& layout) {
+  make_dataset(dataset, native_type<T>(), make_space(shape).get(),
+               dataset_properties(layout, name_));
 }
 
 template <typename T>
 void File::write(const std::string& dataset, const Shape& shape, const T* values) {
-  const Handle set = make_dataset(dataset, native_type<T>(), make_space(shape).get(), H5P_DEFAULT);
+  const Handle set = make_dataset(dataset, native_type<T>(), make_space(shape).get(),
+                                  dataset_properties({}, name_));
   if (H5Dwrite(set.get(), native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0) {
     fail_write("cannot write " + dataset);
   }
@@ -286,6 +326,7 @@ std::vector<T> File::read(const std::string& dataset, const Shape& expected) con
   std::vector<T> values(product(found));
   const Handle set = open_dataset(dataset);
   if (H5Dread(set.get(), native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) {
+    check_filters(set, name_, dataset);
     fail_read("dataset " + dataset + " cannot be read");
   }
   return values;
@@ -302,7 +343,8 @@ void File::transfer_slab(const std::string& dataset, const Shape& start, const S
       fail_write("cannot write into " + dataset);
     }
   } else if (H5Dread(set.get(), type, memory.get(), space.get(), H5P_DEFAULT, target) < 0) {
-    fail_read("dataset " + dataset + " cannot be read");
+    check_filters(set, name_, dataset);
+    fail_read("dataset " + dataset + " cannot be read, or its checksum is wrong");
   }
 }
 
@@ -328,9 +370,8 @@ void File::create_growing(const std::string& dataset, const Shape& row, hsize_t 
     maximum.push_back(extent);
     chunk.push_back(extent);
   }
-  const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-  H5Pset_chunk(creation.get(), static_cast<int>(chunk.size()), chunk.data());
-  make_dataset(dataset, native_type<T>(), make_space(shape, maximum.data()).get(), creation.get());
+  const Handle creation = dataset_properties({.chunk = chunk}, name_);
+  make_dataset(dataset, native_type<T>(), make_space(shape, maximum.data()).get(), creation);
 }
 
 template <typename T>
@@ -349,7 +390,7 @@ void File::append(const std::string& dataset, hsize_t rows, const T* values) {
 }
 
 #define IRDM_HDF5_INSTANTIATE(T)                                                               \
-  template void File::create_dataset<T>(const std::string&, const Shape&);                     \
+  template void File::create_dataset<T>(const std::string&, const Shape&, const Layout&);      \
   template void File::write<T>(const std::string&, const Shape&, const T*);                    \
   template std::vector<T> File::read<T>(const std::string&, const Shape&) const;               \
   template void File::write_slab<T>(const std::string&, const Shape&, const Shape&, const T*); \

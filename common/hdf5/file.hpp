@@ -9,37 +9,13 @@
 #include <utility>
 #include <vector>
 
+#include "common/hdf5/handle.hpp"
+#include "common/hdf5/layout.hpp"
+
 /// Thin RAII over HDF5's C interface: what the model and the trace file need, nothing more. Every
 /// failure is an irdm::Error that names the file and the object. The library is not thread safe:
 /// each process calls it from one thread at a time.
 namespace irdm::hdf5 {
-
-/// Owns one HDF5 identifier and closes it with the function that its kind asks for.
-class Handle {
- public:
-  using Closer = herr_t (*)(hid_t);
-  Handle() = default;
-  Handle(hid_t id, Closer closer) : id_(id), closer_(closer) {}
-  Handle(Handle&& other) noexcept
-      : id_(std::exchange(other.id_, H5I_INVALID_HID)), closer_(other.closer_) {}
-  Handle& operator=(Handle&& other) noexcept {
-    std::swap(id_, other.id_);
-    std::swap(closer_, other.closer_);
-    return *this;
-  }
-  Handle(const Handle&) = delete;
-  Handle& operator=(const Handle&) = delete;
-  ~Handle() {
-    if (id_ >= 0) closer_(id_);
-  }
-  hid_t get() const { return id_; }
-
- private:
-  hid_t id_ = H5I_INVALID_HID;
-  Closer closer_ = nullptr;
-};
-
-using Shape = std::vector<hsize_t>;
 
 /// HDF5's name for a C++ number type: double, float, std::int32_t, std::uint8_t or std::uint64_t.
 template <typename T>
@@ -57,6 +33,10 @@ class File {
   static File create(const std::filesystem::path& path);
   /// Opens a file for reading. Throws Error when it is missing, unreadable or not HDF5.
   static File open(const std::filesystem::path& path);
+  /// A new file in memory, which image() turns into bytes; `name` is for messages.
+  static File in_memory(const std::string& name);
+  /// A file whose bytes are at hand, for reading. Throws Error when they are not HDF5.
+  static File from_image(const std::string& image, const std::string& name);
 
   const std::string& name() const { return name_; }
   hid_t id() const { return file_.get(); }
@@ -64,6 +44,8 @@ class File {
 
   void create_group(const std::string& path);
   void flush();
+  /// The bytes of the file as it would be on the disk.
+  std::string image();
   /// Closes the file now and throws Error if what was buffered cannot be written.
   void close();
 
@@ -92,9 +74,10 @@ class File {
   template <typename T>
   std::vector<T> read(const std::string& dataset, const Shape& expected) const;
 
-  /// Makes a dataset of fixed shape without data, to be filled by write_slab.
+  /// Makes a dataset of fixed shape without data, to be filled by write_slab. Throws Error when a
+  /// filter of the layout is missing.
   template <typename T>
-  void create_dataset(const std::string& dataset, const Shape& shape);
+  void create_dataset(const std::string& dataset, const Shape& shape, const Layout& layout = {});
   /// Writes or reads the box [start, start + count) of a dataset.
   template <typename T>
   void write_slab(const std::string& dataset, const Shape& start, const Shape& count,
@@ -116,7 +99,7 @@ class File {
   [[noreturn]] void fail_write(const std::string& what) const;
   Handle open_object(const std::string& path) const;
   Handle open_dataset(const std::string& path) const;
-  Handle make_dataset(const std::string& path, hid_t type, hid_t space, hid_t creation);
+  Handle make_dataset(const std::string& path, hid_t type, hid_t space, const Handle& creation);
   void read_numbers(const std::string& object, const std::string& name, hid_t type,
                     std::size_t count, void* values) const;
   void write_numbers(const std::string& object, const std::string& name, hid_t type,

@@ -1,7 +1,5 @@
 #include "common/model/model_file.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -11,26 +9,17 @@
 namespace irdm {
 namespace {
 
-constexpr const char* kFormat = "irdm-model";
-constexpr std::int64_t kVersion = 1;
-constexpr const char* kDenseR = "/response/dense/R";
-
-// ---- reading -------------------------------------------------------------------------------
-
 class ModelReader {
  public:
-  explicit ModelReader(const std::filesystem::path& path) : file_(hdf5::File::open(path)) {}
+  explicit ModelReader(hdf5::File file) : file_(std::move(file)) {}
+
+  Model description() {
+    read_description();
+    return std::move(model_);
+  }
 
   Model read(ResponseKind kind) {
-    check_format();
-    read_mesh();
-    read_body();
-    read_material();
-    if (!file_.exists("/response")) damaged("has no /response");
-    model_.dt = file_.read_double_attribute("/response", "dt");
-    model_.steps = static_cast<int>(file_.read_integer_attribute("/response", "steps"));
-    require(std::isfinite(model_.dt) && model_.dt > 0 && model_.steps > 0,
-            "dt and steps must be positive");
+    read_description();
     if (kind == ResponseKind::kModal) {
       read_modal();
     } else {
@@ -47,12 +36,24 @@ class ModelReader {
     if (!holds) damaged(what);
   }
 
+  void read_description() {
+    check_format();
+    read_mesh();
+    read_body();
+    read_material();
+    if (!file_.exists("/response")) damaged("has no /response");
+    model_.dt = file_.read_double_attribute("/response", "dt");
+    model_.steps = static_cast<int>(file_.read_integer_attribute("/response", "steps"));
+    require(std::isfinite(model_.dt) && model_.dt > 0 && model_.steps > 0,
+            "dt and steps must be positive");
+  }
+
   void check_format() {
-    if (file_.read_string_attribute("/", "format") != kFormat) damaged("is not a model file");
+    if (file_.read_string_attribute("/", "format") != kModelFormat) damaged("is not a model file");
     const std::int64_t version = file_.read_integer_attribute("/", "version");
-    if (version != kVersion) {
+    if (version != kModelVersion) {
       damaged("has version " + std::to_string(version) + " and this program reads version " +
-              std::to_string(kVersion));
+              std::to_string(kModelVersion));
     }
   }
 
@@ -197,112 +198,14 @@ class ModelReader {
   Model model_;
 };
 
-std::filesystem::path temporary_name(const std::filesystem::path& path) {
-  return path.string() + ".part-" + std::to_string(::getpid());
-}
-
 }  // namespace
 
 Model read_model(const std::filesystem::path& path, ResponseKind kind) {
-  return ModelReader(path).read(kind);
+  return ModelReader(hdf5::File::open(path)).read(kind);
 }
 
-// ---- writing -------------------------------------------------------------------------------
-
-ModelFileWriter::ModelFileWriter(std::filesystem::path path)
-    : path_(std::move(path)), temporary_(temporary_name(path_)) {
-  file_ = hdf5::File::create(temporary_);
-}
-
-ModelFileWriter::~ModelFileWriter() {
-  if (!file_) return;
-  file_.reset();
-  std::error_code ignored;
-  std::filesystem::remove(temporary_, ignored);
-}
-
-void ModelFileWriter::write_description(const Model& model) {
-  hdf5::File& file = *file_;
-  file.write_attribute("/", "format", std::string(kFormat));
-  file.write_attribute("/", "version", kVersion);
-  file.write_attribute("/", "created_by", std::string("irdm ") + IRDM_VERSION);
-
-  const ModelMesh& mesh = model.mesh;
-  const auto rows = [](const auto& matrix) { return static_cast<hsize_t>(matrix.rows()); };
-  file.create_group("/mesh");
-  file.write<double>("/mesh/nodes", {rows(mesh.nodes), 3}, mesh.nodes.data());
-  file.write<std::int32_t>("/mesh/tets", {rows(mesh.tets), static_cast<hsize_t>(mesh.tets.cols())},
-                           mesh.tets.data());
-  file.write<std::int32_t>("/mesh/surface_nodes", {mesh.surface_nodes.size()},
-                           mesh.surface_nodes.data());
-  file.write<std::int32_t>("/mesh/triangles", {rows(mesh.triangles), 3}, mesh.triangles.data());
-  file.write<double>("/mesh/node_mass", {rows(mesh.node_mass)}, mesh.node_mass.data());
-  file.write_attribute("/mesh", "com_offset", {3}, mesh.com_offset.data());
-
-  file.create_group("/body");
-  file.write_attribute("/body", "mass", model.body.mass);
-  file.write_attribute("/body", "inertia", {3, 3}, model.body.inertia.data());  // symmetric
-  file.write_attribute("/body", "support",
-                       std::string(model.body.support == Support::kFixed ? "fixed" : "floating"));
-
-  file.create_group("/material");
-  file.write_attribute("/material", "youngs_modulus", model.material.youngs_modulus);
-  file.write_attribute("/material", "poisson_ratio", model.material.poisson_ratio);
-  file.write_attribute("/material", "density", model.material.density);
-  file.write_attribute("/material", "rayleigh_alpha", model.material.rayleigh_alpha);
-  file.write_attribute("/material", "rayleigh_beta", model.material.rayleigh_beta);
-
-  file.create_group("/response");
-  file.write_attribute("/response", "dt", model.dt);
-  file.write_attribute("/response", "steps", static_cast<std::int64_t>(model.steps));
-}
-
-void ModelFileWriter::write_modal(const ModalResponse& response) {
-  const auto modes = static_cast<hsize_t>(response.mode_count());
-  file_->write<double>("/response/modal/angular_frequency", {modes},
-                       response.angular_frequency.data());
-  file_->write<double>("/response/modal/decay_rate", {modes}, response.decay_rate.data());
-  std::visit(
-      [&]<typename Scalar>(const RowMatrix<Scalar>& shapes) {
-        file_->write<Scalar>("/response/modal/shapes", {static_cast<hsize_t>(shapes.rows()), modes},
-                             shapes.data());
-      },
-      response.shapes);
-}
-
-void ModelFileWriter::begin_dense(int degrees_of_freedom, int steps, Precision precision) {
-  dense_dof_ = static_cast<hsize_t>(degrees_of_freedom);
-  dense_steps_ = static_cast<hsize_t>(steps);
-  const hdf5::Shape shape{dense_dof_, dense_steps_, dense_dof_};
-  if (precision == Precision::kSingle) {
-    file_->create_dataset<float>(kDenseR, shape);
-  } else {
-    file_->create_dataset<double>(kDenseR, shape);
-  }
-}
-
-template <typename Scalar>
-void ModelFileWriter::write_column(int b, const Scalar* values) {
-  file_->write_slab<Scalar>(kDenseR, {static_cast<hsize_t>(b), 0, 0}, {1, dense_steps_, dense_dof_},
-                            values);
-}
-
-void ModelFileWriter::write_dense_column(int b, const float* values) {
-  write_column(b, values);
-}
-void ModelFileWriter::write_dense_column(int b, const double* values) {
-  write_column(b, values);
-}
-
-void ModelFileWriter::commit() {
-  file_->close();
-  std::error_code error;
-  std::filesystem::rename(temporary_, path_, error);
-  if (error) {
-    throw Error(path_.string(), "cannot be given its name: " + error.message(),
-                "check permissions of the folder");
-  }
-  file_.reset();
+Model read_description(hdf5::File file) {
+  return ModelReader(std::move(file)).description();
 }
 
 }  // namespace irdm

@@ -12,4 +12,7 @@ using Command = std::function<int()>;
 /// Without a word for it: CONFIG.toml -o MODEL.h5 computes a model file.
 Command add_compute_command(CLI::App& app);
 
+/// merge PART... -o MODEL.h5 joins slices of R that --columns made.
+Command add_merge_command(CLI::App& app);
+
 }  // namespace irdm::precompute

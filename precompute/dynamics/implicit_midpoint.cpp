@@ -4,6 +4,7 @@
 
 #include "common/error.hpp"
 #include "precompute/dynamics/rigid_extraction.hpp"
+#include "precompute/dynamics/step_matrix.hpp"
 
 namespace irdm::precompute {
 namespace {
@@ -19,19 +20,11 @@ ImplicitMidpoint::ImplicitMidpoint(const SoftBody& body, double tolerance)
       tolerance_(tolerance),
       mass3_(body.mass().replicate(1, 3).transpose().reshaped()) {}
 
-Eigen::SparseMatrix<double> ImplicitMidpoint::matrix(const Eigen::SparseMatrix<double>& stiffness,
-                                                     double h) const {
-  Eigen::SparseMatrix<double> sum = (0.5 * h + body_->rayleigh_beta()) * stiffness;
-  const double factor = 2.0 / h + body_->rayleigh_alpha();
-  for (Eigen::Index i = 0; i < mass3_.size(); ++i) sum.coeffRef(i, i) += factor * mass3_(i);
-  return sum;
-}
-
 void ImplicitMidpoint::prepare(double h) {
   auto& solver = solvers_[h];
   if (solver) return;
   solver = make_sparse_solver();
-  solver->factorise(matrix(body_->stiffness(body_->at_rest().u), h));
+  solver->factorise(step_matrix(*body_, body_->stiffness(body_->at_rest().u), h));
 }
 
 double ImplicitMidpoint::speed(const Eigen::VectorXd& v) const {
@@ -66,15 +59,16 @@ void ImplicitMidpoint::step(BodyState& state, const Eigen::VectorXd& force, doub
     Q = extract_rigid_motion(body_->rest(), u, body_->mass(), RotationWeights::kMass).rotation;
   }
   workspace.largest_speed = std::max(workspace.largest_speed, speed(state.v));
+  const StepStart start = body_->start_of_step(state.u);
   BodyState middle{state.u + 0.5 * h * state.v, state.v};  // velocity: w
   double last = 0.0;
   bool own_matrix = false;
   for (int i = 0;; ++i) {
-    const Eigen::VectorXd residual =
-        body_->internal_force(middle) + force - (2.0 / h) * mass3_.cwiseProduct(middle.v - state.v);
+    const Eigen::VectorXd residual = body_->mean_force(start, middle.v, h) + force -
+                                     (2.0 / h) * mass3_.cwiseProduct(middle.v - state.v);
     if (own_matrix) {
       if (!workspace.solver) workspace.solver = make_sparse_solver();
-      workspace.solver->factorise(matrix(body_->stiffness(middle.u), h));
+      workspace.solver->factorise(step_matrix(*body_, body_->stiffness(middle.u), h));
       ++workspace.factorisations;
       solver = workspace.solver.get();
       Q.setIdentity();

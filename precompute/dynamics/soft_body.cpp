@@ -1,5 +1,6 @@
 #include "precompute/dynamics/soft_body.hpp"
 
+#include "precompute/dynamics/corotational.hpp"
 #include "precompute/dynamics/polar_rotation.hpp"
 #include "precompute/fem/assembly.hpp"
 #include "precompute/fem/mass_properties.hpp"
@@ -9,19 +10,6 @@ namespace {
 
 Eigen::Map<const Points> as_points(const Eigen::VectorXd& field) {
   return {field.data(), field.size() / 3, 3};
-}
-
-// S - Id of the stretch S, without the cancellation that would leave 1e-16 of noise in strains of
-// any size: (S - Id)(S + Id) = F^T F - Id, and that is H + H^T + H^T H.
-Matrix3 stretch_strain(const Matrix3& du_dX, const Matrix3& S) {
-  const Matrix3 squared = du_dX + du_dX.transpose() + du_dX.transpose() * du_dX;
-  const Matrix3 strain = squared * (S + Matrix3::Identity()).inverse();
-  return 0.5 * (strain + strain.transpose());
-}
-
-// The vector a with skew(a) = m - m^T.
-Vector3 twice_axial(const Matrix3& m) {
-  return {m(2, 1) - m(1, 2), m(0, 2) - m(2, 0), m(1, 0) - m(0, 1)};
 }
 
 }  // namespace
@@ -65,48 +53,61 @@ Matrix3 SoftBody::gradient(const Element& element, const Eigen::VectorXd& field)
   return sum;
 }
 
-Matrix3 SoftBody::stress(const Matrix3& strain) const {
-  return lame_.lambda * strain.trace() * Matrix3::Identity() + 2.0 * lame_.mu * strain;
+void SoftBody::add_force(const Element& element, const Matrix3& P, Eigen::VectorXd& force) const {
+  const Matrix3 weighted = -element.geometry.volume * P;
+  for (int i = 0; i < 4; ++i) {
+    force.segment<3>(3 * element.nodes[static_cast<std::size_t>(i)]) +=
+        weighted * element.geometry.gradient.row(i).transpose();
+  }
 }
 
-Matrix3 SoftBody::first_piola(const Matrix3& du_dX, const Matrix3& dv_dX) const {
-  const double beta = material_.rayleigh_beta;
-  if (elasticity_ == Elasticity::kLinear) {
-    const Matrix3 g = du_dX + beta * dv_dX;
-    return stress(0.5 * (g + g.transpose()));
+void SoftBody::add_mass_damping(const BodyState& state, Eigen::VectorXd& force) const {
+  if (material_.rayleigh_alpha == 0.0) return;
+  const Eigen::VectorXd elastic = state.v - rigid_velocity(state.u, state.v);
+  for (Eigen::Index i = 0; i < mass_.size(); ++i) {
+    force.segment<3>(3 * i) -= material_.rayleigh_alpha * mass_(i) * elastic.segment<3>(3 * i);
   }
-  const Matrix3 F = Matrix3::Identity() + du_dX;
-  const Matrix3 R = polar_rotation(F);
-  Matrix3 S = R.transpose() * F;
-  S = 0.5 * (S + S.transpose()).eval();
-  const Matrix3 elastic = stress(stretch_strain(du_dX, S));
-  if (beta == 0.0) return R * elastic;
-  // A = R^T dF/dt = dS/dt + W S with W = R^T dR/dt skew; that dS/dt is symmetric gives
-  // (tr(S) Id - S) w = twice_axial(A). The stress whose power is T : dS/dt is R (T + skew(c)).
-  const Matrix3 A = R.transpose() * dv_dX;
-  const Matrix3 G = S.trace() * Matrix3::Identity() - S;
-  const Matrix3 inverse_G = G.inverse();
-  const Matrix3 S_rate = A - skew(inverse_G * twice_axial(A)) * S;
-  const Matrix3 T = beta * stress(0.5 * (S_rate + S_rate.transpose()));
-  return R * (elastic + T + skew(inverse_G * twice_axial(S * T)));
 }
 
 Eigen::VectorXd SoftBody::internal_force(const BodyState& state) const {
+  const double beta = material_.rayleigh_beta;
   Eigen::VectorXd force = Eigen::VectorXd::Zero(state.u.size());
   for (const Element& element : elements_) {
-    const Matrix3 P = first_piola(gradient(element, state.u), gradient(element, state.v));
-    const Matrix3 weighted = -element.geometry.volume * P;
-    for (int i = 0; i < 4; ++i) {
-      force.segment<3>(3 * element.nodes[static_cast<std::size_t>(i)]) +=
-          weighted * element.geometry.gradient.row(i).transpose();
-    }
+    const Matrix3 du_dX = gradient(element, state.u);
+    const Matrix3 dv_dX = gradient(element, state.v);
+    add_force(element,
+              elasticity_ == Elasticity::kLinear ? lame_stress(du_dX + beta * dv_dX, lame_)
+                                                 : corotational::stress(du_dX, dv_dX, lame_, beta),
+              force);
   }
-  if (material_.rayleigh_alpha > 0.0) {
-    const Eigen::VectorXd elastic = state.v - rigid_velocity(state.u, state.v);
-    for (Eigen::Index i = 0; i < mass_.size(); ++i) {
-      force.segment<3>(3 * i) -= material_.rayleigh_alpha * mass_(i) * elastic.segment<3>(3 * i);
-    }
+  add_mass_damping(state, force);
+  return force;
+}
+
+StepStart SoftBody::start_of_step(const Eigen::VectorXd& u) const {
+  StepStart start{u, {}};
+  if (elasticity_ == Elasticity::kLinear) return start;
+  start.strains.reserve(elements_.size());
+  for (const Element& element : elements_) {
+    start.strains.push_back(corotational::strain(gradient(element, u)));
   }
+  return start;
+}
+
+Eigen::VectorXd SoftBody::mean_force(const StepStart& start, const Eigen::VectorXd& w,
+                                     double h) const {
+  const BodyState middle{start.u + 0.5 * h * w, w};
+  if (elasticity_ == Elasticity::kLinear) return internal_force(middle);
+  const Eigen::VectorXd end = start.u + h * w;
+  Eigen::VectorXd force = Eigen::VectorXd::Zero(w.size());
+  for (std::size_t e = 0; e < elements_.size(); ++e) {
+    const Element& element = elements_[e];
+    add_force(element,
+              corotational::mean_stress(gradient(element, start.u), start.strains[e],
+                                        gradient(element, end), h, lame_, material_.rayleigh_beta),
+              force);
+  }
+  add_mass_damping(middle, force);
   return force;
 }
 
@@ -114,13 +115,10 @@ double SoftBody::elastic_energy(const Eigen::VectorXd& u) const {
   double sum = 0.0;
   for (const Element& element : elements_) {
     const Matrix3 du_dX = gradient(element, u);
-    Matrix3 strain = 0.5 * (du_dX + du_dX.transpose());
-    if (elasticity_ == Elasticity::kCorotational) {
-      const Matrix3 F = Matrix3::Identity() + du_dX;
-      strain = stretch_strain(du_dX, polar_rotation(F).transpose() * F);
-    }
-    sum += element.geometry.volume *
-           (lame_.mu * strain.squaredNorm() + 0.5 * lame_.lambda * strain.trace() * strain.trace());
+    const Matrix3 strain = elasticity_ == Elasticity::kLinear
+                               ? Matrix3(0.5 * (du_dX + du_dX.transpose()))
+                               : corotational::strain(du_dX);
+    sum += element.geometry.volume * corotational::energy_density(strain, lame_);
   }
   return sum;
 }

@@ -23,6 +23,12 @@ struct BodyState {
   Eigen::VectorXd v;  ///< velocity [m/s], W
 };
 
+/// The beginning of a time step, see SoftBody::mean_force().
+struct StepStart {
+  Eigen::VectorXd u;             ///< displacement (3N) [m], W
+  std::vector<Matrix3> strains;  ///< S - Id of each element; none of a linear body
+};
+
 /// A free-floating body of linear tetrahedra: masses, internal forces and energy. Const after
 /// construction, for any number of threads. N nodes.
 ///
@@ -53,6 +59,12 @@ class SoftBody {
   BodyState at_rest() const;
   /// Elastic plus damping force [N], (3N), W.
   Eigen::VectorXd internal_force(const BodyState& state) const;
+  /// What mean_force() needs of the beginning of a step.
+  StepStart start_of_step(const Eigen::VectorXd& u) const;
+  /// Mean internal force [N] over a step of length h [s] with mean velocity w, (3N), W. Its work
+  /// h w^T f is the loss of elastic energy, to rounding, less what damping takes; it has neither
+  /// resultant nor torque about the middle of the step. See corotational::mean_stress().
+  Eigen::VectorXd mean_force(const StepStart& start, const Eigen::VectorXd& w, double h) const;
   double elastic_energy(const Eigen::VectorXd& u) const;   ///< [J]
   double kinetic_energy(const Eigen::VectorXd& v) const;   ///< [J]
   Vector3 momentum(const Eigen::VectorXd& v) const;        ///< [kg m/s]
@@ -72,8 +84,8 @@ class SoftBody {
     tet4::Geometry geometry;
   };
   Matrix3 gradient(const Element& element, const Eigen::VectorXd& field) const;
-  Matrix3 stress(const Matrix3& strain) const;
-  Matrix3 first_piola(const Matrix3& du_dX, const Matrix3& dv_dX) const;
+  void add_force(const Element& element, const Matrix3& P, Eigen::VectorXd& force) const;
+  void add_mass_damping(const BodyState& state, Eigen::VectorXd& force) const;
 
   Elasticity elasticity_;
   Material material_;

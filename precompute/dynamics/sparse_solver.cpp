@@ -18,7 +18,9 @@ class EigenSolver final : public SparseSolver {
                   "check the mesh for extremely distorted elements, or use smaller steps");
     }
   }
-  Eigen::VectorXd solve(const Eigen::VectorXd& right) const override { return ldlt_.solve(right); }
+  Eigen::MatrixXd solve(const Eigen::Ref<const Eigen::MatrixXd>& right) const override {
+    return ldlt_.solve(right);
+  }
 
  private:
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> ldlt_;
@@ -27,8 +29,17 @@ class EigenSolver final : public SparseSolver {
 
 }  // namespace
 
-std::unique_ptr<SparseSolver> make_sparse_solver() {
+std::unique_ptr<SparseSolver> make_eigen_solver() {
   return std::make_unique<EigenSolver>();
 }
+
+#ifndef IRDM_WITH_CHOLMOD  // else in cholmod_solver.cpp
+std::unique_ptr<SparseSolver> make_sparse_solver() {
+  return make_eigen_solver();
+}
+const char* sparse_solver_name() {
+  return "Eigen";
+}
+#endif
 
 }  // namespace irdm::precompute

@@ -13,10 +13,18 @@ class SparseSolver {
   virtual ~SparseSolver() = default;
   /// Only the lower triangle is read. Throws Error when the matrix is not positive definite.
   virtual void factorise(const Eigen::SparseMatrix<double>& matrix) = 0;
-  virtual Eigen::VectorXd solve(const Eigen::VectorXd& right) const = 0;
+  /// @param right one right-hand side a column
+  virtual Eigen::MatrixXd solve(const Eigen::Ref<const Eigen::MatrixXd>& right) const = 0;
 };
 
-/// Eigen's LDL^T. The place to put another one, such as CHOLMOD.
+/// CHOLMOD's supernodal Cholesky where the program was built with it (IRDM_WITH_CHOLMOD), else
+/// Eigen's LDL^T.
 std::unique_ptr<SparseSolver> make_sparse_solver();
+
+/// Of this library itself, for comparison: always there.
+std::unique_ptr<SparseSolver> make_eigen_solver();
+
+/// "CHOLMOD" or "Eigen": what make_sparse_solver() makes.
+const char* sparse_solver_name();
 
 }  // namespace irdm::precompute

@@ -12,12 +12,12 @@ class BoxBuilder {
  public:
   BoxBuilder(const Vector3& size, const std::array<int, 3>& cells) : size_(size), cells_(cells) {}
 
-  BoxSurface build() {
+  SurfaceMesh build() {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       add_face(axis, 0);
       add_face(axis, cells_[axis]);
     }
-    BoxSurface surface;
+    SurfaceMesh surface;
     surface.nodes.resize(static_cast<Eigen::Index>(points_.size()), 3);
     for (std::size_t i = 0; i < points_.size(); ++i) {
       surface.nodes.row(static_cast<Eigen::Index>(i)) = coordinates(points_[i]).transpose();
@@ -76,7 +76,7 @@ class BoxBuilder {
 
 }  // namespace
 
-BoxSurface box_surface(const Vector3& size, const std::array<int, 3>& cells) {
+SurfaceMesh box_surface(const Vector3& size, const std::array<int, 3>& cells) {
   return BoxBuilder(size, cells).build();
 }
 

@@ -2,19 +2,15 @@
 
 #include <array>
 
-#include "common/geometry.hpp"
+#include "precompute/mesh/surface_mesh.hpp"
 
 namespace irdm::precompute {
 
 /// The surface of an axis-parallel box with one corner at the origin: a regular grid on each face,
-/// every cell split into two triangles whose diagonals alternate like a chessboard.
-struct BoxSurface {
-  Points nodes;         ///< (n, 3) [m]
-  Triangles triangles;  ///< (t, 3) into nodes, normals outward
-};
-
+/// every cell split into two triangles whose diagonals alternate like a chessboard. Normals
+/// outward.
 /// @param size edge lengths [m], > 0
 /// @param cells cells along each edge, >= 1
-BoxSurface box_surface(const Vector3& size, const std::array<int, 3>& cells);
+SurfaceMesh box_surface(const Vector3& size, const std::array<int, 3>& cells);
 
 }  // namespace irdm::precompute

@@ -45,7 +45,7 @@ std::vector<int> nodes_of_group(const TetMesh& mesh, const std::string& group,
   if (found == mesh.groups.end()) {
     throw Error(name, "the mesh has no group '" + group + "'",
                 mesh.groups.empty()
-                    ? "only physical groups of a Gmsh file are known: use a box or a half-space"
+                    ? "only Gmsh and Medit files have groups: use a box or a half-space"
                     : "it has " + group_list(mesh));
   }
   std::vector<int> nodes;

@@ -2,16 +2,26 @@
 
 #include <string>
 
-#include "precompute/mesh/box_mesh.hpp"
+#include "precompute/mesh/surface_mesh.hpp"
 #include "precompute/mesh/tet_mesh.hpp"
 
 namespace irdm::precompute {
 
-/// Fills a closed surface with tetrahedra by the program `tetgen` (flags -pYq1.1: the surface is
-/// kept as it is). The first nodes of the mesh are those of the surface, unchanged. Throws Error
+/// Fills the surface of a box with tetrahedra by the program `tetgen` (flags -pYq1.1: the surface
+/// is kept as it is). The first nodes of the mesh are those of the surface, unchanged. Throws Error
 /// when the program is missing, fails, takes longer than `time_limit_s` or changes the surface.
 /// @param program the program's name or path
-TetMesh tetrahedralise(const BoxSurface& surface, const std::string& program = "tetgen",
+TetMesh tetrahedralise(const SurfaceMesh& surface, const std::string& program = "tetgen",
                        double time_limit_s = 120.0);
+
+/// The same for any closed surface, with tetrahedra inside that are about as large as its
+/// triangles. `name` stands for it in messages.
+TetMesh fill_surface(const SurfaceMesh& surface, const std::string& name,
+                     const std::string& program = "tetgen", double time_limit_s = 120.0);
+
+/// Throws Error (about `name`, with a place in the surface's own coordinates) when triangles cut or
+/// overlap each other, as `tetgen -d` finds; and when that program is missing or fails.
+void check_self_intersection(const SurfaceMesh& surface, const std::string& name,
+                             const std::string& program = "tetgen", double time_limit_s = 120.0);
 
 }  // namespace irdm::precompute

@@ -2,12 +2,18 @@
 
 #include <cblas.h>
 
+#include <algorithm>
+#include <limits>
+
 #include "precompute/modal/held_responses.hpp"
 
 namespace irdm::precompute {
 namespace {
 
-// c = a b^T, all with contiguous rows.
+constexpr int kColumnsAtOnce = 8;
+constexpr Eigen::Index kStepsAtOnce = 32;
+
+// c = a b^T with the first columns of b, as many as a has; all with contiguous rows.
 void multiply_transposed(const RowMatrix<float>& a, const RowMatrix<float>& b,
                          RowMatrix<float>& c) {
   cblas_sgemm(CblasRowMajor, CblasNoTrans, CblasTrans, static_cast<int>(a.rows()),
@@ -23,20 +29,75 @@ void multiply_transposed(const RowMatrix<double>& a, const RowMatrix<double>& b,
               static_cast<int>(c.cols()));
 }
 
+// How many modes to keep so that the others add up to at most `share` of all, where mode i counts
+// with bound(i).
+int needed_modes(const Eigen::VectorXd& bound, double share) {
+  const double negligible = share * bound.sum();
+  double dropped = 0.0;
+  Eigen::Index kept = bound.size();
+  while (kept > 1 && dropped + bound(kept - 1) <= negligible) dropped += bound(--kept);
+  return static_cast<int>(kept);
+}
+
+// For each group of steps, the largest number that one of its steps needs.
+std::vector<int> needed_modes(const RowMatrix<double>& shapes, const RowMatrix<double>& responses,
+                              double share) {
+  const Eigen::RowVectorXd largest = shapes.cwiseAbs2().colwise().maxCoeff();
+  std::vector<int> modes;
+  for (Eigen::Index s = 0; s < responses.rows(); ++s) {
+    if (s % kStepsAtOnce == 0) modes.push_back(1);
+    const Eigen::VectorXd bound = responses.row(s).cwiseAbs().cwiseProduct(largest);
+    modes.back() = std::max(modes.back(), needed_modes(bound, share));
+  }
+  return modes;
+}
+
 }  // namespace
 
 template <typename Scalar>
-DenseColumns<Scalar>::DenseColumns(const ModalResponse& response, double dt, int steps)
-    : shapes_(std::get<RowMatrix<double>>(response.shapes).template cast<Scalar>()),
-      responses_(held_responses(response, dt, steps).cast<Scalar>()),
-      weighted_(steps, shapes_.cols()),
-      column_(steps, shapes_.rows()) {}
+DenseColumns<Scalar>::DenseColumns(const ModalResponse& response, double dt, int steps) {
+  const auto& shapes = std::get<RowMatrix<double>>(response.shapes);
+  const RowMatrix<double> responses = held_responses(response, dt, steps);
+  shapes_ = shapes.template cast<Scalar>();
+  responses_ = responses.template cast<Scalar>();
+  block_size_ = limited_block_size(kColumnsAtOnce, steps, columns(), sizeof(Scalar));
+  constexpr double kEpsilon = static_cast<double>(std::numeric_limits<Scalar>::epsilon());
+  modes_ = needed_modes(shapes, responses, kEpsilon / 8.0);
+}
 
 template <typename Scalar>
-const RowMatrix<Scalar>& DenseColumns<Scalar>::column(int b) {
-  weighted_ = responses_.array().rowwise() * shapes_.row(b).array();
-  multiply_transposed(weighted_, shapes_, column_);
-  return column_;
+int DenseColumns<Scalar>::modes_at(int s) const {
+  return modes_[static_cast<std::size_t>(s / kStepsAtOnce)];
+}
+
+template <typename Scalar>
+Columns DenseColumns<Scalar>::block(int k) const {
+  const ColumnRange range = block_range(k);
+  const Eigen::Index steps = responses_.rows();
+  RowMatrix<Scalar> columns(range.count() * steps, shapes_.rows());
+  for (Eigen::Index s = 0; s < steps; s += kStepsAtOnce) {
+    const Eigen::Index count = std::min(kStepsAtOnce, steps - s);
+    const Eigen::Index modes = modes_at(static_cast<int>(s));
+    RowMatrix<Scalar> weighted(range.count() * count, modes);  // h diag(Phi_b), rows [b][s]
+    for (int b = range.begin; b < range.end; ++b) {
+      weighted.middleRows((b - range.begin) * count, count) =
+          responses_.block(s, 0, count, modes).array().rowwise() *
+          shapes_.row(b).head(modes).array();
+    }
+    RowMatrix<Scalar> product(weighted.rows(), shapes_.rows());
+    multiply_transposed(weighted, shapes_, product);
+    for (Eigen::Index b = 0; b < range.count(); ++b) {
+      columns.middleRows(b * steps + s, count) = product.middleRows(b * count, count);
+    }
+  }
+  return columns;
+}
+
+template <typename Scalar>
+RowMatrix<Scalar> DenseColumns<Scalar>::column(int b) const {
+  const int k = b / block_size_;
+  const Eigen::Index steps = responses_.rows();
+  return std::get<RowMatrix<Scalar>>(block(k)).middleRows((b - k * block_size_) * steps, steps);
 }
 
 template class DenseColumns<float>;

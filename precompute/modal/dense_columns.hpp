@@ -1,26 +1,38 @@
 #pragma once
 
-#include "common/model/model.hpp"
+#include <vector>
+
+#include "precompute/columns/column_source.hpp"
 
 namespace irdm::precompute {
 
-/// R column by column out of its modal form, one matrix product a column: a column holds the
-/// displacement of every surface degree of freedom at every step after a force on one of them.
-/// Scalar is float or double and rules both storage and arithmetic.
+/// R out of its modal form by matrix products over several columns and steps at once: a column
+/// holds the displacement of every surface degree of freedom at every step after a force on one of
+/// them. Scalar is float or double and rules both storage and arithmetic.
+///
+/// Most modes die away within a few steps. Those at the end of the list (the fastest) that have
+/// become smaller than rounding, all together at most an eighth of Scalar's epsilon of what the
+/// modes may add up to at that step, are left out of the products from then on.
 template <typename Scalar>
-class DenseColumns {
+class DenseColumns final : public ColumnSource {
  public:
   /// @param response with shapes in double precision
   DenseColumns(const ModalResponse& response, double dt, int steps);
 
-  /// R[s](a, b) for all s and a: shape (T, 3n). Valid until the next call.
-  const RowMatrix<Scalar>& column(int b);
+  int columns() const override { return static_cast<int>(shapes_.rows()); }
+  int block_size() const override { return block_size_; }
+  Columns block(int k) const override;
+
+  /// R[s](a, b) for all s and a: shape (T, 3n).
+  RowMatrix<Scalar> column(int b) const;
+  /// Modes that take part in step s.
+  int modes_at(int s) const;
 
  private:
   RowMatrix<Scalar> shapes_;     // Phi (3n, r)
   RowMatrix<Scalar> responses_;  // h (T, r)
-  RowMatrix<Scalar> weighted_;   // h diag(Phi_b) (T, r)
-  RowMatrix<Scalar> column_;
+  int block_size_;
+  std::vector<int> modes_;  // of each group of steps
 };
 
 extern template class DenseColumns<float>;

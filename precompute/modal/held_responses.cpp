@@ -7,6 +7,12 @@
 namespace irdm::precompute {
 namespace {
 
+// R[s](a, a): (3n, T).
+RowMatrix<double> driving_points(const ModalResponse& response, double dt, int steps) {
+  const RowMatrix<double> squares = std::get<RowMatrix<double>>(response.shapes).array().square();
+  return squares * held_responses(response, dt, steps).transpose();
+}
+
 // Bound of |q| of one mode at and after the end of step T-1.
 double later_bound(const HeldForceOscillator& o, double omega, int steps) {
   double q = o.b1;
@@ -30,6 +36,10 @@ RowMatrix<double> held_responses(const ModalResponse& response, double dt, int s
   return h;
 }
 
+double driving_peak(const ModalResponse& response, double dt, int steps) {
+  return driving_points(response, dt, steps).cwiseAbs().maxCoeff();
+}
+
 double decay_left(const ModalResponse& response, double dt, int steps) {
   const auto& shapes = std::get<RowMatrix<double>>(response.shapes);
   const RowMatrix<double> squares = shapes.array().square();
@@ -38,8 +48,7 @@ double decay_left(const ModalResponse& response, double dt, int steps) {
     const double omega = response.angular_frequency(i);
     bound(i) = later_bound(held_force_oscillator(omega, response.decay_rate(i), dt), omega, steps);
   }
-  const RowMatrix<double> diagonal = squares * held_responses(response, dt, steps).transpose();
-  const Eigen::VectorXd peak = diagonal.cwiseAbs().rowwise().maxCoeff();
+  const Eigen::VectorXd peak = driving_points(response, dt, steps).cwiseAbs().rowwise().maxCoeff();
   const Eigen::VectorXd left = squares * bound;
   return (peak.array() > 0.0).select(left.cwiseQuotient(peak), 0.0).maxCoeff();  // 0: clamped
 }

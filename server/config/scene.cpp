@@ -89,6 +89,22 @@ Tether read_tether(TomlTable table) {
   return tether;
 }
 
+std::optional<FloorConfig> read_floor(TomlTable& file) {
+  if (!file.has("floor")) return std::nullopt;
+  TomlTable table = file.table("floor");
+  FloorConfig floor;
+  floor.height = table.number("height", kAnyNumber, floor.height);
+  const auto normal = table.numbers("normal", 3, kAnyNumber, {0.0, 1.0, 0.0});
+  floor.normal = Vector3(normal.data());
+  if (floor.normal.norm() < 1e-6) {
+    table.fail("normal", "has no length", "give the direction that is up, for instance [0, 1, 0]");
+  }
+  floor.normal.normalize();
+  floor.friction = read_friction(table.table("friction"), floor.friction);
+  table.finish();
+  return floor;
+}
+
 SimulationStylus read_stylus(TomlTable table, const ContactConfig& contact) {
   SimulationStylus stylus;
   stylus.radius = table.number("radius", between(0.0, 1.0), stylus.radius);
@@ -123,6 +139,7 @@ SceneConfig read_scene(TomlTable file) {
   SceneConfig scene;
   scene.world = read_world(file.table("world"));
   scene.contact = read_contact(file.table("contact"));
+  scene.floor = read_floor(file);
   for (TomlTable& stylus : file.tables("stylus")) {
     scene.styluses.push_back(read_stylus(stylus, scene.contact));
   }

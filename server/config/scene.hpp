@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,7 +31,9 @@ struct WorldConfig {
 
 /// [contact]
 struct ContactConfig {
-  double coupling_stiffness = 0.0;  ///< of styluses that do not say otherwise, >= 0 [N/m]; 0: none
+  /// k_vc of styluses that do not say otherwise, >= 0 [N/m]; 0: none, which a fixed object is
+  /// refused with
+  double coupling_stiffness = 0.0;
 };
 
 /// [[object]]
@@ -49,6 +52,7 @@ struct ObjectConfig {
 
 /// What irdm-server is to run.
 struct SceneConfig {
+  std::optional<FloorConfig> floor;  ///< [floor] height [m], normal, friction = { static, kinetic }
   ServerConfig server;
   WorldConfig world;
   ContactConfig contact;

@@ -1,5 +1,6 @@
 #include "tests/precompute/meshes.hpp"
 
+#include "precompute/mesh/box_mesh.hpp"
 #include "precompute/mesh/tetgen_program.hpp"
 
 namespace irdm::precompute::test {

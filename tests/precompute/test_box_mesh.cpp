@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 #include <map>
 
+#include "precompute/mesh/box_mesh.hpp"
 #include "precompute/mesh/mesh_check.hpp"
 #include "precompute/mesh/surface.hpp"
 #include "precompute/mesh/tetgen_program.hpp"
@@ -26,19 +27,19 @@ double enclosed_volume(const Points& nodes, const Triangles& triangles) {
 }  // namespace
 
 TEST_CASE("box surface is a closed regular grid, outward") {
-  const BoxSurface cube = box_surface(Vector3(0.12, 0.12, 0.12), {12, 12, 12});
+  const SurfaceMesh cube = box_surface(Vector3(0.12, 0.12, 0.12), {12, 12, 12});
   CHECK(cube.nodes.rows() == 866);
   CHECK(cube.triangles.rows() == 1728);
   CHECK(enclosed_volume(cube.nodes, cube.triangles) == Approx(0.12 * 0.12 * 0.12));
 
-  const BoxSurface box = box_surface(Vector3(1, 2, 3), {2, 1, 4});
+  const SurfaceMesh box = box_surface(Vector3(1, 2, 3), {2, 1, 4});
   CHECK(box.triangles.rows() == 2 * 2 * (2 * 1 + 1 * 4 + 4 * 2));
   CHECK(enclosed_volume(box.nodes, box.triangles) == Approx(6.0));
 }
 
 TEST_CASE("diagonals of neighbouring cells alternate") {
   // Inside a face every second node then has eight triangles and the others four.
-  const BoxSurface box = box_surface(Vector3(4, 4, 4), {4, 4, 4});
+  const SurfaceMesh box = box_surface(Vector3(4, 4, 4), {4, 4, 4});
   std::map<int, int> triangles_of_node;
   for (Eigen::Index i = 0; i < box.triangles.size(); ++i) {
     ++triangles_of_node[box.triangles.data()[i]];
@@ -54,7 +55,7 @@ TEST_CASE("diagonals of neighbouring cells alternate") {
 TEST_CASE("TetGen fills a box and keeps its surface as it is") {
   for (const std::array<int, 3>& cells :
        {std::array{1, 1, 1}, std::array{6, 6, 6}, std::array{8, 1, 3}}) {
-    const BoxSurface surface = box_surface(Vector3(0.12, 0.07, 0.05), cells);
+    const SurfaceMesh surface = box_surface(Vector3(0.12, 0.07, 0.05), cells);
     const TetMesh mesh = tetrahedralise(surface);
     CHECK_NOTHROW(check_mesh(mesh, "box"));
     CHECK(mesh.nodes.topRows(surface.nodes.rows()) == surface.nodes);
@@ -73,7 +74,7 @@ TEST_CASE("the paper's cube has the size that the paper gives") {
 }
 
 TEST_CASE("a missing, failing or endless mesh program is told by name") {
-  const BoxSurface surface = box_surface(Vector3(1, 1, 1), {1, 1, 1});
+  const SurfaceMesh surface = box_surface(Vector3(1, 1, 1), {1, 1, 1});
   CHECK_THROWS_WITH(tetrahedralise(surface, "no-such-tetgen"),
                     Contains("no-such-tetgen") && Contains("install the package tetgen"));
   CHECK_THROWS_WITH(tetrahedralise(surface, "false"), Contains("false: failed"));

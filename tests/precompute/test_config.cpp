@@ -2,6 +2,11 @@
 #include <filesystem>
 
 #include "precompute/config.hpp"
+#include "precompute/mesh/mesh_check.hpp"
+#include "precompute/mesh/mesh_file.hpp"
+#include "precompute/mesh/mesh_report.hpp"
+#include "precompute/mesh/quadratic_mesh.hpp"
+#include "precompute/mesh/surface.hpp"
 
 using Catch::Matchers::Contains;
 using namespace irdm;
@@ -64,6 +69,22 @@ TEST_CASE("the paper's cube of quadratic tetrahedra has half the cells an edge")
   CHECK(config.material.poisson_ratio == 0.49);
 }
 
+TEST_CASE("the liver is an organ of hand size, sound, and held by a part of its surface") {
+  const auto config = load_config(IRDM_SOURCE_DIR "/configs/models/liver.toml");
+  const auto& path = std::get<std::filesystem::path>(config.mesh.source);
+  const TetMesh linear = read_mesh_file(path);
+  check_mesh(linear, path.string());
+  const TetMesh mesh = quadratic_mesh(linear);
+  CHECK(config.mesh.order == 2);
+  CHECK(mesh.node_count() < 1500);
+  const MeshReport report = report_mesh(mesh);
+  CHECK(report.extent.maxCoeff() == Approx(0.15).epsilon(0.01));
+  CHECK(report.worst_quality > 0.2);
+  const std::vector<int> clamped = nodes_in(mesh, *config.support, "liver");
+  CHECK_NOTHROW(check_clamped(mesh, clamped, extract_surface(mesh, "liver").nodes, "liver"));
+  CHECK(clamped.size() > 30);
+}
+
 TEST_CASE("configuration has defaults for damping and response") {
   const PrecomputeConfig config = read(kMesh + kMaterial);
   CHECK(config.mesh.order == 1);
@@ -83,6 +104,10 @@ TEST_CASE("configuration takes every documented word") {
   CHECK(response("storage = \"both\"").storage == Storage::kBoth);
   CHECK(response("precision = \"double\"").precision == Precision::kDouble);
   CHECK(response("method = \"time-stepping\"").method == Method::kTimeStepping);
+  CHECK(response("").compression_error == 0.0);
+  CHECK(response("compression = \"none\"").compression_error == 0.0);
+  CHECK(response("compression = \"zfp\"").compression_error == 1e-5);
+  CHECK(response("compression = \"zfp\"\ncompression_error = 1e-3").compression_error == 1e-3);
   CHECK(response("method = \"modal\"\nsupport = \"floating\"\ndt = 0.001").dt == 0.001);
 }
 
@@ -92,6 +117,9 @@ TEST_CASE("a mesh file is found beside its configuration") {
         std::filesystem::current_path() / "x" / "liver.msh");
   CHECK(config.mesh.unit == 1.0);
   CHECK(read("[mesh]\nfile = \"a.msh\"\nunit = \"mm\"\n" + kMaterial).mesh.unit == 1e-3);
+  CHECK(!config.mesh.edge_length);
+  CHECK(read("[mesh]\nfile = \"a.STL\"\nedge_length = 0.01\n" + kMaterial).mesh.edge_length ==
+        0.01);
 }
 
 TEST_CASE("configuration refuses each bad mesh entry") {
@@ -114,6 +142,10 @@ TEST_CASE("configuration refuses each bad mesh entry") {
                 "mesh.box.x is not a known key");
   check_refused(kMesh + "unit = \"mm\"\n" + kMaterial, "unit belongs to a mesh file");
   check_refused("[mesh]\nfile = \"a.msh\"\nunit = \"inch\"\n" + kMaterial, "m | cm | mm");
+  check_refused("[mesh]\nfile = \"a.stl\"\nedge_length = 0\n" + kMaterial, "edge_length is 0");
+  check_refused("[mesh]\nfile = \"a.msh\"\nedge_length = 0.1\n" + kMaterial,
+                "edge_length belongs to a surface (.stl, .obj, .ply)");
+  check_refused(kMesh + "edge_length = 0.1\n" + kMaterial, "cells says how fine a box is");
   check_refused(kMesh + "order = 3\n" + kMaterial, "mesh.order is 3");
   check_refused(kMesh + "typo = 2\n" + kMaterial, "mesh.typo is not a known key");
 }
@@ -151,6 +183,10 @@ TEST_CASE("configuration refuses each bad response entry") {
   refused("method = \"magic\"", "modal | time-stepping");
   refused("storage = \"sparse\"", "modal | dense | both");
   refused("precision = \"half\"", "single | double");
+  refused("compression = \"gzip\"", "none | zfp");
+  refused("compression_error = 1e-5", "compression_error is there without compression");
+  refused("compression = \"zfp\"\ncompression_error = 0.5", "compression_error is 0.5");
+  refused("compression = \"zfp\"\ncompression_error = 0", "compression_error is 0");
   refused("support = \"fixed\"", "support is missing");
   refused("support = \"nailed\"", "floating | fixed");
   refused("typo = 1", "response.typo is not a known key");

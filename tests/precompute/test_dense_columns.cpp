@@ -44,6 +44,29 @@ TEST_CASE("a column of R is its modal closed form") {
   }
 }
 
+TEST_CASE("modes that have died away take no part, and are not missed") {
+  const ModalResponse response = some_response();
+  const auto& phi = std::get<RowMatrix<double>>(response.shapes);
+  const int steps = 400;
+  const RowMatrix<double> h = held_responses(response, kDt, steps);
+  const DenseColumns<double> columns(response, kDt, steps);
+  CHECK(columns.modes_at(0) == 4);
+  CHECK(columns.modes_at(steps - 1) < 3);
+  const RowMatrix<double> column = columns.column(3);
+  for (int s = 0; s < steps; ++s) {
+    const Eigen::MatrixXd exact = phi * h.row(s).asDiagonal() * phi.row(3).transpose();
+    const double size =
+        (phi.cwiseAbs2().colwise().maxCoeff().array() * h.row(s).cwiseAbs().array()).sum();
+    CHECK((column.row(s).transpose() - exact).cwiseAbs().maxCoeff() < 1e-15 * size);
+  }
+}
+
+TEST_CASE("without damping every mode takes part to the end") {
+  ModalResponse response = some_response();
+  response.decay_rate.setZero();
+  CHECK(DenseColumns<float>(response, kDt, 400).modes_at(399) == 4);
+}
+
 TEST_CASE("decay left bounds the rest of R and shrinks with the number of steps") {
   const ModalResponse response = some_response();
   const int steps = 300;

@@ -1,32 +1,19 @@
-#include <catch2/catch.hpp>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-
 #include "precompute/mesh/mesh_check.hpp"
 #include "precompute/mesh/mesh_file.hpp"
 #include "precompute/mesh/quadratic_mesh.hpp"
 #include "precompute/mesh/region.hpp"
-#include "precompute/process/temporary_folder.hpp"
+#include "tests/precompute/mesh_files.hpp"
 
 using Catch::Matchers::Contains;
 using namespace irdm;
 using namespace irdm::precompute;
+using irdm::precompute::test::content;
+using irdm::precompute::test::replaced;
+using irdm::precompute::test::volume;
 
 namespace {
 
-struct Files : TemporaryFolder {
-  Files() : TemporaryFolder("irdm-test-mesh") {}
-
-  std::filesystem::path write(const std::string& name, const std::string& text) const {
-    std::ofstream(path() / name) << text;
-    return path() / name;
-  }
-  void run(const std::string& command) const {
-    REQUIRE(std::system(("cd '" + path().string() + "' && " + command + " > log 2>&1").c_str()) ==
-            0);
-  }
+struct Files : test::MeshFiles {
   // A unit cube, and a point that belongs to nothing, by the gmsh program.
   std::filesystem::path gmsh(const std::string& options) const {
     write("cube.geo",
@@ -37,27 +24,12 @@ struct Files : TemporaryFolder {
   }
 };
 
-std::string content(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-double volume(const TetMesh& mesh) {
-  double sum = 0.0;
-  for (int e = 0; e < mesh.tet_count(); ++e) sum += signed_volume(mesh, e);
-  return sum;
-}
-
 const std::string kMsh22 =
     "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n"
     "$EndNodes\n$Elements\n1\n1 4 2 0 1 1 2 3 4\n$EndElements\n";
 const std::string kMsh41 =
     "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 4 1 4\n3 1 0 4\n1\n2\n3\n4\n0 0 0\n1 0 0\n"
     "0 1 0\n0 0 1\n$EndNodes\n$Elements\n1 1 1 1\n3 1 4 1\n1 1 2 3 4\n$EndElements\n";
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  return text.replace(text.find(from), from.size(), to);
-}
 
 }  // namespace
 
@@ -200,5 +172,5 @@ TEST_CASE("damaged TetGen files are refused with file, line and fault") {
 
 TEST_CASE("mesh files that are missing or of an unknown kind are refused") {
   CHECK_THROWS_WITH(read_mesh_file("no-such.msh"), Contains("no-such.msh: no such file"));
-  CHECK_THROWS_WITH(read_mesh_file("liver.stl"), Contains("mesh format '.stl' is not known"));
+  CHECK_THROWS_WITH(read_mesh_file("liver.stp"), Contains("mesh format '.stp' is not known"));
 }

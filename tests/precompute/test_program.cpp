@@ -118,7 +118,7 @@ TEST_CASE("the body in a model file is what its nodes and masses make, about the
   CHECK_THROWS_WITH(read_model(run.model(), ResponseKind::kDense), Contains("no dense response"));
 }
 
-TEST_CASE("command line overrides storage; a mesh file works from end to end") {
+TEST_CASE("command line overrides storage, and a mesh file works from end to end") {
   Run run;
   run.write("m.msh", kMsh);
   run.write("c.toml", "[mesh]\nfile = \"m.msh\"\n" + kMaterial + "[response]\nsteps = 900\n");
@@ -172,7 +172,7 @@ TEST_CASE("a fixed body does not move where it is clamped and has all other mode
   }
 }
 
-TEST_CASE("a mesh file in millimetres becomes metres; the wrong unit is hinted at") {
+TEST_CASE("a mesh file in millimetres becomes metres, and the wrong unit is hinted at") {
   Run run;
   std::string large = kMsh;
   for (const char* line : {"2 1 0 0\n", "3 0 1 0\n", "4 0 0 1\n", "5 1 1 1\n"}) {
@@ -268,6 +268,32 @@ TEST_CASE("bad mesh: one line on stderr, status 1, no output") {
   const std::string eight_nodes = replaced(replaced(kMsh, "$Nodes\n5", "$Nodes\n8"), "5 1 1 1\n",
                                            "5 9 0 0\n6 10 0 0\n7 9 1 0\n8 9 0 1\n");
   refused(replaced(eight_nodes, "2 3 4 5", "5 6 7 8"), "2 pieces");
+}
+
+TEST_CASE("a surface in millimetres is filled; its edge length is in metres") {
+  Run run;
+  // A tetrahedron of 120 mm, which has 4 nodes.
+  const std::string corner =
+      "v 0 0 0\nv 120 0 0\nv 0 120 0\nv 0 0 120\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+  const auto config = [](const std::string& more) {
+    return "[mesh]\nfile = \"s.obj\"\n" + more + "\n" + kMaterial;
+  };
+  run.write("s.obj", corner);
+  run.write("c.toml", config("unit = \"mm\"\nedge_length = 0.04"));
+  run.start("c.toml -o made/model.h5");
+  CAPTURE(run.err);
+  REQUIRE(run.status == 0);
+  CHECK_THAT(run.out, Contains("bounding box                      0.12 x 0.12 x 0.12 m"));
+  const Model model = read_model(run.model(), ResponseKind::kModal);
+  CHECK(model.body.mass == Approx(110 * 0.12 * 0.12 * 0.12 / 6.0));
+  CHECK(model.mesh.nodes.rows() > 20);
+  std::filesystem::remove(run.model());
+  run.write("c.toml", config("edge_length = 0.04"));  // the unit forgotten: of 120 m
+  run.check_refused("s.obj: mesh.edge_length is 0.0002");
+  run.write("c.toml", config("unit = \"mm\"\nedge_length = 40"));
+  run.check_refused("s.obj: mesh.edge_length is 235.7");
+  run.write("s.obj", replaced(corner, "f 1 4 3\n", ""));
+  run.check_refused("s.obj: the surface is open at 3 edges, for instance from (");
 }
 
 TEST_CASE("time stepping gives the dense R of the modes, the same for any number of threads") {

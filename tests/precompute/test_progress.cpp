@@ -38,6 +38,7 @@ TEST_CASE("progress draws one line anew on a terminal and whole lines elsewhere"
 TEST_CASE("summary gives sizes and times per degree of freedom") {
   Summary summary;
   summary.free_nodes = 100;
+  summary.columns = 300;
   summary.seconds = 6.0;
   summary.file_bytes = 3'000'000;
   const std::string text = format_summary(summary);

@@ -53,7 +53,7 @@ TEST_CASE("every key of a scene arrives where it belongs") {
   CHECK(object.angular_velocity == Vector3(10, 11, 12));
 }
 
-TEST_CASE("a scene needs only a model; the rest has defaults") {
+TEST_CASE("a scene needs only a model, the rest has defaults") {
   const SceneConfig read = scene(kObject);
   CHECK(read.server.address == "127.0.0.1");
   CHECK(read.server.port == 0);

@@ -137,6 +137,18 @@ TEST_CASE("model file with wrong content: one line, status 1, no trace") {
   check_server_refuses(stage, "is not a model file");
 }
 
+TEST_CASE("a fixed object without a coupling spring: one line, status 1, no trace") {
+  const Stage stage;
+  write_model(stage.path("cube.h5"), [](Model& model) { model.body.support = Support::kFixed; });
+  const std::string scene = replaced(scene_text(), cube_model().string(), "cube.h5");
+  stage.write("scene.toml", replaced(scene, "coupling_stiffness = 2000", "coupling_stiffness = 0"));
+  check_server_refuses(stage,
+                       "scene.toml: object 'cube' is fixed and contact.coupling_stiffness is "
+                       "0");
+  stage.write("scene.toml", replaced(scene, "coupling_stiffness = 2000", "coupling_stiffness = 1"));
+  CHECK_NOTHROW(stage.start_server());
+}
+
 TEST_CASE("bad script: one line, status 1") {
   const Stage stage;
   const std::string good = "time,x,y,z,button\n0,0,0.08,0,0\n0.1,0,0.07,0,0\n0.2,0,0.06,0,1\n";

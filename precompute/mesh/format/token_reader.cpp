@@ -1,4 +1,4 @@
-#include "precompute/mesh/token_reader.hpp"
+#include "precompute/mesh/format/token_reader.hpp"
 
 #include <cctype>
 #include <charconv>
@@ -25,12 +25,24 @@ bool parse(std::string_view word, Number& value) {
 
 }  // namespace
 
-TokenReader::TokenReader(const std::filesystem::path& path, char comment)
-    : name_(path.string()), comment_(comment) {
-  if (!std::filesystem::is_regular_file(path)) throw Error(name_, "no such file", "check the path");
+std::string file_content(const std::filesystem::path& path) {
+  const std::string name = path.string();
+  if (!std::filesystem::is_regular_file(path)) throw Error(name, "no such file", "check the path");
   std::ifstream file(path, std::ios::binary);
-  text_.assign(std::istreambuf_iterator<char>(file), {});
-  if (!file) throw Error(name_, "cannot be read", "check its permissions");
+  std::string text{std::istreambuf_iterator<char>(file), {}};
+  if (!file) throw Error(name, "cannot be read", "check its permissions");
+  if (text.empty()) throw Error(name, "is empty", "write the mesh again");
+  return text;
+}
+
+std::string in_quotes(std::string_view word) {
+  std::string text = "'";
+  for (const char c : word.substr(0, 40)) text += c >= ' ' && c <= '~' ? c : '?';
+  return text + "'";
+}
+
+TokenReader::TokenReader(const std::filesystem::path& path, char comment)
+    : name_(path.string()), text_(file_content(path)), comment_(comment) {
   if (at_end()) throw Error(name_, "is empty", "write the mesh again");
 }
 
@@ -64,7 +76,7 @@ std::int64_t TokenReader::integer() {
   const std::string_view text = word();
   std::int64_t value = 0;
   if (!parse(text, value)) {
-    fail("'" + std::string(text.substr(0, 40)) + "' is not a whole number", "write the mesh again");
+    fail(in_quotes(text) + " is not a whole number", "write the mesh again");
   }
   return value;
 }
@@ -83,7 +95,7 @@ double TokenReader::number() {
   const std::string_view text = word();
   double value = 0.0;
   if (!parse(text, value)) {
-    fail("'" + std::string(text.substr(0, 40)) + "' is not a number", "write the mesh again");
+    fail(in_quotes(text) + " is not a number", "write the mesh again");
   }
   return value;
 }
@@ -95,6 +107,31 @@ void TokenReader::skip(std::int64_t words) {
 void TokenReader::skip_past(std::string_view wanted) {
   while (word() != wanted) {
   }
+}
+
+std::string_view TokenReader::rest_of_line() {
+  const std::size_t start = position_;
+  const std::size_t end = std::min(text_.find('\n', start), text_.size());
+  position_ = std::min(end + 1, text_.size());
+  line_ += end < text_.size() ? 1 : 0;
+  std::string_view line = std::string_view(text_).substr(start, end - start);
+  if (comment_ != 0) line = line.substr(0, line.find(comment_));
+  if (line.ends_with('\r')) line.remove_suffix(1);
+  return line;
+}
+
+std::string_view TokenReader::bytes(std::size_t count) {
+  rest_of_line();
+  return more_bytes(count);
+}
+
+std::string_view TokenReader::more_bytes(std::size_t count) {
+  if (count > text_.size() - position_) {
+    fail("the file ends too early", "it is truncated: write the mesh again");
+  }
+  const std::string_view found = std::string_view(text_).substr(position_, count);
+  position_ += count;
+  return found;
 }
 
 void TokenReader::fail(const std::string& what, const std::string& remedy) const {

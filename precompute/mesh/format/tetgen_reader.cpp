@@ -1,8 +1,8 @@
-#include "precompute/mesh/tetgen_reader.hpp"
+#include "precompute/mesh/format/tetgen_reader.hpp"
 
 #include <vector>
 
-#include "precompute/mesh/token_reader.hpp"
+#include "precompute/mesh/format/token_reader.hpp"
 
 namespace irdm::precompute {
 namespace {

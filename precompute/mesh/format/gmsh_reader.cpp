@@ -1,4 +1,4 @@
-#include "precompute/mesh/gmsh_reader.hpp"
+#include "precompute/mesh/format/gmsh_reader.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "precompute/mesh/token_reader.hpp"
+#include "precompute/mesh/format/token_reader.hpp"
 
 namespace irdm::precompute {
 namespace {
@@ -66,7 +66,7 @@ class GmshReader {
         in_.skip_past("$End" + section.substr(1));
         continue;
       } else {
-        in_.fail("'" + section.substr(0, 40) + "' stands where a section should begin",
+        in_.fail(in_quotes(section) + " stands where a section should begin",
                  "write the mesh again with gmsh");
       }
       expect("$End" + section.substr(1));
@@ -79,7 +79,7 @@ class GmshReader {
   void expect(const std::string& wanted) {
     const std::string found(in_.word());
     if (found == wanted) return;
-    in_.fail("'" + found.substr(0, 40) + "' stands where " + wanted + " should",
+    in_.fail(in_quotes(found) + " stands where " + wanted + " should",
              "write the mesh again with gmsh");
   }
 

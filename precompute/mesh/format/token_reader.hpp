@@ -7,7 +7,14 @@
 
 namespace irdm::precompute {
 
-/// Reads a text file word by word and says file and line of what is wrong.
+/// The bytes of a file. Throws Error when it is missing, unreadable or empty.
+std::string file_content(const std::filesystem::path& path);
+
+/// The beginning of a word in quotes, for messages: fit to be printed whatever bytes it has.
+std::string in_quotes(std::string_view word);
+
+/// Reads a text file, or one with binary blocks between the text, word by word and says file and
+/// line of what is wrong.
 class TokenReader {
  public:
   /// Reads the whole file; from `comment` (if not 0) to the end of a line everything is skipped.
@@ -26,6 +33,12 @@ class TokenReader {
   void skip(std::int64_t words);
   /// Skips words until `wanted` has been read. Throws Error at the end of the file.
   void skip_past(std::string_view wanted);
+  /// What is left of the line, which may be nothing, and the end of the line.
+  std::string_view rest_of_line();
+  /// Binary data: bytes that begin in the next line. Throws Error when the file has less.
+  std::string_view bytes(std::size_t count);
+  /// The same right after what was read last.
+  std::string_view more_bytes(std::size_t count);
 
   /// Throws Error about the place that was read last.
   [[noreturn]] void fail(const std::string& what, const std::string& remedy) const;

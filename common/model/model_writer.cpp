@@ -1,0 +1,151 @@
+#include "common/model/model_writer.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "common/error.hpp"
+
+namespace irdm {
+namespace {
+
+std::filesystem::path temporary_name(const std::filesystem::path& path) {
+  return path.string() + ".part-" + std::to_string(::getpid());
+}
+
+// Steps of a column in a chunk: chunks of at most about 1 MB and about equal size.
+hsize_t chunk_steps(hsize_t steps, hsize_t step_bytes) {
+  constexpr hsize_t kChunkBytes = 1 << 20;
+  const hsize_t most = std::clamp<hsize_t>(kChunkBytes / step_bytes, 1, steps);
+  const hsize_t chunks = (steps + most - 1) / most;
+  return (steps + chunks - 1) / chunks;
+}
+
+void wait_for_disk(const std::filesystem::path& path) {
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const bool written = descriptor >= 0 && ::fsync(descriptor) == 0;
+  if (descriptor >= 0) ::close(descriptor);
+  if (!written) {
+    throw Error(path.string(), "cannot be written to the disk", "check its free space");
+  }
+}
+
+}  // namespace
+
+void write_description(hdf5::File& file, const Model& model) {
+  file.write_attribute("/", "format", std::string(kModelFormat));
+  file.write_attribute("/", "version", kModelVersion);
+  file.write_attribute("/", "created_by", std::string("irdm ") + IRDM_VERSION);
+
+  const ModelMesh& mesh = model.mesh;
+  const auto rows = [](const auto& matrix) { return static_cast<hsize_t>(matrix.rows()); };
+  file.create_group("/mesh");
+  file.write<double>("/mesh/nodes", {rows(mesh.nodes), 3}, mesh.nodes.data());
+  file.write<std::int32_t>("/mesh/tets", {rows(mesh.tets), static_cast<hsize_t>(mesh.tets.cols())},
+                           mesh.tets.data());
+  file.write<std::int32_t>("/mesh/surface_nodes", {mesh.surface_nodes.size()},
+                           mesh.surface_nodes.data());
+  file.write<std::int32_t>("/mesh/triangles", {rows(mesh.triangles), 3}, mesh.triangles.data());
+  file.write<double>("/mesh/node_mass", {rows(mesh.node_mass)}, mesh.node_mass.data());
+  file.write_attribute("/mesh", "com_offset", {3}, mesh.com_offset.data());
+
+  file.create_group("/body");
+  file.write_attribute("/body", "mass", model.body.mass);
+  const Matrix3 rows_of_inertia = model.body.inertia.transpose();  // symmetric but for rounding
+  file.write_attribute("/body", "inertia", {3, 3}, rows_of_inertia.data());
+  file.write_attribute("/body", "support",
+                       std::string(model.body.support == Support::kFixed ? "fixed" : "floating"));
+
+  file.create_group("/material");
+  file.write_attribute("/material", "youngs_modulus", model.material.youngs_modulus);
+  file.write_attribute("/material", "poisson_ratio", model.material.poisson_ratio);
+  file.write_attribute("/material", "density", model.material.density);
+  file.write_attribute("/material", "rayleigh_alpha", model.material.rayleigh_alpha);
+  file.write_attribute("/material", "rayleigh_beta", model.material.rayleigh_beta);
+
+  file.create_group("/response");
+  file.write_attribute("/response", "dt", model.dt);
+  file.write_attribute("/response", "steps", static_cast<std::int64_t>(model.steps));
+}
+
+ModelFileWriter::ModelFileWriter(const std::filesystem::path& path)
+    : path_(path), temporary_(temporary_name(path)) {
+  file_ = hdf5::File::create(temporary_);
+}
+
+ModelFileWriter::ModelFileWriter(std::filesystem::path path, std::filesystem::path temporary)
+    : path_(std::move(path)), temporary_(std::move(temporary)) {
+  std::error_code ignored;
+  std::filesystem::remove(temporary_, ignored);
+  file_ = hdf5::File::create(temporary_);
+}
+
+ModelFileWriter::~ModelFileWriter() {
+  if (!file_) return;
+  file_.reset();
+  std::error_code ignored;
+  std::filesystem::remove(temporary_, ignored);
+}
+
+void ModelFileWriter::write_description(const Model& model) {
+  irdm::write_description(*file_, model);
+}
+
+void ModelFileWriter::write_modal(const ModalResponse& response) {
+  const auto modes = static_cast<hsize_t>(response.mode_count());
+  file_->write<double>("/response/modal/angular_frequency", {modes},
+                       response.angular_frequency.data());
+  file_->write<double>("/response/modal/decay_rate", {modes}, response.decay_rate.data());
+  std::visit(
+      [&]<typename Scalar>(const RowMatrix<Scalar>& shapes) {
+        file_->write<Scalar>("/response/modal/shapes", {static_cast<hsize_t>(shapes.rows()), modes},
+                             shapes.data());
+      },
+      response.shapes);
+}
+
+void ModelFileWriter::begin_dense(int degrees_of_freedom, int steps, Precision precision,
+                                  double zfp_accuracy) {
+  dense_dof_ = static_cast<hsize_t>(degrees_of_freedom);
+  dense_steps_ = static_cast<hsize_t>(steps);
+  const hdf5::Shape shape{dense_dof_, dense_steps_, dense_dof_};
+  const bool single = precision == Precision::kSingle;
+  const hdf5::Layout layout{
+      .chunk = {1, chunk_steps(dense_steps_, dense_dof_ * (single ? 4 : 8)), dense_dof_},
+      .fletcher32 = true,
+      .zfp_accuracy = zfp_accuracy};
+  if (single) {
+    file_->create_dataset<float>(kDenseR, shape, layout);
+  } else {
+    file_->create_dataset<double>(kDenseR, shape, layout);
+  }
+}
+
+template <typename Scalar>
+void ModelFileWriter::write_column(int b, const Scalar* values) {
+  file_->write_slab<Scalar>(kDenseR, {static_cast<hsize_t>(b), 0, 0}, {1, dense_steps_, dense_dof_},
+                            values);
+}
+
+void ModelFileWriter::write_dense_column(int b, const float* values) {
+  write_column(b, values);
+}
+void ModelFileWriter::write_dense_column(int b, const double* values) {
+  write_column(b, values);
+}
+
+void ModelFileWriter::commit() {
+  file_->close();
+  wait_for_disk(temporary_);
+  std::error_code error;
+  std::filesystem::rename(temporary_, path_, error);
+  if (error) {
+    throw Error(path_.string(), "cannot be given its name: " + error.message(),
+                "check permissions of the folder");
+  }
+  file_.reset();
+}
+
+}  // namespace irdm

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+
+#include "common/hdf5/file.hpp"
+#include "common/model/model.hpp"
+
+namespace irdm {
+
+inline constexpr const char* kModelFormat = "irdm-model";
+inline constexpr std::int64_t kModelVersion = 1;
+inline constexpr const char* kDenseR = "/response/dense/R";
+
+/// Of the numbers of R in a file.
+enum class Precision { kSingle, kDouble };
+
+/// Mesh, body, material, dt and steps into a new file; the model's response is ignored.
+void write_description(hdf5::File& file, const Model& model);
+
+/// Writes a model file under a temporary name beside the final one; commit() gives it its name.
+/// Without commit nothing is left behind. Throws Error.
+class ModelFileWriter {
+ public:
+  /// The temporary name ends with the process's number, so that several may write.
+  explicit ModelFileWriter(const std::filesystem::path& path);
+  /// Under a temporary name that only this process uses; what an earlier one left there is removed.
+  ModelFileWriter(std::filesystem::path path, std::filesystem::path temporary);
+  ModelFileWriter(const ModelFileWriter&) = delete;
+  ModelFileWriter& operator=(const ModelFileWriter&) = delete;
+  ~ModelFileWriter();
+
+  /// Mesh, body, material, dt and steps; the model's response is ignored.
+  void write_description(const Model& model);
+  void write_modal(const ModalResponse& response);
+
+  /// Makes room for R; then each column b is written once: (T, 3n) numbers, [s][a displacement].
+  /// A chunk is a part of one column, of about 1 MB, with a Fletcher32 checksum.
+  /// @param zfp_accuracy above 0: compressed by zfp, with at most this error of an entry [m/N]
+  void begin_dense(int degrees_of_freedom, int steps, Precision precision,
+                   double zfp_accuracy = 0.0);
+  void write_dense_column(int b, const float* values);
+  void write_dense_column(int b, const double* values);
+
+  /// Where the file is until commit: for a signal handler that tidies up.
+  const std::filesystem::path& temporary_path() const { return temporary_; }
+
+  /// Completes the file, waits until the disk has it and moves it to its final name, replacing an
+  /// older one: under that name there is a whole file at all times, or none.
+  void commit();
+
+ private:
+  template <typename Scalar>
+  void write_column(int b, const Scalar* values);
+
+  std::filesystem::path path_;
+  std::filesystem::path temporary_;
+  std::optional<hdf5::File> file_;
+  hsize_t dense_dof_ = 0;
+  hsize_t dense_steps_ = 0;
+};
+
+}  // namespace irdm

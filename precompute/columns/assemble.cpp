@@ -1,0 +1,150 @@
+#include "precompute/columns/assemble.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "common/error.hpp"
+#include "common/model/model_file.hpp"
+
+namespace irdm::precompute {
+namespace {
+
+using Parts = std::vector<std::unique_ptr<ColumnFileReader>>;
+
+void check_same(const ColumnFileReader& first, const ColumnFileReader& part) {
+  const ColumnFileHeader& a = first.header();
+  const ColumnFileHeader& b = part.header();
+  const auto differs = [&](const std::string& in) {
+    throw Error(part.name(), "has " + in + " than " + first.name(),
+                "give parts that were made from one configuration by one version of the program");
+  };
+  if (a.description != b.description) differs("another mesh, material or time axis");
+  if (a.settings != b.settings || a.compression_error != b.compression_error) {
+    differs("other settings");
+  }
+  if (a.precision != b.precision || a.steps != b.steps ||
+      a.degrees_of_freedom != b.degrees_of_freedom) {
+    differs("other numbers");
+  }
+}
+
+void check_complete(const Parts& parts) {
+  int next = 0;
+  const auto missing = [](const ColumnFileReader& part, int from, int to) {
+    throw Error(part.name(), "columns " + to_text(ColumnRange{from, to}) + " are in no part",
+                "make them with --columns " + to_text(ColumnRange{from, to}));
+  };
+  for (const auto& part : parts) {
+    const ColumnRange& range = part->header().range;
+    if (range.begin < next) {
+      throw Error(
+          part->name(),
+          "has columns from " + std::to_string(range.begin) + " on, which another part has too",
+          "leave one of them out");
+    }
+    if (range.begin > next) missing(*part, next, range.begin);
+    next = range.end;
+  }
+  const int all = parts.front()->header().degrees_of_freedom;
+  if (next < all) missing(*parts.back(), next, all);
+}
+
+Parts open_parts(const std::vector<std::filesystem::path>& paths) {
+  Parts parts;
+  for (const auto& path : paths) parts.push_back(std::make_unique<ColumnFileReader>(path));
+  for (const auto& part : parts) check_same(*parts.front(), *part);
+  std::sort(parts.begin(), parts.end(), [](const auto& a, const auto& b) {
+    return a->header().range.begin < b->header().range.begin;
+  });
+  check_complete(parts);
+  return parts;
+}
+
+// Calls visit(b, values) for each column in order, values being (T, 3n) floats or doubles.
+template <typename Visit>
+void for_each_column(const Parts& parts, const Visit& visit) {
+  for (const auto& part : parts) {
+    const ColumnFileHeader& header = part->header();
+    part->rewind();
+    for (int b = header.range.begin; b < header.range.end; ++b) {
+      const void* bytes = part->next().data();
+      if (header.precision == Precision::kSingle) {
+        visit(b, static_cast<const float*>(bytes));
+      } else {
+        visit(b, static_cast<const double*>(bytes));
+      }
+    }
+  }
+}
+
+// Of the driving point of one column: R[s](b, b) over s.
+struct DrivingPoint {
+  double peak = 0.0;
+  double tail = 0.0;  // in the last tenth of the steps
+};
+
+template <typename Scalar>
+DrivingPoint driving_point(int b, const Scalar* values, const ColumnFileHeader& header) {
+  DrivingPoint point;
+  const int tail = header.steps - (header.steps + 9) / 10;
+  for (int s = 0; s < header.steps; ++s) {
+    const auto at =
+        static_cast<std::size_t>(s) * static_cast<std::size_t>(header.degrees_of_freedom);
+    const double size = std::abs(static_cast<double>(values[at + static_cast<std::size_t>(b)]));
+    point.peak = std::max(point.peak, size);
+    if (s >= tail) point.tail = std::max(point.tail, size);
+  }
+  return point;
+}
+
+double peak_of(const Parts& parts, const ColumnFileHeader& header) {
+  double peak = 0.0;
+  for_each_column(parts, [&](int b, const auto* values) {
+    peak = std::max(peak, driving_point(b, values, header).peak);
+  });
+  return peak;
+}
+
+}  // namespace
+
+double zfp_accuracy(double share, double peak) {
+  return share > 0.0 && peak > 0.0 ? std::exp2(std::floor(std::log2(share * peak))) : 0.0;
+}
+
+void check_compression(double share, const std::filesystem::path& output) {
+  if (share <= 0.0 || hdf5::zfp_available()) return;
+  throw Error(output.string(), "compression = \"zfp\" is asked for and HDF5 has no zfp filter here",
+              "install HDF5's zfp plugin (hdf5-filter-plugin-zfp-serial) or leave compression out");
+}
+
+double assemble(const std::vector<std::filesystem::path>& paths,
+                const std::filesystem::path& output, const std::filesystem::path& temporary,
+                const Console& console) {
+  const Parts parts = open_parts(paths);
+  const ColumnFileHeader& header = parts.front()->header();
+  check_compression(header.compression_error, output);
+  const Model model = read_description(
+      hdf5::File::from_image(header.description, parts.front()->name() + " (description)"));
+  if (model.degrees_of_freedom() != header.degrees_of_freedom || model.steps != header.steps) {
+    throw Error(parts.front()->name(), "does not fit its own description", "make it again");
+  }
+  const double accuracy = header.compression_error > 0.0
+                              ? zfp_accuracy(header.compression_error, peak_of(parts, header))
+                              : 0.0;
+  ModelFileWriter writer(output, temporary);
+  writer.write_description(model);
+  writer.begin_dense(header.degrees_of_freedom, header.steps, header.precision, accuracy);
+  Progress progress(console, "writing R", header.degrees_of_freedom);
+  double left = 0.0;
+  for_each_column(parts, [&](int b, const auto* values) {
+    writer.write_dense_column(b, values);
+    const DrivingPoint point = driving_point(b, values, header);
+    if (point.peak > 0.0) left = std::max(left, point.tail / point.peak);
+    progress.update(b + 1);
+  });
+  writer.commit();
+  return left;
+}
+
+}  // namespace irdm::precompute

@@ -1,0 +1,132 @@
+#include "precompute/columns/column_file.hpp"
+
+#include <cstring>
+#include <sstream>
+
+#include "common/error.hpp"
+#include "common/wire/crc32c.hpp"
+
+namespace irdm::precompute {
+namespace {
+
+constexpr const char* kMagic = "irdm-columns 1";
+// More than any header has before settings and description.
+constexpr std::size_t kMostHeaderText = 1 << 12;
+
+bool read_word(std::istream& text, const char* word) {
+  std::string found;
+  return text >> found && found == word;
+}
+
+// The lengths of settings and description go into the strings themselves. False: not such a text.
+bool parse_text(std::istream& text, ColumnFileHeader& header) {
+  std::string magic;
+  int number_bytes = 0;
+  std::size_t settings = 0;
+  std::size_t description = 0;
+  std::getline(text, magic);
+  const bool good = magic == kMagic && read_word(text, "columns") &&
+                    text >> header.range.begin >> header.range.end && read_word(text, "shape") &&
+                    text >> header.degrees_of_freedom >> header.steps >> number_bytes &&
+                    read_word(text, "compression_error") && text >> header.compression_error &&
+                    read_word(text, "settings") && text >> settings &&
+                    read_word(text, "description") && text >> description && text.get() == '\n' &&
+                    (number_bytes == 4 || number_bytes == 8) && header.steps > 0 &&
+                    header.range.begin >= 0 && header.range.begin < header.range.end &&
+                    header.range.end <= header.degrees_of_freedom;
+  if (!good || settings > (1U << 30) || description > (1U << 30)) return false;
+  header.precision = number_bytes == 4 ? Precision::kSingle : Precision::kDouble;
+  header.settings.resize(settings);
+  header.description.resize(description);
+  return true;
+}
+
+}  // namespace
+
+std::uint32_t column_checksum(const void* bytes, std::size_t count) {
+  return wire::crc32c({static_cast<const std::uint8_t*>(bytes), count});
+}
+
+bool is_intact(std::span<const std::uint8_t> record) {
+  const std::size_t count = record.size() - kChecksumBytes;
+  const std::uint32_t sum = column_checksum(record.data(), count);
+  return std::memcmp(&sum, record.data() + count, kChecksumBytes) == 0;
+}
+
+std::string encode_header(const ColumnFileHeader& header) {
+  std::ostringstream text;
+  text << kMagic << "\ncolumns " << header.range.begin << ' ' << header.range.end << "\nshape "
+       << header.degrees_of_freedom << ' ' << header.steps << ' '
+       << (header.precision == Precision::kSingle ? 4 : 8) << "\ncompression_error ";
+  text.precision(17);
+  text << header.compression_error << "\nsettings " << header.settings.size() << "\ndescription "
+       << header.description.size() << '\n'
+       << header.settings << header.description;
+  const std::string bytes = text.str();
+  const std::uint32_t sum = column_checksum(bytes.data(), bytes.size());
+  return bytes + std::string(reinterpret_cast<const char*>(&sum), kChecksumBytes);
+}
+
+std::size_t ColumnFileHeader::column_bytes() const {
+  return static_cast<std::size_t>(degrees_of_freedom) * static_cast<std::size_t>(steps) *
+         (precision == Precision::kSingle ? sizeof(float) : sizeof(double));
+}
+
+std::string description_of(const Model& model) {
+  hdf5::File file = hdf5::File::in_memory("description of the model");
+  write_description(file, model);
+  return file.image();
+}
+
+ColumnFileReader::ColumnFileReader(const std::filesystem::path& path)
+    : name_(path.string()), stream_(path, std::ios::binary) {
+  if (!stream_) throw Error(name_, "cannot be read", "check the path and its permissions");
+  std::string text(kMostHeaderText, '\0');
+  stream_.read(text.data(), static_cast<std::streamsize>(text.size()));
+  std::istringstream parsed(text.substr(0, static_cast<std::size_t>(stream_.gcount())));
+  stream_.clear();
+  if (!parse_text(parsed, header_)) {
+    throw Error(name_, "is not a part of R", "give files that irdm-precompute --columns wrote");
+  }
+  const auto length = static_cast<std::size_t>(parsed.tellg()) + header_.settings.size() +
+                      header_.description.size() + kChecksumBytes;
+  if (length > std::filesystem::file_size(path)) damaged("is cut off");
+  std::string head(length, '\0');
+  stream_.seekg(0);
+  stream_.read(head.data(), static_cast<std::streamsize>(length));
+  if (!is_intact({reinterpret_cast<const std::uint8_t*>(head.data()), length})) {
+    damaged("has a damaged beginning");
+  }
+  const auto after_text = static_cast<std::size_t>(parsed.tellg());
+  header_.settings = head.substr(after_text, header_.settings.size());
+  header_.description =
+      head.substr(after_text + header_.settings.size(), header_.description.size());
+  columns_at_ = static_cast<std::streamoff>(length);
+  column_.resize(header_.column_bytes() + kChecksumBytes);
+  const std::size_t whole = (std::filesystem::file_size(path) - length) / column_.size();
+  const auto expected = static_cast<std::size_t>(header_.range.count());
+  if (whole < expected) {
+    throw Error(
+        name_,
+        "has only " + std::to_string(whole) + " of its " + std::to_string(expected) + " columns",
+        "give the command that makes it again, which goes on from there");
+  }
+}
+
+void ColumnFileReader::damaged(const std::string& what) const {
+  throw Error(name_, what, "make it again with irdm-precompute --columns");
+}
+
+std::span<const std::uint8_t> ColumnFileReader::next() {
+  stream_.read(reinterpret_cast<char*>(column_.data()),
+               static_cast<std::streamsize>(column_.size()));
+  if (!stream_ || !is_intact(column_)) damaged("has a damaged column");
+  return std::span(column_).first(column_.size() - kChecksumBytes);
+}
+
+void ColumnFileReader::rewind() {
+  stream_.clear();
+  stream_.seekg(columns_at_);
+}
+
+}  // namespace irdm::precompute

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/model/model_writer.hpp"
+#include "precompute/columns/column_range.hpp"
+
+/// A slice of R on its own: the work file of a run that goes on where it was interrupted, and, once
+/// complete, a part for `irdm-precompute merge`. Plain bytes, only ever appended to, because an
+/// HDF5 file that is killed while it is written may be lost as a whole:
+///
+///     irdm-columns 1
+///     columns A B
+///     shape 3n T BYTES           of one number: 4 or 8
+///     compression_error E        of the model file to come, as a share; 0: none
+///     settings LENGTH
+///     description LENGTH
+///     (settings) (description: mesh, body and material as an HDF5 file) (CRC32C of all so far)
+///     then for each column A..B-1: T x 3n numbers [s][a] (CRC32C)
+///
+/// A record whose checksum is wrong, and all after it, do not count.
+namespace irdm::precompute {
+
+struct ColumnFileHeader {
+  ColumnRange range;
+  int degrees_of_freedom = 0;  ///< 3n
+  int steps = 0;               ///< T
+  Precision precision = Precision::kSingle;
+  double compression_error = 0.0;  ///< see ResponseConfig
+  std::string settings;            ///< all else that R depends on, see settings_text()
+  std::string description;         ///< see description_of()
+
+  std::size_t column_bytes() const;
+};
+
+/// Mesh, body, material, dt and steps of a model as bytes, the same for the same model.
+std::string description_of(const Model& model);
+
+/// The beginning of the file, up to the first column.
+std::string encode_header(const ColumnFileHeader& header);
+
+inline constexpr std::size_t kChecksumBytes = 4;
+std::uint32_t column_checksum(const void* bytes, std::size_t count);
+/// Whether the last four of these bytes are the checksum of those before.
+bool is_intact(std::span<const std::uint8_t> record);
+
+/// Reads a column file. Throws Error when it is of another kind, damaged or not complete.
+class ColumnFileReader {
+ public:
+  explicit ColumnFileReader(const std::filesystem::path& path);
+
+  const std::string& name() const { return name_; }
+  const ColumnFileHeader& header() const { return header_; }
+  /// Bytes of the next column, checked; valid until the next call.
+  std::span<const std::uint8_t> next();
+  /// Back to the first column.
+  void rewind();
+
+ private:
+  [[noreturn]] void damaged(const std::string& what) const;
+
+  std::string name_;
+  std::ifstream stream_;
+  ColumnFileHeader header_;
+  std::streamoff columns_at_ = 0;
+  std::vector<std::uint8_t> column_;
+};
+
+}  // namespace irdm::precompute

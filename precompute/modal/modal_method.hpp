@@ -1,0 +1,31 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "common/model/model_writer.hpp"
+#include "precompute/columns/column_source.hpp"
+#include "precompute/config.hpp"
+#include "precompute/mesh/tet_mesh.hpp"
+#include "precompute/progress.hpp"
+
+/// Method "modal": R from all elastic modes of the finite elements.
+namespace irdm::precompute {
+
+/// All modes of the model, at its surface, in double precision; says on the console how long it may
+/// take. Throws Error.
+/// @param clamped nodes of a fixed body
+ModalResponse compute_modes(const TetMesh& mesh, const std::vector<int>& clamped,
+                            const Model& model, const Console& console);
+
+/// Dense R of these modes, computed in the precision of the file.
+std::unique_ptr<ColumnSource> modal_columns(const ModalResponse& response, const Model& model,
+                                            Precision precision);
+
+/// Writes R in the forms that `config` asks for: the dense one column by column, never held as a
+/// whole.
+/// @param threads > 0
+void write_modal_response(ModelFileWriter& writer, ModalResponse response, const Model& model,
+                          const ResponseConfig& config, int threads, const Console& console);
+
+}  // namespace irdm::precompute

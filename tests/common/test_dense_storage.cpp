@@ -1,0 +1,163 @@
+#include <catch2/catch.hpp>
+#include <fstream>
+
+#include "common/error.hpp"
+#include "common/model/model_file.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+using Catch::Matchers::Contains;
+using namespace irdm;
+
+namespace {
+
+constexpr int kSteps = 40;
+
+// Smooth, as responses are.
+RowMatrix<float> column(int b, int dof) {
+  RowMatrix<float> values(kSteps, dof);
+  for (int s = 0; s < kSteps; ++s) {
+    for (int a = 0; a < dof; ++a) {
+      values(s, a) = static_cast<float>(std::exp(-0.05 * s) * std::cos(0.02 * s * (a + b + 1)));
+    }
+  }
+  return values;
+}
+
+Model description() {
+  Model model;
+  model.mesh.nodes.resize(4, 3);
+  model.mesh.nodes << 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1;
+  model.mesh.tets.resize(1, 4);
+  model.mesh.tets << 0, 1, 2, 3;
+  model.mesh.surface_nodes = {0, 1, 2, 3};
+  model.mesh.triangles.resize(4, 3);
+  model.mesh.triangles << 0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2;
+  model.mesh.node_mass = Eigen::VectorXd::Constant(4, 0.25);
+  model.body.mass = 1.0;
+  model.body.inertia = Vector3(1, 2, 3).asDiagonal();
+  model.material = {2000, 0.49, 110, 8, 2e-4};
+  model.dt = 0.002;
+  model.steps = kSteps;
+  return model;
+}
+
+struct File : irdm::test::TemporaryFolder {
+  std::filesystem::path model = path() / "model.h5";
+  int dof = description().degrees_of_freedom();
+
+  void write(double zfp_accuracy) const {
+    ModelFileWriter writer(model);
+    writer.write_description(description());
+    writer.begin_dense(dof, kSteps, Precision::kSingle, zfp_accuracy);
+    for (int b = 0; b < dof; ++b) writer.write_dense_column(b, column(b, dof).data());
+    writer.commit();
+  }
+  double largest_error() const {
+    const Model read = read_model(model, ResponseKind::kDense);
+    const auto& values =
+        std::get<std::vector<float>>(std::get<DenseResponse>(read.response).values);
+    float error = 0.0F;
+    for (int b = 0; b < dof; ++b) {
+      const RowMatrix<float> expected = column(b, dof);
+      for (int a = 0; a < dof; ++a) {
+        for (int s = 0; s < kSteps; ++s) {
+          const auto at = static_cast<std::size_t>((b * dof + a) * kSteps + s);
+          error = std::max(error, std::abs(values[at] - expected(s, a)));
+        }
+      }
+    }
+    return static_cast<double>(error);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("dense R lies in chunks of whole steps of one column, with checksums") {
+  const File file;
+  {
+    // 1200 degrees of freedom and 500 steps: columns of 2.4 MB, in three chunks.
+    ModelFileWriter writer(file.model);
+    writer.begin_dense(1200, 500, Precision::kSingle);
+    writer.commit();
+  }
+  const hdf5::Handle opened(H5Fopen(file.model.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  const hdf5::Handle set(H5Dopen2(opened.get(), kDenseR, H5P_DEFAULT), H5Dclose);
+  const hdf5::Handle properties(H5Dget_create_plist(set.get()), H5Pclose);
+  hdf5::Shape chunk(3);
+  REQUIRE(H5Pget_chunk(properties.get(), 3, chunk.data()) == 3);
+  CHECK(chunk == hdf5::Shape{1, 167, 1200});
+  REQUIRE(H5Pget_nfilters(properties.get()) == 1);
+  std::size_t none = 0;
+  CHECK(H5Pget_filter2(properties.get(), 0, nullptr, &none, nullptr, 0, nullptr, nullptr) ==
+        H5Z_FILTER_FLETCHER32);
+}
+
+TEST_CASE("dense R without compression comes back bit for bit, and a flipped bit is noticed") {
+  const File file;
+  file.write(0.0);
+  CHECK(file.largest_error() == 0.0);
+  // Column 5 is somewhere in the file as it was written.
+  const RowMatrix<float> values = column(5, file.dof);
+  const std::string needle(reinterpret_cast<const char*>(values.data()), 400);
+  std::ifstream in(file.model, std::ios::binary);
+  std::string bytes((std::istreambuf_iterator<char>(in)), {});
+  const std::size_t at = bytes.find(needle);
+  REQUIRE(at != std::string::npos);
+  bytes[at + 200] = static_cast<char>(bytes[at + 200] ^ 1);
+  std::ofstream(file.model, std::ios::binary) << bytes;
+  CHECK_THROWS_WITH(read_model(file.model, ResponseKind::kDense), Contains("checksum is wrong"));
+}
+
+TEST_CASE("the same model written twice is the same file") {
+  const auto bytes = [] {
+    const File file;
+    file.write(0.0);
+    std::ifstream in(file.model, std::ios::binary);
+    return std::string((std::istreambuf_iterator<char>(in)), {});
+  };
+  const std::string once = bytes();
+  CHECK(once.size() > 1000);
+  CHECK(once == bytes());
+}
+
+TEST_CASE("dense R compressed by zfp is smaller and stays within the error") {
+  if (!hdf5::zfp_available()) {
+    const File file;
+    CHECK_THROWS_WITH(file.write(1e-3), Contains("install HDF5's zfp plugin"));
+    return;
+  }
+  const File plain;
+  plain.write(0.0);
+  const File file;
+  file.write(1e-3);
+  CHECK(file.largest_error() <= 1e-3);
+  CHECK(file.largest_error() > 0.0);
+  CHECK(std::filesystem::file_size(file.model) < std::filesystem::file_size(plain.model));
+}
+
+TEST_CASE("contiguous dense R of earlier versions is read") {
+  const File file;
+  {
+    hdf5::File h5 = hdf5::File::create(file.model);
+    write_description(h5, description());
+    const auto n = static_cast<hsize_t>(file.dof);
+    h5.create_dataset<float>(kDenseR, {n, kSteps, n});
+    for (int b = 0; b < file.dof; ++b) {
+      h5.write_slab<float>(kDenseR, {static_cast<hsize_t>(b), 0, 0}, {1, kSteps, n},
+                           column(b, file.dof).data());
+    }
+    h5.close();
+  }
+  CHECK(file.largest_error() == 0.0);
+}
+
+TEST_CASE("a description goes through memory and back") {
+  hdf5::File file = hdf5::File::in_memory("description");
+  write_description(file, description());
+  const std::string image = file.image();
+  const Model read = read_description(hdf5::File::from_image(image, "description"));
+  CHECK(read.mesh.nodes == description().mesh.nodes);
+  CHECK(read.steps == kSteps);
+  CHECK(std::holds_alternative<std::monostate>(read.response));
+  CHECK_THROWS_WITH(hdf5::File::from_image(image.substr(0, 100), "cut"), Contains("cut"));
+}

@@ -1,0 +1,155 @@
+// Objects that rest and slide on the floor.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "server/deformation/deformation.hpp"
+#include "server/step/simulation.hpp"
+#include "tests/support/fem_cube.hpp"
+
+using namespace irdm;
+using namespace irdm::test;
+
+namespace {
+
+constexpr double kHalfEdge = 0.06;
+constexpr double kGravity = 9.81;
+
+// A cube that stands on the floor, which is at its lower face.
+SimulationConfig standing(double youngs_modulus, const Friction& friction) {
+  FemCube cube;
+  cube.youngs_modulus = youngs_modulus;
+  SimulationConfig config;
+  config.objects.resize(1);
+  config.objects[0].model = fem_cube(cube);
+  config.gravity = Vector3(0, -kGravity, 0);
+  config.floor = FloorConfig{Vector3(0, 1, 0), -kHalfEdge, friction};
+  return config;
+}
+
+void step(Simulation& simulation, StepRecord& record) {
+  const StylusCommand nobody;
+  simulation.step({&nobody, 1}, record);
+}
+
+}  // namespace
+
+TEST_CASE("floor: at rest it carries the weight, and nothing moves") {
+  Simulation simulation(standing(2000.0, {0.5, 0.5}));
+  const double weight = simulation.object().model().body.mass * kGravity;
+  StepRecord record;
+  Vector3 position = Vector3::Zero();
+  double drift = 0.0;
+  double off = 0.0;
+  for (int k = 0; k < 30'000; ++k) {  // 60 s
+    step(simulation, record);
+    if (k == 5000) position = record.object[0].position;
+    if (k < 5000) continue;
+    drift = std::max(drift, (record.object[0].position - position).norm());
+    off = std::max(off, (record.object[0].floor_force - Vector3(0, weight, 0)).norm());
+  }
+  INFO("drift " << drift << " m, force off by " << off << " of " << weight << " N, "
+                << record.object[0].floor_count << " nodes down, residual "
+                << record.object[0].residual);
+  CHECK(drift < 1e-5);
+  CHECK(off < 1e-3 * weight);
+  CHECK(record.object[0].floor_count >= 20);
+  // It sags under its own weight: the middle comes down by about rho g L^2 / (2 E).
+  CHECK(record.object[0].position.y() < -0.001);
+}
+
+TEST_CASE("floor: dropped it rings and comes to rest on the floor, no node below it") {
+  SimulationConfig config = standing(2000.0, {0.5, 0.5});
+  config.objects[0].position = Vector3(0, 0.05, 0);
+  config.objects[0].damping = {0.5, 0.5};
+  Simulation simulation(config);
+  Deformation deformation(config);
+  SurfaceFrame frame = rest_frame(config);
+  StepRecord record;
+  bool flew = false;
+  double deepest = 0.0;
+  for (int k = 0; k < 5000; ++k) {
+    step(simulation, record);
+    deformation.follow(record);
+    if (k < 40) flew = flew || record.object[0].floor_count == 0;
+    if (k % 50 != 0) continue;
+    deformation.compute(frame);
+    const ModelMesh& mesh = config.objects[0].model->mesh;
+    for (int i = 0; i < mesh.surface_node_count(); ++i) {
+      deepest = std::max(deepest, -kHalfEdge - frame.objects[0].world(mesh, i).y());
+    }
+  }
+  CHECK(flew);
+  CHECK(deepest < 1e-3);
+  CHECK(record.object[0].velocity.norm() < 1e-3);
+}
+
+TEST_CASE("floor: a block slides from the friction angle on, within half a degree") {
+  const double mu = 0.4;
+  const double angle = std::atan(mu);
+  for (const double off : {-0.5, 0.5}) {
+    SimulationConfig config = standing(2e5, {mu, mu});
+    Simulation level(config);
+    const double tilt = angle + off * std::numbers::pi / 180.0;
+    config.gravity = kGravity * Vector3(std::sin(tilt), -std::cos(tilt), 0);
+    Simulation simulation(config);
+    StepRecord record;
+    double early = 0.0;
+    for (int k = 0; k < 2000; ++k) {
+      step(simulation, record);
+      if (k == 1000) early = record.object[0].position.x();
+    }
+    const double went = record.object[0].position.x() - early;
+    INFO(off << " degrees: " << went << " m in 2 s");
+    if (off < 0) CHECK(std::abs(went) < 1e-5);
+    // g (sin - mu cos) t^2 / 2 from 2 s to 4 s
+    if (off > 0) CHECK(went > 0.5 * 6.0 * kGravity * (std::sin(tilt) - mu * std::cos(tilt)));
+  }
+}
+
+TEST_CASE("floor: a sliding block slows down by mu g within 1 %") {
+  const double mu = 0.3;
+  SimulationConfig config = standing(2e5, {mu, mu});
+  config.objects[0].velocity = Vector3(1.0, 0, 0);
+  Simulation simulation(config);
+  StepRecord record;
+  double first = 0.0;
+  for (int k = 0; k < 120; ++k) {
+    step(simulation, record);
+    if (k == 19) first = record.object[0].velocity.x();
+  }
+  const double found = (first - record.object[0].velocity.x()) / (100 * simulation.dt());
+  CHECK(found == Approx(mu * kGravity).epsilon(0.01));
+}
+
+TEST_CASE("floor: pushed along, a block slides at mu M g within 1 %") {
+  const double mu = 0.3;
+  SimulationConfig config = standing(2e5, {mu, mu});
+  config.styluses = {{0.0, 500.0, 0.0}};
+  Simulation simulation(config);
+  const double limit = mu * simulation.object().model().body.mass * kGravity;
+  StepRecord record;
+  double start = -1.0;
+  double last = 0.0;
+  double sum = 0.0;
+  for (int k = 0; k < 2000; ++k) {
+    const double t = 0.002 * (k + 1);
+    const StylusCommand push{true, 0, Vector3(-kHalfEdge - 0.001 + 0.002 * t, -0.04, 0.0), {}};
+    simulation.step({&push, 1}, record);
+    if (start < 0 && record.object[0].velocity.x() > 1e-3) start = last;
+    last = -record.stylus[0].force.x();
+    if (k >= 1500) sum += last / 500.0;
+  }
+  INFO("starts at " << start << " N, slides at " << sum << " N, mu M g = " << limit << " N");
+  CHECK(sum == Approx(limit).epsilon(0.01));
+}
+
+TEST_CASE("floor: reset puts everything back") {
+  Simulation simulation(standing(2000.0, {0.5, 0.5}));
+  StepRecord first, second;
+  for (int k = 0; k < 300; ++k) step(simulation, first);
+  simulation.reset();
+  for (int k = 0; k < 300; ++k) step(simulation, second);
+  CHECK(first.object[0].position == second.object[0].position);
+  CHECK(first.object[0].floor_force == second.object[0].floor_force);
+}

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/error.hpp"
+#include "common/model/content_checksum.hpp"
 
 namespace irdm {
 namespace {
@@ -22,6 +23,17 @@ class ModelReader {
   explicit ModelReader(const std::filesystem::path& path) : file_(hdf5::File::open(path)) {}
 
   Model read(ResponseKind kind) {
+    describe();
+    if (kind == ResponseKind::kModal) {
+      read_modal();
+    } else {
+      read_dense();
+    }
+    return std::move(model_);
+  }
+
+  // All but the response.
+  Model describe() {
     check_format();
     read_mesh();
     read_body();
@@ -31,12 +43,7 @@ class ModelReader {
     model_.steps = static_cast<int>(file_.read_integer_attribute("/response", "steps"));
     require(std::isfinite(model_.dt) && model_.dt > 0 && model_.steps > 0,
             "dt and steps must be positive");
-    if (kind == ResponseKind::kModal) {
-      read_modal();
-    } else {
-      read_dense();
-    }
-    return std::move(model_);
+    return model_;
   }
 
  private:
@@ -207,6 +214,10 @@ Model read_model(const std::filesystem::path& path, ResponseKind kind) {
   return ModelReader(path).read(kind);
 }
 
+Model read_model_description(const std::filesystem::path& path) {
+  return ModelReader(path).describe();
+}
+
 // ---- writing -------------------------------------------------------------------------------
 
 ModelFileWriter::ModelFileWriter(std::filesystem::path path)
@@ -295,6 +306,7 @@ void ModelFileWriter::write_dense_column(int b, const double* values) {
 }
 
 void ModelFileWriter::commit() {
+  store_content_checksum(*file_);
   file_->close();
   std::error_code error;
   std::filesystem::rename(temporary_, path_, error);

@@ -17,6 +17,9 @@ enum class ResponseKind { kModal, kDense };
 /// shapes, index ranges, finite numbers, positive mass. Throws Error.
 Model read_model(const std::filesystem::path& path, ResponseKind kind);
 
+/// The same without any response: what is small in a file of any size.
+Model read_model_description(const std::filesystem::path& path);
+
 /// Writes a model file under a temporary name beside the final one; commit() gives it its name.
 /// Without commit nothing is left behind. Throws Error.
 class ModelFileWriter {

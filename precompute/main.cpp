@@ -13,7 +13,9 @@ int main(int argc, char** argv) {
   app.require_subcommand(0, 1);
   const precompute::Command compute = precompute::add_compute_command(app);
   // A further command is one file in precompute/command and one line here.
-  const std::map<std::string, precompute::Command> commands{};
+  const std::map<std::string, precompute::Command> commands{
+      {"check", precompute::add_check_command(app)},
+  };
 
   return run_program(app, argc, argv, [&] {
     const auto chosen = app.get_subcommands();

@@ -12,4 +12,7 @@ using Command = std::function<int()>;
 /// Without a word for it: CONFIG.toml -o MODEL.h5 computes a model file.
 Command add_compute_command(CLI::App& app);
 
+/// check MODEL.h5: a table with a verdict a line (docs/check.md); status 1 when a line fails.
+Command add_check_command(CLI::App& app);
+
 }  // namespace irdm::precompute

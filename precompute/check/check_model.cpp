@@ -103,7 +103,9 @@ Report check_dense(const std::filesystem::path& path, const CheckOptions& option
   report.push_back(reciprocity_line(reciprocity));
   append(report, static_lines(model, columns));
   double left = 0.0;
-  for (const NodeFindings& node : findings) left = std::max(left, node.left);
+  for (const NodeFindings& node : findings) {
+    if (!(node.left <= left)) left = node.left;  // also what is not a number
+  }
   report.push_back(decay_line(left, true));
   append(report, node_lines(findings, loop, options.coupling));
   report.push_back(wave_line(model, columns, model.dt, model.steps));

@@ -12,7 +12,8 @@ namespace irdm::precompute {
 namespace {
 
 constexpr int kStaticColumns = 12;
-constexpr double kSamples = 20.0;          // while the fastest wave crosses the watched nodes
+constexpr double kSamples = 20.0;  // while the fastest wave crosses the watched nodes
+constexpr int kFewestNodes = 8;
 constexpr double kWatchedCrossings = 2.0;  // of the slowest wave
 
 }  // namespace
@@ -94,11 +95,20 @@ Line wave_line(const Model& model, const Columns& columns, double dt, int steps)
   const WaveSpeeds theory = theoretical_speeds(model.material);
   const int b = wave_source(model);
   const double reach = model.mesh.rest_position(b / 3).norm();
-  steps = std::min(steps, static_cast<int>(kWatchedCrossings * reach / theory.rayleigh / dt) + 3);
+  const int wanted = static_cast<int>(kWatchedCrossings * reach / theory.rayleigh / dt) + 3;
+  steps = std::min(steps, wanted);
   const MeasuredWave wave = measure_wave(model, b, columns.column(b, steps), dt);
   const std::string expected = text("theory: Rayleigh %.3g, shear %.3g, dilatational %.3g m/s",
                                     theory.rayleigh, theory.shear, theory.dilatational);
-  if (wave.nodes < 3) return {"wave speed", Verdict::kOk, "too few nodes to measure; " + expected};
+  if (wave.nodes < kFewestNodes)
+    return {"wave speed", Verdict::kOk, "too few nodes to measure; " + expected};
+  if (2 * wave.passed < wave.nodes) {
+    const bool shortened = steps < wanted;
+    return {"wave speed", shortened ? Verdict::kWarn : Verdict::kFail,
+            text("no peak at %d of %d nodes within %.3g ms; ", wave.nodes - wave.passed, wave.nodes,
+                 1e3 * steps * dt) +
+                expected};
+  }
   const bool slow = !(wave.peak >= 0.5 * theory.rayleigh);
   const bool fast = !(wave.peak <= 1.2 * theory.dilatational);
   return {"wave speed", slow || fast ? Verdict::kFail : Verdict::kOk,

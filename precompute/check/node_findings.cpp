@@ -1,6 +1,7 @@
 #include "precompute/check/node_findings.hpp"
 
 #include <cmath>
+#include <limits>
 
 namespace irdm::precompute {
 namespace {
@@ -17,6 +18,11 @@ NodeFindings analyse_node(const DrivingPoint& record, const Matrix3& rigid,
   NodeFindings found;
   if (record.isZero(0.0)) {
     found.clamped = true;
+    return found;
+  }
+  if (!record.allFinite()) {
+    constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+    found = {false, {kNothing, 0.0}, {1, kNothing}, kNothing, kNothing, 0.0, kNothing};
     return found;
   }
   found.passivity = analyse_passivity(record, conditions.radius);

@@ -44,7 +44,7 @@ Line inverse_line(const std::vector<NodeFindings>& nodes, double dt) {
   std::size_t worst = 0;
   int unstable = 0;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    if (nodes[i].inverse.largest_modulus > nodes[worst].inverse.largest_modulus) worst = i;
+    if (!(nodes[i].inverse.largest_modulus <= nodes[worst].inverse.largest_modulus)) worst = i;
     if (nodes[i].inverse.growing > 0) ++unstable;
   }
   const double modulus = nodes[worst].inverse.largest_modulus;

@@ -44,7 +44,7 @@ double turn(const Function& at, const Sample& from, const Sample& to, int halvin
   const double size = std::min({std::abs(from.value), std::abs(middle.value), std::abs(to.value)});
   const double change =
       std::max(std::abs(middle.value - from.value), std::abs(to.value - middle.value));
-  if (change < kSmallChange * size || halvings == 0) {
+  if (!(change >= kSmallChange * size) || halvings == 0) {  // or not a number
     return std::arg(to.value * std::conj(from.value));
   }
   return turn(at, from, middle, halvings - 1) + turn(at, middle, to, halvings - 1);

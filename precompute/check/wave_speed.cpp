@@ -101,6 +101,7 @@ MeasuredWave measure_wave(const Model& model, int b, const RowMatrix<double>& co
   const Vector3 source = model.mesh.rest_position(b / 3);
   const double reach = 1.1 * source.norm();
   const Vector3 outward = source.normalized();
+  MeasuredWave wave;
   std::vector<Passage> passages;
   for (int i = 0; i < model.mesh.surface_node_count(); ++i) {
     const Vector3 from = model.mesh.rest_position(i) - source;
@@ -115,14 +116,14 @@ MeasuredWave measure_wave(const Model& model, int b, const RowMatrix<double>& co
       const Vector3 elastic = column.row(s).segment<3>(3 * i).transpose();
       moved(s) = (elastic + (static_cast<double>(s) + 0.5) * drift).norm();
     }
+    ++wave.nodes;
     const Eigen::Index peak = first_peak(moved);
     if (peak < 0) continue;
     passages.push_back({distance, first_crossing(moved, kArrivalShare * moved(peak), dt),
                         peak_time(moved, peak, dt)});
   }
-  MeasuredWave wave;
-  wave.nodes = static_cast<int>(passages.size());
-  if (wave.nodes < 3) return wave;
+  wave.passed = static_cast<int>(passages.size());
+  if (wave.passed < 3) return wave;
   wave.arrival = fitted_speed(passages, &Passage::arrival);
   wave.peak = fitted_speed(passages, &Passage::peak);
   return wave;

@@ -18,6 +18,7 @@ struct Passage {
   double distance;  // [m]
   double arrival;   // [s]
   double peak;      // [s]
+  double main;      // [s]
 };
 
 // Time between the samples at which `values`, sampled at (s+1) dt, first reaches `level`.
@@ -43,6 +44,13 @@ Eigen::Index first_peak(const Eigen::VectorXd& values) {
 double peak_time(const Eigen::VectorXd& values, Eigen::Index s, double dt) {
   const double bend = values(s - 1) - 2.0 * values(s) + values(s + 1);
   return dt * (static_cast<double>(s) + 1.0 + 0.5 * (values(s - 1) - values(s + 1)) / bend);
+}
+
+double main_time(const Eigen::VectorXd& values, double dt) {
+  Eigen::Index s = 0;
+  values.maxCoeff(&s);
+  if (s == 0 || s + 1 == values.size()) return dt * (static_cast<double>(s) + 1.0);
+  return peak_time(values, s, dt);
 }
 
 // Distance per time of the line time = a + distance / speed.
@@ -110,21 +118,25 @@ MeasuredWave measure_wave(const Model& model, int b, const RowMatrix<double>& co
     const Vector3 drift =
         dt * dt * rigid_mobility(model.body, model.mesh.rest_position(i), source).col(b % 3);
     Eigen::VectorXd moved(column.rows());
+    Eigen::VectorXd along(column.rows());
     for (Eigen::Index s = 0; s < moved.size(); ++s) {
       // The force acts during the first step: from then on the body drifts as if pushed at its
       // middle.
       const Vector3 elastic = column.row(s).segment<3>(3 * i).transpose();
-      moved(s) = (elastic + (static_cast<double>(s) + 0.5) * drift).norm();
+      const Vector3 total = elastic + (static_cast<double>(s) + 0.5) * drift;
+      moved(s) = total.norm();
+      along(s) = total[b % 3];
     }
     ++wave.nodes;
     const Eigen::Index peak = first_peak(moved);
     if (peak < 0) continue;
     passages.push_back({distance, first_crossing(moved, kArrivalShare * moved(peak), dt),
-                        peak_time(moved, peak, dt)});
+                        peak_time(moved, peak, dt), main_time(along, dt)});
   }
   wave.passed = static_cast<int>(passages.size());
   if (wave.passed < 3) return wave;
   wave.arrival = fitted_speed(passages, &Passage::arrival);
+  wave.main = fitted_speed(passages, &Passage::main);
   wave.peak = fitted_speed(passages, &Passage::peak);
   return wave;
 }

@@ -39,6 +39,7 @@ TEST_CASE("a pulse that travels over the surface is found with its speed") {
   const MeasuredWave wave = measure_wave(model, b, column, dt);
   CHECK(wave.nodes > 50);
   CHECK(wave.peak == Approx(speed).epsilon(0.05));
+  CHECK(wave.main == Approx(speed).epsilon(0.02));
   CHECK(wave.arrival == Approx(speed).epsilon(0.1));
 }
 

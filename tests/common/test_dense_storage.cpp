@@ -77,6 +77,7 @@ TEST_CASE("dense R lies in chunks of whole steps of one column, with checksums")
   {
     // 1200 degrees of freedom and 500 steps: columns of 2.4 MB, in three chunks.
     ModelFileWriter writer(file.model);
+    writer.write_description(description());
     writer.begin_dense(1200, 500, Precision::kSingle);
     writer.commit();
   }

@@ -59,7 +59,8 @@ Line reciprocity_line(const Reciprocity& reciprocity) {
 
 Report static_lines(const Model& model, const Columns& columns) {
   if (model.body.support == Support::kFixed) {
-    return {{"momentum", Verdict::kOk, "not looked at: a fixed body may have it"}};
+    return {{"momentum", Verdict::kNone, "a fixed body may have it"},
+            {"static compliance", Verdict::kNone, "the file does not say which nodes are clamped"}};
   }
   const StaticReference reference(model);
   const std::vector<int> sample = fixed_sample(model.degrees_of_freedom(), kStaticColumns);
@@ -102,9 +103,9 @@ Line wave_line(const Model& model, const Columns& columns, double dt, int steps)
   const std::string expected = text("theory: Rayleigh %.3g, shear %.3g, dilatational %.3g m/s",
                                     theory.rayleigh, theory.shear, theory.dilatational);
   if (wave.nodes < kFewestNodes)
-    return {"wave speed", Verdict::kOk, "too few nodes to measure; " + expected};
+    return {"wave speed", Verdict::kNone, "too few nodes to measure; " + expected};
   if (dt * kFewestSamples > reach / theory.rayleigh) {
-    return {"wave speed", Verdict::kOk, "crosses too few samples to measure; " + expected};
+    return {"wave speed", Verdict::kNone, "crosses too few samples to measure; " + expected};
   }
   if (2 * wave.passed < wave.nodes) {
     const bool shortened = steps < wanted;

@@ -17,7 +17,7 @@ std::string format_report(const Report& report) {
   for (const Line& line : report) width = std::max(width, line.name.size());
   std::string table;
   for (const Line& line : report) {
-    const char* const words[] = {"ok  ", "warn", "FAIL"};
+    const char* const words[] = {"ok  ", "warn", "FAIL", "none"};
     table += "  " + line.name + std::string(width - line.name.size() + 2, ' ') +
              words[static_cast<int>(line.verdict)] + "  " + line.found + "\n";
   }

@@ -6,7 +6,7 @@
 /// The table that `irdm-precompute check` prints: docs/check.md explains every line.
 namespace irdm::precompute {
 
-enum class Verdict { kOk, kWarn, kFail };
+enum class Verdict { kOk, kWarn, kFail, kNone };  ///< kNone: could not be looked at
 
 struct Line {
   std::string name;

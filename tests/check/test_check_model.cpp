@@ -40,6 +40,15 @@ TEST_CASE("R of a floating cube passes every check") {
   }
 }
 
+TEST_CASE("what cannot be looked at is not called ok") {
+  DenseCube cube;
+  CHECK(verdict(checked(cube), "wave speed") == Verdict::kNone);  // 2 cells an edge are too few
+  cube.model.body.support = Support::kFixed;
+  const Report report = checked(cube);
+  CHECK(verdict(report, "momentum") == Verdict::kNone);
+  CHECK(verdict(report, "static compliance") == Verdict::kNone);
+}
+
 TEST_CASE("a column that is scaled breaks reciprocity and the static compliance") {
   DenseCube cube;
   for (int s = 0; s < cube.model.steps; ++s) {

@@ -4,27 +4,24 @@
 
 #include <array>
 #include <fstream>
-#include <memory>
 #include <vector>
 
 #include "common/error.hpp"
 
 namespace irdm {
 
-std::string sha256_of_file(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw Error(path.string(), "cannot be read", "check the path and its permissions");
-  const std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context(EVP_MD_CTX_new(),
-                                                                        EVP_MD_CTX_free);
-  EVP_DigestInit_ex(context.get(), EVP_sha256(), nullptr);
-  std::vector<char> block(1 << 20);
-  while (stream) {
-    stream.read(block.data(), static_cast<std::streamsize>(block.size()));
-    EVP_DigestUpdate(context.get(), block.data(), static_cast<std::size_t>(stream.gcount()));
-  }
+Sha256::Sha256() : context_(EVP_MD_CTX_new(), EVP_MD_CTX_free) {
+  EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr);
+}
+
+void Sha256::update(const void* bytes, std::size_t count) {
+  EVP_DigestUpdate(context_.get(), bytes, count);
+}
+
+std::string Sha256::hexadecimal() {
   std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
   unsigned int length = 0;
-  EVP_DigestFinal_ex(context.get(), digest.data(), &length);
+  EVP_DigestFinal_ex(context_.get(), digest.data(), &length);
   std::string text;
   for (unsigned int i = 0; i < length; ++i) {
     constexpr const char* kDigits = "0123456789abcdef";
@@ -32,6 +29,18 @@ std::string sha256_of_file(const std::filesystem::path& path) {
     text += kDigits[digest[i] & 15];
   }
   return text;
+}
+
+std::string sha256_of_file(const std::filesystem::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) throw Error(path.string(), "cannot be read", "check the path and its permissions");
+  Sha256 sha;
+  std::vector<char> block(1 << 20);
+  while (stream) {
+    stream.read(block.data(), static_cast<std::streamsize>(block.size()));
+    sha.update(block.data(), static_cast<std::size_t>(stream.gcount()));
+  }
+  return sha.hexadecimal();
 }
 
 }  // namespace irdm

@@ -15,6 +15,7 @@ int main(int argc, char** argv) {
   // A further command is one file in precompute/command and one line here.
   const std::map<std::string, precompute::Command> commands{
       {"merge", precompute::add_merge_command(app)},
+      {"check", precompute::add_check_command(app)},
   };
 
   return run_program(app, argc, argv, [&] {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/error.hpp"
+#include "common/model/content_checksum.hpp"
 
 namespace irdm {
 namespace {
@@ -137,6 +138,7 @@ void ModelFileWriter::write_dense_column(int b, const double* values) {
 }
 
 void ModelFileWriter::commit() {
+  store_content_checksum(*file_);
   file_->close();
   wait_for_disk(temporary_);
   std::error_code error;

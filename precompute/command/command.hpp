@@ -15,4 +15,7 @@ Command add_compute_command(CLI::App& app);
 /// merge PART... -o MODEL.h5 joins slices of R that --columns made.
 Command add_merge_command(CLI::App& app);
 
+/// check MODEL.h5: a table with a verdict a line (docs/check.md); status 1 when a line fails.
+Command add_check_command(CLI::App& app);
+
 }  // namespace irdm::precompute

@@ -3,6 +3,7 @@
 
 #include "common/error.hpp"
 #include "common/model/model_file.hpp"
+#include "tests/common/one_tet_model.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using Catch::Matchers::Contains;
@@ -24,21 +25,7 @@ RowMatrix<float> column(int b, int dof) {
 }
 
 Model description() {
-  Model model;
-  model.mesh.nodes.resize(4, 3);
-  model.mesh.nodes << 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1;
-  model.mesh.tets.resize(1, 4);
-  model.mesh.tets << 0, 1, 2, 3;
-  model.mesh.surface_nodes = {0, 1, 2, 3};
-  model.mesh.triangles.resize(4, 3);
-  model.mesh.triangles << 0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2;
-  model.mesh.node_mass = Eigen::VectorXd::Constant(4, 0.25);
-  model.body.mass = 1.0;
-  model.body.inertia = Vector3(1, 2, 3).asDiagonal();
-  model.material = {2000, 0.49, 110, 8, 2e-4};
-  model.dt = 0.002;
-  model.steps = kSteps;
-  return model;
+  return irdm::test::one_tet_model(kSteps);
 }
 
 struct File : irdm::test::TemporaryFolder {
@@ -77,6 +64,7 @@ TEST_CASE("dense R lies in chunks of whole steps of one column, with checksums")
   {
     // 1200 degrees of freedom and 500 steps: columns of 2.4 MB, in three chunks.
     ModelFileWriter writer(file.model);
+    writer.write_description(description());
     writer.begin_dense(1200, 500, Precision::kSingle);
     writer.commit();
   }

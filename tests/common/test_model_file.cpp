@@ -5,6 +5,7 @@
 
 #include "common/error.hpp"
 #include "common/model/model_file.hpp"
+#include "tests/common/one_tet_model.hpp"
 
 using Catch::Matchers::Contains;
 using namespace irdm;
@@ -13,21 +14,8 @@ namespace {
 
 // A single tetrahedron with two made-up modes: enough to exercise every field.
 Model small_model() {
-  Model model;
-  model.mesh.nodes.resize(4, 3);
-  model.mesh.nodes << 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1;
-  model.mesh.tets.resize(1, 4);
-  model.mesh.tets << 0, 1, 2, 3;
-  model.mesh.surface_nodes = {0, 1, 2, 3};
-  model.mesh.triangles.resize(4, 3);
-  model.mesh.triangles << 0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2;
-  model.mesh.node_mass = Eigen::VectorXd::Constant(4, 0.25);
+  Model model = irdm::test::one_tet_model(3);
   model.mesh.com_offset = Vector3(0.1, 0.2, 0.3);
-  model.body.mass = 1.0;
-  model.body.inertia = Vector3(1, 2, 3).asDiagonal();
-  model.material = {2000, 0.49, 110, 8, 2e-4};
-  model.dt = 0.002;
-  model.steps = 3;
   ModalResponse response;
   response.angular_frequency = Eigen::Vector2d(10, 20);
   response.decay_rate = Eigen::Vector2d(1, 2);

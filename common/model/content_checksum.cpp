@@ -1,0 +1,85 @@
+#include "common/model/content_checksum.hpp"
+
+#include <cstdint>
+
+#include "common/checksum.hpp"
+
+namespace irdm {
+namespace {
+
+constexpr const char* kName = "content_sha256";
+
+template <typename T>
+void add_dataset(Sha256& sha, const hdf5::File& file, const std::string& path) {
+  if (!file.exists(path)) return;
+  const hdf5::Shape shape = file.shape(path);
+  const std::vector<T> values = file.read<T>(path, hdf5::Shape(shape.size(), 0));
+  sha.update(path.c_str(), path.size() + 1);
+  for (const hsize_t extent : shape) {
+    const auto wide = static_cast<std::uint64_t>(extent);
+    sha.update(&wide, sizeof wide);
+  }
+  sha.update(values.data(), values.size() * sizeof(T));
+}
+
+void add_name(Sha256& sha, const std::string& object, const std::string& name) {
+  const std::string full = object + "@" + name;
+  sha.update(full.c_str(), full.size() + 1);
+}
+
+void add_numbers(Sha256& sha, const hdf5::File& file, const std::string& object,
+                 const std::string& name, std::size_t count) {
+  if (!file.exists(object)) return;
+  const std::vector<double> values = file.read_doubles_attribute(object, name, count);
+  add_name(sha, object, name);
+  sha.update(values.data(), count * sizeof(double));
+}
+
+void add_text(Sha256& sha, const hdf5::File& file, const std::string& object,
+              const std::string& name) {
+  if (!file.exists(object)) return;
+  const std::string text = file.read_string_attribute(object, name);
+  add_name(sha, object, name);
+  sha.update(text.data(), text.size());
+}
+
+}  // namespace
+
+std::string content_checksum(const hdf5::File& file) {
+  Sha256 sha;
+  add_dataset<double>(sha, file, "/mesh/nodes");
+  add_dataset<std::int32_t>(sha, file, "/mesh/tets");
+  add_dataset<std::int32_t>(sha, file, "/mesh/surface_nodes");
+  add_dataset<std::int32_t>(sha, file, "/mesh/triangles");
+  add_dataset<double>(sha, file, "/mesh/node_mass");
+  add_numbers(sha, file, "/mesh", "com_offset", 3);
+  add_numbers(sha, file, "/body", "mass", 1);
+  add_numbers(sha, file, "/body", "inertia", 9);
+  add_text(sha, file, "/body", "support");
+  for (const char* name :
+       {"youngs_modulus", "poisson_ratio", "density", "rayleigh_alpha", "rayleigh_beta"}) {
+    add_numbers(sha, file, "/material", name, 1);
+  }
+  add_numbers(sha, file, "/response", "dt", 1);
+  add_numbers(sha, file, "/response", "steps", 1);
+  add_dataset<double>(sha, file, "/response/modal/angular_frequency");
+  add_dataset<double>(sha, file, "/response/modal/decay_rate");
+  const std::string shapes = "/response/modal/shapes";
+  if (file.exists(shapes) && file.element_size(shapes) == sizeof(float)) {
+    add_dataset<float>(sha, file, shapes);
+  } else {
+    add_dataset<double>(sha, file, shapes);
+  }
+  return sha.hexadecimal();
+}
+
+std::optional<std::string> stored_content_checksum(const hdf5::File& file) {
+  if (H5Aexists(file.id(), kName) <= 0) return std::nullopt;
+  return file.read_string_attribute("/", kName);
+}
+
+void store_content_checksum(hdf5::File& file) {
+  file.write_attribute("/", kName, content_checksum(file));
+}
+
+}  // namespace irdm

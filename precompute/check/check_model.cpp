@@ -1,0 +1,155 @@
+#include "precompute/check/check_model.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "common/error.hpp"
+#include "common/model/model_file.hpp"
+#include "precompute/check/lines.hpp"
+#include "precompute/check/rigid_answer.hpp"
+#include "precompute/modal/held_responses.hpp"
+
+namespace irdm::precompute {
+namespace {
+
+constexpr int kNodesAtOnce = 32;
+constexpr int kSampledColumns = 16;
+
+void append(Report& report, const Report& lines, const std::string& suffix = "") {
+  for (const Line& line : lines) {
+    report.push_back(line);
+    report.back().name += suffix;
+  }
+}
+
+// Analyses the nodes from `first` on; each has its own place, so that the threads change nothing.
+void analyse(const Model& model, const NodeConditions& conditions,
+             const std::vector<DrivingPoint>& records, int first,
+             std::vector<NodeFindings>& findings) {
+  const int count = static_cast<int>(records.size());
+#pragma omp parallel for schedule(dynamic)
+  for (int i = 0; i < count; ++i) {
+    const Vector3 x = model.mesh.rest_position(first + i);
+    const Matrix3 rigid = model.dt * model.dt * rigid_mobility(model.body, x, x);
+    findings[static_cast<std::size_t>(first + i)] =
+        analyse_node(records[static_cast<std::size_t>(i)], rigid, conditions);
+  }
+}
+
+Report check_modes(const std::filesystem::path& path, const CheckOptions& options,
+                   const HandLoop& loop, const Console& console) {
+  Model model = read_model(path, ResponseKind::kModal);
+  auto& response = std::get<ModalResponse>(model.response);
+  if (const auto* single = std::get_if<RowMatrix<float>>(&response.shapes)) {
+    const RowMatrix<double> shapes = single->cast<double>();
+    response.shapes = shapes;
+  }
+  const ModalColumns columns(response, model.dt);
+  Report report{modes_line(response, model.material)};
+  append(report, static_lines(model, columns));
+  report.push_back(decay_line(decay_left(response, model.dt, model.steps), false));
+
+  const RecordLength length = record_length(response, model.dt);
+  const RowMatrix<double> held = held_responses(response, model.dt, length.steps);
+  const int nodes = model.mesh.surface_node_count();
+  std::vector<NodeFindings> findings(static_cast<std::size_t>(nodes));
+  Progress progress(console, "nodes (modal)", nodes);
+  for (int first = 0; first < nodes; first += kNodesAtOnce) {
+    const int count = std::min(kNodesAtOnce, nodes - first);
+    analyse(model, {loop, length.radius},
+            modal_driving_points(std::get<RowMatrix<double>>(response.shapes), held, first, count),
+            first, findings);
+    progress.update(first + count);
+  }
+  append(report, node_lines(findings, loop, options.coupling));
+  const double interval = wave_interval(model);
+  report.push_back(wave_line(model, ModalColumns(response, interval), interval,
+                             std::numeric_limits<int>::max()));
+  return report;
+}
+
+Reciprocity sampled_reciprocity(const StoredColumns& columns, const Model& model) {
+  const std::vector<int> sample = fixed_sample(model.degrees_of_freedom(), kSampledColumns);
+  Reciprocity reciprocity;
+  for (const int a : sample) reciprocity.remember(a, columns.column(a, model.steps));
+  return reciprocity;
+}
+
+Report check_dense(const std::filesystem::path& path, const CheckOptions& options,
+                   const HandLoop& loop, const Console& console) {
+  const Model model = read_description(hdf5::File::open(path));
+  const StoredColumns columns(path, model.degrees_of_freedom(), model.steps);
+  Report report{chunk_checksum_line(columns)};
+
+  Reciprocity reciprocity = sampled_reciprocity(columns, model);
+  const int nodes = model.mesh.surface_node_count();
+  std::vector<NodeFindings> findings(static_cast<std::size_t>(nodes));
+  Progress progress(console, "nodes (dense)", nodes);
+  for (int first = 0; first < nodes; first += kNodesAtOnce) {
+    std::vector<DrivingPoint> records(
+        static_cast<std::size_t>(std::min(kNodesAtOnce, nodes - first)),
+        DrivingPoint(9, model.steps));
+    for (std::size_t i = 0; i < records.size(); ++i) {
+      const int node = first + static_cast<int>(i);
+      for (int axis = 0; axis < 3; ++axis) {
+        const RowMatrix<double> column = columns.column(3 * node + axis, model.steps);
+        reciprocity.add(3 * node + axis, column);
+        records[i].middleRows<3>(3 * axis) = column.middleCols<3>(3 * node).transpose();
+      }
+    }
+    analyse(model, {loop, 1.0}, records, first, findings);
+    progress.update(first + static_cast<int>(records.size()));
+  }
+  report.push_back(reciprocity_line(reciprocity));
+  append(report, static_lines(model, columns));
+  double left = 0.0;
+  for (const NodeFindings& node : findings) {
+    if (!(node.left <= left)) left = node.left;  // also what is not a number
+  }
+  report.push_back(decay_line(left, true));
+  append(report, node_lines(findings, loop, options.coupling));
+  report.push_back(wave_line(model, columns, model.dt, model.steps));
+  return report;
+}
+
+// A response that cannot be read is a line of the table.
+template <typename Check>
+void run_part(Report& report, const std::string& name, const std::string& suffix,
+              const Check& check) {
+  try {
+    append(report, check(), suffix);
+  } catch (const Error& error) {
+    report.push_back({name + suffix, Verdict::kFail, error.what()});
+  }
+}
+
+}  // namespace
+
+Report check_model(const std::filesystem::path& path, const CheckOptions& options,
+                   const Console& console) {
+  const hdf5::File file = hdf5::File::open(path);
+  Report report;
+  run_part(report, "checksum", "", [&] { return Report{checksum_line(file)}; });
+  HandLoop loop{options.hand, 0.0, 1};
+  run_part(report, "description", "", [&] {
+    loop.dt = read_description(hdf5::File::open(path)).dt;
+    return Report{};
+  });
+  if (failed_lines(report).find("description") != std::string::npos) return report;
+  loop.delay = loop_delay(options.delay < 0.0 ? loop.dt : options.delay, loop.dt);
+  const bool modal = file.exists("/response/modal");
+  const bool dense = file.exists("/response/dense");
+  if (!modal && !dense) report.push_back({"response", Verdict::kFail, "the file has none"});
+  const bool both = modal && dense;
+  if (modal) {
+    run_part(report, "modes", both ? " (modal)" : "",
+             [&] { return check_modes(path, options, loop, console); });
+  }
+  if (dense) {
+    run_part(report, "dense response", both ? " (dense)" : "",
+             [&] { return check_dense(path, options, loop, console); });
+  }
+  return report;
+}
+
+}  // namespace irdm::precompute

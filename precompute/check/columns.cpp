@@ -1,0 +1,103 @@
+#include "precompute/check/columns.hpp"
+
+#include <cblas.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/error.hpp"
+#include "common/model/model_writer.hpp"
+#include "precompute/modal/held_responses.hpp"
+
+namespace irdm::precompute {
+namespace {
+
+constexpr double kNegligible = 1e-6;
+constexpr double kLongestRecord = 4096;
+
+// a b^T
+RowMatrix<double> product_transposed(const RowMatrix<double>& a, const RowMatrix<double>& b) {
+  RowMatrix<double> c(a.rows(), b.rows());
+  cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasTrans, static_cast<int>(a.rows()),
+              static_cast<int>(b.rows()), static_cast<int>(a.cols()), 1.0, a.data(),
+              static_cast<int>(a.cols()), b.data(), static_cast<int>(b.cols()), 0.0, c.data(),
+              static_cast<int>(c.cols()));
+  return c;
+}
+
+}  // namespace
+
+RowMatrix<double> ModalColumns::column(int b, int steps) const {
+  const RowMatrix<double> weighted =
+      held_responses(response_, dt_, steps).array().rowwise() * shapes().row(b).array();
+  return product_transposed(weighted, shapes());
+}
+
+Eigen::VectorXd ModalColumns::settled(int b) const {
+  const Eigen::ArrayXd omega = response_.angular_frequency;
+  return shapes() * (shapes().row(b).transpose().array() / omega.square()).matrix();
+}
+
+StoredColumns::StoredColumns(const std::filesystem::path& path, int degrees_of_freedom, int steps)
+    : file_(hdf5::File::open(path)), degrees_of_freedom_(degrees_of_freedom), steps_(steps) {
+  const auto dof = static_cast<hsize_t>(degrees_of_freedom);
+  if (file_.shape(kDenseR) != hdf5::Shape({dof, static_cast<hsize_t>(steps), dof})) {
+    throw Error(path.string(), "/response/dense/R must have the shape (3n, steps, 3n)",
+                "make the model again with irdm-precompute");
+  }
+}
+
+RowMatrix<double> StoredColumns::column(int b, int steps) const {
+  RowMatrix<double> values(steps, degrees_of_freedom_);
+  file_.read_slab<double>(
+      kDenseR, {static_cast<hsize_t>(b), 0, 0},
+      {1, static_cast<hsize_t>(steps), static_cast<hsize_t>(degrees_of_freedom_)}, values.data());
+  return values;
+}
+
+Eigen::VectorXd StoredColumns::settled(int b) const {
+  return column(b, steps_).colwise().sum().transpose();
+}
+
+bool StoredColumns::has_checksums() const {
+  const hdf5::Handle set(H5Dopen2(file_.id(), kDenseR, H5P_DEFAULT), H5Dclose);
+  const hdf5::Handle creation(H5Dget_create_plist(set.get()), H5Pclose);
+  unsigned int flags = 0;
+  std::size_t values = 0;
+  return H5Pget_filter_by_id2(creation.get(), H5Z_FILTER_FLETCHER32, &flags, &values, nullptr, 0,
+                              nullptr, nullptr) >= 0;
+}
+
+std::vector<DrivingPoint> modal_driving_points(const RowMatrix<double>& shapes,
+                                               const RowMatrix<double>& held, int first,
+                                               int count) {
+  RowMatrix<double> products(9 * count, shapes.cols());
+  for (int i = 0; i < count; ++i) {
+    for (int entry = 0; entry < 9; ++entry) {
+      products.row(9 * i + entry) = shapes.row(3 * (first + i) + entry % 3)
+                                        .cwiseProduct(shapes.row(3 * (first + i) + entry / 3));
+    }
+  }
+  const RowMatrix<double> records = product_transposed(products, held);
+  std::vector<DrivingPoint> points;
+  for (int i = 0; i < count; ++i) points.emplace_back(records.middleRows(9 * i, 9));
+  return points;
+}
+
+RecordLength record_length(const ModalResponse& response, double dt) {
+  double slowest = std::numeric_limits<double>::infinity();  // [1/s]
+  for (int i = 0; i < response.mode_count(); ++i) {
+    const double omega = response.angular_frequency(i);
+    const double sigma = response.decay_rate(i);
+    const double rate =
+        sigma < omega ? sigma : omega * omega / (sigma + std::sqrt(sigma * sigma - omega * omega));
+    slowest = std::min(slowest, rate);
+  }
+  const double decades = -std::log(kNegligible);
+  const double needed = std::ceil(decades / (slowest * dt));
+  if (needed <= kLongestRecord) return {static_cast<int>(std::max(needed, 2.0)), 1.0};
+  return {static_cast<int>(kLongestRecord),
+          std::exp(-(decades - slowest * dt * kLongestRecord) / kLongestRecord)};
+}
+
+}  // namespace irdm::precompute

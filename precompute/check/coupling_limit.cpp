@@ -1,0 +1,82 @@
+#include "precompute/check/coupling_limit.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "common/response/oscillator.hpp"
+
+namespace irdm::precompute {
+namespace {
+
+constexpr int kPerDecade = 6;
+constexpr int kBisections = 20;
+
+// det(C + w^delay H + Id / k), times the pole of the rigid motion.
+class ClosedLoop {
+ public:
+  ClosedLoop(const DrivingPoint& record, const Matrix3& rigid, const HandLoop& loop, double radius)
+      : rigid_(rigid),
+        radius_(radius),
+        response_(transform(record, radius, resolving_half_circle(record.cols()))) {
+    for (std::size_t j = 0; j < response_.size(); ++j) {
+      const int half = static_cast<int>(response_.size()) - 1;
+      const std::complex<double> w = circle_point(radius, half, static_cast<double>(j));
+      response_[j] += std::pow(w, loop.delay) * hand_transfer(loop.hand, loop.dt, w) *
+                      Eigen::Matrix3cd::Identity();
+    }
+  }
+
+  bool grows(double coupling) const {
+    const bool floating = !rigid_.isZero(0.0);
+    return count_zeros(response_, radius_,
+                       [&](const Eigen::Matrix3cd& r, const std::complex<double>& w) {
+                         const std::complex<double> g = floating ? (1.0 - w) * (1.0 - w) : 1.0;
+                         Eigen::Matrix3cd c = g * r + rigid_;
+                         c.diagonal().array() += g / coupling;
+                         return c.determinant();
+                       }) > 0;
+  }
+
+ private:
+  Matrix3 rigid_;
+  double radius_;
+  MatrixHalfCircle response_;  // of object and hand in series
+};
+
+}  // namespace
+
+int loop_delay(double one_way, double dt) {
+  // A delay of whole steps must not become one more by rounding.
+  return 1 + 2 * static_cast<int>(std::ceil(one_way / dt - 1e-9));
+}
+
+std::complex<double> hand_transfer(const Hand& hand, double dt, std::complex<double> w) {
+  const HeldForceOscillator o = held_force_oscillator(std::sqrt(hand.stiffness / hand.mass),
+                                                      0.5 * hand.damping / hand.mass, dt);
+  // The two-term recursion of a linear second-order system: h[s] = trace h[s-1] - det h[s-2].
+  const double trace = o.a11 + o.a22;
+  const double determinant = o.a11 * o.a22 - o.a12 * o.a21;
+  const double second = o.a11 * o.b1 + o.a12 * o.b2 - trace * o.b1;
+  return (o.b1 + second * w) / (hand.mass * (1.0 - trace * w + determinant * w * w));
+}
+
+double largest_coupling(const DrivingPoint& record, const Matrix3& rigid, const HandLoop& loop,
+                        double radius) {
+  const ClosedLoop closed(record, rigid, loop, radius);
+  const double factor = std::pow(10.0, 1.0 / kPerDecade);
+  double stable = kSoftestCoupling;
+  if (closed.grows(stable)) return 0.0;
+  double grown = stable * factor;
+  while (!closed.grows(grown)) {
+    stable = grown;
+    grown *= factor;
+    if (stable > kStiffestCoupling) return std::numeric_limits<double>::infinity();
+  }
+  for (int i = 0; i < kBisections; ++i) {
+    const double middle = std::sqrt(stable * grown);
+    (closed.grows(middle) ? grown : stable) = middle;
+  }
+  return stable;
+}
+
+}  // namespace irdm::precompute

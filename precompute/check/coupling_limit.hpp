@@ -1,0 +1,47 @@
+#pragma once
+
+#include "precompute/check/transfer.hpp"
+
+namespace irdm::precompute {
+
+/// A hand as the virtual one of irdm-bridge: a mass on a spring and a damper whose other end is at
+/// rest.
+struct Hand {
+  double mass = 0.12;        ///< [kg], > 0
+  double damping = 2.0;      ///< [N s/m], >= 0
+  double stiffness = 300.0;  ///< [N/m], > 0
+};
+
+/// The loop of hand and object. The position at the end of step k gives the force of step k; it
+/// moves the hand during step k + delay, held over the step.
+struct HandLoop {
+  Hand hand;
+  double dt = 0.0;  ///< [s]
+  int delay = 1;    ///< [steps], >= 1: the way there, the computation, the way back
+};
+
+/// Steps from a position to the hand's feeling its force: one for the computation, and twice the
+/// one-way delay rounded up to whole steps.
+int loop_delay(double one_way, double dt);
+
+/// Displacement of the hand at the end of step s after 1 N held during step 0, as a series in w
+/// [m/N]: sum_s H[s] w^s, in closed form.
+std::complex<double> hand_transfer(const Hand& hand, double dt, std::complex<double> w);
+
+/// Largest virtual coupling [N/m] such that the loop with it and with every smaller one is stable,
+/// from kSoftestCoupling to kStiffestCoupling; 0 when already the smallest is not, infinity when
+/// the largest is. The force f on the object solves
+///
+///     (C(w) + 1/k_vc) f = x,    x = -w^delay H(w) f
+///
+/// so that the loop grows where det(C(w) + w^delay H(w) + 1/k_vc) has a zero inside the unit
+/// circle.
+/// @param rigid dt^2 G [m/N], zero for a fixed body
+/// @param radius of the circle that counts as the unit circle, see analyse_passivity
+double largest_coupling(const DrivingPoint& record, const Matrix3& rigid, const HandLoop& loop,
+                        double radius);
+
+inline constexpr double kSoftestCoupling = 1.0;
+inline constexpr double kStiffestCoupling = 1e7;
+
+}  // namespace irdm::precompute

@@ -1,0 +1,126 @@
+#include "precompute/check/lines.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "common/model/content_checksum.hpp"
+#include "precompute/check/static_reference.hpp"
+#include "precompute/check/wave_speed.hpp"
+
+namespace irdm::precompute {
+namespace {
+
+constexpr int kStaticColumns = 12;
+constexpr double kSamples = 20.0;  // while the fastest wave crosses the watched nodes
+constexpr int kFewestNodes = 8;
+constexpr double kFewestSamples = 5.0;      // while the slowest wave crosses the watched nodes
+constexpr double kWatchedCrossings = 1.25;  // of the slowest wave
+
+}  // namespace
+
+Line checksum_line(const hdf5::File& file) {
+  const auto stored = stored_content_checksum(file);
+  if (!stored) {
+    return {"checksum", Verdict::kWarn, "the file has none (made by an older irdm-precompute)"};
+  }
+  if (content_checksum(file) != *stored) {
+    return {"checksum", Verdict::kFail, "SHA-256 of mesh, body, material and modes does not match"};
+  }
+  return {"checksum", Verdict::kOk, "SHA-256 of mesh, body, material and modes matches"};
+}
+
+Line chunk_checksum_line(const StoredColumns& columns) {
+  if (!columns.has_checksums()) {
+    return {"dense checksums", Verdict::kWarn, "/response/dense/R carries none"};
+  }
+  return {"dense checksums", Verdict::kOk, "Fletcher32 of every column matches"};
+}
+
+Line modes_line(const ModalResponse& response, const Material& material) {
+  const Eigen::ArrayXd omega = response.angular_frequency;
+  const Eigen::ArrayXd expected =
+      0.5 * (material.rayleigh_alpha + material.rayleigh_beta * omega.square());
+  const Eigen::ArrayXd decay = response.decay_rate;
+  const double off = ((decay - expected).abs() / expected.max(1e-300)).maxCoeff();
+  const double to_hertz = 0.5 / std::numbers::pi;
+  return {"modes", off > 1e-6 ? Verdict::kWarn : Verdict::kOk,
+          text("%d finite, %.4g .. %.4g Hz, decay rates %.3g .. %.3g 1/s%s", response.mode_count(),
+               omega.minCoeff() * to_hertz, omega.maxCoeff() * to_hertz, decay.minCoeff(),
+               decay.maxCoeff(), off > 1e-6 ? ", not those of the material" : "")};
+}
+
+Line reciprocity_line(const Reciprocity& reciprocity) {
+  const double share = reciprocity.largest_difference();
+  return {"reciprocity", judge(share, 1e-3, 1e-2),
+          text("R(a,b) and R(b,a) differ by %.2g at most (column %d; all columns against %d)",
+               share, reciprocity.column_of_largest(), reciprocity.sample_size())};
+}
+
+Report static_lines(const Model& model, const Columns& columns) {
+  if (model.body.support == Support::kFixed) {
+    return {{"momentum", Verdict::kNone, "a fixed body may have it"},
+            {"static compliance", Verdict::kNone, "the file does not say which nodes are clamped"}};
+  }
+  const StaticReference reference(model);
+  const std::vector<int> sample = fixed_sample(model.degrees_of_freedom(), kStaticColumns);
+  StaticComparison worst{0.0, 0.0};
+  for (const int b : sample) {
+    const StaticComparison one =
+        compare_static(columns.settled(b), reference.displacement(b), reference.surface_rigid());
+    // fmax would hide what is not a number.
+    if (!(one.rigid <= worst.rigid)) worst.rigid = one.rigid;
+    if (!(one.mismatch <= worst.mismatch)) worst.mismatch = one.mismatch;
+  }
+  const int count = static_cast<int>(sample.size());
+  return {
+      {"momentum", judge(worst.rigid, 1e-3, 1e-2),
+       text("settled columns have %.2g of rigid motion at most (%d columns)", worst.rigid, count)},
+      {"static compliance", judge(worst.mismatch, 1e-2, 1e-1),
+       text("settled columns differ by %.2g at most from finite elements solved anew (%d columns)",
+            worst.mismatch, count)}};
+}
+
+Line decay_line(double left, bool cut) {
+  const Verdict verdict = judge(left, 1e-2, 1e-1);
+  return {"decay at T", !cut && verdict == Verdict::kFail ? Verdict::kWarn : verdict,
+          text("%.2g of R is left at the last step%s", left,
+               cut ? "" : " (rendering from modes does not end there)")};
+}
+
+double wave_interval(const Model& model) {
+  const double reach = model.mesh.rest_position(wave_source(model) / 3).norm();
+  return std::min(model.dt, reach / theoretical_speeds(model.material).dilatational / kSamples);
+}
+
+Line wave_line(const Model& model, const Columns& columns, double dt, int steps) {
+  const WaveSpeeds theory = theoretical_speeds(model.material);
+  const int b = wave_source(model);
+  const double reach = model.mesh.rest_position(b / 3).norm();
+  const int wanted = static_cast<int>(kWatchedCrossings * reach / theory.rayleigh / dt) + 3;
+  steps = std::min(steps, wanted);
+  const MeasuredWave wave = measure_wave(model, b, columns.column(b, steps), dt);
+  const std::string expected = text("theory: Rayleigh %.3g, shear %.3g, dilatational %.3g m/s",
+                                    theory.rayleigh, theory.shear, theory.dilatational);
+  if (wave.nodes < kFewestNodes)
+    return {"wave speed", Verdict::kNone, "too few nodes to measure; " + expected};
+  if (dt * kFewestSamples > reach / theory.rayleigh) {
+    return {"wave speed", Verdict::kNone, "crosses too few samples to measure; " + expected};
+  }
+  if (2 * wave.passed < wave.nodes) {
+    const bool shortened = steps < wanted;
+    return {"wave speed", shortened ? Verdict::kWarn : Verdict::kFail,
+            text("no peak at %d of %d nodes within %.3g ms; ", wave.nodes - wave.passed, wave.nodes,
+                 1e3 * steps * dt) +
+                expected};
+  }
+  const bool slow = !(wave.main >= 0.5 * theory.rayleigh);
+  const bool fast = !(std::max(wave.main, wave.peak) <= 1.2 * theory.dilatational);
+  return {
+      "wave speed", slow || fast ? Verdict::kFail : Verdict::kOk,
+      text("main wave %.3g, first peak %.3g, first arrival %.3g m/s (%d nodes, every %.2g ms); ",
+           wave.main, wave.peak, wave.arrival, wave.nodes, 1e3 * dt) +
+          expected};
+}
+
+}  // namespace irdm::precompute

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <vector>
+
+#include "precompute/check/check_model.hpp"
+#include "precompute/check/columns.hpp"
+#include "precompute/check/node_findings.hpp"
+#include "precompute/check/reciprocity.hpp"
+
+/// The lines of the table, each from what was measured; the limits stand in docs/check.md.
+namespace irdm::precompute {
+
+/// What the file says of its content; dense R is not part of it.
+Line checksum_line(const hdf5::File& file);
+Line chunk_checksum_line(const StoredColumns& columns);
+/// Modes are read only when they are finite, with positive frequencies and no negative decay rates;
+/// here: whether they decay as the material says.
+Line modes_line(const ModalResponse& response, const Material& material);
+Line reciprocity_line(const Reciprocity& reciprocity);
+/// Static compliance and momentum of some columns against finite elements assembled again.
+Report static_lines(const Model& model, const Columns& columns);
+/// From what was found at every node: passivity, stable inverse, stiffness, coupling.
+/// @param coupling that is going to be used [N/m]; 0: not said
+Report node_lines(const std::vector<NodeFindings>& nodes, const HandLoop& loop, double coupling);
+/// @param left share of the response that is left at the last step
+/// @param cut whether rendering ends there
+Line decay_line(double left, bool cut);
+/// Interval at which a wave is watched where R can be had at any time [s]: at most dt.
+double wave_interval(const Model& model);
+/// @param columns sampled every `dt` [s], `steps` of them at most
+Line wave_line(const Model& model, const Columns& columns, double dt, int steps);
+
+}  // namespace irdm::precompute

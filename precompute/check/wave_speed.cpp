@@ -1,0 +1,144 @@
+#include "precompute/check/wave_speed.hpp"
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "precompute/check/rigid_answer.hpp"
+#include "precompute/fem/material.hpp"
+
+namespace irdm::precompute {
+namespace {
+
+constexpr double kArrivalShare = 0.05;  // of the first peak
+constexpr double kPeakShare = 0.3;      // of the largest displacement: smaller ones are precursors
+constexpr double kFlat = 0.2;           // distance from the tangent plane per distance
+
+struct Passage {
+  double distance;  // [m]
+  double arrival;   // [s]
+  double peak;      // [s]
+  double main;      // [s]
+};
+
+// Time between the samples at which `values`, sampled at (s+1) dt, first reaches `level`.
+double first_crossing(const Eigen::VectorXd& values, double level, double dt) {
+  for (Eigen::Index s = 0; s < values.size(); ++s) {
+    if (values(s) < level) continue;
+    const double before = s == 0 ? 0.0 : values(s - 1);
+    return dt * (static_cast<double>(s) + (level - before) / (values(s) - before));
+  }
+  return dt * static_cast<double>(values.size());
+}
+
+// The first sample that no neighbour exceeds, or -1.
+Eigen::Index first_peak(const Eigen::VectorXd& values) {
+  const double least = kPeakShare * values.maxCoeff();
+  for (Eigen::Index s = 1; s + 1 < values.size(); ++s) {
+    if (values(s) > least && values(s) >= values(s - 1) && values(s) > values(s + 1)) return s;
+  }
+  return -1;
+}
+
+// Time of the peak of the parabola through three samples.
+double peak_time(const Eigen::VectorXd& values, Eigen::Index s, double dt) {
+  const double bend = values(s - 1) - 2.0 * values(s) + values(s + 1);
+  return dt * (static_cast<double>(s) + 1.0 + 0.5 * (values(s - 1) - values(s + 1)) / bend);
+}
+
+double main_time(const Eigen::VectorXd& values, double dt) {
+  Eigen::Index s = 0;
+  values.maxCoeff(&s);
+  if (s == 0 || s + 1 == values.size()) return dt * (static_cast<double>(s) + 1.0);
+  return peak_time(values, s, dt);
+}
+
+// Distance per time of the line time = a + distance / speed.
+double fitted_speed(const std::vector<Passage>& passages, double Passage::*time) {
+  double mean_distance = 0.0;
+  double mean_time = 0.0;
+  for (const Passage& p : passages) {
+    mean_distance += p.distance;
+    mean_time += p.*time;
+  }
+  const auto count = static_cast<double>(passages.size());
+  mean_distance /= count;
+  mean_time /= count;
+  double covariance = 0.0;
+  double variance = 0.0;
+  for (const Passage& p : passages) {
+    covariance += (p.distance - mean_distance) * (p.*time - mean_time);
+    variance += (p.distance - mean_distance) * (p.distance - mean_distance);
+  }
+  return covariance > 0.0 ? variance / covariance : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+WaveSpeeds theoretical_speeds(const Material& material) {
+  const Lame lame = lame_parameters(material);
+  const double shear = std::sqrt(lame.mu / material.density);
+  const double dilatational = std::sqrt((lame.lambda + 2.0 * lame.mu) / material.density);
+  // Rayleigh: (2 - q)^2 = 4 sqrt(1 - q) sqrt(1 - q (cs/cp)^2) for q = (c/cs)^2, one root in (0, 1).
+  const double ratio = std::pow(shear / dilatational, 2);
+  double low = 0.1;  // below it for every Poisson ratio, where the left side is the smaller one
+  double high = 1.0;
+  for (int i = 0; i < 60; ++i) {
+    const double q = 0.5 * (low + high);
+    const double excess =
+        (2.0 - q) * (2.0 - q) - 4.0 * std::sqrt(1.0 - q) * std::sqrt(1.0 - q * ratio);
+    (excess < 0.0 ? low : high) = q;
+  }
+  return {shear, shear * std::sqrt(low), dilatational};
+}
+
+int wave_source(const Model& model) {
+  int node = 0;
+  for (int i = 1; i < model.mesh.surface_node_count(); ++i) {
+    // The same choice whatever rounding does to nodes that are equally far.
+    if (model.mesh.rest_position(i).norm() < (1.0 - 1e-9) * model.mesh.rest_position(node).norm()) {
+      node = i;
+    }
+  }
+  int axis = 0;
+  model.mesh.rest_position(node).cwiseAbs().maxCoeff(&axis);
+  return 3 * node + axis;
+}
+
+MeasuredWave measure_wave(const Model& model, int b, const RowMatrix<double>& column, double dt) {
+  const Vector3 source = model.mesh.rest_position(b / 3);
+  const double reach = 1.1 * source.norm();
+  const Vector3 outward = source.normalized();
+  MeasuredWave wave;
+  std::vector<Passage> passages;
+  for (int i = 0; i < model.mesh.surface_node_count(); ++i) {
+    const Vector3 from = model.mesh.rest_position(i) - source;
+    const double distance = from.norm();
+    if (i == b / 3 || distance > reach || std::abs(from.dot(outward)) > kFlat * distance) continue;
+    const Vector3 drift =
+        dt * dt * rigid_mobility(model.body, model.mesh.rest_position(i), source).col(b % 3);
+    Eigen::VectorXd moved(column.rows());
+    Eigen::VectorXd along(column.rows());
+    for (Eigen::Index s = 0; s < moved.size(); ++s) {
+      // The force acts during the first step: from then on the body drifts as if pushed at its
+      // middle.
+      const Vector3 elastic = column.row(s).segment<3>(3 * i).transpose();
+      const Vector3 total = elastic + (static_cast<double>(s) + 0.5) * drift;
+      moved(s) = total.norm();
+      along(s) = total[b % 3];
+    }
+    ++wave.nodes;
+    const Eigen::Index peak = first_peak(moved);
+    if (peak < 0) continue;
+    passages.push_back({distance, first_crossing(moved, kArrivalShare * moved(peak), dt),
+                        peak_time(moved, peak, dt), main_time(along, dt)});
+  }
+  wave.passed = static_cast<int>(passages.size());
+  if (wave.passed < 3) return wave;
+  wave.arrival = fitted_speed(passages, &Passage::arrival);
+  wave.main = fitted_speed(passages, &Passage::main);
+  wave.peak = fitted_speed(passages, &Passage::peak);
+  return wave;
+}
+
+}  // namespace irdm::precompute

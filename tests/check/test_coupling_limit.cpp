@@ -1,0 +1,112 @@
+#include <catch2/catch.hpp>
+
+#include "precompute/check/coupling_limit.hpp"
+#include "tests/check/oscillators.hpp"
+
+using namespace irdm;
+using namespace irdm::precompute;
+using irdm::precompute::test::damped_modes;
+using irdm::precompute::test::driving_point;
+
+namespace {
+
+constexpr double kDt = 0.002;
+const Matrix3 kRigid = kDt * kDt * Vector3(9.0, 6.0, 7.0).asDiagonal().toDenseMatrix();
+
+// Hand and object step by step; the hand is integrated in small steps. Ratio of the forces late to
+// those earlier: above one when the loop grows.
+double simulated_growth(const DrivingPoint& record, const Matrix3& rigid, const HandLoop& loop,
+                        double coupling, int steps) {
+  std::vector<Vector3> force;
+  std::vector<double> norms;
+  Vector3 velocity = Vector3::Zero();
+  Vector3 place = Vector3::Zero();
+  Vector3 hand = Vector3(1e-3, -2e-3, 1e-3);
+  Vector3 hand_velocity = Vector3::Zero();
+  const Matrix3 inverse =
+      (Matrix3(record.col(0).reshaped(3, 3)) + rigid + Matrix3::Identity() / coupling).inverse();
+  for (int k = 0; k < steps; ++k) {
+    const Vector3 felt = k >= loop.delay ? Vector3(-force[static_cast<std::size_t>(k - loop.delay)])
+                                         : Vector3(Vector3::Zero());
+    constexpr int kSubsteps = 200;
+    const double h = kDt / kSubsteps;
+    for (int i = 0; i < kSubsteps; ++i) {  // velocity Verlet with the damper at the half step
+      const auto acceleration = [&] {
+        return Vector3((felt - loop.hand.stiffness * hand - loop.hand.damping * hand_velocity) /
+                       loop.hand.mass);
+      };
+      hand_velocity += 0.5 * h * acceleration();
+      hand += h * hand_velocity;
+      hand_velocity += 0.5 * h * acceleration();
+    }
+    Vector3 free = place + velocity;
+    for (int s = 1; s <= k && s < record.cols(); ++s) {
+      free += record.col(s).reshaped(3, 3) * force[static_cast<std::size_t>(k - s)];
+    }
+    force.emplace_back(inverse * (hand - free));
+    velocity += rigid * force.back();
+    place += velocity;
+    norms.push_back(force.back().norm());
+  }
+  const auto window = [&](int from) {
+    double sum = 0.0;
+    for (int k = from; k < from + 300; ++k) sum += norms[static_cast<std::size_t>(k)];
+    return sum;
+  };
+  return window(steps - 300) / window(steps - 900);
+}
+
+}  // namespace
+
+TEST_CASE("the transfer of the hand is its response to a held force") {
+  const Hand hand;
+  std::complex<double> sum = 0.0;
+  const std::complex<double> w = std::polar(0.97, -0.4);
+  const DrivingPoint response = driving_point(
+      {{std::sqrt(hand.stiffness / hand.mass), 0.5 * hand.damping / hand.mass, Vector3::UnitX()}},
+      kDt, 2000);
+  std::complex<double> power = 1.0;
+  for (int s = 0; s < 2000; ++s, power *= w) sum += response(0, s) / hand.mass * power;
+  CHECK(std::abs(hand_transfer(hand, kDt, w) - sum) < 1e-10 * std::abs(sum));
+}
+
+TEST_CASE("a delay counts in whole steps, both ways, and one for the computation") {
+  CHECK(loop_delay(0.0, kDt) == 1);
+  CHECK(loop_delay(0.002, kDt) == 3);
+  CHECK(loop_delay(0.0021, kDt) == 5);
+  CHECK(loop_delay(0.01, kDt) == 11);
+}
+
+TEST_CASE("the loop is stable just below the largest coupling and grows just above it") {
+  // Stiff enough that the delay is felt.
+  auto modes = damped_modes();
+  for (auto& mode : modes) mode.shape *= 0.3;
+  const DrivingPoint record = driving_point(modes, kDt, 800);
+  const bool floating = GENERATE(true, false);
+  const int delay = GENERATE(3, 11);
+  const Matrix3 rigid = floating ? kRigid : Matrix3(Matrix3::Zero());
+  const HandLoop loop{{}, kDt, delay};
+  const double limit = largest_coupling(record, rigid, loop, 1.0);
+  REQUIRE(limit > kSoftestCoupling);
+  REQUIRE(limit < kStiffestCoupling);
+  CHECK(simulated_growth(record, rigid, loop, 0.9 * limit, 3000) < 1.0);
+  CHECK(simulated_growth(record, rigid, loop, 1.1 * limit, 3000) > 1.0);
+}
+
+TEST_CASE("a longer delay and a hand with less damping allow less coupling") {
+  auto modes = damped_modes();
+  for (auto& mode : modes) mode.shape *= 0.3;
+  const DrivingPoint record = driving_point(modes, kDt, 800);
+  const double usual = largest_coupling(record, kRigid, {{}, kDt, 3}, 1.0);
+  CHECK(largest_coupling(record, kRigid, {{}, kDt, 11}, 1.0) < usual);
+  CHECK(largest_coupling(record, kRigid, {{0.12, 0.5, 300.0}, kDt, 3}, 1.0) < usual);
+}
+
+TEST_CASE("a soft body is stable without coupling, one that answers late allows hardly any") {
+  const DrivingPoint good = driving_point(damped_modes(), kDt, 800);
+  CHECK(std::isinf(largest_coupling(good, kRigid, {{}, kDt, 1}, 1.0)));
+  DrivingPoint late = DrivingPoint::Zero(9, 811);
+  late.rightCols(800) = good;
+  late.col(0) = 0.1 * good.col(0);
+  CHECK(largest_coupling(late, kRigid, {{}, kDt, 1}, 1.0) < 1e4);
+}

@@ -1,0 +1,93 @@
+#include <catch2/catch.hpp>
+#include <fstream>
+
+#include "common/model/content_checksum.hpp"
+#include "common/model/model_file.hpp"
+#include "tests/support/synthetic_model.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+using namespace irdm;
+
+namespace {
+
+void write(const std::filesystem::path& path, const Model& model) {
+  ModelFileWriter writer(path);
+  writer.write_description(model);
+  writer.write_modal(std::get<ModalResponse>(model.response));
+  writer.commit();
+}
+
+std::string stored(const std::filesystem::path& path) {
+  return stored_content_checksum(hdf5::File::open(path)).value();
+}
+
+}  // namespace
+
+TEST_CASE("a model file carries the checksum of its content") {
+  const test::TemporaryFolder folder;
+  const auto path = folder.path() / "a.h5";
+  write(path, test::synthetic_cube(2, 5, 10));
+  const hdf5::File file = hdf5::File::open(path);
+  CHECK(stored(path).size() == 64);
+  CHECK(content_checksum(file) == stored(path));
+}
+
+TEST_CASE("every part of a model has its share in the checksum") {
+  const test::TemporaryFolder folder;
+  const Model original = test::synthetic_cube(2, 5, 10);
+  write(folder.path() / "a.h5", original);
+  Model other = original;
+  SECTION("mesh") {
+    other.mesh.nodes(0, 0) += 1e-9;
+  }
+  SECTION("triangles") {
+    std::swap(other.mesh.triangles(0, 0), other.mesh.triangles(0, 1));
+  }
+  SECTION("body") {
+    other.body.mass *= 1.0 + 1e-9;
+  }
+  SECTION("support") {
+    other.body.support = Support::kFixed;
+  }
+  SECTION("material") {
+    other.material.rayleigh_beta *= 2.0;
+  }
+  SECTION("steps") {
+    other.steps += 1;
+  }
+  SECTION("frequencies") {
+    std::get<ModalResponse>(other.response).angular_frequency(4) += 1e-9;
+  }
+  SECTION("shapes") {
+    std::get<RowMatrix<double>>(std::get<ModalResponse>(other.response).shapes)(3, 2) += 1e-9;
+  }
+  write(folder.path() / "b.h5", other);
+  CHECK(stored(folder.path() / "a.h5") != stored(folder.path() / "b.h5"));
+}
+
+TEST_CASE("a file whose bytes changed does not have its checksum any more") {
+  const test::TemporaryFolder folder;
+  const auto path = folder.path() / "a.h5";
+  const Model model = test::synthetic_cube(2, 5, 10);
+  write(path, model);
+  const double needle = std::get<ModalResponse>(model.response).angular_frequency(2);
+  std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  const auto at = bytes.find(std::string(reinterpret_cast<const char*>(&needle), sizeof needle));
+  REQUIRE(at != std::string::npos);
+  file.seekp(static_cast<std::streamoff>(at));
+  file.put(static_cast<char>(bytes[at] ^ 1));
+  file.close();
+  CHECK(content_checksum(hdf5::File::open(path)) != stored(path));
+}
+
+TEST_CASE("the description of a model file is read without its response") {
+  const test::TemporaryFolder folder;
+  const auto path = folder.path() / "a.h5";
+  const Model model = test::synthetic_cube(2, 5, 10);
+  write(path, model);
+  const Model read = read_description(hdf5::File::open(path));
+  CHECK(read.mesh.nodes == model.mesh.nodes);
+  CHECK(read.steps == 10);
+  CHECK(std::holds_alternative<std::monostate>(read.response));
+}

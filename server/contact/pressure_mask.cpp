@@ -10,6 +10,9 @@ namespace {
 constexpr int kFewestRings = 4;
 constexpr int kMostRings = 8;
 
+// Direction from which the rings start, in B; parallel to the normal of hardly any surface.
+const Vector3 kReference = Vector3(0.7548776662, 0.5698402910, 0.3247179572).normalized();
+
 }  // namespace
 
 // Rings no farther apart than the nodes, with room to spare in a patch for (kMostRings + 1) nodes
@@ -34,7 +37,7 @@ PressureMask::PressureMask(const RestSurface& surface, double radius)
     const double share = (1.0 - s * s) * (outer * outer - inner * inner) / count;
     for (int i = 0; i < count; ++i) {
       const double angle = 2.0 * std::numbers::pi * (i + 0.5 * (ring % 2)) / count;
-      samples_.push_back({radius * s * std::cos(angle), radius * s * std::sin(angle), share});
+      samples_.push_back({std::cos(angle), std::sin(angle), radius * s, share});
       total += share;
     }
   }
@@ -57,18 +60,13 @@ void PressureMask::spread(const SurfacePoint& middle, ContactPatch& patch) noexc
     return;
   }
   patch.count = 0;
-  Vector3 centre = Vector3::Zero();
-  std::size_t main = 0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    centre += middle.weights[i] * surface_.node(middle.nodes[i]);
-    if (middle.weights[i] > middle.weights[main]) main = i;
-  }
-  const int triangle = surface_.topology().triangles_around(middle.nodes[main]).front();
-  const Vector3 normal = surface_.smooth_normal(middle);
-  const Vector3 x = normal.unitOrthogonal();
+  const SurfaceLocation centre = surface_.locate(middle);
+  const Vector3 normal = area_normal(surface_.corners(centre.triangle)).normalized();
+  const Vector3 x = (kReference - kReference.dot(normal) * normal).normalized();
   const Vector3 y = normal.cross(x);
   for (const Sample& sample : samples_) {
-    const SurfaceLocation under = surface_.walk(triangle, centre + sample.x * x + sample.y * y);
+    const SurfaceLocation under = surface_.straight_on(
+        centre, sample.cosine * x + sample.sine * y, sample.distance);
     for (std::size_t i = 0; i < 3; ++i) {
       if (under.point.weights[i] > 0) {
         add(under.point.nodes[i], sample.weight * under.point.weights[i], patch);

@@ -27,8 +27,9 @@ class PressureMask {
 
  private:
   struct Sample {
-    double x, y;    ///< in the tangent plane [m]
-    double weight;  ///< share of the force
+    double cosine, sine;  ///< of its direction from the middle
+    double distance;      ///< along the surface [m]
+    double weight;        ///< share of the force
   };
   void add(int node, double weight, ContactPatch& patch) noexcept;
 

@@ -74,28 +74,41 @@ void GodObject::impose(ContactState state, const SurfacePoint& point) noexcept {
 void GodObject::stay(const Vector3& slip, double share, const Vector3& point_free,
                      const RestSurface& rest) noexcept {
   const double length = slip.norm();
+  slid_ = 0.0;
   slipping_ = length > 0.0;
   if (slipping_) {
     const double at_once = std::min(length, tip_moved_);
     const double along = at_once + share * (length - at_once);
-    const Vector3 here = at(rest.corners(triangle_), point_.weights);
-    const SurfaceLocation there = rest.walk(triangle_, here + along / length * slip);
-    triangle_ = there.triangle;
-    point_ = there.point;
+    slide(slip, along, rest);
+    slid_ = along;
   }
   outside_ = true;
   last_tip_ = point_free;
 }
 
+void GodObject::slide(const Vector3& towards, double length, const RestSurface& rest) noexcept {
+  const Vector3 here = at(rest.corners(triangle_), point_.weights);
+  const SurfaceLocation there = rest.straight_on({triangle_, point_, here}, towards, length);
+  triangle_ = there.triangle;
+  point_ = there.point;
+}
+
 void GodObject::follow(const Vector3& tip, double share, const RestSurface& rest) noexcept {
   const SurfaceLocation nearest = rest.walk(triangle_, tip);
   const Vector3 here = at(rest.corners(triangle_), point_.weights);
-  const bool same_side =
-      rest.smooth_normal(nearest.point).dot(rest.smooth_normal(point_)) > kSameSide;
-  if (same_side || (tip - nearest.position).norm() > 0.7 * (tip - here).norm()) return;
-  const SurfaceLocation there = rest.walk(triangle_, here + share * (nearest.position - here));
-  triangle_ = there.triangle;
-  point_ = there.point;
+  const double cosine = rest.smooth_normal(nearest.point).dot(rest.smooth_normal(point_));
+  static const double c0 = getenv("C0") ? atof(getenv("C0")) : 0.95;
+  static const double c1 = getenv("C1") ? atof(getenv("C1")) : 0.8;
+  static const double nearer = getenv("NEAR") ? atof(getenv("NEAR")) : 0.4;
+  const double ratio = (tip - nearest.position).norm() / (tip - here).norm();
+  const double weight = std::clamp((c0 - cosine) / (c0 - c1), 0.0, 1.0) * std::clamp((1.0 - ratio) / nearer, 0.0, 1.0);
+  if (!(weight > 0.0)) return;
+  const Vector3 way = nearest.position - here;
+  const double length = way.norm();
+  const double at_once = std::min(length, tip_moved_);
+  const double along = weight * (at_once + share * (length - at_once)) - slid_;
+  if (!(along > 0)) return;
+  slide(way, along, rest);
   slipping_ = true;
 }
 

@@ -53,6 +53,7 @@ class GodObject {
   int steps_since_release() const noexcept { return release_steps_; }
 
  private:
+  void slide(const Vector3& towards, double length, const RestSurface& rest) noexcept;
   void touch(const Vector3& tip, DeformedSurface& surface) noexcept;
   bool reach_for(const Input& input, DeformedSurface& surface) noexcept;
 
@@ -68,6 +69,7 @@ class GodObject {
   bool outside_ = false;
   Vector3 last_tip_ = Vector3::Zero();  ///< relative to the free motion [m], B
   Vector3 tip_ = Vector3::Zero();       ///< of this step [m], B
+  double slid_ = 0.0;
   double tip_moved_ = 0.0;              ///< since the step before [m]
 };
 

@@ -126,12 +126,14 @@ void check_resources(const PrecomputeConfig& config, const TetMesh& mesh, const 
 }
 
 ColumnFileHeader column_header(const PrecomputeConfig& config, const Model& model,
-                               const std::vector<int>& clamped, const ColumnRange& range) {
+                               const std::vector<int>& clamped, const ColumnRange& range,
+                               bool centrifugal) {
   return {range,
           model.degrees_of_freedom(),
           model.steps,
           config.response.precision,
           config.response.compression_error,
+          centrifugal,
           settings_text(config, clamped),
           description_of(model)};
 }
@@ -211,8 +213,9 @@ Summary precompute_model(const PrecomputeConfig& config, const std::filesystem::
   const auto by_columns = [&](const ColumnSource& source) {
     const ColumnsDone done = write_by_columns(
         source,
-        {output, column_header(config, model, clamped, columns), slice.has_value(), threads}, ranks,
-        console);
+        {output, column_header(config, model, clamped, columns, source.has_centrifugal()),
+         slice.has_value(), threads},
+        ranks, console);
     summary.columns = done.computed;
     summary.slice = slice.has_value();
     if (stepping) summary.decay_left = done.decay_left;

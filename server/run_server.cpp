@@ -13,6 +13,7 @@
 #include "common/program/stop_signal.hpp"
 #include "server/config/scene.hpp"
 #include "server/report.hpp"
+#include "server/step/inertial_loading.hpp"
 #include "server/threads/deformation_thread.hpp"
 #include "server/threads/force_thread.hpp"
 #include "server/threads/recorder_thread.hpp"
@@ -23,8 +24,9 @@ namespace {
 
 std::shared_ptr<const Model> load_model(const ObjectConfig& object) {
   const bool dense = object.engine == EngineKind::kDense;
-  return std::make_shared<const Model>(
-      read_model(object.model, dense ? ResponseKind::kDense : ResponseKind::kModal));
+  Model model = read_model(object.model, dense ? ResponseKind::kDense : ResponseKind::kModal);
+  check_inertial_loading(model, object.inertial_loading, object.model.string());
+  return std::make_shared<const Model>(std::move(model));
 }
 
 SimulationConfig simulation_config(const SceneConfig& scene) {
@@ -33,7 +35,7 @@ SimulationConfig simulation_config(const SceneConfig& scene) {
   for (const ObjectConfig& object : scene.objects) {
     config.objects.push_back({load_model(object), object.position, object.orientation,
                               object.velocity, object.angular_velocity, object.friction,
-                              object.damping, object.tether});
+                              object.damping, object.tether, object.inertial_loading});
   }
   config.styluses = scene.styluses;
   config.floor = scene.floor;

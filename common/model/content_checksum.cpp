@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "common/checksum.hpp"
+#include "common/model/model_writer.hpp"
 
 namespace irdm {
 namespace {
@@ -69,6 +70,12 @@ std::string content_checksum(const hdf5::File& file) {
     add_dataset<float>(sha, file, shapes);
   } else {
     add_dataset<double>(sha, file, shapes);
+  }
+  add_dataset<double>(sha, file, kModalCentrifugal);
+  if (file.exists(kDenseCentrifugal) && file.element_size(kDenseCentrifugal) == sizeof(float)) {
+    add_dataset<float>(sha, file, kDenseCentrifugal);
+  } else {
+    add_dataset<double>(sha, file, kDenseCentrifugal);
   }
   return sha.hexadecimal();
 }

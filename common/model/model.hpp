@@ -55,6 +55,9 @@ struct ModalResponse {
   Eigen::VectorXd decay_rate;         ///< sigma_i (r) [1/s]
   std::variant<RowMatrix<float>, RowMatrix<double>>
       shapes;  ///< Phi (3n, r), mass-normalised [kg^-1/2]
+  /// g (r, 6): force of each mode per product of angular velocity components (see SpinProducts)
+  /// [kg^1/2 m]; no rows: the model has none.
+  RowMatrix<double> centrifugal{};
 
   int mode_count() const { return static_cast<int>(angular_frequency.size()); }
 };
@@ -65,6 +68,10 @@ struct DenseResponse {
   int degrees_of_freedom = 0;  ///< 3n
   int steps = 0;               ///< T
   std::variant<std::vector<float>, std::vector<double>> values;
+  /// Displacement after a product of angular velocity components held during one step (see
+  /// SpinProducts), numbers and order as above: entry (a, p) of step s stands at
+  /// (p * dof + a) * steps + s [m s^2]. Empty: the model has none.
+  std::variant<std::vector<float>, std::vector<double>> centrifugal{};
 };
 
 /// What a model file holds.
@@ -79,5 +86,8 @@ struct Model {
 
   int degrees_of_freedom() const { return 3 * mesh.surface_node_count(); }
 };
+
+/// Whether the model's response says what the body's own spin does to it.
+bool has_centrifugal(const Model& model);
 
 }  // namespace irdm

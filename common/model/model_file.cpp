@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/error.hpp"
+#include "common/response/spin_products.hpp"
 
 namespace irdm {
 namespace {
@@ -146,6 +147,13 @@ class ModelReader {
     } else {
       response.shapes = read_shapes<double>(modes);
     }
+    if (file_.exists(kModalCentrifugal)) {
+      const auto loads = file_.read<double>(kModalCentrifugal, {modes, kSpinProducts});
+      response.centrifugal = Eigen::Map<const RowMatrix<double>>(
+          loads.data(), static_cast<Eigen::Index>(modes), kSpinProducts);
+      require(response.centrifugal.allFinite(),
+              std::string(kModalCentrifugal) + " has numbers that are not finite");
+    }
     model_.response = std::move(response);
   }
 
@@ -173,21 +181,33 @@ class ModelReader {
     response.degrees_of_freedom = static_cast<int>(dof);
     response.steps = static_cast<int>(steps);
     if (file_.element_size(kDenseR) == sizeof(float)) {
-      response.values = read_columns<float>(dof, steps);
+      response.values = read_columns<float>(kDenseR, dof, steps, dof);
+      response.centrifugal = read_centrifugal<float>(dof, steps);
     } else {
-      response.values = read_columns<double>(dof, steps);
+      response.values = read_columns<double>(kDenseR, dof, steps, dof);
+      response.centrifugal = read_centrifugal<double>(dof, steps);
     }
     model_.response = std::move(response);
   }
 
+  // In the numbers of R; empty where there is none.
+  template <typename Scalar>
+  std::vector<Scalar> read_centrifugal(hsize_t dof, hsize_t steps) const {
+    if (!file_.exists(kDenseCentrifugal)) return {};
+    require(file_.shape(kDenseCentrifugal) == hdf5::Shape({kSpinProducts, steps, dof}),
+            std::string(kDenseCentrifugal) + " must have the shape (6, steps, 3n)");
+    return read_columns<Scalar>(kDenseCentrifugal, kSpinProducts, steps, dof);
+  }
+
   // The file has [b][s][a]; in memory the step runs fastest: [b][a][s].
   template <typename Scalar>
-  std::vector<Scalar> read_columns(hsize_t dof, hsize_t steps) const {
-    std::vector<Scalar> values(dof * steps * dof);
+  std::vector<Scalar> read_columns(const std::string& dataset, hsize_t columns, hsize_t steps,
+                                   hsize_t dof) const {
+    std::vector<Scalar> values(columns * steps * dof);
     RowMatrix<Scalar> column(static_cast<Eigen::Index>(steps), static_cast<Eigen::Index>(dof));
-    for (hsize_t b = 0; b < dof; ++b) {
-      file_.read_slab<Scalar>(kDenseR, {b, 0, 0}, {1, steps, dof}, column.data());
-      require(column.allFinite(), "/response/dense/R has numbers that are not finite");
+    for (hsize_t b = 0; b < columns; ++b) {
+      file_.read_slab<Scalar>(dataset, {b, 0, 0}, {1, steps, dof}, column.data());
+      require(column.allFinite(), dataset + " has numbers that are not finite");
       Eigen::Map<RowMatrix<Scalar>>(values.data() + b * dof * steps, column.cols(), column.rows()) =
           column.transpose();
     }

@@ -8,6 +8,7 @@
 
 #include "common/error.hpp"
 #include "common/model/content_checksum.hpp"
+#include "common/response/spin_products.hpp"
 
 namespace irdm {
 namespace {
@@ -31,6 +32,11 @@ void wait_for_disk(const std::filesystem::path& path) {
   if (!written) {
     throw Error(path.string(), "cannot be written to the disk", "check its free space");
   }
+}
+
+void describe_centrifugal(hdf5::File& file, const char* dataset, const std::string& unit) {
+  file.write_attribute(dataset, "order", std::string("xx yy zz yz xz xy"));
+  file.write_attribute(dataset, "unit", unit);
 }
 
 }  // namespace
@@ -105,6 +111,9 @@ void ModelFileWriter::write_modal(const ModalResponse& response) {
                              shapes.data());
       },
       response.shapes);
+  if (response.centrifugal.rows() == 0) return;
+  file_->write<double>(kModalCentrifugal, {modes, kSpinProducts}, response.centrifugal.data());
+  describe_centrifugal(*file_, kModalCentrifugal, "kg^1/2 m");
 }
 
 void ModelFileWriter::begin_dense(int degrees_of_freedom, int steps, Precision precision,
@@ -135,6 +144,19 @@ void ModelFileWriter::write_dense_column(int b, const float* values) {
 }
 void ModelFileWriter::write_dense_column(int b, const double* values) {
   write_column(b, values);
+}
+
+template <typename Scalar>
+void ModelFileWriter::write_centrifugal(const Scalar* values) {
+  file_->write<Scalar>(kDenseCentrifugal, {kSpinProducts, dense_steps_, dense_dof_}, values);
+  describe_centrifugal(*file_, kDenseCentrifugal, "m s^2");
+}
+
+void ModelFileWriter::write_dense_centrifugal(const float* values) {
+  write_centrifugal(values);
+}
+void ModelFileWriter::write_dense_centrifugal(const double* values) {
+  write_centrifugal(values);
 }
 
 void ModelFileWriter::commit() {

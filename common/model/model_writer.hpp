@@ -12,6 +12,9 @@ namespace irdm {
 inline constexpr const char* kModelFormat = "irdm-model";
 inline constexpr std::int64_t kModelVersion = 1;
 inline constexpr const char* kDenseR = "/response/dense/R";
+/// What the body's own spin does, one part a product of SpinProducts. Optional.
+inline constexpr const char* kDenseCentrifugal = "/response/dense/centrifugal";
+inline constexpr const char* kModalCentrifugal = "/response/modal/centrifugal";
 
 /// Of the numbers of R in a file.
 enum class Precision { kSingle, kDouble };
@@ -42,6 +45,9 @@ class ModelFileWriter {
                    double zfp_accuracy = 0.0);
   void write_dense_column(int b, const float* values);
   void write_dense_column(int b, const double* values);
+  /// After begin_dense(): (6, T, 3n) numbers, [product][s][a displacement].
+  void write_dense_centrifugal(const float* values);
+  void write_dense_centrifugal(const double* values);
 
   /// Where the file is until commit: for a signal handler that tidies up.
   const std::filesystem::path& temporary_path() const { return temporary_; }
@@ -53,6 +59,8 @@ class ModelFileWriter {
  private:
   template <typename Scalar>
   void write_column(int b, const Scalar* values);
+  template <typename Scalar>
+  void write_centrifugal(const Scalar* values);
 
   std::filesystem::path path_;
   std::filesystem::path temporary_;

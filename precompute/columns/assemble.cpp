@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <memory>
 
 #include "common/error.hpp"
 #include "common/model/model_file.hpp"
+#include "common/response/spin_products.hpp"
 
 namespace irdm::precompute {
 namespace {
@@ -20,7 +22,8 @@ void check_same(const ColumnFileReader& first, const ColumnFileReader& part) {
                 "give parts that were made from one configuration by one version of the program");
   };
   if (a.description != b.description) differs("another mesh, material or time axis");
-  if (a.settings != b.settings || a.compression_error != b.compression_error) {
+  if (a.settings != b.settings || a.compression_error != b.compression_error ||
+      a.centrifugal != b.centrifugal) {
     differs("other settings");
   }
   if (a.precision != b.precision || a.steps != b.steps ||
@@ -98,6 +101,20 @@ DrivingPoint driving_point(int b, const Scalar* values, const ColumnFileHeader& 
   return point;
 }
 
+// Every part has the centrifugal columns, after its own; those of the first are taken.
+template <typename Scalar>
+void copy_centrifugal(ColumnFileReader& part, ModelFileWriter& writer) {
+  const ColumnFileHeader& header = part.header();
+  part.rewind();
+  for (int b = header.range.begin; b < header.range.end; ++b) part.next();
+  RowMatrix<Scalar> columns(kSpinProducts * header.steps, header.degrees_of_freedom);
+  for (int p = 0; p < kSpinProducts; ++p) {
+    const std::span<const std::uint8_t> bytes = part.next();
+    std::memcpy(columns.row(p * header.steps).data(), bytes.data(), bytes.size());
+  }
+  writer.write_dense_centrifugal(columns.data());
+}
+
 double peak_of(const Parts& parts, const ColumnFileHeader& header) {
   double peak = 0.0;
   for_each_column(parts, [&](int b, const auto* values) {
@@ -143,6 +160,11 @@ double assemble(const std::vector<std::filesystem::path>& paths,
     if (point.peak > 0.0) left = std::max(left, point.tail / point.peak);
     progress.update(b + 1);
   });
+  if (header.centrifugal && header.precision == Precision::kSingle) {
+    copy_centrifugal<float>(*parts.front(), writer);
+  } else if (header.centrifugal) {
+    copy_centrifugal<double>(*parts.front(), writer);
+  }
   writer.commit();
   return left;
 }

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "common/error.hpp"
+#include "common/response/spin_products.hpp"
 #include "common/wire/crc32c.hpp"
 
 namespace irdm::precompute {
@@ -18,6 +19,16 @@ bool read_word(std::istream& text, const char* word) {
   return text >> found && found == word;
 }
 
+// Reads "centrifugal 6", which may be missing, and "settings".
+bool parse_centrifugal(std::istream& text, bool& centrifugal) {
+  std::string word;
+  if (!(text >> word)) return false;
+  centrifugal = word == "centrifugal";
+  if (!centrifugal) return word == "settings";
+  int columns = 0;
+  return text >> columns && columns == kSpinProducts && read_word(text, "settings");
+}
+
 // The lengths of settings and description go into the strings themselves. False: not such a text.
 bool parse_text(std::istream& text, ColumnFileHeader& header) {
   std::string magic;
@@ -29,7 +40,7 @@ bool parse_text(std::istream& text, ColumnFileHeader& header) {
                     text >> header.range.begin >> header.range.end && read_word(text, "shape") &&
                     text >> header.degrees_of_freedom >> header.steps >> number_bytes &&
                     read_word(text, "compression_error") && text >> header.compression_error &&
-                    read_word(text, "settings") && text >> settings &&
+                    parse_centrifugal(text, header.centrifugal) && text >> settings &&
                     read_word(text, "description") && text >> description && text.get() == '\n' &&
                     (number_bytes == 4 || number_bytes == 8) && header.steps > 0 &&
                     header.range.begin >= 0 && header.range.begin < header.range.end &&
@@ -59,8 +70,10 @@ std::string encode_header(const ColumnFileHeader& header) {
        << header.degrees_of_freedom << ' ' << header.steps << ' '
        << (header.precision == Precision::kSingle ? 4 : 8) << "\ncompression_error ";
   text.precision(17);
-  text << header.compression_error << "\nsettings " << header.settings.size() << "\ndescription "
-       << header.description.size() << '\n'
+  text << header.compression_error;
+  if (header.centrifugal) text << "\ncentrifugal " << kSpinProducts;
+  text << "\nsettings " << header.settings.size() << "\ndescription " << header.description.size()
+       << '\n'
        << header.settings << header.description;
   const std::string bytes = text.str();
   const std::uint32_t sum = column_checksum(bytes.data(), bytes.size());
@@ -70,6 +83,10 @@ std::string encode_header(const ColumnFileHeader& header) {
 std::size_t ColumnFileHeader::column_bytes() const {
   return static_cast<std::size_t>(degrees_of_freedom) * static_cast<std::size_t>(steps) *
          (precision == Precision::kSingle ? sizeof(float) : sizeof(double));
+}
+
+int ColumnFileHeader::stored_columns() const {
+  return range.count() + (centrifugal ? kSpinProducts : 0);
 }
 
 std::string description_of(const Model& model) {
@@ -104,7 +121,7 @@ ColumnFileReader::ColumnFileReader(const std::filesystem::path& path)
   columns_at_ = static_cast<std::streamoff>(length);
   column_.resize(header_.column_bytes() + kChecksumBytes);
   const std::size_t whole = (std::filesystem::file_size(path) - length) / column_.size();
-  const auto expected = static_cast<std::size_t>(header_.range.count());
+  const auto expected = static_cast<std::size_t>(header_.stored_columns());
   if (whole < expected) {
     throw Error(
         name_,

@@ -18,10 +18,11 @@
 ///     columns A B
 ///     shape 3n T BYTES           of one number: 4 or 8
 ///     compression_error E        of the model file to come, as a share; 0: none
+///     centrifugal 6              only where such columns follow those of R
 ///     settings LENGTH
 ///     description LENGTH
 ///     (settings) (description: mesh, body and material as an HDF5 file) (CRC32C of all so far)
-///     then for each column A..B-1: T x 3n numbers [s][a] (CRC32C)
+///     then for each column A..B-1, and for each centrifugal one: T x 3n numbers [s][a] (CRC32C)
 ///
 /// A record whose checksum is wrong, and all after it, do not count.
 namespace irdm::precompute {
@@ -32,10 +33,13 @@ struct ColumnFileHeader {
   int steps = 0;               ///< T
   Precision precision = Precision::kSingle;
   double compression_error = 0.0;  ///< see ResponseConfig
+  bool centrifugal = false;        ///< six columns more, for the SpinProducts
   std::string settings;            ///< all else that R depends on, see settings_text()
   std::string description;         ///< see description_of()
 
   std::size_t column_bytes() const;
+  /// Columns of a complete file: those of R and the centrifugal ones.
+  int stored_columns() const;
 };
 
 /// Mesh, body, material, dt and steps of a model as bytes, the same for the same model.

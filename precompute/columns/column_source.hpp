@@ -23,6 +23,11 @@ class ColumnSource {
   virtual int block_size() const = 0;  ///< > 0; the last block may be smaller
   /// Block k = 0, 1, ... For any number of threads at a time.
   virtual Columns block(int k) const = 0;
+  /// Whether there is a response to the body's own spin besides.
+  virtual bool has_centrifugal() const { return false; }
+  /// That response, columns like those of R for the six SpinProducts: rows [product][s]. Without
+  /// any, no rows.
+  virtual Columns centrifugal() const { return {}; }
 
   ColumnRange block_range(int k) const {
     return {k * block_size(), std::min((k + 1) * block_size(), columns())};

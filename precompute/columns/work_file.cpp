@@ -3,6 +3,7 @@
 #include <exception>
 
 #include "common/error.hpp"
+#include "common/response/spin_products.hpp"
 #include "precompute/columns/assemble.hpp"
 #include "precompute/columns/column_file_writer.hpp"
 #include "precompute/columns/compute_columns.hpp"
@@ -57,16 +58,33 @@ void tell_of_earlier_run(const ColumnFileWriter& file, const std::filesystem::pa
   }
 }
 
+// The centrifugal columns come last and are made anew by a run that goes on.
+void append_centrifugal(const ColumnSource& source, ColumnFileWriter& file) {
+  const Columns columns = source.centrifugal();
+  std::visit(
+      [&](const auto& values) {
+        const Eigen::Index steps = values.rows() / kSpinProducts;
+        for (Eigen::Index p = 0; p < kSpinProducts; ++p) {
+          const auto column = values.middleRows(p * steps, steps);
+          file.append({reinterpret_cast<const std::uint8_t*>(column.data()),
+                       static_cast<std::size_t>(column.size()) * sizeof(column(0, 0))});
+        }
+      },
+      columns);
+}
+
 // Returns the number of columns that were computed.
 int complete(ColumnFileWriter& file, const std::filesystem::path& path, const ColumnSource& source,
              const ColumnFileHeader& header, int threads, const Console& console) {
   tell_of_earlier_run(file, path, header.range, console);
   const ColumnRange left{header.range.begin + file.resumed(), header.range.end};
-  if (left.count() == 0) return 0;
   const LastAction message({.say = kGoesOn});
-  Progress progress(console, "columns of R", left.count());
-  FileStore store(file, header.column_bytes(), progress);
-  compute_columns(source, left, threads, store);
+  if (left.count() > 0) {
+    Progress progress(console, "columns of R", left.count());
+    FileStore store(file, header.column_bytes(), progress);
+    compute_columns(source, left, threads, store);
+  }
+  if (header.centrifugal) append_centrifugal(source, file);
   return left.count();
 }
 

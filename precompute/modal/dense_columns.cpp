@@ -60,6 +60,7 @@ DenseColumns<Scalar>::DenseColumns(const ModalResponse& response, double dt, int
   const RowMatrix<double> responses = held_responses(response, dt, steps);
   shapes_ = shapes.template cast<Scalar>();
   responses_ = responses.template cast<Scalar>();
+  centrifugal_ = response.centrifugal.transpose().template cast<Scalar>();
   block_size_ = limited_block_size(kColumnsAtOnce, steps, columns(), sizeof(Scalar));
   constexpr double kEpsilon = static_cast<double>(std::numeric_limits<Scalar>::epsilon());
   modes_ = needed_modes(shapes, responses, kEpsilon / 8.0);
@@ -70,27 +71,37 @@ int DenseColumns<Scalar>::modes_at(int s) const {
   return modes_[static_cast<std::size_t>(s / kStepsAtOnce)];
 }
 
+// Phi diag(h[s]) of each row of the modal loads, rows [load][s].
 template <typename Scalar>
-Columns DenseColumns<Scalar>::block(int k) const {
-  const ColumnRange range = block_range(k);
+RowMatrix<Scalar> DenseColumns<Scalar>::weighted_columns(const RowMatrix<Scalar>& loads) const {
   const Eigen::Index steps = responses_.rows();
-  RowMatrix<Scalar> columns(range.count() * steps, shapes_.rows());
+  RowMatrix<Scalar> columns(loads.rows() * steps, shapes_.rows());
   for (Eigen::Index s = 0; s < steps; s += kStepsAtOnce) {
     const Eigen::Index count = std::min(kStepsAtOnce, steps - s);
     const Eigen::Index modes = modes_at(static_cast<int>(s));
-    RowMatrix<Scalar> weighted(range.count() * count, modes);  // h diag(Phi_b), rows [b][s]
-    for (int b = range.begin; b < range.end; ++b) {
-      weighted.middleRows((b - range.begin) * count, count) =
-          responses_.block(s, 0, count, modes).array().rowwise() *
-          shapes_.row(b).head(modes).array();
+    RowMatrix<Scalar> weighted(loads.rows() * count, modes);  // h diag(load), rows [load][s]
+    for (Eigen::Index b = 0; b < loads.rows(); ++b) {
+      weighted.middleRows(b * count, count) =
+          responses_.block(s, 0, count, modes).array().rowwise() * loads.row(b).head(modes).array();
     }
     RowMatrix<Scalar> product(weighted.rows(), shapes_.rows());
     multiply_transposed(weighted, shapes_, product);
-    for (Eigen::Index b = 0; b < range.count(); ++b) {
+    for (Eigen::Index b = 0; b < loads.rows(); ++b) {
       columns.middleRows(b * steps + s, count) = product.middleRows(b * count, count);
     }
   }
   return columns;
+}
+
+template <typename Scalar>
+Columns DenseColumns<Scalar>::block(int k) const {
+  const ColumnRange range = block_range(k);
+  return weighted_columns(shapes_.middleRows(range.begin, range.count()));
+}
+
+template <typename Scalar>
+Columns DenseColumns<Scalar>::centrifugal() const {
+  return weighted_columns(centrifugal_);
 }
 
 template <typename Scalar>

@@ -22,6 +22,8 @@ class DenseColumns final : public ColumnSource {
   int columns() const override { return static_cast<int>(shapes_.rows()); }
   int block_size() const override { return block_size_; }
   Columns block(int k) const override;
+  bool has_centrifugal() const override { return centrifugal_.rows() > 0; }
+  Columns centrifugal() const override;
 
   /// R[s](a, b) for all s and a: shape (T, 3n).
   RowMatrix<Scalar> column(int b) const;
@@ -29,8 +31,11 @@ class DenseColumns final : public ColumnSource {
   int modes_at(int s) const;
 
  private:
-  RowMatrix<Scalar> shapes_;     // Phi (3n, r)
-  RowMatrix<Scalar> responses_;  // h (T, r)
+  RowMatrix<Scalar> weighted_columns(const RowMatrix<Scalar>& loads) const;
+
+  RowMatrix<Scalar> shapes_;       // Phi (3n, r)
+  RowMatrix<Scalar> responses_;    // h (T, r)
+  RowMatrix<Scalar> centrifugal_;  // g^T (6, r), or no rows
   int block_size_;
   std::vector<int> modes_;  // of each group of steps
 };

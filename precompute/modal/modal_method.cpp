@@ -5,6 +5,7 @@
 #include "precompute/columns/assemble.hpp"
 #include "precompute/columns/compute_columns.hpp"
 #include "precompute/fem/assembly.hpp"
+#include "precompute/fem/centrifugal_load.hpp"
 #include "precompute/modal/dense_columns.hpp"
 #include "precompute/modal/elastic_modes.hpp"
 #include "precompute/modal/held_responses.hpp"
@@ -39,6 +40,11 @@ void write_dense(ModelFileWriter& writer, const ModalResponse& response, const M
   Progress progress(console, "columns of R", columns->columns());
   ModelStore store(writer, progress);
   compute_columns(*columns, {0, columns->columns()}, threads, store);
+  std::visit(
+      [&](const auto& values) {
+        if (values.rows() > 0) writer.write_dense_centrifugal(values.data());
+      },
+      columns->centrifugal());
 }
 
 }  // namespace
@@ -54,7 +60,13 @@ ModalResponse compute_modes(const TetMesh& mesh, const std::vector<int>& clamped
   const ElasticModes modes = model.body.support == Support::kFixed
                                  ? fixed_modes(stiffness, model.mesh.node_mass, clamped)
                                  : elastic_modes(stiffness, model.mesh.nodes, model.mesh.node_mass);
-  return modal_response(modes, model.mesh.surface_nodes, model.material);
+  ModalResponse response = modal_response(modes, model.mesh.surface_nodes, model.material);
+  // Offline, because the load acts on the nodes inside as well. A fixed body does not spin.
+  if (model.body.support == Support::kFloating) {
+    response.centrifugal =
+        modes.shapes.transpose() * centrifugal_loads(model.mesh.nodes, model.mesh.node_mass);
+  }
+  return response;
 }
 
 std::unique_ptr<ColumnSource> modal_columns(const ModalResponse& response, const Model& model,

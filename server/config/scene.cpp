@@ -129,6 +129,7 @@ ObjectConfig read_object(TomlTable table) {
   config.friction = read_friction(table.table("friction"), config.friction);
   config.damping = read_damping(table.table("damping"));
   config.tether = read_tether(table.table("tether"));
+  config.inertial_loading = table.boolean("inertial_loading", config.inertial_loading);
   table.finish();
   return config;
 }

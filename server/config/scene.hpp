@@ -45,9 +45,10 @@ struct ObjectConfig {
   Quaternion orientation = Quaternion::Identity();  ///< w x y z, normalised when read
   Vector3 velocity = Vector3::Zero();               ///< [m/s], W
   Vector3 angular_velocity = Vector3::Zero();       ///< [rad/s], W
-  Friction friction{0.6, 0.5};  ///< friction = { static, kinetic }, 0 <= kinetic <= static <= 10
-  RigidDamping damping;         ///< damping = { linear, angular }
-  Tether tether;                ///< tether = { stiffness, angular_stiffness }
+  Friction friction{0.6, 0.5};    ///< friction = { static, kinetic }, 0 <= kinetic <= static <= 10
+  RigidDamping damping;           ///< damping = { linear, angular }
+  Tether tether;                  ///< tether = { stiffness, angular_stiffness }
+  bool inertial_loading = false;  ///< centrifugal loading by its own spin
 };
 
 /// What irdm-server is to run.

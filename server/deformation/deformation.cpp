@@ -1,5 +1,7 @@
 #include "server/deformation/deformation.hpp"
 
+#include "server/step/inertial_loading.hpp"
+
 namespace irdm {
 
 SurfaceFrame rest_frame(const SimulationConfig& config) {
@@ -15,7 +17,8 @@ Deformation::Deformation(const SimulationConfig& config) {
   std::vector<double> radii;
   for (const SimulationStylus& stylus : config.styluses) radii.push_back(stylus.radius);
   for (const SimulationObject& object : config.objects) {
-    Follower follower{object.model, make_engine(object.model), nullptr, nullptr};
+    Follower follower{object.model, make_engine(object.model), nullptr, nullptr,
+                      feels_spin(*object.model, object.inertial_loading)};
     follower.surface = std::make_unique<RestSurface>(object.model->mesh);
     follower.forces = std::make_unique<RecordedForces>(*follower.surface, radii);
     objects_.push_back(std::move(follower));
@@ -24,6 +27,7 @@ Deformation::Deformation(const SimulationConfig& config) {
 
 void Deformation::advance(const StepRecord& record) {
   for (std::size_t i = 0; i < objects_.size(); ++i) {
+    if (objects_[i].feels_spin) objects_[i].engine->hold_spin(record.object[i].spin);
     objects_[i].engine->advance(objects_[i].forces->of(record.object[i]));
   }
 }

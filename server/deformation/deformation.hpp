@@ -34,14 +34,14 @@ struct SurfaceFrame {
 SurfaceFrame rest_frame(const SimulationConfig& config);
 
 /// Follows the force thread's steps with engines of its own. Because an engine's state depends on
-/// nothing but the forces, the two always agree, and nobody has to wait for a snapshot. Pure; one
-/// thread.
+/// nothing but the forces and the spin, the two always agree, and nobody has to wait for a
+/// snapshot. Pure; one thread.
 class Deformation {
  public:
   explicit Deformation(const SimulationConfig& config);
 
-  /// Takes in the next step. Steps that were lost on the way are taken to have had the forces of
-  /// the one before them; how many, is counted.
+  /// Takes in the next step. Steps that were lost on the way are taken to have had the forces
+  /// and the spin of the one before them; how many, is counted.
   void follow(const StepRecord& record);
 
   /// Displacements of all nodes after the last step taken in (OpenMP). The frame has the objects'
@@ -56,6 +56,7 @@ class Deformation {
     std::unique_ptr<ResponseEngine> engine;
     std::unique_ptr<RestSurface> surface;
     std::unique_ptr<RecordedForces> forces;
+    bool feels_spin;
   };
   void advance(const StepRecord& record);
 

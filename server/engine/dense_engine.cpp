@@ -1,6 +1,7 @@
 #include "server/engine/dense_engine.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "server/engine/kernels.hpp"
 
@@ -8,23 +9,29 @@ namespace irdm {
 
 template <typename Scalar>
 DenseEngine<Scalar>::DenseEngine(std::shared_ptr<const Model> model)
-    : model_(std::move(model)), history_(model_->mesh.surface_node_count(), model_->steps) {
+    : model_(std::move(model)),
+      history_(model_->mesh.surface_node_count(), model_->steps),
+      spin_history_(kSpinProducts / 3, model_->steps) {
   const auto& response = std::get<DenseResponse>(model_->response);
   values_ = std::get<std::vector<Scalar>>(response.values).data();
+  if (has_centrifugal(*model_)) {
+    centrifugal_ = std::get<std::vector<Scalar>>(response.centrifugal).data();
+  }
   dof_ = static_cast<std::size_t>(response.degrees_of_freedom);
   steps_ = static_cast<std::size_t>(response.steps);
 }
 
 template <typename Scalar>
-double DenseEngine<Scalar>::convolve(int a, int shift) const noexcept {
+double DenseEngine<Scalar>::convolve(const Scalar* values, const ForceHistory& history, int a,
+                                     int shift) const noexcept {
   double u = 0.0;
-  for (const int node : history_.active()) {
+  for (const int node : history.active()) {
     for (int axis = 0; axis < 3; ++axis) {
-      const ForceHistory::Series series = history_.series(node, axis);
+      const ForceHistory::Series series = history.series(node, axis);
       const int first = series.first_age + shift;
       const int count = std::min(series.count, static_cast<int>(steps_) - first);
       if (count > 0) {
-        u += dot(response(a, 3 * node + axis) + first, series.force,
+        u += dot(response(values, a, 3 * node + axis) + first, series.force,
                  static_cast<std::size_t>(count));
       }
     }
@@ -33,8 +40,27 @@ double DenseEngine<Scalar>::convolve(int a, int shift) const noexcept {
 }
 
 template <typename Scalar>
+void DenseEngine<Scalar>::hold_spin(const Vector3& w) noexcept {
+  if (centrifugal_ != nullptr) coming_ = spin_products(w);
+}
+
+template <typename Scalar>
+double DenseEngine<Scalar>::free_spin_displacement(int a) const noexcept {
+  double u = convolve(centrifugal_, spin_history_, a, 1);
+  for (int p = 0; p < kSpinProducts; ++p) {
+    u += static_cast<double>(*response(centrifugal_, a, p)) * coming_[p];
+  }
+  return u;
+}
+
+template <typename Scalar>
 Vector3 DenseEngine<Scalar>::free_displacement(int node) const noexcept {
-  return {convolve(3 * node, 1), convolve(3 * node + 1, 1), convolve(3 * node + 2, 1)};
+  Vector3 u;
+  for (int axis = 0; axis < 3; ++axis) {
+    u[axis] = convolve(values_, history_, 3 * node + axis, 1);
+    if (centrifugal_ != nullptr) u[axis] += free_spin_displacement(3 * node + axis);
+  }
+  return u;
 }
 
 template <typename Scalar>
@@ -46,7 +72,7 @@ Matrix3 DenseEngine<Scalar>::within_step(const ContactPatch& a,
       const double weight = a.weights[i] * b.weights[j];
       for (int row = 0; row < 3; ++row) {
         for (int column = 0; column < 3; ++column) {
-          const Scalar entry = *response(3 * a.nodes[i] + row, 3 * b.nodes[j] + column);
+          const Scalar entry = *response(values_, 3 * a.nodes[i] + row, 3 * b.nodes[j] + column);
           sum(row, column) += weight * static_cast<double>(entry);
         }
       }
@@ -72,6 +98,11 @@ void DenseEngine<Scalar>::predict(std::span<const ContactPatch> patches, std::sp
 template <typename Scalar>
 void DenseEngine<Scalar>::advance(std::span<const NodalForce> forces) noexcept {
   history_.push(forces);
+  if (centrifugal_ == nullptr) return;
+  const std::array<NodalForce, kSpinProducts / 3> products{NodalForce{0, coming_.head<3>()},
+                                                           NodalForce{1, coming_.tail<3>()}};
+  spin_history_.push(coming_.isZero(0.0) ? std::span<const NodalForce>() : products);
+  coming_.setZero();
 }
 
 template <typename Scalar>
@@ -80,7 +111,11 @@ void DenseEngine<Scalar>::displacement(Points& u) const {
   u.resize(nodes, 3);
 #pragma omp parallel for schedule(static)
   for (int node = 0; node < nodes; ++node) {
-    for (int axis = 0; axis < 3; ++axis) u(node, axis) = convolve(3 * node + axis, 0);
+    for (int axis = 0; axis < 3; ++axis) {
+      u(node, axis) = convolve(values_, history_, 3 * node + axis, 0);
+      if (centrifugal_ == nullptr) continue;
+      u(node, axis) += convolve(centrifugal_, spin_history_, 3 * node + axis, 0);
+    }
   }
 }
 
@@ -89,7 +124,7 @@ Eigen::MatrixXd DenseEngine<Scalar>::instant_compliance() const {
   const auto dof = static_cast<int>(dof_);
   Eigen::MatrixXd R(dof, dof);
   for (int b = 0; b < dof; ++b) {
-    for (int a = 0; a < dof; ++a) R(a, b) = static_cast<double>(*response(a, b));
+    for (int a = 0; a < dof; ++a) R(a, b) = static_cast<double>(*response(values_, a, b));
   }
   return R;
 }
@@ -97,6 +132,8 @@ Eigen::MatrixXd DenseEngine<Scalar>::instant_compliance() const {
 template <typename Scalar>
 void DenseEngine<Scalar>::reset() noexcept {
   history_.clear();
+  spin_history_.clear();
+  coming_.setZero();
 }
 
 template class DenseEngine<float>;

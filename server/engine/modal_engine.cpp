@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/response/oscillator.hpp"
+#include "common/response/spin_products.hpp"
 #include "server/engine/kernels.hpp"
 
 namespace irdm {
@@ -11,6 +12,7 @@ template <typename Scalar>
 ModalEngine<Scalar>::ModalEngine(std::shared_ptr<const Model> model) : model_(std::move(model)) {
   const auto& response = std::get<ModalResponse>(model_->response);
   shapes_ = &std::get<RowMatrix<Scalar>>(response.shapes);
+  if (response.centrifugal.rows() > 0) centrifugal_ = response.centrifugal.data();
   modes_ = static_cast<std::size_t>(response.mode_count());
   for (auto* values : {&a11_, &a12_, &a21_, &a22_, &b1_, &b2_, &coordinate_, &velocity_,
                        &free_coordinate_, &free_velocity_, &modal_force_, &weighted_row_}) {
@@ -27,6 +29,17 @@ ModalEngine<Scalar>::ModalEngine(std::shared_ptr<const Model> model) : model_(st
     a22_[i] = step.a22;
     b1_[i] = step.b1;
     b2_[i] = step.b2;
+  }
+}
+
+template <typename Scalar>
+void ModalEngine<Scalar>::hold_spin(const Vector3& w) noexcept {
+  if (centrifugal_ == nullptr) return;
+  const SpinProducts q = spin_products(w);
+  for (std::size_t i = 0; i < modes_; ++i) {
+    const double force = Eigen::Map<const SpinProducts>(centrifugal_ + i * kSpinProducts).dot(q);
+    free_coordinate_[i] += b1_[i] * force;
+    free_velocity_[i] += b2_[i] * force;
   }
 }
 

@@ -14,6 +14,8 @@ class ModalEngine final : public ResponseEngine {
   /// @param model holds a ModalResponse with shapes of type Scalar
   explicit ModalEngine(std::shared_ptr<const Model> model);
 
+  bool takes_spin() const noexcept override { return centrifugal_ != nullptr; }
+  void hold_spin(const Vector3& w) noexcept override;
   Vector3 free_displacement(int node) const noexcept override;
   void predict(std::span<const ContactPatch> patches, std::span<Vector3> h,
                ContactMatrix& compliance) noexcept override;
@@ -29,13 +31,14 @@ class ModalEngine final : public ResponseEngine {
   }
 
   std::shared_ptr<const Model> model_;
-  const RowMatrix<Scalar>* shapes_;  ///< Phi (3n, r)
-  std::size_t modes_;                ///< r
+  const RowMatrix<Scalar>* shapes_;      ///< Phi (3n, r)
+  const double* centrifugal_ = nullptr;  ///< g (r, 6); null: the model has none
+  std::size_t modes_;                    ///< r
   // Transition of each mode over one step, one array a coefficient.
   std::vector<double> a11_, a12_, a21_, a22_, b1_, b2_;
   std::vector<double> coordinate_, velocity_;  ///< at the end of the last step
   std::vector<double> free_coordinate_,
-      free_velocity_;  ///< at the end of the coming step, no force
+      free_velocity_;  ///< at the end of the coming step, no force but that of the held spin
   std::vector<double> modal_force_;
   std::vector<double> contact_shapes_;  ///< (3 kMaxContacts, r): rows sum_i w_i Phi_i
   std::vector<double> weighted_row_;    ///< one such row times b1

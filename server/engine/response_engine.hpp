@@ -24,6 +24,14 @@ class ResponseEngine {
  public:
   virtual ~ResponseEngine() = default;
 
+  /// Whether the model says what its own spin does to it.
+  virtual bool takes_spin() const noexcept = 0;
+
+  /// The body turns with w [rad/s], B, throughout the coming step: its centrifugal load acts
+  /// besides the forces. Before all else that is asked about the step, at most once a step; without
+  /// it there is no such load. Only where takes_spin().
+  virtual void hold_spin(const Vector3& w) noexcept = 0;
+
   /// Displacement of a node at the end of the coming step if no force acts during it [m].
   virtual Vector3 free_displacement(int node) const noexcept = 0;
 

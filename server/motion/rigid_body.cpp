@@ -44,6 +44,13 @@ RigidState RigidBody::advance(const RigidState& state, const Vector3& force,
   return next;
 }
 
+Vector3 RigidBody::mid_step_spin(const RigidState& state) const noexcept {
+  if (!moves_) return Vector3::Zero();
+  const Vector3 w = step_angular_velocity(state.orientation, state.angular_momentum);
+  const Quaternion half = rotation_from_vector(0.5 * dt_ * w) * state.orientation;
+  return inverse_inertia_ * (half.conjugate() * state.angular_momentum);
+}
+
 Vector3 RigidBody::angular_velocity(const RigidState& state) const noexcept {
   const Quaternion& Q = state.orientation;
   return Q * (inverse_inertia_ * (Q.conjugate() * state.angular_momentum));

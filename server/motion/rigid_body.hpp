@@ -35,6 +35,10 @@ class RigidBody {
   Vector3 step_angular_velocity(const Quaternion& orientation,
                                 const Vector3& angular_momentum) const noexcept;
 
+  /// The same in B as the body stands half-way through that step [rad/s]: what the elastic part
+  /// feels of the spin. Zero when fixed.
+  Vector3 mid_step_spin(const RigidState& state) const noexcept;
+
   /// Instantaneous angular velocity [rad/s], W.
   Vector3 angular_velocity(const RigidState& state) const noexcept;
 

@@ -32,6 +32,8 @@ struct SimulationObject {
   Friction friction;                                ///< of tips on its surface
   RigidDamping damping;
   Tether tether;
+  /// Centrifugal loading of the elastic part by the body's own spin. false: none, as in the paper.
+  bool inertial_loading = false;
 };
 
 /// A plane on which objects rest; the side that the normal points to is free.

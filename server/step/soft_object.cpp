@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "common/error.hpp"
+#include "server/step/inertial_loading.hpp"
 
 namespace irdm {
 namespace {
@@ -45,10 +46,12 @@ SoftObject::SoftObject(const SimulationObject& object, const SimulationConfig& c
       rest_(model_->mesh),
       surface_(rest_),
       body_(model_->body, model_->dt),
+      feels_spin_(irdm::feels_spin(*model_, object.inertial_loading)),
       styluses_(config.styluses.size()),
       problem_(kMaxContacts + (config.floor ? kMaxFloorContacts : 0)),
       solver_(problem_.capacity()),
       nodal_(kMaxContacts * kMaxPatchNodes + kMaxFloorContacts) {
+  check_inertial_loading(*model_, object.inertial_loading, "object");
   start_.position = object.position;
   start_.orientation = object.orientation.normalized();
   start_.velocity = object.velocity;
@@ -77,6 +80,7 @@ void SoftObject::reset() noexcept {
 }
 
 void SoftObject::step(std::span<const StylusCommand> commands, ObjectRecord& record) noexcept {
+  spin(record);
   surface_.begin_step(*engine_);
   motion_ = predict_free_motion();
   collect(commands);
@@ -95,6 +99,15 @@ void SoftObject::step(std::span<const StylusCommand> commands, ObjectRecord& rec
       contact.proxy = state_.position + state_.orientation * contact.proxy;
     }
   }
+}
+
+// The spin that the step begins with, without the torques of the step itself: contacts are solved
+// on a surface that their own forces do not yet blow up.
+void SoftObject::spin(ObjectRecord& record) noexcept {
+  record.spin.setZero();
+  if (!feels_spin_) return;
+  record.spin = body_.mid_step_spin(state_);
+  engine_->hold_spin(record.spin);
 }
 
 FreeMotion SoftObject::predict_free_motion() const noexcept {

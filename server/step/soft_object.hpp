@@ -25,7 +25,8 @@ namespace irdm {
 /// contacts with the floor.
 class SoftObject {
  public:
-  /// Throws Error when the model lacks the response that its engine needs, or a fingertip is too
+  /// Throws Error when the model lacks the response that its engine or its spin needs, or a
+  /// fingertip is too
   /// large for its surface.
   SoftObject(const SimulationObject& object, const SimulationConfig& config, int number);
 
@@ -45,6 +46,7 @@ class SoftObject {
     bool given = false;
     Vector3 arm = Vector3::Zero();  ///< r_a = X_a + h_a [m], B
   };
+  void spin(ObjectRecord& record) noexcept;
   FreeMotion predict_free_motion() const noexcept;
   void collect(std::span<const StylusCommand> commands) noexcept;
   void predict_contacts() noexcept;
@@ -65,6 +67,7 @@ class SoftObject {
   RestSurface rest_;
   DeformedSurface surface_;
   RigidBody body_;
+  bool feels_spin_;
   RigidState start_;
   RigidState state_;
   std::vector<GodObject> styluses_;

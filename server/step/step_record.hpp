@@ -57,6 +57,7 @@ struct ObjectRecord {
   Quaternion orientation = Quaternion::Identity();  ///< B to W
   Vector3 velocity = Vector3::Zero();               ///< [m/s], W
   Vector3 angular_velocity = Vector3::Zero();       ///< [rad/s], W
+  Vector3 spin = Vector3::Zero();  ///< that loaded the elastic part during the step [rad/s], B
   std::array<ContactRecord, kMaxStyluses> contact;
   int floor_count = 0;
   std::array<FloorForce, kMaxFloorContacts> floor;  ///< the first floor_count

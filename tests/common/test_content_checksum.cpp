@@ -58,6 +58,9 @@ TEST_CASE("every part of a model has its share in the checksum") {
   SECTION("frequencies") {
     std::get<ModalResponse>(other.response).angular_frequency(4) += 1e-9;
   }
+  SECTION("centrifugal forces") {
+    test::add_centrifugal(other);
+  }
   SECTION("shapes") {
     std::get<RowMatrix<double>>(std::get<ModalResponse>(other.response).shapes)(3, 2) += 1e-9;
   }

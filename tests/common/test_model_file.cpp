@@ -20,6 +20,7 @@ Model small_model() {
   response.angular_frequency = Eigen::Vector2d(10, 20);
   response.decay_rate = Eigen::Vector2d(1, 2);
   response.shapes = RowMatrix<float>(RowMatrix<float>::Random(12, 2));
+  response.centrifugal = RowMatrix<double>::Random(2, 6);
   model.response = response;
   return model;
 }
@@ -50,6 +51,15 @@ TEST_CASE("model file gives back what was written, modal and dense") {
       }
       writer.write_dense_column(b, column.data());
     }
+    RowMatrix<float> centrifugal(6 * 3, 12);
+    for (int p = 0; p < 6; ++p) {
+      for (int s = 0; s < 3; ++s) {
+        for (int a = 0; a < 12; ++a) {
+          centrifugal(3 * p + s, a) = static_cast<float>(1000 * p + 100 * s + a);
+        }
+      }
+    }
+    writer.write_dense_centrifugal(centrifugal.data());
     CHECK_FALSE(std::filesystem::exists(path));
     writer.commit();
   }
@@ -63,11 +73,38 @@ TEST_CASE("model file gives back what was written, modal and dense") {
   const auto& response = std::get<ModalResponse>(read.response);
   CHECK(response.angular_frequency == modal.angular_frequency);
   CHECK(std::get<RowMatrix<float>>(response.shapes) == std::get<RowMatrix<float>>(modal.shapes));
+  CHECK(response.centrifugal == modal.centrifugal);
+  CHECK(has_centrifugal(read));
+  CHECK(hdf5::File::open(path).read_string_attribute(kModalCentrifugal, "order") ==
+        "xx yy zz yz xz xy");
+  CHECK(hdf5::File::open(path).read_string_attribute(kDenseCentrifugal, "unit") == "m s^2");
 
   const Model dense_model = read_model(path, ResponseKind::kDense);
   const auto& dense = std::get<DenseResponse>(dense_model.response);
   const auto& values = std::get<std::vector<float>>(dense.values);
   CHECK(values[(7 * 12 + 5) * 3 + 2] == 7205.0f);  // b = 7, a = 5, s = 2
+  const auto& spun = std::get<std::vector<float>>(dense.centrifugal);
+  CHECK(spun[(4 * 12 + 5) * 3 + 2] == 4205.0f);  // product 4, a = 5, s = 2
+}
+
+TEST_CASE("model file of before there were centrifugal responses is read as ever") {
+  const TemporaryFolder folder;
+  const auto path = folder.path / "model.h5";
+  Model model = small_model();
+  std::get<ModalResponse>(model.response).centrifugal.resize(0, 0);
+  {
+    ModelFileWriter writer(path);
+    writer.write_description(model);
+    writer.write_modal(std::get<ModalResponse>(model.response));
+    writer.begin_dense(12, 3, Precision::kDouble);
+    const RowMatrix<double> column = RowMatrix<double>::Ones(3, 12);
+    for (int b = 0; b < 12; ++b) writer.write_dense_column(b, column.data());
+    writer.commit();
+  }
+  CHECK_FALSE(hdf5::File::open(path).exists(kModalCentrifugal));
+  CHECK_FALSE(hdf5::File::open(path).exists(kDenseCentrifugal));
+  CHECK_FALSE(has_centrifugal(read_model(path, ResponseKind::kModal)));
+  CHECK_FALSE(has_centrifugal(read_model(path, ResponseKind::kDense)));
 }
 
 TEST_CASE("model file without commit leaves nothing behind") {
@@ -111,6 +148,12 @@ TEST_CASE("model file that is missing, truncated, foreign or damaged is refused 
     model.body.mass = 0;
     write();
     CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal), Contains("mass"));
+  }
+  SECTION("centrifugal force that is not finite") {
+    std::get<ModalResponse>(model.response).centrifugal(1, 5) =
+        std::numeric_limits<double>::infinity();
+    write();
+    CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal), Contains("centrifugal"));
   }
   SECTION("negative frequency") {
     std::get<ModalResponse>(model.response).angular_frequency(0) = -1;

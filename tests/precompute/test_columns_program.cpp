@@ -89,7 +89,9 @@ TEST_CASE("slices join to the file of a whole run, bit for bit, by both methods"
     CHECK_THAT(run.out, Contains("part of a model file"));
     run.good("merge c.part a.part b.part -o joined.h5");
     CHECK((run.content("joined.h5") == run.content("whole.h5")));
-    CHECK(read_model(run.path() / "joined.h5", ResponseKind::kDense).degrees_of_freedom() == kDof);
+    const Model joined = read_model(run.path() / "joined.h5", ResponseKind::kDense);
+    CHECK(joined.degrees_of_freedom() == kDof);
+    CHECK(has_centrifugal(joined) == (config != kStepping));
     CHECK_FALSE(run.has("whole.h5.columns"));
     CHECK_FALSE(run.has("a.part.columns"));
   }

@@ -34,7 +34,7 @@ TEST_CASE("every key of a scene arrives where it belongs") {
       "[contact]\ncoupling_stiffness = 1500\n"
       "[[object]]\nname = \"liver\"\nmodel = \"/models/liver.h5\"\nengine = \"dense\"\n"
       "position = [4, 5, 6]\norientation = [0, 3, 0, 0]\nvelocity = [7, 8, 9]\n"
-      "angular_velocity = [10, 11, 12]\n");
+      "angular_velocity = [10, 11, 12]\ninertial_loading = true\n");
   CHECK(read.server.address == "127.0.0.2");
   CHECK(read.server.port == 4711);
   CHECK(read.server.styluses == 3);
@@ -51,6 +51,7 @@ TEST_CASE("every key of a scene arrives where it belongs") {
   CHECK(object.orientation.isApprox(Quaternion(0, 1, 0, 0)));
   CHECK(object.velocity == Vector3(7, 8, 9));
   CHECK(object.angular_velocity == Vector3(10, 11, 12));
+  CHECK(object.inertial_loading);
 }
 
 TEST_CASE("a scene needs only a model, the rest has defaults") {
@@ -69,6 +70,9 @@ TEST_CASE("a scene needs only a model, the rest has defaults") {
   CHECK(object.orientation.isApprox(Quaternion::Identity()));
   CHECK(object.velocity.isZero(0.0));
   CHECK(object.angular_velocity.isZero(0.0));
+  CHECK_FALSE(object.inertial_loading);
+  CHECK_THAT(rejection(kObject + "inertial_loading = 1\n"),
+             StartsWith("s.toml:3: object[0].inertial_loading is not true or false"));
 }
 
 TEST_CASE("each limit of a scene: the last good value passes, the first bad one is told") {

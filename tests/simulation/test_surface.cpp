@@ -16,6 +16,8 @@ class FakeEngine final : public ResponseEngine {
   FakeEngine(const ModelMesh& mesh, const Field& field) {
     for (int i = 0; i < mesh.surface_node_count(); ++i) u_.push_back(field(mesh.rest_position(i)));
   }
+  bool takes_spin() const noexcept override { return false; }
+  void hold_spin(const Vector3&) noexcept override {}
   Vector3 free_displacement(int node) const noexcept override {
     ++evaluations;
     return u_[static_cast<std::size_t>(node)];

@@ -1,5 +1,6 @@
 #include "tests/support/synthetic_model.hpp"
 
+#include <algorithm>
 #include <map>
 #include <random>
 
@@ -86,6 +87,16 @@ Model synthetic_cube(int cells, int modes, int steps, double edge, unsigned seed
   return model;
 }
 
+void add_centrifugal(Model& modal, unsigned seed) {
+  auto& response = std::get<ModalResponse>(modal.response);
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  response.centrifugal.resize(response.mode_count(), 6);
+  for (Eigen::Index i = 0; i < response.centrifugal.size(); ++i) {
+    response.centrifugal.data()[i] = 0.05 * std::sqrt(modal.body.mass) * uniform(random);
+  }
+}
+
 template <typename Scalar>
 Model with_dense_response(const Model& modal) {
   const auto& response = std::get<ModalResponse>(modal.response);
@@ -100,19 +111,21 @@ Model with_dense_response(const Model& modal) {
                                    modal.steps)
                    .transpose();
   }
-  for (int b = 0; b < dof; ++b) {
-    const Eigen::MatrixXd column = shapes * shapes.row(b).asDiagonal() * h;  // (3n, T)
-    for (int a = 0; a < dof; ++a) {
-      for (int s = 0; s < modal.steps; ++s) {
-        values[(static_cast<std::size_t>(b) * static_cast<std::size_t>(dof) +
-                static_cast<std::size_t>(a)) *
-                   static_cast<std::size_t>(modal.steps) +
-               static_cast<std::size_t>(s)] = static_cast<Scalar>(column(a, s));
-      }
+  // Entry (a, b, s) of Phi diag(load_b) h.
+  const auto fill = [&](const RowMatrix<double>& loads, std::vector<Scalar>& into) {
+    for (Eigen::Index b = 0; b < loads.rows(); ++b) {
+      const RowMatrix<double> column = shapes * loads.row(b).asDiagonal() * h;  // (3n, T)
+      std::transform(column.data(), column.data() + column.size(), into.begin() + b * column.size(),
+                     [](double value) { return static_cast<Scalar>(value); });
     }
-  }
+  };
+  fill(shapes, values);
+  std::vector<Scalar> centrifugal(
+      static_cast<std::size_t>(response.centrifugal.size() == 0 ? 0 : 6) *
+      static_cast<std::size_t>(dof) * static_cast<std::size_t>(modal.steps));
+  fill(response.centrifugal.transpose(), centrifugal);
   Model dense = modal;
-  dense.response = DenseResponse{dof, modal.steps, std::move(values)};
+  dense.response = DenseResponse{dof, modal.steps, std::move(values), std::move(centrifugal)};
   return dense;
 }
 

@@ -11,7 +11,11 @@ namespace irdm::test {
 /// on it without finite elements. dt = 2 ms.
 Model synthetic_cube(int cells, int modes, int steps, double edge = 0.12, unsigned seed = 1);
 
-/// The same object with R itself, computed from its modes by the closed form, as a DenseResponse.
+/// Gives its modes made-up centrifugal forces.
+void add_centrifugal(Model& modal, unsigned seed = 2);
+
+/// The same object with R itself, and the centrifugal response if there is one, computed from its
+/// modes by the closed form, as a DenseResponse.
 template <typename Scalar>
 Model with_dense_response(const Model& modal);
 

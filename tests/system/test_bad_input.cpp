@@ -135,6 +135,12 @@ TEST_CASE("model file with wrong content: one line, status 1, no trace") {
   std::filesystem::remove(stage.path("cube.h5"));
   hdf5::File::create(stage.path("cube.h5")).write_attribute("/", "format", std::string("other"));
   check_server_refuses(stage, "is not a model file");
+  // A sound model of before there was inertial loading.
+  stage.write("scene.toml", replaced(scene_text() + "inertial_loading = true\n",
+                                     cube_model().string(), "cube.h5"));
+  refused([](Model& model) { std::get<ModalResponse>(model.response).centrifugal.resize(0, 0); },
+          "cube.h5: has no centrifugal response for engine = \"modal\", which inertial_loading "
+          "needs; precompute it again with method = \"modal\"");
 }
 
 TEST_CASE("a fixed object without a coupling spring: one line, status 1, no trace") {

@@ -85,6 +85,15 @@ Vector3 contact_force(const Model& model, const SceneConfig& scene, const Body& 
   return W.partialPivLu().solve(p - r);
 }
 
+/// The angular velocity half-way through a step without torque [rad/s], B: what inertial loading
+/// holds during it.
+Vector3 held_spin(const Body& body, const Model& model) {
+  const Vector3 w = free_angular_velocity(body, model.body.inertia, model.dt);
+  const Matrix3 half = Eigen::AngleAxisd(0.5 * model.dt * w.norm(), w.normalized()) *
+                       body.orientation.toRotationMatrix();
+  return half.transpose() * w;
+}
+
 }  // namespace
 
 TEST_CASE("forces are recomputed from a trace and its model alone") {
@@ -133,4 +142,58 @@ TEST_CASE("forces are recomputed from a trace and its model alone") {
   REQUIRE(peak > 0.2);
   INFO("largest difference " << worst << " N, peak " << peak << " N");
   CHECK(worst < 1e-9 * peak);
+}
+
+TEST_CASE("the touched point's place is recomputed from a trace, inertial loading included") {
+  const std::string kind = GENERATE("modal", "dense");
+  const Stage stage;
+  stage.write("scene.toml", scene_text("", kind) +
+                                "angular_velocity = [0.5, 3.0, -0.2]\ninertial_loading = true\n");
+  Server server = stage.start_server({"--lockstep", "--record", stage.path("trace.h5").string()});
+  ChildProcess bridge = stage.start_bridge(server);
+  REQUIRE(bridge.wait() == 0);
+  REQUIRE(server.process.wait() == 0);
+
+  const Trace trace = read_trace(stage.path("trace.h5"));
+  const ObjectConfig object = read_scene(TomlTable::parse_text(trace.scene, "scene")).objects.at(0);
+  const auto model = std::make_shared<const Model>(
+      read_model(object.model, kind == "modal" ? ResponseKind::kModal : ResponseKind::kDense));
+  const auto with = make_engine(model);
+  const auto without = make_engine(model);
+  double worst = 0.0;
+  double worst_without = 0.0;
+  std::size_t compared = 0;
+  Points u;
+  for (std::size_t k = 0; k < trace.rows(); ++k) {
+    const Body before = body_before(trace, object, k);
+    const SurfacePoint point = contact_point(trace, k);
+    const bool free = trace.contact[k] == kFree;
+    std::vector<NodalForce> nodal;
+    const Vector3 force = -(before.orientation.conjugate() * trace.vector("/stylus/0/force", k));
+    for (std::size_t i = 0; i < 3 && !free; ++i) {
+      nodal.push_back({point.nodes[i], point.weights[i] * force});
+    }
+    with->hold_spin(held_spin(before, *model));
+    with->advance(nodal);
+    without->advance(nodal);
+    if (free) continue;
+    const auto error = [&](const ResponseEngine& engine) {
+      engine.displacement(u);
+      Vector3 r = Vector3::Zero();
+      for (std::size_t i = 0; i < 3; ++i) {
+        r += point.weights[i] *
+             (model->mesh.rest_position(point.nodes[i]) + u.row(point.nodes[i]).transpose());
+      }
+      return (trace.vector("/step/body_position", k) + trace.orientation(k) * r -
+              trace.vector("/stylus/0/proxy", k))
+          .norm();
+    };
+    worst = std::max(worst, error(*with));
+    worst_without = std::max(worst_without, error(*without));
+    ++compared;
+  }
+  INFO("largest difference " << worst << " m, without the spin " << worst_without << " m");
+  CHECK(compared > 300);
+  CHECK(worst < 1e-12);
+  CHECK(worst_without > 1e-5);
 }

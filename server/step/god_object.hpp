@@ -63,7 +63,8 @@ class GodObject {
   bool slipping_ = false;
   bool releasing_ = false;
   int release_steps_ = 0;
-  bool grabbed_before_ = false;  ///< the button was down in the last step
+  /// The button was down in the last step, or nobody was there to see it up.
+  bool grabbed_before_ = true;
   /// The tip was outside the surface when last seen near it. Only from there can it make a contact.
   bool outside_ = false;
   Vector3 last_tip_ = Vector3::Zero();  ///< relative to the free motion [m], B

@@ -1,5 +1,7 @@
 #include "server/step/simulation.hpp"
 
+#include <utility>
+
 #include "common/error.hpp"
 
 namespace irdm {
@@ -13,6 +15,7 @@ Simulation::Simulation(const SimulationConfig& config) : stylus_count_(config.st
     throw Error("scene", "has " + std::to_string(config.styluses.size()) + " styluses",
                 "use 1 to " + std::to_string(kMaxStyluses));
   }
+  reset_down_.fill(true);
   dt_ = config.objects.front().model->dt;
   for (const SimulationObject& object : config.objects) {
     if (object.model->dt != dt_) {
@@ -25,9 +28,26 @@ Simulation::Simulation(const SimulationConfig& config) : stylus_count_(config.st
 
 void Simulation::reset() noexcept {
   for (const auto& object : objects_) object->reset();
+  was_reset_ = true;
+  reset_step_ = next_step_;
 }
 
-void Simulation::step(std::span<const StylusCommand> commands, StepRecord& record) noexcept {
+// A button that is down when its stylus appears has not gone down.
+bool Simulation::reset_pressed(std::span<const StylusCommand> commands) noexcept {
+  bool pressed = false;
+  for (std::size_t s = 0; s < stylus_count_; ++s) {
+    const bool down = !commands[s].present || (commands[s].buttons & kResetButton) != 0;
+    pressed = pressed || (commands[s].present && down && !reset_down_[s]);
+    reset_down_[s] = down;
+  }
+  return pressed;
+}
+
+void Simulation::step(std::span<const StylusCommand> commands, StepRecord& record,
+                      bool put_back) noexcept {
+  if (reset_pressed(commands) || put_back) reset();
+  record.reset = std::exchange(was_reset_, false);
+  record.reset_step = reset_step_;
   record.force_step = next_step_++;
   record.time = static_cast<double>(next_step_) * dt_;
   record.object_count = object_count();

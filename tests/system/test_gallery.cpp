@@ -146,7 +146,7 @@ TEST_CASE("gallery, two cubes: the stiff one gives the larger and shorter blow")
   };
   CHECK(played.peak_force(1) > 2.0 * played.peak_force(0));
   REQUIRE(steps(1) > 3);
-  CHECK(2 * steps(1) < steps(0));
+  CHECK(3 * steps(1) < 2 * steps(0));
   // Each stylus touches the cube that is under it, and both cubes go down.
   for (const std::string name : {"soft", "stiff"}) {
     CHECK(played.vector("/object/" + name + "/body_position", played.rows() - 1).y() < -0.1);
@@ -157,13 +157,15 @@ TEST_CASE("gallery, two cubes: the stiff one gives the larger and shorter blow")
         std::vector<std::uint8_t>(played.rows(), 0));
 }
 
-TEST_CASE("gallery, pinch: friction lifts the cube as far as the tips go up") {
+TEST_CASE("gallery, pinch: friction lifts the cube as far as the pinched points go up") {
   Played played("pinch");
   const std::size_t below = played.row(1.55);
   const std::size_t above = played.row(3.5);
-  const double lift = 0.5 * (played.tip(above, 0) + played.tip(above, 1) - played.tip(below, 0) -
-                             played.tip(below, 1))
-                                .y();
+  // Of the points that the tips hold; between tip and point is the coupling spring.
+  const auto held = [&](std::size_t k) {
+    return 0.5 * (played.vector("/stylus/0/proxy", k) + played.vector("/stylus/1/proxy", k)).y();
+  };
+  const double lift = held(above) - held(below);
   CHECK(lift > 0.04);
   CHECK(played.position(above).y() - played.position(below).y() == Approx(lift).margin(2e-3));
   // In the air the two of them carry it.

@@ -18,7 +18,7 @@ namespace irdm {
 class Simulation {
  public:
   /// Throws Error when a model lacks the response that its engine needs, when models differ in dt,
-  /// or when there are too many objects or styluses.
+  /// when damping or tether are too strong for it, or when there are too many objects or styluses.
   explicit Simulation(const SimulationConfig& config);
 
   /// Step k = 0, 1, ...: from time k dt to (k + 1) dt. Before it everything is put back to the

@@ -293,15 +293,20 @@ TEST_CASE("a key that no table of a scene knows is an error") {
   CHECK(rejection(kObject + "mesh = 1\n") == "s.toml:3: " + unknown("object[0].mesh"));
 }
 
-TEST_CASE("every scene in configs is a scene") {
+TEST_CASE("every scene in configs is a scene, and its models have configurations") {
   int scenes = 0;
   for (const auto& entry : std::filesystem::directory_iterator(IRDM_SOURCE_DIR "/configs/scenes")) {
     if (entry.path().extension() != ".toml") continue;
     CAPTURE(entry.path());
-    CHECK_NOTHROW(read_scene(TomlTable::parse_file(entry.path())));
+    const SceneConfig read = read_scene(TomlTable::parse_file(entry.path()));
+    for (const ObjectConfig& object : read.objects) {  // scripts/play.sh makes it from there
+      const auto config = object.model.filename().replace_extension(".toml");
+      CHECK(std::filesystem::exists(std::filesystem::path(IRDM_SOURCE_DIR "/configs/models") /
+                                    config));
+    }
     ++scenes;
   }
-  CHECK(scenes >= 2);
+  CHECK(scenes >= 10);
 }
 
 TEST_CASE("a file that cannot be read is told") {

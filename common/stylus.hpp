@@ -7,13 +7,15 @@
 namespace irdm {
 
 /// Bit 0 of StylusSample::buttons is the grab button.
-inline constexpr std::uint32_t kGrabButton = 1u;
+inline constexpr std::uint32_t kGrabButton = 1u << 0;
+/// Bit 1 is the reset button: when it goes down, every object is put back to the start.
+inline constexpr std::uint32_t kResetButton = 1u << 1;
 
 /// What a bridge knows of one stylus at one moment.
 struct StylusSample {
   std::uint64_t sequence = 0;  ///< strictly increasing from 0; in lockstep the number of the step
   std::int64_t time_ns = 0;    ///< the bridge's monotonic clock when it was taken
-  std::uint32_t buttons = 0;
+  std::uint32_t buttons = 0;   ///< kGrabButton, kResetButton; other bits mean nothing
   Vector3 tip = Vector3::Zero();                    ///< [m], W
   Quaternion orientation = Quaternion::Identity();  ///< of the stylus in W
 };

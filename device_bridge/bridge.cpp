@@ -48,7 +48,8 @@ BridgeReport run_bridge(const BridgeConfig& config, StopSignal& stop_signal, dou
   double longest = 0.0;
   bool simulated = true;
   for (const auto& device : devices.all()) {
-    loops.emplace_back(*device, GuardLimits{.max_force = config.max_force});
+    loops.emplace_back(*device, GuardLimits{.max_force = config.max_force},
+                       config.devices[loops.size()].mapping);
     longest = std::max(longest, device->duration());
     simulated = simulated && device->simulated();
   }

@@ -1,6 +1,7 @@
 #include "device_bridge/bridge_config.hpp"
 
 #include <charconv>
+#include <set>
 
 #include "common/config/toml_reader.hpp"
 #include "common/error.hpp"
@@ -18,6 +19,43 @@ HandParameters read_hand(TomlTable table) {
   return hand;
 }
 
+Workspace read_workspace(TomlTable table) {
+  constexpr double kFarthest = 100.0;
+  const Range factor = between(0.01, 100.0);
+  Workspace workspace;
+  workspace.position =
+      Vector3(table.numbers("position", 3, between(-kFarthest, kFarthest), {0.0, 0.0, 0.0}).data());
+  const auto wxyz = table.numbers("rotation", 4, between(-kFarthest, kFarthest), {1, 0, 0, 0});
+  const Quaternion rotation(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
+  if (rotation.norm() < 1e-6) {
+    table.fail("rotation", "has no length",
+               "give a quaternion w, x, y, z, for instance [1, 0, 0, 0]");
+  }
+  workspace.rotation = rotation.normalized();
+  workspace.scale = table.number("scale", factor, workspace.scale);
+  workspace.force_scale = table.number("force_scale", factor, workspace.force_scale);
+  table.finish();
+  return workspace;
+}
+
+ButtonMap read_buttons(TomlTable table) {
+  constexpr int kHighest = 31;
+  ButtonMap buttons;
+  std::set<int> taken;
+  const auto read = [&](const char* key, int& bit) {
+    bit = table.integer(key, ButtonMap::kNone, kHighest, bit);
+    if (bit != ButtonMap::kNone && !taken.insert(bit).second) {
+      table.fail(key, "is " + std::to_string(bit) + ", which another function has",
+                 "give each function a bit of its own, or -1 for none");
+    }
+  };
+  read("grab", buttons.grab);
+  read("clutch", buttons.clutch);
+  read("reset", buttons.reset);
+  table.finish();
+  return buttons;
+}
+
 DeviceConfig read_device(TomlTable table, const BridgeOverrides& overrides) {
   DeviceConfig device;
   device.type = table.choice("type", device_types(), device.type);
@@ -33,6 +71,8 @@ DeviceConfig read_device(TomlTable table, const BridgeOverrides& overrides) {
     table.fail("", "has no script", "add script = \"FILE.csv\" or give --script FILE.csv");
   }
   if (table.has("hand")) device.hand = read_hand(table.table("hand"));
+  device.mapping.workspace = read_workspace(table.table("workspace"));
+  device.mapping.buttons = read_buttons(table.table("buttons"));
   table.finish();
   return device;
 }

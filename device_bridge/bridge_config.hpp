@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/realtime/scheduling.hpp"
+#include "device_bridge/servo_loop.hpp"
 #include "device_bridge/virtual_hand.hpp"
 
 namespace irdm {
@@ -29,6 +30,10 @@ struct DeviceConfig {
   // hand.mass [kg], 0.001 to 100, default 0.12
   // hand.damping [N s/m], 0 to 10000, default 2
   // hand.stiffness [N/m], 0.001 to 1e6, default 300
+  DeviceMapping mapping = {};  ///< keys `workspace` and `buttons`, tables
+  // workspace.position [m], W, each within 100; rotation w x y z, normalised when read
+  // workspace.scale, workspace.force_scale, 0.01 to 100
+  // buttons.grab, buttons.clutch, buttons.reset: bits 0 to 31, no two the same; -1: none
 };
 
 /// What a bridge's TOML file says.

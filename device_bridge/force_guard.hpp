@@ -28,7 +28,7 @@ class ForceGuard {
  public:
   explicit ForceGuard(const GuardLimits& limits) : limits_(limits) {}
 
-  /// The force to show now [N], W. Real-time safe.
+  /// The force to show now [N], in the frame of input.force.force. Real-time safe.
   /// @param now_ns the clock of sample_time_ns, does not decrease
   Vector3 apply(std::int64_t now_ns, const ServoInput& input) noexcept;
 

@@ -5,8 +5,9 @@
 
 namespace irdm {
 
-/// A force-feedback stylus. Made and opened at start-up, then used by the servo thread alone: once
-/// a tick read(), and write() when the force changes.
+/// A force-feedback stylus, in its own frame D; the servo loop knows where D lies in W. Made and
+/// opened at start-up, then used by the servo thread alone: once a tick read(), and write() when
+/// the force changes.
 class HapticDevice {
  public:
   HapticDevice() = default;
@@ -19,10 +20,10 @@ class HapticDevice {
   /// Turns the force off and lets go of the hardware.
   virtual void close() noexcept = 0;
 
-  /// The stylus now. Real-time safe.
+  /// The stylus now, in D; its buttons are the device's own bits (ButtonMap). Real-time safe.
   /// @param time since the session began, does not decrease; 0 before [s]
   virtual StylusPose read(double time) noexcept = 0;
-  /// Shows this force on the stylus until the next call [N], W. Real-time safe.
+  /// Shows this force on the stylus until the next call [N], D. Real-time safe.
   virtual void write(const Vector3& force) noexcept = 0;
 
   /// Whether its time is ours to say, so that it can run in lockstep.

@@ -3,18 +3,30 @@
 #include <cstdint>
 
 #include "common/stylus.hpp"
+#include "device_bridge/button_map.hpp"
+#include "device_bridge/clutch.hpp"
 #include "device_bridge/force_guard.hpp"
 #include "device_bridge/haptic_device.hpp"
+#include "device_bridge/workspace.hpp"
 
 namespace irdm {
 
-/// One stylus of the servo loop: device to sample, and force through the guard to device. Knows no
-/// thread, clock or socket; nothing in it allocates or throws.
+/// How a device takes part in W.
+struct DeviceMapping {
+  Workspace workspace = {};
+  ButtonMap buttons = {};
+};
+
+/// One stylus of the servo loop: device (D) through workspace and clutch to sample (W), and force
+/// (W) through workspace, guard and clutch to device (D). Knows no thread, clock or socket; nothing
+/// in it allocates or throws.
 class ServoLoop {
  public:
-  ServoLoop(HapticDevice& device, const GuardLimits& limits);
+  /// @param limits of the force at the device
+  ServoLoop(HapticDevice& device, const GuardLimits& limits, const DeviceMapping& mapping = {});
 
-  /// Begins a session of the device's time: samples are numbered from 0 again.
+  /// Begins a session of the device's time: samples are numbered from 0 again, and the
+  /// clutch's offset is gone.
   void restart() noexcept;
 
   /// Reads the device.
@@ -30,15 +42,17 @@ class ServoLoop {
   /// Shows no force.
   void rest() noexcept { device_.write(Vector3::Zero()); }
 
-  double peak_force() const noexcept { return peak_force_; }  ///< shown so far [N]
+  double peak_force() const noexcept { return peak_force_; }  ///< shown so far [N], D
   std::uint64_t faults() const noexcept { return faults_ + guard_.faults(); }
   HapticDevice& device() noexcept { return device_; }
 
  private:
   HapticDevice& device_;
   GuardLimits limits_;
+  DeviceMapping mapping_;
   ForceGuard guard_;
-  StylusPose pose_;
+  Clutch clutch_;
+  StylusPose pose_;  ///< W; buttons as on the wire
   std::uint64_t next_sequence_ = 0;
   double peak_force_ = 0.0;
   std::uint64_t faults_ = 0;

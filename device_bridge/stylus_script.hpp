@@ -10,15 +10,15 @@
 
 namespace irdm {
 
-/// Where a stylus is and what its buttons do.
+/// Where a stylus is and what its buttons do, in the device's frame D or in W.
 struct StylusPose {
-  Vector3 tip = Vector3::Zero();                    ///< [m], W
-  Quaternion orientation = Quaternion::Identity();  ///< of the stylus in W, norm 1
-  std::uint32_t buttons = 0;                        ///< as StylusSample::buttons
+  Vector3 tip = Vector3::Zero();                    ///< [m]
+  Quaternion orientation = Quaternion::Identity();  ///< of the stylus in that frame, norm 1
+  std::uint32_t buttons = 0;                        ///< the device's own bits
 };
 
 /// A motion written down: rows `time,x,y,z[,qw,qx,qy,qz][,button]` after a header line that names
-/// them, in s and m, W; `#` starts a comment. At least one row; times increase.
+/// them, in s and m, D; `#` starts a comment. At least one row; times increase.
 class StylusScript {
  public:
   /// Throws Error with file and line for anything that does not fit.

@@ -16,16 +16,16 @@ struct HandParameters {
 /// step for a constant force and a target that moves evenly: exact and stable for any step.
 class VirtualHand {
  public:
-  /// At rest at `start` [m], W.
+  /// At rest at `start` [m], D.
   VirtualHand(const HandParameters& parameters, const Vector3& start);
 
   /// @param dt [s], >= 0
-  /// @param target where the hand wants to be at the end of the step [m], W; it moves there evenly
-  /// @param force of the device on the hand, constant over the step [N], W
+  /// @param target where the hand wants to be at the end of the step [m], D; it moves there evenly
+  /// @param force of the device on the hand, constant over the step [N], D
   void advance(double dt, const Vector3& target, const Vector3& force) noexcept;
 
-  const Vector3& position() const noexcept { return position_; }  ///< [m], W
-  const Vector3& velocity() const noexcept { return velocity_; }  ///< [m/s], W
+  const Vector3& position() const noexcept { return position_; }  ///< [m], D
+  const Vector3& velocity() const noexcept { return velocity_; }  ///< [m/s], D
 
  private:
   HandParameters parameters_;

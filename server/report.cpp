@@ -30,6 +30,7 @@ int print_report(const FinishedRun& run, const ServerOptions& options) {
   std::snprintf(peak, sizeof peak, "%.3f", force.peak_force);
   std::cout << "step time: " << microseconds(force.step_time) << '\n'
             << "peak force: " << peak << " N\n"
+            << "put back to the start: " << force.resets << " times\n"
             << "steps without a finite solution: " << force.unsolved << '\n'
             << "surfaces: " << run.deformation.frames() << ", each "
             << microseconds(run.deformation.compute_time()) << '\n'

@@ -39,6 +39,7 @@ SimulationConfig simulation_config(const SceneConfig& scene) {
   }
   config.styluses = scene.styluses;
   config.floor = scene.floor;
+  config.release_time = scene.contact.release_time;
   return config;
 }
 
@@ -87,6 +88,7 @@ std::unique_ptr<RecorderThread> make_recorder(const SceneConfig& scene,
   }
   header.scene = read_text(options.scene);
   header.dt = dt;
+  header.floor = scene.floor.has_value();
   header.stylus_count = static_cast<int>(scene.styluses.size());
   return std::make_unique<RecorderThread>(*options.record, header);
 }

@@ -43,6 +43,7 @@ ContactConfig read_contact(TomlTable table) {
   ContactConfig config;
   config.coupling_stiffness =
       table.number("coupling_stiffness", at_least(0.0), config.coupling_stiffness);
+  config.release_time = table.number("release_time", between(1e-3, 1.0), config.release_time);
   table.finish();
   return config;
 }
@@ -115,9 +116,22 @@ SimulationStylus read_stylus(TomlTable table, const ContactConfig& contact) {
   return stylus;
 }
 
+// A name becomes the name of a group in the trace file.
+std::string read_name(TomlTable& table, const std::string& fallback) {
+  const std::string name = table.text("name", fallback);
+  const bool printable = std::none_of(name.begin(), name.end(), [](unsigned char letter) {
+    return letter < 0x20 || letter == 0x7F || letter == '/';
+  });
+  if (name.empty() || name == "." || !printable) {
+    table.fail("name", "cannot name a group of the trace file",
+               "use one or more letters, without '/' and control characters, and not \".\" alone");
+  }
+  return name;
+}
+
 ObjectConfig read_object(TomlTable table) {
   ObjectConfig config;
-  config.name = table.text("name", config.name);
+  config.name = read_name(table, config.name);
   config.model = table.path("model");
   config.engine = table.choice("engine", {"modal", "dense"}, "modal") == "dense"
                       ? EngineKind::kDense

@@ -33,10 +33,15 @@ void Deformation::advance(const StepRecord& record) {
 }
 
 void Deformation::follow(const StepRecord& record) {
-  for (std::uint64_t k = started_ ? last_.force_step + 1 : 0; k < record.force_step; ++k) {
-    advance(last_);
-    ++lost_steps_;
+  std::uint64_t next = started_ ? last_.force_step + 1 : 0;
+  lost_steps_ += record.force_step - next;
+  if (record.reset_step >= next) {
+    // What was before it does not count any more, and of lost steps after it nothing is known.
+    for (Follower& follower : objects_) follower.engine->reset();
+    last_ = StepRecord{};
+    next = record.reset_step;
   }
+  for (; next < record.force_step; ++next) advance(last_);
   advance(record);
   last_ = record;
   started_ = true;

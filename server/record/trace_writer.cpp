@@ -13,6 +13,11 @@ std::string stylus_path(std::size_t stylus) {
   return "/stylus/" + std::to_string(stylus);
 }
 
+// Beside the body's sets of one object, within the group of one of several.
+std::string floor_path(const std::string& object) {
+  return object == "/step" ? "/floor" : object + "/floor";
+}
+
 void put(double* row, const Vector3& v) {
   Eigen::Map<Vector3>(row, 3) = v;
 }
@@ -22,7 +27,8 @@ void put(double* row, const Vector3& v) {
 TraceWriter::TraceWriter(const std::filesystem::path& path, const TraceHeader& header)
     : file_(hdf5::File::create(path)),
       objects_(header.objects),
-      stylus_count_(header.stylus_count) {
+      stylus_count_(header.stylus_count),
+      floor_(header.floor) {
   try {
     write_header(header);
     create_datasets();
@@ -47,6 +53,7 @@ void TraceWriter::write_header(const TraceHeader& header) {
 void TraceWriter::create_datasets() {
   file_.create_growing<double>("/step/time", {}, kChunkRows);
   file_.create_growing<std::uint64_t>("/step/force_step", {}, kChunkRows);
+  file_.create_growing<std::uint8_t>("/step/reset", {}, kChunkRows);
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     const std::string group = object_path(i);
     create_object(group);
@@ -65,6 +72,7 @@ void TraceWriter::create_datasets() {
       file_.create_growing<double>(path + name, {3}, kChunkRows);
     }
     create_contact(path);
+    file_.create_growing<std::uint8_t>(path + "/present", {}, kChunkRows);
     file_.create_growing<std::int32_t>(path + "/buttons", {}, kChunkRows);
     if (several()) file_.create_growing<std::int32_t>(path + "/object", {}, kChunkRows);
   }
@@ -81,6 +89,12 @@ void TraceWriter::create_object(const std::string& group) {
   file_.create_growing<double>(group + "/body_velocity", {3}, kChunkRows);
   file_.create_growing<double>(group + "/body_angular_velocity", {3}, kChunkRows);
   file_.create_growing<double>(group + "/residual", {}, kChunkRows);
+  file_.create_growing<std::int32_t>(group + "/sweeps", {}, kChunkRows);
+  if (!floor_) return;
+  const std::string floor = floor_path(group);
+  file_.create_growing<std::int32_t>(floor + "/count", {}, kChunkRows);
+  file_.create_growing<std::int32_t>(floor + "/node", {}, kChunkRows);
+  file_.create_growing<float>(floor + "/force", {3}, kChunkRows);
 }
 
 void TraceWriter::create_contact(const std::string& group) {
@@ -103,6 +117,8 @@ void TraceWriter::append(std::span<const StepRecord> records) {
   if (records.empty()) return;
   append_rows<std::uint64_t>("/step/force_step", 1, records,
                              [](const StepRecord& r, std::uint64_t* row) { *row = r.force_step; });
+  append_rows<std::uint8_t>("/step/reset", 1, records,
+                            [](const StepRecord& r, std::uint8_t* row) { *row = r.reset ? 1 : 0; });
   append_rows<double>("/step/time", 1, records,
                       [](const StepRecord& r, double* row) { *row = r.time; });
   for (std::size_t i = 0; i < objects_.size(); ++i) append_object(records, i);
@@ -127,6 +143,10 @@ void TraceWriter::append_object(std::span<const StepRecord> records, std::size_t
                       });
   append_rows<double>(group + "/residual", 1, records,
                       [&](const StepRecord& r, double* row) { *row = r.object[i].residual; });
+  append_rows<std::int32_t>(
+      group + "/sweeps", 1, records,
+      [&](const StepRecord& r, std::int32_t* row) { *row = r.object[i].sweeps; });
+  if (floor_) append_floor(records, i);
   if (!several()) return;
   for (std::size_t s = 0; s < static_cast<std::size_t>(stylus_count_); ++s) {
     const std::string path = group + stylus_path(s);
@@ -139,6 +159,26 @@ void TraceWriter::append_object(std::span<const StepRecord> records, std::size_t
     append_rows<double>(path + "/force", 3, records,
                         [&](const StepRecord& r, double* row) { put(row, contact(r).force); });
   }
+}
+
+// As many rows a step as there are contacts.
+void TraceWriter::append_floor(std::span<const StepRecord> records, std::size_t i) {
+  const std::string path = floor_path(object_path(i));
+  std::vector<std::int32_t> nodes;
+  std::vector<float> forces;
+  for (const StepRecord& r : records) {
+    const ObjectRecord& object = r.object[i];
+    for (std::size_t c = 0; c < static_cast<std::size_t>(object.floor_count); ++c) {
+      nodes.push_back(object.floor[c].node);
+      forces.insert(forces.end(), object.floor[c].force.begin(), object.floor[c].force.end());
+    }
+  }
+  append_rows<std::int32_t>(
+      path + "/count", 1, records,
+      [&](const StepRecord& r, std::int32_t* row) { *row = r.object[i].floor_count; });
+  if (nodes.empty()) return;
+  file_.append<std::int32_t>(path + "/node", nodes.size(), nodes.data());
+  file_.append<float>(path + "/force", nodes.size(), forces.data());
 }
 
 void TraceWriter::append_stylus(std::span<const StepRecord> records, std::size_t s) {
@@ -155,6 +195,9 @@ void TraceWriter::append_stylus(std::span<const StepRecord> records, std::size_t
     const int object = r.stylus[s].object;
     return object < 0 ? kNone : r.object[static_cast<std::size_t>(object)].contact[s];
   });
+  append_rows<std::uint8_t>(
+      path + "/present", 1, records,
+      [&](const StepRecord& r, std::uint8_t* row) { *row = r.stylus[s].present ? 1 : 0; });
   append_rows<std::int32_t>(path + "/buttons", 1, records,
                             [&](const StepRecord& r, std::int32_t* row) {
                               *row = static_cast<std::int32_t>(r.stylus[s].buttons);

@@ -23,6 +23,7 @@ struct TraceHeader {
   std::string scene;  ///< the scene file's text
   double dt = 0.0;    ///< [s]
   int stylus_count = 1;
+  bool floor = false;  ///< the scene has one
 };
 
 /// Writes the trace file of one run (HDF5, format "irdm-trace", docs/files.md). One thread.
@@ -46,6 +47,7 @@ class TraceWriter {
   void create_object(const std::string& group);
   void create_contact(const std::string& group);
   void append_object(std::span<const StepRecord> records, std::size_t object);
+  void append_floor(std::span<const StepRecord> records, std::size_t object);
   void append_stylus(std::span<const StepRecord> records, std::size_t stylus);
   template <typename Contact>
   void append_contact(std::span<const StepRecord> records, const std::string& group,
@@ -58,6 +60,7 @@ class TraceWriter {
   hdf5::File file_;
   std::vector<TraceObject> objects_;
   int stylus_count_;
+  bool floor_;
 };
 
 }  // namespace irdm

@@ -21,8 +21,12 @@ class GodObject {
 
   /// Decides whether there is a contact in this step.
   void find(const Input& input, DeformedSurface& surface) noexcept;
-  /// The stylus is gone; when it comes back, it has to come from outside.
-  void forget() noexcept { *this = GodObject{}; }
+  /// The stylus is gone; when it comes back, it has to come from outside, and to press its button
+  /// anew to reach.
+  void forget() noexcept {
+    *this = GodObject{};
+    grabbed_before_ = true;
+  }
   /// A contact that was decided elsewhere.
   void impose(ContactState state, const SurfacePoint& point) noexcept;
 
@@ -64,7 +68,7 @@ class GodObject {
   bool slipping_ = false;
   bool releasing_ = false;
   int release_steps_ = 0;
-  bool grabbed_before_ = false;  ///< the button was down in the last step
+  bool grabbed_before_ = false;  ///< the button was down in the last step, or may have been
   /// The tip was outside the surface when last seen near it. Only from there can it make a contact.
   bool outside_ = false;
   Vector3 last_tip_ = Vector3::Zero();  ///< relative to the free motion [m], B

@@ -1,8 +1,38 @@
 #include "server/step/simulation.hpp"
 
+#include <algorithm>
+#include <utility>
+
 #include "common/error.hpp"
 
 namespace irdm {
+namespace {
+
+// Damping and tether act as they were at the start of a step: stable as long as a step is short for
+// them.
+void check_restraints(const SimulationObject& object, std::size_t number) {
+  if (object.model->body.support == Support::kFixed) return;  // it does not move at all
+  const std::string name = "object " + std::to_string(number + 1);
+  const double dt = object.model->dt;
+  const RigidDamping& damping = object.damping;
+  if (std::max(damping.linear, damping.angular) * dt > 0.5) {
+    throw Error(
+        name, "has a damping that is too strong for its model's dt of " + std::to_string(dt) + " s",
+        "use at most " + std::to_string(0.5 / dt) + " 1/s");
+  }
+  const BodyProperties& body = object.model->body;
+  const double inertia =
+      Eigen::SelfAdjointEigenSolver<Matrix3>(body.inertia, Eigen::EigenvaluesOnly).eigenvalues()[0];
+  const double stiffest = body.mass / (dt * dt);
+  const double stiffest_angular = inertia / (dt * dt);
+  if (object.tether.stiffness > stiffest || object.tether.angular_stiffness > stiffest_angular) {
+    throw Error(name, "has a tether that is too stiff for its mass and its model's dt",
+                "use at most " + std::to_string(stiffest) + " N/m and " +
+                    std::to_string(stiffest_angular) + " N m/rad");
+  }
+}
+
+}  // namespace
 
 Simulation::Simulation(const SimulationConfig& config) : stylus_count_(config.styluses.size()) {
   if (config.objects.empty() || config.objects.size() > kMaxObjects) {
@@ -13,11 +43,13 @@ Simulation::Simulation(const SimulationConfig& config) : stylus_count_(config.st
     throw Error("scene", "has " + std::to_string(config.styluses.size()) + " styluses",
                 "use 1 to " + std::to_string(kMaxStyluses));
   }
+  reset_down_.fill(true);
   dt_ = config.objects.front().model->dt;
   for (const SimulationObject& object : config.objects) {
     if (object.model->dt != dt_) {
       throw Error("scene", "has models of different dt", "compute them with the same response.dt");
     }
+    check_restraints(object, objects_.size());
     objects_.push_back(
         std::make_unique<SoftObject>(object, config, static_cast<int>(objects_.size())));
   }
@@ -25,9 +57,26 @@ Simulation::Simulation(const SimulationConfig& config) : stylus_count_(config.st
 
 void Simulation::reset() noexcept {
   for (const auto& object : objects_) object->reset();
+  was_reset_ = true;
+  reset_step_ = next_step_;
 }
 
-void Simulation::step(std::span<const StylusCommand> commands, StepRecord& record) noexcept {
+// A button that is down when its stylus appears has not gone down.
+bool Simulation::reset_pressed(std::span<const StylusCommand> commands) noexcept {
+  bool pressed = false;
+  for (std::size_t s = 0; s < stylus_count_; ++s) {
+    const bool down = !commands[s].present || (commands[s].buttons & kResetButton) != 0;
+    pressed = pressed || (commands[s].present && down && !reset_down_[s]);
+    reset_down_[s] = down;
+  }
+  return pressed;
+}
+
+void Simulation::step(std::span<const StylusCommand> commands, StepRecord& record,
+                      bool put_back) noexcept {
+  if (reset_pressed(commands) || put_back) reset();
+  record.reset = std::exchange(was_reset_, false);
+  record.reset_step = reset_step_;
   record.force_step = next_step_++;
   record.time = static_cast<double>(next_step_) * dt_;
   record.object_count = object_count();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <span>
 #include <vector>
@@ -17,13 +18,19 @@ namespace irdm {
 class Simulation {
  public:
   /// Throws Error when a model lacks the response that its engine needs, when models differ in dt,
-  /// or when there are too many objects or styluses.
+  /// when damping or tether are too strong for it, or when there are too many objects or styluses.
   explicit Simulation(const SimulationConfig& config);
 
-  /// Step k = 0, 1, ...: from time k dt to (k + 1) dt. `commands`: one a stylus.
-  void step(std::span<const StylusCommand> commands, StepRecord& record) noexcept;
+  /// Step k = 0, 1, ...: from time k dt to (k + 1) dt. Before it everything is put back to the
+  /// start if `put_back` says so or the reset button of a stylus has gone down since the step
+  /// before. A stylus then has to come from outside, and press its grab button again, to touch or
+  /// take hold.
+  /// @param commands one a stylus
+  void step(std::span<const StylusCommand> commands, StepRecord& record,
+            bool put_back = false) noexcept;
 
-  /// Puts everything back to the start; the step number goes on.
+  /// Puts everything back to the start; the step number goes on. The record of the next step says
+  /// so.
   void reset() noexcept;
 
   double dt() const noexcept { return dt_; }
@@ -33,11 +40,16 @@ class Simulation {
   }
 
  private:
+  bool reset_pressed(std::span<const StylusCommand> commands) noexcept;
   void write_stylus(std::size_t s, const StylusCommand& command,
                     std::span<const Quaternion> orientations, StepRecord& record) const noexcept;
 
   double dt_ = 0.0;
   std::uint64_t next_step_ = 0;
+  std::uint64_t reset_step_ = 0;
+  bool was_reset_ = false;  ///< since the last step
+  /// The reset button was down, or nobody there, in the last step.
+  std::array<bool, kMaxStyluses> reset_down_;
   std::size_t stylus_count_;
   std::vector<std::unique_ptr<SoftObject>> objects_;
 };

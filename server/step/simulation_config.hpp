@@ -18,8 +18,8 @@ struct RigidDamping {
 
 /// A soft spring from the object to its pose at the start. 0: none.
 struct Tether {
-  double stiffness = 0.0;          ///< [N/m]
-  double angular_stiffness = 0.0;  ///< [N m/rad]
+  double stiffness = 0.0;          ///< [N/m]; times dt^2 at most the mass
+  double angular_stiffness = 0.0;  ///< [N m/rad]; times dt^2 at most the least moment of inertia
 };
 
 /// One object at the start.

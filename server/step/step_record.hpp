@@ -83,6 +83,8 @@ struct StylusRecord {
 struct StepRecord {
   std::uint64_t force_step = 0;  ///< k
   double time = 0.0;             ///< (k + 1) dt, the end of the step [s]
+  bool reset = false;            ///< everything was put back to the start before this step
+  std::uint64_t reset_step = 0;  ///< the last step that this was so in, this one included; 0: none
   int object_count = 0;
   int stylus_count = 0;
   std::array<ObjectRecord, kMaxObjects> object;

@@ -59,7 +59,10 @@ void ForceThread::step() noexcept {
     port.in.receive();
     commands_[s] = to_command(port.in.front());
   }
-  simulation_.step(commands_, record_);
+  const bool put_back = reset_requested_.load(std::memory_order_relaxed) &&
+                        reset_requested_.exchange(false, std::memory_order_relaxed);
+  simulation_.step(commands_, record_, put_back);
+  if (record_.reset) ++report_.resets;
   for (std::size_t s = 0; s < commands_.size(); ++s) {
     if (!commands_[s].present) continue;
     StylusPort& port = network_.port(static_cast<int>(s));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <string>
 #include <thread>
@@ -18,6 +19,7 @@ namespace irdm {
 /// What the force thread counted; read after finish().
 struct ForceThreadReport {
   std::uint64_t steps = 0;
+  std::uint64_t resets = 0;    ///< how often everything was put back to the start
   std::uint64_t unsolved = 0;  ///< steps whose contact problem had no finite solution
   double peak_force = 0.0;     ///< largest |force| on a stylus [N]
   Histogram step_time;         ///< from the clock's go to the forces' hand-over [ns]
@@ -35,6 +37,9 @@ class ForceThread {
   /// Throws Error when real-time scheduling is required and not permitted.
   void start(RealTimeScheduling scheduling);
   void finish();
+  /// Puts everything back to the start before the next step; requests until then are one. Any
+  /// thread; never waits.
+  void request_reset() noexcept { reset_requested_.store(true, std::memory_order_relaxed); }
   /// Becomes readable when the thread has made its last step.
   Wakeup& finished() noexcept { return finished_; }
   const ForceThreadReport& report() const noexcept { return report_; }
@@ -53,6 +58,7 @@ class ForceThread {
   std::vector<StylusCommand> commands_;
   StepRecord record_;
   ForceThreadReport report_;
+  std::atomic<bool> reset_requested_{false};
   std::string scheduling_;
   Wakeup finished_;
   std::thread thread_;

@@ -52,6 +52,51 @@ TEST_CASE("bridge configuration has defaults for all but the script") {
   CHECK(config.devices[0].type == "virtual");
   CHECK(config.devices[0].script == file.path().parent_path() / "a.csv");
   CHECK_FALSE(config.devices[0].hand);
+  const auto& [workspace, buttons] = config.devices[0].mapping;
+  CHECK(workspace.position == Vector3(0, 0, 0));
+  CHECK(workspace.rotation.coeffs() == Quaternion::Identity().coeffs());
+  CHECK(workspace.scale == 1.0);
+  CHECK(workspace.force_scale == 1.0);
+  CHECK(buttons.grab == 0);
+  CHECK(buttons.clutch == 1);
+  CHECK(buttons.reset == 2);
+}
+
+TEST_CASE("bridge configuration takes workspace and buttons of a device") {
+  const BridgeConfig config =
+      ConfigFile(kDevice +
+                 "workspace = { position = [1, 2, 3], rotation = [0, 0, 2, 0], scale = 4, "
+                 "force_scale = 0.5 }\nbuttons = { grab = 3, clutch = -1, reset = 31 }\n" +
+                 kDevice + "buttons = { grab = -1, clutch = -1 }\n")
+          .load();
+  const auto& [workspace, buttons] = config.devices.at(0).mapping;
+  CHECK(workspace.position == Vector3(1, 2, 3));
+  CHECK(workspace.rotation.coeffs() == Quaternion(0, 0, 1, 0).coeffs());
+  CHECK(workspace.scale == 4.0);
+  CHECK(workspace.force_scale == 0.5);
+  CHECK(buttons.grab == 3);
+  CHECK(buttons.clutch == ButtonMap::kNone);
+  CHECK(buttons.reset == 31);
+  CHECK(config.devices.at(1).mapping.buttons.reset == 2);
+}
+
+TEST_CASE("bridge configuration refuses a workspace or buttons that do not fit") {
+  check_refused(kDevice + "workspace = 1\n", "not a table");
+  check_refused(kDevice + "workspace = { position = [0, 0] }\n", "position has 2 entries");
+  check_refused(kDevice + "workspace = { position = [0, 0, 101] }\n", "position is 101");
+  check_refused(kDevice + "workspace = { rotation = [0, 0, 0, 0] }\n", "rotation has no length");
+  check_refused(kDevice + "workspace = { rotation = [1, 0, 0] }\n", "rotation has 3 entries");
+  check_refused(kDevice + "workspace = { scale = 0 }\n", "scale is 0");
+  check_refused(kDevice + "workspace = { scale = 101 }\n", "scale is 101");
+  check_refused(kDevice + "workspace = { scale = -1 }\n", "scale is -1");
+  check_refused(kDevice + "workspace = { force_scale = 0 }\n", "force_scale is 0");
+  check_refused(kDevice + "workspace = { force_scale = nan }\n", "force_scale is nan");
+  check_refused(kDevice + "workspace = { size = 1 }\n", "not a known key");
+  check_refused(kDevice + "buttons = { grab = 32 }\n", "grab is 32");
+  check_refused(kDevice + "buttons = { clutch = -2 }\n", "clutch is -2");
+  check_refused(kDevice + "buttons = { reset = 1.5 }\n", "not a whole number");
+  check_refused(kDevice + "buttons = { grab = 1 }\n", "clutch is 1, which another function has");
+  check_refused(kDevice + "buttons = { fire = 1 }\n", "not a known key");
 }
 
 TEST_CASE("bridge configuration takes every key") {

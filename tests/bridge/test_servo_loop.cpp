@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <limits>
 #include <sstream>
 
@@ -67,6 +68,66 @@ TEST_CASE("servo loop shows the guarded force and remembers the largest") {
   CHECK(device.force == Vector3::Zero());
 }
 
+TEST_CASE("servo loop takes a device to W and the force back to it") {
+  ProbeDevice device;
+  device.pose = {.tip = Vector3(0.1, 0.2, 0.3), .buttons = 5};
+  const DeviceMapping mapping{
+      .workspace = {.position = Vector3(1, 2, 3),
+                    .rotation = Quaternion(Eigen::AngleAxisd(M_PI / 2, Vector3::UnitY())),
+                    .scale = 2.0,
+                    .force_scale = 0.5}};
+  ServoLoop loop(device, {.max_force = 3.0}, mapping);
+  loop.read(0.0);
+  const StylusSample sample = loop.take_sample(0);
+  CHECK(sample.tip.isApprox(Vector3(1.6, 2.4, 2.8)));
+  CHECK(sample.orientation.isApprox(mapping.workspace.rotation));
+  CHECK(sample.buttons == (kGrabButton | kResetButton));
+  ServoInput input{.linked = true, .any_force = true, .force = {.force = Vector3(4, 0, 0)}};
+  loop.apply(0, input);
+  CHECK(device.force.isApprox(Vector3(0, 0, 2)));
+  // The limit is one of the force at the device.
+  input.force.force = Vector3(20, 0, 0);
+  loop.apply(0, input);
+  CHECK(device.force.isApprox(Vector3(0, 0, 3)));
+}
+
+TEST_CASE("servo loop: clutched, the tip stays in W, the force fades, the orientation follows") {
+  constexpr std::int64_t kTickNs = 1'000'000;
+  ProbeDevice device;
+  const DeviceMapping mapping{.workspace = {.position = Vector3(0, 1, 0), .scale = 2.0}};
+  ServoLoop loop(device, {}, mapping);
+  std::int64_t now_ns = 0;
+  Vector3 last_tip(0, 1, 0);
+  double last_force = 1.0;
+  Vector3 held = last_tip;
+  // The device moves evenly all the time; from 100 to 300 ms the clutch is down.
+  for (int tick = 0; tick < 500; ++tick, now_ns += kTickNs) {
+    const bool down = tick >= 100 && tick < 300;
+    const Quaternion turned(Eigen::AngleAxisd(0.001 * tick, Vector3::UnitZ()));
+    device.pose = {
+        .tip = Vector3(1e-4 * tick, 0, 0), .orientation = turned, .buttons = down ? 3u : 1u};
+    loop.read(0.0);
+    const StylusSample sample = loop.take_sample(now_ns);
+    CHECK(sample.buttons == kGrabButton);
+    CHECK(sample.orientation.isApprox(turned));
+    REQUIRE((sample.tip - last_tip).norm() < 2.001e-4);
+    if (tick == 100) held = sample.tip;
+    if (down) CHECK(sample.tip == held);
+    last_tip = sample.tip;
+    loop.apply(now_ns, {.linked = true,
+                        .any_force = true,
+                        .force = {.sample_time_ns = now_ns, .force = Vector3(0, 1, 0)}});
+    REQUIRE(std::abs(device.force.y() - last_force) < 0.0201);
+    last_force = device.force.y();
+    if (down && tick > 150) CHECK(last_force == 0.0);
+  }
+  CHECK(last_force == 1.0);
+  CHECK(last_tip.isApprox(held + Vector3(2e-4 * 199, 0, 0)));
+  loop.restart();
+  loop.read(0.0);
+  CHECK(loop.take_sample(0).tip.isApprox(Vector3(2e-4 * 499, 1, 0)));
+}
+
 TEST_CASE("a servo tick allocates nothing, and the guard would see it") {
   if (!test::AllocationGuard::active()) return;
   {
@@ -75,9 +136,11 @@ TEST_CASE("a servo tick allocates nothing, and the guard would see it") {
     CHECK(guard.count() > 0);
     delete number;
   }
-  std::istringstream text("time,x,y,z,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n1,0.1,0,0,0,1,0,0\n");
+  std::istringstream text(
+      "time,x,y,z,qw,qx,qy,qz,button\n0,0,0,0,1,0,0,0,7\n1,0.1,0,0,0,1,0,0,0\n");
   VirtualStylus device(StylusScript::parse(text, "motion.csv"), HandParameters{});
-  ServoLoop loop(device, {});
+  // Every bit of the button field does something, clutch and reset included.
+  ServoLoop loop(device, {}, {.workspace = {.scale = 2.0, .force_scale = 0.5}});
   ServoLink link(1);
   const test::AllocationGuard guard;
   for (int tick = 0; tick < 2000; ++tick) {

@@ -7,7 +7,7 @@
 namespace irdm::test {
 
 inline TraceHeader header(int styluses) {
-  return {{{"cube", "cube.h5", "c0ffee"}}, "[[object]]\n", 0.002, styluses};
+  return {{{"cube", "cube.h5", "c0ffee"}}, "[[object]]\n", 0.002, styluses, false};
 }
 
 /// Step k of no simulation: every number another. Contact states take turns, free in row 0.
@@ -20,6 +20,7 @@ inline StepRecord record(std::size_t k) {
   StepRecord record;
   record.force_step = k;
   record.time = 0.002 * static_cast<double>(k + 1);
+  record.reset = k % 3 == 1;
   record.object_count = 1;
   ObjectRecord& object = record.object[0];
   object.position = vector();
@@ -28,9 +29,15 @@ inline StepRecord record(std::size_t k) {
   object.velocity = vector();
   object.angular_velocity = vector();
   object.residual = 1e-9 * static_cast<double>(k + 1);
+  object.sweeps = static_cast<int>(k + 5);
+  object.floor_count = static_cast<int>(k % 4);  // none in row 0
+  for (std::size_t i = 0; i < k % 4; ++i) {
+    object.floor[i] = {static_cast<int>(7 * k + i), vector().cast<float>()};
+  }
   record.stylus_count = 2;
   for (std::size_t s = 0; s < 2; ++s) {
     StylusRecord& stylus = record.stylus[s];
+    stylus.present = (k + s) % 5 != 0;
     stylus.contact = static_cast<ContactState>((k + s) % 3);
     stylus.object = stylus.contact == ContactState::kFree ? -1 : 0;
     stylus.buttons = static_cast<std::uint32_t>(k + 2 * s);

@@ -85,7 +85,7 @@ TEST_CASE("a full disk ends the recording with an error, and disturbs nobody") {
     }
   }
   SECTION("with its last rows") {
-    for (std::size_t k = 0; k < 5000; ++k) recorder.sink().put(record(k));
+    for (std::size_t k = 0; k < 4000; ++k) recorder.sink().put(record(k));
     recorder.start();
   }
   recorder.finish();

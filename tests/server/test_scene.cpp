@@ -31,10 +31,14 @@ TEST_CASE("every key of a scene arrives where it belongs") {
   const SceneConfig read = scene(
       "[server]\naddress = \"127.0.0.2\"\nport = 4711\nstyluses = 3\ndeformation_rate = 30\n"
       "deformation_threads = 2\n[world]\ngravity = [1, 2, 3]\n"
-      "[contact]\ncoupling_stiffness = 1500\n"
+      "[contact]\ncoupling_stiffness = 1500\nrelease_time = 0.2\n"
+      "[floor]\nheight = -0.5\nnormal = [0, 0, 2]\nfriction = { static = 0.9, kinetic = 0.7 }\n"
+      "[[stylus]]\nradius = 0.01\ncoupling_stiffness = 800\nreach = 0.02\n[[stylus]]\n"
       "[[object]]\nname = \"liver\"\nmodel = \"/models/liver.h5\"\nengine = \"dense\"\n"
       "position = [4, 5, 6]\norientation = [0, 3, 0, 0]\nvelocity = [7, 8, 9]\n"
-      "angular_velocity = [10, 11, 12]\ninertial_loading = true\n");
+      "angular_velocity = [10, 11, 12]\ninertial_loading = true\nfriction = { static = 0.4, kinetic = 0.3 }\n"
+      "damping = { linear = 0.1, angular = 0.2 }\n"
+      "tether = { stiffness = 20, angular_stiffness = 0.3 }\n");
   CHECK(read.server.address == "127.0.0.2");
   CHECK(read.server.port == 4711);
   CHECK(read.server.styluses == 3);
@@ -52,6 +56,27 @@ TEST_CASE("every key of a scene arrives where it belongs") {
   CHECK(object.velocity == Vector3(7, 8, 9));
   CHECK(object.angular_velocity == Vector3(10, 11, 12));
   CHECK(object.inertial_loading);
+  CHECK(object.friction.static_ == 0.4);
+  CHECK(object.friction.kinetic == 0.3);
+  CHECK(object.damping.linear == 0.1);
+  CHECK(object.damping.angular == 0.2);
+  CHECK(object.tether.stiffness == 20.0);
+  CHECK(object.tether.angular_stiffness == 0.3);
+  CHECK(read.contact.release_time == 0.2);
+  REQUIRE(read.floor);
+  CHECK(read.floor->height == -0.5);
+  CHECK(read.floor->normal == Vector3(0, 0, 1));
+  CHECK(read.floor->friction.static_ == 0.9);
+  CHECK(read.floor->friction.kinetic == 0.7);
+  REQUIRE(read.styluses.size() == 3);
+  CHECK(read.styluses[0].radius == 0.01);
+  CHECK(read.styluses[0].coupling_stiffness == 800.0);
+  CHECK(read.styluses[0].reach == 0.02);
+  for (std::size_t s = 1; s < 3; ++s) {  // described by an empty table, and not at all
+    CHECK(read.styluses[s].radius == 0.0);
+    CHECK(read.styluses[s].coupling_stiffness == 1500.0);
+    CHECK(read.styluses[s].reach == 0.0);
+  }
 }
 
 TEST_CASE("a scene needs only a model, the rest has defaults") {
@@ -73,6 +98,59 @@ TEST_CASE("a scene needs only a model, the rest has defaults") {
   CHECK_FALSE(object.inertial_loading);
   CHECK_THAT(rejection(kObject + "inertial_loading = 1\n"),
              StartsWith("s.toml:3: object[0].inertial_loading is not true or false"));
+  CHECK(object.friction.static_ == 0.6);
+  CHECK(object.friction.kinetic == 0.5);
+  CHECK(object.damping.linear == 0.0);
+  CHECK(object.damping.angular == 0.0);
+  CHECK(object.tether.stiffness == 0.0);
+  CHECK(object.tether.angular_stiffness == 0.0);
+  CHECK(read.contact.release_time == 0.03);
+  CHECK_FALSE(read.floor);
+  REQUIRE(read.styluses.size() == 1);
+  CHECK(read.styluses[0].radius == 0.0);
+  CHECK(read.styluses[0].reach == 0.0);
+}
+
+TEST_CASE("a floor needs no key, and one friction value goes a long way") {
+  const SceneConfig read = scene("[floor]\n" + kObject);
+  REQUIRE(read.floor);
+  CHECK(read.floor->height == 0.0);
+  CHECK(read.floor->normal == Vector3(0, 1, 0));
+  CHECK(read.floor->friction.static_ == 0.5);
+  CHECK(read.floor->friction.kinetic == 0.5);
+  // Kinetic friction is never above static: its default gives way.
+  CHECK(scene(kObject + "friction = { static = 0.2 }\n").objects.at(0).friction.kinetic == 0.2);
+}
+
+TEST_CASE("a scene has up to four objects and four styluses") {
+  const auto object = [](int i) {
+    return "[[object]]\nname = \"" + std::to_string(i) + "\"\nmodel = \"cube.h5\"\n";
+  };
+  const std::string four = object(0) + object(1) + object(2) + object(3);
+  CHECK(scene(four).objects.size() == 4);
+  CHECK(rejection(four + object(4)) == "s.toml:1: object appears too often; use at most 4");
+  const std::string styluses = "[[stylus]]\n[[stylus]]\n[[stylus]]\n[[stylus]]\n";
+  CHECK(scene(styluses + kObject).styluses.size() == 4);
+  CHECK(scene(styluses + kObject).server.styluses == 4);
+  CHECK(rejection(styluses + "[[stylus]]\n" + kObject) ==
+        "s.toml:1: stylus appears too often; use at most 4");
+  CHECK_THAT(rejection("[server]\nstyluses = 3\n" + styluses + kObject),
+             Equals("s.toml:1: server has fewer styluses than there are [[stylus]] tables; raise "
+                    "server.styluses or leave it out"));
+}
+
+TEST_CASE("an object's name must do for a group of the trace file") {
+  for (const char* good : {"cube", "left lobe", "Würfel", "..", "a.b", "0"}) {
+    CHECK(rejection(kObject + "name = \"" + good + "\"\n") == "no error");
+  }
+  for (const char* bad : {"", "/", "a/b", ".", "a\\nb", "\\u0000", "\\u007F"}) {
+    CHECK(rejection(kObject + "name = \"" + bad + "\"\n") ==
+          "s.toml:3: object[0].name cannot name a group of the trace file; use one or more "
+          "letters, without '/' and control characters, and not \".\" alone");
+  }
+  const std::string twice = kObject + "name = \"a\"\n" + kObject + "name = \"a\"\n";
+  CHECK(rejection(twice) ==
+        "s.toml:1: object appears twice with the name 'a'; give each object a name of its own");
 }
 
 TEST_CASE("each limit of a scene: the last good value passes, the first bad one is told") {
@@ -94,6 +172,8 @@ TEST_CASE("each limit of a scene: the last good value passes, the first bad one 
       {"server", "deformation_threads", "0", "-1", "is -1; give a whole number from 0 to 64"},
       {"server", "deformation_threads", "64", "65", "is 65; give a whole number from 0 to 64"},
       {"contact", "coupling_stiffness", "0", "-0.1", "is -0.1; give a finite number >= 0"},
+      {"contact", "release_time", "0.001", "0", "is 0; give a finite number >= 0.001 and <= 1"},
+      {"contact", "release_time", "1", "1.1", "is 1.1; give a finite number >= 0.001 and <= 1"},
   }));
   const auto text = [&](const char* value) {
     return std::string("[") + limit.table + "]\n" + limit.key + " = " + value + "\n" + kObject;
@@ -103,10 +183,64 @@ TEST_CASE("each limit of a scene: the last good value passes, the first bad one 
                                                 limit.key + " " + limit.message));
 }
 
+TEST_CASE("each limit of styluses, floor and objects: the last good value, the first bad one") {
+  struct Limit {
+    const char* table;  // as written, and as told
+    const char* name;
+    const char* good;
+    const char* bad;
+    const char* message;
+  };
+  const auto limit = GENERATE(values<Limit>({
+      {"[[stylus]]", "stylus[0].radius", "radius = 0", "radius = -1", "is -1"},
+      {"[[stylus]]", "stylus[0].radius", "radius = 1", "radius = 1.1", "is 1.1"},
+      {"[[stylus]]", "stylus[0].reach", "reach = 0", "reach = -1", "is -1"},
+      {"[[stylus]]", "stylus[0].reach", "reach = 1", "reach = 1.1", "is 1.1"},
+      {"[[stylus]]", "stylus[0].coupling_stiffness", "coupling_stiffness = 0",
+       "coupling_stiffness = -1", "is -1"},
+      {"[[stylus]]", "stylus[0].mass", "", "mass = 1", "is not a known key"},
+      {"[floor]", "floor.height", "height = -3", "height = nan", "is nan"},
+      {"[floor]", "floor.normal", "normal = [1, 1, 0]", "normal = [0, 0, 0]", "has no length"},
+      {"[floor]", "floor.normal", "", "normal = [0, 1]", "has 2 entries"},
+      {"[floor]", "floor.friction.static", "friction = { static = 10 }",
+       "friction = { static = 11 }", "is 11"},
+      {"[floor]", "floor.friction.kinetic", "friction = { static = 0.4, kinetic = 0.4 }",
+       "friction = { static = 0.4, kinetic = 0.5 }", "is larger than static"},
+      {"[floor]", "floor.friction.rolling", "", "friction = { rolling = 1 }", "is not a known key"},
+      {"[floor]", "floor.colour", "", "colour = 1", "is not a known key"},
+      {"[[object]]", "object[0].friction.static", "friction = { static = 0 }",
+       "friction = { static = -1 }", "is -1"},
+      {"[[object]]", "object[0].friction.kinetic", "friction = { static = 1, kinetic = 1 }",
+       "friction = { static = 1, kinetic = 2 }", "is larger than static"},
+      {"[[object]]", "object[0].friction.x", "", "friction = { x = 1 }", "is not a known key"},
+      {"[[object]]", "object[0].friction", "", "friction = 1", "is not a table"},
+      {"[[object]]", "object[0].damping.linear", "damping = { linear = 100 }",
+       "damping = { linear = 101 }", "is 101"},
+      {"[[object]]", "object[0].damping.angular", "damping = { angular = 0 }",
+       "damping = { angular = -1 }", "is -1"},
+      {"[[object]]", "object[0].damping.x", "", "damping = { x = 1 }", "is not a known key"},
+      {"[[object]]", "object[0].tether.stiffness", "tether = { stiffness = 0 }",
+       "tether = { stiffness = -1 }", "is -1"},
+      {"[[object]]", "object[0].tether.angular_stiffness", "tether = { angular_stiffness = 1 }",
+       "tether = { angular_stiffness = inf }", "is inf"},
+      {"[[object]]", "object[0].tether.x", "", "tether = { x = 1 }", "is not a known key"},
+  }));
+  const bool of_object = std::string(limit.table) == "[[object]]";
+  const auto text = [&](const char* line) {
+    return std::string(limit.table) + "\n" + line + "\n" +
+           (of_object ? "model = \"cube.h5\"\n" : kObject);
+  };
+  CAPTURE(limit.bad);
+  CHECK(rejection(text(limit.good)) == "no error");
+  CHECK_THAT(rejection(text(limit.bad)),
+             StartsWith(std::string("s.toml:2: ") + limit.name + " " + limit.message));
+}
+
 TEST_CASE("each wrong type or value in a scene is told with file, line, key and remedy") {
   CHECK(rejection("") == "s.toml:1: object is missing; add [[object]] with a model");
-  CHECK_THAT(rejection(kObject + kObject),
-             StartsWith("s.toml:1: object appears more than once; this version plays one object"));
+  CHECK(rejection(kObject + kObject) ==
+        "s.toml:1: object appears twice with the name 'object'; give each object a name of its "
+        "own");
   CHECK(rejection("[[object]]\nname = \"x\"\n") == "s.toml:1: object[0].model is missing; add it");
   CHECK(rejection("[[object]]\nmodel = \"\"\n") ==
         "s.toml:2: object[0].model is empty; give a path");
@@ -163,15 +297,20 @@ TEST_CASE("a key that no table of a scene knows is an error") {
   CHECK(rejection(kObject + "mesh = 1\n") == "s.toml:3: " + unknown("object[0].mesh"));
 }
 
-TEST_CASE("every scene in configs is a scene") {
+TEST_CASE("every scene in configs is a scene, and its models have configurations") {
   int scenes = 0;
   for (const auto& entry : std::filesystem::directory_iterator(IRDM_SOURCE_DIR "/configs/scenes")) {
     if (entry.path().extension() != ".toml") continue;
     CAPTURE(entry.path());
-    CHECK_NOTHROW(read_scene(TomlTable::parse_file(entry.path())));
+    const SceneConfig read = read_scene(TomlTable::parse_file(entry.path()));
+    for (const ObjectConfig& object : read.objects) {  // scripts/play.sh makes it from there
+      const auto config = object.model.filename().replace_extension(".toml");
+      CHECK(std::filesystem::exists(std::filesystem::path(IRDM_SOURCE_DIR "/configs/models") /
+                                    config));
+    }
     ++scenes;
   }
-  CHECK(scenes >= 2);
+  CHECK(scenes >= 10);
 }
 
 TEST_CASE("a file that cannot be read is told") {

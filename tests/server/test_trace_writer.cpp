@@ -29,6 +29,7 @@ NumberType type_of(const hdf5::File& file, const std::string& set) {
 }
 
 const NumberType kF64{H5T_FLOAT, 8, true};
+const NumberType kF32{H5T_FLOAT, 4, true};
 const NumberType kU64{H5T_INTEGER, 8, false};
 const NumberType kI32{H5T_INTEGER, 4, true};
 const NumberType kU8{H5T_INTEGER, 1, false};
@@ -65,6 +66,9 @@ TEST_CASE("a trace has every set of the contract, in its shape and type, for eac
   };
   check("/step/time", 1, kF64);
   check("/step/force_step", 1, kU64);
+  check("/step/reset", 1, kU8);
+  check("/step/residual", 1, kF64);
+  check("/step/sweeps", 1, kI32);
   check("/step/body_position", 3, kF64);
   check("/step/body_orientation", 4, kF64);
   check("/step/body_velocity", 3, kF64);
@@ -77,8 +81,11 @@ TEST_CASE("a trace has every set of the contract, in its shape and type, for eac
     check(stylus + "contact_nodes", 3, kI32);
     check(stylus + "contact_weights", 3, kF64);
     check(stylus + "offset", 3, kF64);
+    check(stylus + "slipping", 1, kU8);
+    check(stylus + "present", 1, kU8);
     check(stylus + "buttons", 1, kI32);
   }
+  CHECK_FALSE(file.exists("/floor"));  // there is none
   CHECK_FALSE(file.exists("/stylus/2"));
 }
 
@@ -102,6 +109,8 @@ TEST_CASE("a trace gives back every number of every row") {
     CHECK(file.read<double>("/step/time", {kRows})[k] == r.time);
     CHECK(file.read<std::uint64_t>("/step/force_step", {kRows})[k] == r.force_step);
     CHECK(file.read<double>("/step/residual", {kRows})[k] == r.object[0].residual);
+    CHECK(file.read<std::uint8_t>("/step/reset", {kRows})[k] == (r.reset ? 1 : 0));
+    CHECK(file.read<std::int32_t>("/step/sweeps", {kRows})[k] == r.object[0].sweeps);
     CHECK(vector("/step/body_position", k) == r.object[0].position);
     CHECK(vector("/step/body_velocity", k) == r.object[0].velocity);
     CHECK(vector("/step/body_angular_velocity", k) == r.object[0].angular_velocity);
@@ -119,6 +128,8 @@ TEST_CASE("a trace gives back every number of every row") {
       CHECK(vector(path_in_file + "offset", k) == (free ? Vector3(0, 0, 0) : contact.offset));
       CHECK(file.read<std::uint8_t>(path_in_file + "contact", {kRows})[k] ==
             static_cast<std::uint8_t>(stylus.contact));
+      CHECK(file.read<std::uint8_t>(path_in_file + "present", {kRows})[k] ==
+            (stylus.present ? 1 : 0));
       CHECK(file.read<std::int32_t>(path_in_file + "buttons", {kRows})[k] ==
             static_cast<std::int32_t>(stylus.buttons));
       const auto nodes = file.read<std::int32_t>(path_in_file + "contact_nodes", {kRows, 3});
@@ -128,6 +139,52 @@ TEST_CASE("a trace gives back every number of every row") {
               (free ? 0.0 : contact.point.weights[i]));
       }
     }
+  }
+}
+
+TEST_CASE("a trace has the floor's forces of every step, one after the other, for each object") {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "trace.h5";
+  const bool several = GENERATE(false, true);
+  constexpr std::size_t kRows = 1100;
+  TraceHeader with_floor = header(1);
+  with_floor.floor = true;
+  if (several) with_floor.objects.push_back({"other", "other.h5", "bad"});
+  {
+    TraceWriter writer(path, with_floor);
+    std::vector<StepRecord> records;
+    for (std::size_t k = 0; k < kRows; ++k) {
+      records.push_back(record(k));
+      records.back().object[1] = record(k + 1).object[0];
+    }
+    const std::span<const StepRecord> all(records);
+    writer.append(all.first(1));  // without a contact
+    writer.append(all.subspan(1, 600));
+    writer.append(all.subspan(601));
+    writer.close();
+  }
+  const hdf5::File file = hdf5::File::open(path);
+  for (std::size_t i = 0; i < (several ? 2 : 1); ++i) {
+    const std::string floor = !several ? "/floor"
+                              : i == 0 ? "/object/cube/floor"
+                                       : "/object/other/floor";
+    CAPTURE(floor);
+    const auto count = file.read<std::int32_t>(floor + "/count", {kRows});
+    const auto node = file.read<std::int32_t>(floor + "/node", {0});
+    const auto force = file.read<float>(floor + "/force", {node.size(), 3});
+    CHECK(type_of(file, floor + "/count") == kI32);
+    CHECK(type_of(file, floor + "/node") == kI32);
+    CHECK(type_of(file, floor + "/force") == kF32);
+    std::size_t row = 0;
+    for (std::size_t k = 0; k < kRows; ++k) {
+      const ObjectRecord expected = record(k + i).object[0];
+      REQUIRE(count[k] == expected.floor_count);
+      for (std::size_t c = 0; c < static_cast<std::size_t>(count[k]); ++c, ++row) {
+        REQUIRE(node[row] == expected.floor[c].node);
+        REQUIRE(Eigen::Vector3f(force.data() + 3 * row) == expected.floor[c].force);
+      }
+    }
+    CHECK(row == node.size());
   }
 }
 

@@ -9,8 +9,8 @@ using namespace irdm;
 using namespace irdm::test;
 
 TEST_CASE(
-    "step: nothing allocates, free, touching or held, with two styluses and both engines, "
-    "with and without inertial loading") {
+    "step: nothing allocates, free, touching, held or put back, with two styluses and both "
+    "engines, with and without inertial loading") {
   if (!AllocationGuard::active()) return;
   const ResponseKind kind = GENERATE(ResponseKind::kModal, ResponseKind::kDense);
   SimulationConfig config;
@@ -24,6 +24,7 @@ TEST_CASE(
   StepRecord record;
   int touching = 0;
   int held = 0;
+  int resets = 0;
   // No warm-up: the first step must not allocate either.
   const AllocationGuard guard;
   for (int k = 0; k < 1000; ++k) {
@@ -33,7 +34,8 @@ TEST_CASE(
         StylusCommand{
             true, std::sin(3.0 * t) > 0 ? kGrabButton : 0u, {0.001, 0.061 - depth, 0.0}, {}},
         StylusCommand{k % 500 < 400, 0u, {0.061 - depth, 0.01, 0.002}, {}}};
-    simulation.step(commands, record);
+    simulation.step(commands, record, k % 300 == 299);
+    resets += record.reset ? 1 : 0;
     for (const StylusRecord& stylus : record.stylus) {
       touching += stylus.contact == ContactState::kTouching ? 1 : 0;
       held += stylus.contact == ContactState::kHeld ? 1 : 0;
@@ -42,4 +44,5 @@ TEST_CASE(
   CHECK(guard.count() == 0);
   CHECK(touching > 20);
   CHECK(held > 20);
+  CHECK(resets == 3);
 }

@@ -23,7 +23,7 @@ Quaternion Trace::orientation(std::size_t k) const {
   return {wxyz[0], wxyz[1], wxyz[2], wxyz[3]};
 }
 
-Trace read_trace(const std::filesystem::path& path) {
+Trace read_trace(const std::filesystem::path& path, int styluses) {
   const hdf5::File file = hdf5::File::open(path);
   Trace trace;
   trace.model_file = file.read_string_attribute("/", "model_file");
@@ -39,13 +39,21 @@ Trace read_trace(const std::filesystem::path& path) {
   };
   trace.force_step = read_rows("/step/force_step", 1, std::uint64_t{});
   trace.numbers["/step/body_orientation"] = read_rows("/step/body_orientation", 4, double{});
-  for (const char* set : {"/step/body_position", "/step/body_velocity",
-                          "/step/body_angular_velocity", "/stylus/0/tip", "/stylus/0/proxy",
-                          "/stylus/0/force", "/stylus/0/contact_weights", "/stylus/0/offset"}) {
+  for (const char* set :
+       {"/step/body_position", "/step/body_velocity", "/step/body_angular_velocity"}) {
     trace.numbers[set] = read_rows(set, 3, double{});
   }
+  for (int s = 0; s < styluses; ++s) {
+    for (const char* name : {"/tip", "/proxy", "/force", "/contact_weights", "/offset"}) {
+      const std::string set = "/stylus/" + std::to_string(s) + name;
+      trace.numbers[set] = read_rows(set, 3, double{});
+    }
+  }
+  trace.reset = read_rows("/step/reset", 1, std::uint8_t{});
   trace.contact = read_rows("/stylus/0/contact", 1, std::uint8_t{});
+  trace.slipping = read_rows("/stylus/0/slipping", 1, std::uint8_t{});
   trace.contact_nodes = read_rows("/stylus/0/contact_nodes", 3, std::int32_t{});
+  trace.present = read_rows("/stylus/0/present", 1, std::uint8_t{});
   trace.buttons = read_rows("/stylus/0/buttons", 1, std::int32_t{});
   return trace;
 }

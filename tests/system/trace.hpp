@@ -11,7 +11,7 @@
 
 namespace irdm::test {
 
-/// A trace of one stylus, read back; K rows. Which sets there must be, and in what shape, is
+/// A trace of one object, read back; K rows. Which sets there must be, and in what shape, is
 /// checked: K rows in each.
 struct Trace {
   std::string model_file = {};
@@ -20,8 +20,12 @@ struct Trace {
   std::vector<double> time = {};
   std::vector<std::uint64_t> force_step = {};
   std::map<std::string, std::vector<double>> numbers = {};  ///< by path: "/stylus/0/force", ...
+  std::vector<std::uint8_t> reset = {};
+  // Of stylus 0.
   std::vector<std::uint8_t> contact = {};
+  std::vector<std::uint8_t> slipping = {};
   std::vector<std::int32_t> contact_nodes = {};  ///< (K, 3)
+  std::vector<std::uint8_t> present = {};
   std::vector<std::int32_t> buttons = {};
 
   std::size_t rows() const { return time.size(); }
@@ -30,8 +34,8 @@ struct Trace {
   Quaternion orientation(std::size_t k) const;
 };
 
-/// Reads a complete trace. Throws Error.
-Trace read_trace(const std::filesystem::path& path);
+/// Reads a complete trace, with the vectors of as many styluses. Throws Error.
+Trace read_trace(const std::filesystem::path& path, int styluses = 1);
 
 // A trace that is being written. What is read meanwhile may be torn: good to wait for, never to
 // judge by. As long as it cannot be read there are no rows.

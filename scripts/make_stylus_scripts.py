@@ -1,0 +1,80 @@
+#!/usr/bin/python3
+"""Writes the stylus scripts of the gallery (docs/configuration.md) into configs/scripts.
+
+usage: make_stylus_scripts.py [FOLDER]
+
+A motion is a list of (time, x, y, z, button): from one to the next the tip moves smoothly, starting and ending at
+rest; the buttons are those of the row before. Times in s, lengths in m. Buttons: 1 grab, 2 clutch, 4 reset.
+"""
+
+import math
+import os
+import sys
+
+STEP = 0.02  # s, between rows of a curve
+
+
+def smooth(motion):
+    """Rows of a motion: each way is walked with speed 0 at both ends."""
+    rows = []
+    for (t0, *start, button), (t1, *end, _) in zip(motion, motion[1:]):
+        steps = 1 if start == end else max(1, round((t1 - t0) / STEP))
+        for i in range(steps):
+            share = 0.5 - 0.5 * math.cos(math.pi * i / steps)
+            place = [a + share * (b - a) for a, b in zip(start, end)]
+            rows.append((t0 + (t1 - t0) * i / steps, *place, button))
+    rows.append(motion[-1])
+    return rows
+
+
+def swing(start, place, amplitude, rate, turns, button):
+    """Rows of a swing along x that grows within its first turn and fades within its last."""
+    rows = []
+    duration = turns / rate
+    for i in range(round(duration / STEP) + 1):
+        time = i * STEP
+        growth = min(1.0, time * rate, (duration - time) * rate)
+        x = place[0] + growth * amplitude * math.sin(2 * math.pi * rate * time)
+        rows.append((start + time, x, place[1], place[2], button))
+    return rows
+
+
+TAP = [(0.0, 0.02, 0.09, 0.01, 0), (0.3, 0.02, 0.09, 0.01, 0), (0.5, 0.02, 0.052, 0.01, 0), (0.7, 0.02, 0.09, 0.01, 0),
+       (2.0, 0.02, 0.09, 0.01, 0)]
+
+PINCH = [(0.0, 0.08, 0.01, 0.0, 0), (0.5, 0.08, 0.01, 0.0, 0), (1.2, 0.048, 0.01, 0.0, 0), (1.6, 0.048, 0.01, 0.0, 0),
+         (2.6, 0.048, 0.06, 0.0, 0), (3.6, 0.048, 0.06, 0.0, 0), (4.6, 0.048, 0.011, 0.0, 0), (5.2, 0.09, 0.011, 0.0, 0),
+         (5.5, 0.09, 0.011, 0.0, 0)]
+
+SLIDE = [(0.0, -0.03, 0.08, 0.0, 0), (0.3, -0.03, 0.08, 0.0, 0), (0.9, -0.03, 0.055, 0.0, 0), (1.2, -0.03, 0.055, 0.0, 0),
+         (2.7, 0.03, 0.055, 0.0, 0), (3.0, 0.03, 0.055, 0.0, 0), (3.5, 0.03, 0.08, 0.0, 0)]
+
+REST = [(0.0, 0.1, -0.02, 0.0, 0), (2.5, 0.1, -0.02, 0.0, 0), (3.5, 0.03, -0.02, 0.0, 0), (4.5, 0.1, -0.02, 0.0, 0),
+        (5.0, 0.1, -0.02, 0.0, 0)]
+
+HOLD = (0.0, 0.064, 0.0)
+SWING = (smooth([(0.0, 0.0, 0.09, 0.0, 0), (0.3, 0.0, 0.09, 0.0, 0), (0.6, *HOLD, 0), (0.7, *HOLD, 1), (1.0, *HOLD, 1)])[:-1]
+         + swing(1.0, HOLD, 0.03, 1.5, 6, 1)
+         + [(5.1, *HOLD, 1), (5.2, *HOLD, 0), (5.5, 0.0, 0.12, 0.0, 0)])
+
+SCRIPTS = {
+    "tap": ("From 3 cm above a face at y = 6 cm to 8 mm below it and back, at once.", smooth(TAP)),
+    "pinch": ("From 2 cm off a face at x = 6 cm to 1.2 cm inside it, 5 cm up, down again, and off.", smooth(PINCH)),
+    "slide": ("Down to 5 mm below a face at y = 6 cm, 6 cm along it, and off.", smooth(SLIDE)),
+    "rest": ("Waits for 2.5 s, then pushes along -x from 4 cm off a face at x = 6 cm to 3 cm inside it, and back.", smooth(REST)),
+    "swing": ("To 4 mm above a face at y = 6 cm, takes hold (0.7 s), swings 3 cm at 1.5 Hz (1 s), lets go (5.2 s).", SWING),
+}
+
+
+def main():
+    if len(sys.argv) > 2 or sys.argv[1:] in (["-h"], ["--help"]):
+        sys.exit(__doc__.strip())
+    folder = sys.argv[1] if len(sys.argv) == 2 else os.path.join(os.path.dirname(__file__), "..", "configs", "scripts")
+    for name, (comment, rows) in SCRIPTS.items():
+        with open(os.path.join(folder, name + ".csv"), "w") as file:
+            file.write(f"# {comment}\n# Made by scripts/make_stylus_scripts.py.\ntime,x,y,z,button\n")
+            for time, x, y, z, button in rows:
+                file.write(f"{time:.3f},{x:.5f},{y:.5f},{z:.5f},{button}\n")
+
+
+main()

@@ -1,0 +1,72 @@
+// What a simulation refuses to begin with.
+#include <catch2/catch.hpp>
+
+#include "common/error.hpp"
+#include "server/step/simulation.hpp"
+#include "tests/support/synthetic_model.hpp"
+
+using Catch::Matchers::Contains;
+using namespace irdm;
+using namespace irdm::test;
+
+namespace {
+
+SimulationConfig two() {
+  SimulationConfig config;
+  config.objects.resize(2);
+  for (SimulationObject& object : config.objects) {
+    object.model = std::make_shared<const Model>(synthetic_cube(2, 5, 10));
+  }
+  return config;
+}
+
+void check_refused(const SimulationConfig& config, const std::string& words) {
+  CHECK_THROWS_AS(Simulation(config), Error);
+  CHECK_THROWS_WITH(Simulation(config), Contains(words));
+}
+
+}  // namespace
+
+TEST_CASE("a simulation refuses too many objects or styluses, and models of different dt") {
+  CHECK_NOTHROW(Simulation(two()));
+  SimulationConfig config = two();
+  config.objects.resize(kMaxObjects + 1, config.objects[0]);
+  check_refused(config, "has 5 objects");
+  config.objects.clear();
+  check_refused(config, "has 0 objects");
+  config = two();
+  config.styluses.resize(kMaxStyluses + 1);
+  check_refused(config, "has 5 styluses");
+  config = two();
+  Model other = synthetic_cube(2, 5, 10);
+  other.dt = 0.001;
+  config.objects[1].model = std::make_shared<const Model>(std::move(other));
+  check_refused(config, "different dt");
+}
+
+TEST_CASE("a simulation refuses damping and tethers that its step is too long for") {
+  const SimulationConfig good = two();
+  const Model& model = *good.objects[1].model;
+  const double dt = model.dt;
+  const double stiffest = model.body.mass / (dt * dt);
+  const double stiffest_angular = model.body.inertia(0, 0) / (dt * dt);  // of a cube
+  SimulationConfig config = good;
+  config.objects[1].damping = {0.49 / dt, 0.49 / dt};
+  config.objects[1].tether = {0.99 * stiffest, 0.99 * stiffest_angular};
+  CHECK_NOTHROW(Simulation(config));
+  config.objects[1].damping.linear = 0.51 / dt;
+  check_refused(config, "object 2: has a damping that is too strong");
+  config.objects[1].damping = {0.0, 0.51 / dt};
+  check_refused(config, "object 2: has a damping that is too strong");
+  config = good;
+  config.objects[1].tether.stiffness = 1.01 * stiffest;
+  check_refused(config, "object 2: has a tether that is too stiff");
+  config = good;
+  config.objects[1].tether.angular_stiffness = 1.01 * stiffest_angular;
+  check_refused(config, "object 2: has a tether that is too stiff");
+  // A fixed object does not move, whatever is said of it.
+  Model fixed = model;
+  fixed.body.support = Support::kFixed;
+  config.objects[1].model = std::make_shared<const Model>(std::move(fixed));
+  CHECK_NOTHROW(Simulation(config));
+}

@@ -46,11 +46,13 @@ RestSurface::RestSurface(const ModelMesh& mesh) : tree_(mesh), topology_(mesh) {
       const Vector3 a = triangle[(i + 1) % 3] - triangle[i];
       const Vector3 b = triangle[(i + 2) % 3] - triangle[i];
       edges += a.norm();
+      mean_square_edge_ += a.squaredNorm();
       const auto node = static_cast<std::size_t>(topology_.corners(t)[i]);
       normals_[node] += std::atan2(a.cross(b).norm(), a.dot(b)) * normal;
     }
   }
   for (Vector3& normal : normals_) normal.normalize();
+  mean_square_edge_ /= static_cast<double>(3 * mesh.triangles.rows());
   mean_edge_ = edges / static_cast<double>(3 * mesh.triangles.rows());
 }
 

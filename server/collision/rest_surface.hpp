@@ -47,6 +47,8 @@ class RestSurface {
   int node_count() const noexcept { return static_cast<int>(positions_.size()); }
   /// Mean length of the triangles' edges [m].
   double mean_edge() const noexcept { return mean_edge_; }
+  /// Mean square of the same [m^2].
+  double mean_square_edge() const noexcept { return mean_square_edge_; }
 
  private:
   int across(int triangle, int corner) const noexcept;
@@ -57,6 +59,7 @@ class RestSurface {
   std::vector<Vector3> positions_;
   std::vector<Vector3> normals_;  ///< of the nodes
   double mean_edge_ = 0.0;
+  double mean_square_edge_ = 0.0;
 };
 
 }  // namespace irdm

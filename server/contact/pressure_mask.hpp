@@ -9,9 +9,10 @@ namespace irdm {
 
 /// The pressure of a round fingertip on the surface: with s the distance from the middle over the
 /// radius, proportional to 1 - s^2, as under an elastic ball of small stiffness. The pressure is
-/// summed at points on rings round the middle, laid on the surface; each passes its share to its
-/// triangle's corners. So the force spreads alike on any mesh, coarse or fine, and moves smoothly
-/// with the contact. Radius 0: the point itself. Real-time safe after construction; one thread.
+/// summed at points on rings round the middle, laid along the surface and round its edges; each
+/// passes its share to its triangle's corners. So the force spreads alike on any mesh whose edges
+/// are not longer than the radius, and moves smoothly with the contact. Radius 0: the point itself.
+/// Real-time safe after construction; one thread.
 class PressureMask {
  public:
   /// The largest radius for a surface [m]: beyond it the rings would leave nodes out.

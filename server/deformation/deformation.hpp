@@ -41,8 +41,8 @@ class Deformation {
   explicit Deformation(const SimulationConfig& config);
 
   /// Takes in the next step. Steps that were lost on the way are taken to have had the forces and
-  /// the spin of the one before them, or none if everything was put back to the start since then; how many, is
-  /// counted.
+  /// the spin of the one before them, or none if everything was put back to the start since then;
+  /// how many, is counted.
   void follow(const StepRecord& record);
 
   /// Displacements of all nodes after the last step taken in (OpenMP). The frame has the objects'

@@ -5,8 +5,18 @@
 
 namespace irdm {
 namespace {
-constexpr double kSameSide = 0.85;  // cosine of 32 degrees
+// Cosines of 18 and 37 degrees, between the normals of two places of the surface: up to the first
+// they count as one side of the object, from the second on as two.
+constexpr double kSameSide = 0.95;
+constexpr double kOtherSide = 0.8;
+// Distance from the tip, compared to another place's, from which on a place is much nearer.
+constexpr double kMuchNearer = 0.6;
+
+// 0 up to `from`, 1 from `to` on.
+double fading(double value, double from, double to) noexcept {
+  return std::clamp((value - from) / (to - from), 0.0, 1.0);
 }
+}  // namespace
 
 void GodObject::find(const Input& input, DeformedSurface& surface) noexcept {
   tip_moved_ = (input.tip - tip_).norm();
@@ -74,16 +84,16 @@ void GodObject::impose(ContactState state, const SurfacePoint& point) noexcept {
 void GodObject::stay(const Vector3& slip, double share, const Vector3& point_free,
                      const RestSurface& rest) noexcept {
   const double length = slip.norm();
-  slid_ = 0.0;
   slipping_ = length > 0.0;
-  if (slipping_) {
-    const double at_once = std::min(length, tip_moved_);
-    const double along = at_once + share * (length - at_once);
-    slide(slip, along, rest);
-    slid_ = along;
-  }
+  slid_ = catch_up(length, share);
+  if (slipping_) slide(slip, slid_, rest);
   outside_ = true;
   last_tip_ = point_free;
+}
+
+double GodObject::catch_up(double length, double share) const noexcept {
+  const double at_once = std::min(length, tip_moved_);
+  return at_once + share * (length - at_once);
 }
 
 void GodObject::slide(const Vector3& towards, double length, const RestSurface& rest) noexcept {
@@ -97,18 +107,13 @@ void GodObject::follow(const Vector3& tip, double share, const RestSurface& rest
   const SurfaceLocation nearest = rest.walk(triangle_, tip);
   const Vector3 here = at(rest.corners(triangle_), point_.weights);
   const double cosine = rest.smooth_normal(nearest.point).dot(rest.smooth_normal(point_));
-  static const double c0 = getenv("C0") ? atof(getenv("C0")) : 0.95;
-  static const double c1 = getenv("C1") ? atof(getenv("C1")) : 0.8;
-  static const double nearer = getenv("NEAR") ? atof(getenv("NEAR")) : 0.4;
   const double ratio = (tip - nearest.position).norm() / (tip - here).norm();
-  const double weight = std::clamp((c0 - cosine) / (c0 - c1), 0.0, 1.0) * std::clamp((1.0 - ratio) / nearer, 0.0, 1.0);
+  const double weight = fading(cosine, kSameSide, kOtherSide) * fading(ratio, 1.0, kMuchNearer);
   if (!(weight > 0.0)) return;
   const Vector3 way = nearest.position - here;
-  const double length = way.norm();
-  const double at_once = std::min(length, tip_moved_);
-  const double along = weight * (at_once + share * (length - at_once)) - slid_;
-  if (!(along > 0)) return;
-  slide(way, along, rest);
+  const double length = weight * catch_up(way.norm(), share) - slid_;
+  if (!(length > 0.0)) return;
+  slide(way, length, rest);
   slipping_ = true;
 }
 

@@ -37,8 +37,9 @@ class GodObject {
   void stay(const Vector3& slip, double share, const Vector3& point_free,
             const RestSurface& rest) noexcept;
   /// After the step, where friction is finite: when the tip has come nearer to another side of the
-  /// object (a normal more than 32 degrees off, and much nearer), the contact goes a `share` of the
-  /// way over there. Without this a tip could hook a soft edge and pull it along from beyond.
+  /// object, the contact goes over there like a slip, the more decidedly the more the side is
+  /// another one and the nearer it is. Without this a tip could hook a soft edge and pull it along
+  /// from beyond.
   void follow(const Vector3& tip, double share, const RestSurface& rest) noexcept;
   /// After the step: a point that is given up is pushed on, so that it can be touched on.
   void turn_to_touching() noexcept;
@@ -57,6 +58,8 @@ class GodObject {
   int steps_since_release() const noexcept { return release_steps_; }
 
  private:
+  /// How far to go in one step of `length` that are wanted.
+  double catch_up(double length, double share) const noexcept;
   void slide(const Vector3& towards, double length, const RestSurface& rest) noexcept;
   void touch(const Vector3& tip, DeformedSurface& surface) noexcept;
   bool reach_for(const Input& input, DeformedSurface& surface) noexcept;
@@ -73,7 +76,7 @@ class GodObject {
   bool outside_ = false;
   Vector3 last_tip_ = Vector3::Zero();  ///< relative to the free motion [m], B
   Vector3 tip_ = Vector3::Zero();       ///< of this step [m], B
-  double slid_ = 0.0;
+  double slid_ = 0.0;                   ///< in this step, by slip [m]
   double tip_moved_ = 0.0;              ///< since the step before [m]
 };
 

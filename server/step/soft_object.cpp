@@ -30,7 +30,7 @@ bool pushes(const ContactUnknown& contact) noexcept {
 }
 
 // In which a contact catches up with a tip that has passed an edge [s].
-const double kEdgeTime = getenv("ET")?atof(getenv("ET")):0.05;
+constexpr double kEdgeTime = 0.05;
 
 // The iteration goes on in the next step from where it was left, so a few sweeps are enough.
 constexpr SolverLimits kFloorLimits{8, 1e-10};
@@ -161,26 +161,6 @@ void SoftObject::predict_contacts() noexcept {
   }
 }
 
-Vector3 SoftObject::deformed_normal(const ContactPatch& patch) noexcept {
-  const Vector3 n = rest_.smooth_normal(patch);
-  const Vector3 t1 = n.unitOrthogonal();
-  const Vector3 t2 = n.cross(t1);
-  const Vector3 X = mean(patch, [&](int i) { return rest_.node(i); });
-  const Vector3 x = mean(patch, [&](int i) { return surface_.node(i); });
-  Eigen::Matrix2d A = Eigen::Matrix2d::Zero();
-  Eigen::Matrix<double, 3, 2> B = Eigen::Matrix<double, 3, 2>::Zero();
-  for (std::size_t i = 0; i < static_cast<std::size_t>(patch.count); ++i) {
-    const Vector3 d = rest_.node(patch.nodes[i]) - X;
-    const Eigen::RowVector2d tangential(t1.dot(d), t2.dot(d));
-    const Vector3 u = surface_.node(patch.nodes[i]) - x - d;
-    A += patch.weights[i] * tangential.transpose() * tangential;
-    B += patch.weights[i] * u * tangential;
-  }
-  if (!(A.determinant() > 1e-6 * A.trace() * A.trace())) return n;
-  const Eigen::Matrix<double, 3, 2> G = B * A.inverse();
-  return (t1 + G.col(0)).cross(t2 + G.col(1)).normalized();
-}
-
 // Step 2 and the rest of 3.
 void SoftObject::pose_problem(std::span<const StylusCommand> commands) noexcept {
   problem_.begin(floor_count_ + contact_count_);
@@ -202,7 +182,7 @@ void SoftObject::pose_problem(std::span<const StylusCommand> commands) noexcept 
       continue;
     }
     unknown.law = stylus.state() == ContactState::kHeld ? ContactLaw::kHeld : ContactLaw::kTouching;
-    unknown.normal = deformed_normal(patches_[static_cast<std::size_t>(a)]);
+    unknown.normal = surface_.smooth_normal(patches_[static_cast<std::size_t>(a)]);
     unknown.friction = object_.friction;
     // What slips goes on slipping until kinetic friction can hold it.
     if (stylus.slipping()) unknown.friction.static_ = unknown.friction.kinetic;
@@ -262,6 +242,7 @@ void SoftObject::write(ObjectRecord& record) const noexcept {
     out.slipping = solved.mode == ContactMode::kSlipping;
     out.point = points_[static_cast<std::size_t>(a)];
     out.force = solved.force;
+    out.normal = solved.normal;
     out.offset = stylus.offset();
     out.proxy = contact.arm;
     for (int b = 0; b < contact_count_; ++b) {
@@ -296,7 +277,7 @@ void SoftObject::settle(std::span<const StylusCommand> commands) noexcept {
       styluses_[s].let_go(motion_.to_body(commands[s].tip));
     } else {
       styluses_[s].stay(solved.slip, model_->dt / kEdgeTime, contact.arm, rest_);
-      if (solved.law == ContactLaw::kTouching && !std::isinf(solved.friction.kinetic) && !getenv("NOFOLLOW")) {
+      if (solved.law == ContactLaw::kTouching && !std::isinf(solved.friction.kinetic)) {
         styluses_[s].follow(motion_.to_body(commands[s].tip), model_->dt / kEdgeTime, rest_);
       }
       if (styluses_[s].releasing() && pushes(solved) && styluses_[s].offset().isZero(0.0)) {

@@ -50,7 +50,6 @@ class SoftObject {
   FreeMotion predict_free_motion() const noexcept;
   void collect(std::span<const StylusCommand> commands) noexcept;
   void predict_contacts() noexcept;
-  Vector3 deformed_normal(const ContactPatch& patch) noexcept;
   void pose_problem(std::span<const StylusCommand> commands) noexcept;
   void solve(std::span<const StylusCommand> commands, ObjectRecord& record) noexcept;
   void pose_floor() noexcept;

@@ -36,7 +36,8 @@ TEST_CASE("every key of a scene arrives where it belongs") {
       "[[stylus]]\nradius = 0.01\ncoupling_stiffness = 800\nreach = 0.02\n[[stylus]]\n"
       "[[object]]\nname = \"liver\"\nmodel = \"/models/liver.h5\"\nengine = \"dense\"\n"
       "position = [4, 5, 6]\norientation = [0, 3, 0, 0]\nvelocity = [7, 8, 9]\n"
-      "angular_velocity = [10, 11, 12]\ninertial_loading = true\nfriction = { static = 0.4, kinetic = 0.3 }\n"
+      "angular_velocity = [10, 11, 12]\ninertial_loading = true\nfriction = { static = 0.4, "
+      "kinetic = 0.3 }\n"
       "damping = { linear = 0.1, angular = 0.2 }\n"
       "tether = { stiffness = 20, angular_stiffness = 0.3 }\n");
   CHECK(read.server.address == "127.0.0.2");

@@ -43,6 +43,9 @@ class RestSurface {
   /// Outward unit normal that varies continuously over the surface: the nodes' normals (of the
   /// faces round them, weighted with their angles), interpolated.
   Vector3 smooth_normal(const SurfacePoint& point) const noexcept;
+  /// The same, mean over what a fingertip presses on. The law of a contact is stated on the surface
+  /// at rest, as linear elasticity states everything: the tilt that a sideways force gives the
+  /// surface under it is not in the cone.
   Vector3 smooth_normal(const ContactPatch& patch) const noexcept;
   int node_count() const noexcept { return static_cast<int>(positions_.size()); }
   /// Mean length of the triangles' edges [m].

@@ -182,7 +182,7 @@ void SoftObject::pose_problem(std::span<const StylusCommand> commands) noexcept 
       continue;
     }
     unknown.law = stylus.state() == ContactState::kHeld ? ContactLaw::kHeld : ContactLaw::kTouching;
-    unknown.normal = surface_.smooth_normal(patches_[static_cast<std::size_t>(a)]);
+    unknown.normal = rest_.smooth_normal(patches_[static_cast<std::size_t>(a)]);
     unknown.friction = object_.friction;
     // What slips goes on slipping until kinetic friction can hold it.
     if (stylus.slipping()) unknown.friction.static_ = unknown.friction.kinetic;

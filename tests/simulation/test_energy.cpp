@@ -5,25 +5,14 @@
 #include <cmath>
 #include <iostream>
 #include <numbers>
-#include <random>
 
 #include "tests/simulation/pressed_cube.hpp"
+#include "tests/simulation/random_numbers.hpp"
 
 using namespace irdm;
 using namespace irdm::test;
 
 namespace {
-
-using Random = std::mt19937;
-
-double between(Random& random, double from, double to) {
-  return std::uniform_real_distribution<double>(from, to)(random);
-}
-
-Vector3 anywhere(Random& random, double reach) {
-  return {between(random, -reach, reach), between(random, -reach, reach),
-          between(random, -reach, reach)};
-}
 
 // What a stylus did to the objects.
 struct Work {

@@ -4,30 +4,16 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <iostream>
+#include <memory>
 #include <numbers>
-#include <random>
 
 #include "tests/simulation/pressed_cube.hpp"
+#include "tests/simulation/random_numbers.hpp"
 
 using namespace irdm;
 using namespace irdm::test;
 
 namespace {
-
-using Random = std::mt19937;
-
-double between(Random& random, double from, double to) {
-  return std::uniform_real_distribution<double>(from, to)(random);
-}
-
-bool chance(Random& random, double share) {
-  return between(random, 0.0, 1.0) < share;
-}
-
-Vector3 anywhere(Random& random, double reach) {
-  return {between(random, -reach, reach), between(random, -reach, reach),
-          between(random, -reach, reach)};
-}
 
 // A tip that goes to and fro through a place, and takes hold from time to time.
 struct Hand {

@@ -86,7 +86,7 @@ Tour tour(const SimulationConfig& config, double angle, double speed, double dep
 
 }  // namespace
 
-TEST_CASE("sliding: over faces and edges is smooth, and the proxy stays on the surface") {
+TEST_CASE("sliding: over faces and edges is smooth, and the proxy stays on the surface", "[slow]") {
   const double speed = GENERATE(0.02, 0.04, 0.08);
   const double degrees = GENERATE(0.0, 20.0);
   const double angle = degrees * std::numbers::pi / 180.0;
@@ -98,7 +98,7 @@ TEST_CASE("sliding: over faces and edges is smooth, and the proxy stays on the s
   CHECK(result.largest_step < 0.05 * result.peak);
 }
 
-TEST_CASE("sliding: over corners and along edges is smooth") {
+TEST_CASE("sliding: over corners and along edges is smooth", "[slow]") {
   const double speed = GENERATE(0.01, 0.02, 0.04);
   const Tour result = tour(tethered({8}, 0.015, {0.2, 0.2}), 0.25 * std::numbers::pi, speed, 0.004);
   INFO(speed << " m/s: peak " << result.peak << " N, largest step " << result.largest_step

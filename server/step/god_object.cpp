@@ -27,8 +27,9 @@ void GodObject::find(const Input& input, DeformedSurface& surface) noexcept {
     grabbed_before_ = input.grab;
     return;
   }
-  // The touched point goes on from where it is, so that taking hold makes no jump.
-  if (input.grab) {
+  // What is touched goes on from where it is, and only what pushes is taken hold of (hence not in the
+  // step in which it begins): so a grab makes no jump.
+  if (input.grab && !fresh_) {
     state_ = ContactState::kHeld;
     releasing_ = false;
   } else if (state_ == ContactState::kHeld) {
@@ -81,6 +82,7 @@ void GodObject::impose(ContactState state, const SurfacePoint& point) noexcept {
   state_ = state;
   point_ = point;
   offset_.setZero();
+  fresh_ = false;
   reached_ = false;
   slipping_ = false;
   releasing_ = false;

@@ -167,3 +167,38 @@ TEST_CASE("touch: two objects are felt by the same stylus, each for itself") {
   }
   CHECK(second);
 }
+
+TEST_CASE("touch: a given contact stays where it is given, after one that just began, too") {
+  Simulation simulation(tethered({8}, 0.0, {0.5, 0.5}));
+  StepRecord record;
+  StylusCommand command = at_tip({0.05, kHalfEdge + 0.001, 0.003});
+  simulation.step({&command, 1}, record);
+  command.tip.y() = kHalfEdge - 0.006;  // below where the rounded edge is felt
+  simulation.step({&command, 1}, record);
+  REQUIRE(record.stylus[0].contact == ContactState::kTouching);
+  const SurfacePoint point = simulation.object().surface().closest({0.05, kHalfEdge, -0.02}).point;
+  command.given = GivenForce{ContactState::kTouching, point, Vector3(0, -0.1, 0), 0};
+  simulation.step({&command, 1}, record);
+  CHECK(record.object[0].contact[0].point.nodes == point.nodes);
+  CHECK(record.object[0].contact[0].point.weights == point.weights);
+}
+
+TEST_CASE("touch: a grab that begins with the contact makes no jump, near an edge either") {
+  for (const double x : {0.0, 0.045, 0.055}) {
+    double largest = 0.0;
+    for (const bool grab : {false, true}) {
+      Simulation simulation(tethered({8}, 0.015, {0.5, 0.5}));
+      StepRecord record;
+      double first = 0.0;
+      for (int k = 0; k < 400 && first == 0.0; ++k) {
+        const StylusCommand command = at_tip({x, kHalfEdge + 0.002 - 5e-5 * k, 0.003}, grab);
+        simulation.step({&command, 1}, record);
+        first = record.stylus[0].force.norm();
+      }
+      INFO("x " << x << ", grab " << grab << ": first force " << first << " N");
+      CHECK(first > 0.0);
+      if (grab) CHECK(first < 3.0 * largest + 0.1);
+      largest = std::max(largest, first);
+    }
+  }
+}

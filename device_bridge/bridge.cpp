@@ -48,8 +48,10 @@ BridgeReport run_bridge(const BridgeConfig& config, StopSignal& stop_signal, dou
   double longest = 0.0;
   bool simulated = true;
   for (const auto& device : devices.all()) {
-    loops.emplace_back(*device, GuardLimits{.max_force = config.max_force},
-                       config.devices[loops.size()].mapping);
+    loops.emplace_back(
+        *device,
+        FilterLimits{.max_force = config.max_force, .continuous_force = config.continuous_force},
+        config.devices[loops.size()].mapping);
     longest = std::max(longest, device->duration());
     simulated = simulated && device->simulated();
   }
@@ -79,7 +81,11 @@ BridgeReport run_bridge(const BridgeConfig& config, StopSignal& stop_signal, dou
                       .styluses = static_cast<int>(loops.size())};
   for (const ServoLoop& loop : loops) {
     report.peak_force = std::max(report.peak_force, loop.peak_force());
-    report.faults += loop.faults();
+    const FilterCounts counts = loop.counts();
+    report.filter.readings += counts.readings;
+    report.filter.demands += counts.demands;
+    report.filter.trips += counts.trips;
+    report.filter.faults += counts.faults;
   }
   if (report.servo.end == ServoEnd::kLinkLost && report.client.failure.empty()) {
     report.client.failure = "server: connection lost in lockstep; start both programs again";

@@ -83,6 +83,9 @@ void read_bridge(TomlTable table, const std::string& file, BridgeConfig& config)
   config.rate = table.number("rate", between(100.0, 4000.0), config.rate);
   config.max_force = table.number(
       "max_force", {.lowest = 0.0, .highest = 40.0, .lowest_included = false}, config.max_force);
+  config.continuous_force =
+      table.number("continuous_force", {.lowest = 0.0, .highest = 40.0, .lowest_included = false},
+                   config.continuous_force);
   config.connect_timeout =
       table.number("connect_timeout", between(0.01, 10.0), config.connect_timeout);
   config.realtime =

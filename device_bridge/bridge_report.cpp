@@ -23,7 +23,7 @@ std::string percentiles(const Histogram& histogram) {
 }  // namespace
 
 std::string to_text(const BridgeReport& report) {
-  const auto& [servo, client, scheduling, styluses, peak_force, faults] = report;
+  const auto& [servo, client, scheduling, styluses, peak_force, filter] = report;
   const std::uint64_t reconnects = client.sessions > 0 ? client.sessions - 1 : 0;
   std::ostringstream text;
   text << std::fixed << std::setprecision(3);
@@ -42,7 +42,9 @@ std::string to_text(const BridgeReport& report) {
     text << "servo: " << servo.ticks << " ticks, " << servo.missed << " missed, wake-up "
          << percentiles(servo.wakeup) << ", scheduling " << scheduling << '\n';
   }
-  text << "peak force: " << peak_force << " N, " << faults << " not finite\n";
+  text << "peak force: " << peak_force << " N; safety filter: " << filter.demands << " forces and "
+       << filter.readings << " readings not used, force dropped " << filter.trips
+       << " times, faults " << filter.faults << '\n';
   return text.str();
 }
 

@@ -15,7 +15,7 @@ struct BridgeReport {
   std::string scheduling;  ///< of the servo thread
   int styluses = 0;
   double peak_force = 0.0;   ///< shown on any stylus [N]
-  std::uint64_t faults = 0;  ///< forces or device readings that were not finite
+  FilterCounts filter = {};  ///< of all styluses
 };
 
 /// A few lines for a person, each `name: values`.

@@ -7,7 +7,7 @@
 #include "common/realtime/mailbox.hpp"
 #include "common/realtime/wakeup.hpp"
 #include "common/stylus.hpp"
-#include "device_bridge/force_guard.hpp"
+#include "device_bridge/servo_input.hpp"
 
 namespace irdm {
 

@@ -1,25 +1,28 @@
 #include "device_bridge/servo_loop.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace irdm {
 
-ServoLoop::ServoLoop(HapticDevice& device, const GuardLimits& limits, const DeviceMapping& mapping)
-    : device_(device), limits_(limits), mapping_(mapping), guard_(limits) {}
+ServoLoop::ServoLoop(HapticDevice& device, const FilterLimits& limits, const DeviceMapping& mapping)
+    : device_(device), limits_(limits), mapping_(mapping), filter_(limits) {
+  filter_.arm();
+}
 
 void ServoLoop::restart() noexcept {
-  faults_ += guard_.faults();
-  guard_ = ForceGuard(limits_);
+  counts_ = counts();
+  filter_ = SafetyFilter(limits_);
+  filter_.arm();
   clutch_ = Clutch{};
   next_sequence_ = 0;
 }
 
 void ServoLoop::read(double device_time) noexcept {
   const StylusPose pose = device_.read(device_time);
-  if (!pose.tip.allFinite() || !pose.orientation.coeffs().allFinite()) {
-    ++faults_;  // the last good one stays
-    return;
-  }
+  const bool finite = pose.tip.allFinite() && pose.orientation.coeffs().allFinite();
+  reading_ = finite ? pose.tip : Vector3::Constant(std::numeric_limits<double>::quiet_NaN());
+  if (!finite) return;
   pose_ = mapping_.workspace.to_world(pose);
   pose_.tip = clutch_.move(pose_.tip, mapping_.buttons.clutched(pose.buttons));
   pose_.buttons = mapping_.buttons.to_wire(pose.buttons);
@@ -34,11 +37,25 @@ StylusSample ServoLoop::take_sample(std::int64_t now_ns) noexcept {
 }
 
 void ServoLoop::apply(std::int64_t now_ns, const ServoInput& input) noexcept {
-  ServoInput at_device = input;
-  at_device.force.force = mapping_.workspace.to_device(input.force.force);
-  const Vector3 force = clutch_.gain(now_ns) * guard_.apply(now_ns, at_device);
+  const StylusForce& newest = input.force;
+  const Vector3 force =
+      filter_.step(now_ns, {.tip = reading_},
+                   {.linked = input.linked,
+                    .any = input.any_force,
+                    .sample_time_ns = newest.sample_time_ns,
+                    .contact = newest.contact,
+                    .force = clutch_.gain(now_ns) * mapping_.workspace.to_device(newest.force)});
   peak_force_ = std::max(peak_force_, force.norm());
   device_.write(force);
+}
+
+FilterCounts ServoLoop::counts() const noexcept {
+  FilterCounts sum = filter_.counts();
+  sum.readings += counts_.readings;
+  sum.demands += counts_.demands;
+  sum.trips += counts_.trips;
+  sum.faults += counts_.faults;
+  return sum;
 }
 
 }  // namespace irdm

@@ -5,8 +5,9 @@
 #include "common/stylus.hpp"
 #include "device_bridge/button_map.hpp"
 #include "device_bridge/clutch.hpp"
-#include "device_bridge/force_guard.hpp"
 #include "device_bridge/haptic_device.hpp"
+#include "device_bridge/safety/safety_filter.hpp"
+#include "device_bridge/servo_input.hpp"
 #include "device_bridge/workspace.hpp"
 
 namespace irdm {
@@ -18,15 +19,15 @@ struct DeviceMapping {
 };
 
 /// One stylus of the servo loop: device (D) through workspace and clutch to sample (W), and force
-/// (W) through workspace, guard and clutch to device (D). Knows no thread, clock or socket; nothing
-/// in it allocates or throws.
+/// (W) through workspace, clutch and safety filter to device (D). Knows no thread, clock or socket;
+/// nothing in it allocates or throws.
 class ServoLoop {
  public:
   /// @param limits of the force at the device
-  ServoLoop(HapticDevice& device, const GuardLimits& limits, const DeviceMapping& mapping = {});
+  ServoLoop(HapticDevice& device, const FilterLimits& limits, const DeviceMapping& mapping = {});
 
-  /// Begins a session of the device's time: samples are numbered from 0 again, and the
-  /// clutch's offset is gone.
+  /// Begins a session of the device's time: samples are numbered from 0 again, the clutch's
+  /// offset is gone, and the filter is armed.
   void restart() noexcept;
 
   /// Reads the device.
@@ -36,26 +37,31 @@ class ServoLoop {
   /// @param now_ns goes into the sample, and comes back with the force that answers it
   StylusSample take_sample(std::int64_t now_ns) noexcept;
 
-  /// Shows the force that the guard lets through.
+  /// Shows what the filter makes of the force.
   /// @param now_ns the clock that samples are stamped with
   void apply(std::int64_t now_ns, const ServoInput& input) noexcept;
   /// Shows no force.
   void rest() noexcept { device_.write(Vector3::Zero()); }
 
+  const FilterLimits& limits() const noexcept { return limits_; }
+  const SafetyFilter& filter() const noexcept { return filter_; }
   double peak_force() const noexcept { return peak_force_; }  ///< shown so far [N], D
-  std::uint64_t faults() const noexcept { return faults_ + guard_.faults(); }
+  /// Of all sessions.
+  FilterCounts counts() const noexcept;
   HapticDevice& device() noexcept { return device_; }
 
  private:
   HapticDevice& device_;
-  GuardLimits limits_;
+  FilterLimits limits_;
   DeviceMapping mapping_;
-  ForceGuard guard_;
+  SafetyFilter filter_;
   Clutch clutch_;
-  StylusPose pose_;  ///< W; buttons as on the wire
+  StylusPose pose_;  ///< the last good one, W; buttons as on the wire
+  Vector3 reading_ =
+      Vector3::Zero();  ///< tip as it was read last, not a number if of no use [m], D
   std::uint64_t next_sequence_ = 0;
   double peak_force_ = 0.0;
-  std::uint64_t faults_ = 0;
+  FilterCounts counts_;  ///< of the sessions before
 };
 
 }  // namespace irdm

@@ -89,8 +89,8 @@ void ServoThread::fade_out() noexcept {
   const std::int64_t begin_ns = monotonic_ns();
   PeriodicSchedule schedule(begin_ns, period_ns);
   const ServoInput lost;
-  for (std::int64_t now_ns = begin_ns; now_ns - begin_ns <= GuardLimits{}.fade_ns;
-       now_ns = monotonic_ns()) {
+  const std::int64_t fade_ns = loops_.empty() ? 0 : loops_.front().limits().fade_ns;
+  for (std::int64_t now_ns = begin_ns; now_ns - begin_ns <= fade_ns; now_ns = monotonic_ns()) {
     for (ServoLoop& loop : loops_) loop.apply(now_ns, lost);
     sleep_until(schedule.next(now_ns));
   }
@@ -122,8 +122,13 @@ void ServoThread::step(std::uint64_t k) noexcept {
   const double begin = static_cast<double>(k) * dt;
   const int ticks = std::max(1, static_cast<int>(std::lround(dt * settings_.rate)));
   for (std::size_t i = 0; i < loops_.size(); ++i) {
-    if (k > 0) loops_[i].apply(to_ns(begin), link_.styluses[i].input.front());
-    for (int tick = 1; tick <= ticks; ++tick) loops_[i].read(begin + tick * dt / ticks);
+    ServoInput input = k > 0 ? link_.styluses[i].input.front() : ServoInput{};
+    for (int tick = 0; tick < ticks; ++tick) {
+      // On the simulated clock a force is new all through its step.
+      input.force.sample_time_ns = to_ns(begin + tick * dt / ticks);
+      loops_[i].apply(input.force.sample_time_ns, input);
+      loops_[i].read(begin + (tick + 1) * dt / ticks);
+    }
     link_.styluses[i].sample.put(loops_[i].take_sample(to_ns(static_cast<double>(k + 1) * dt)));
   }
 }

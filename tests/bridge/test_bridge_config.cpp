@@ -102,7 +102,8 @@ TEST_CASE("bridge configuration refuses a workspace or buttons that do not fit")
 TEST_CASE("bridge configuration takes every key") {
   const BridgeConfig config =
       ConfigFile(
-          "[bridge]\nserver = \"[::1]:4000\"\nrate = 500\nmax_force = 2\nconnect_timeout = 0.5\n"
+          "[bridge]\nserver = \"[::1]:4000\"\nrate = 500\nmax_force = 2\ncontinuous_force = "
+          "1\nconnect_timeout = 0.5\n"
           "[[device]]\ntype = \"virtual\"\nscript = \"/a.csv\"\nhand = { mass = 0.2 }\n"
           "[[device]]\ntype = \"openhaptics\"\n")
           .load();
@@ -111,6 +112,7 @@ TEST_CASE("bridge configuration takes every key") {
   CHECK(config.server->port == 4000);
   CHECK(config.rate == 500.0);
   CHECK(config.max_force == 2.0);
+  CHECK(config.continuous_force == 1.0);
   CHECK(config.connect_timeout == 0.5);
   REQUIRE(config.devices.size() == 2);
   CHECK(config.devices[0].script == "/a.csv");
@@ -147,6 +149,7 @@ TEST_CASE("bridge configuration refuses what does not fit") {
   check_refused("[bridge]\nrate = 10\n" + kDevice, "rate is 10");
   check_refused("[bridge]\nmax_force = 0\n" + kDevice, "max_force is 0");
   check_refused("[bridge]\nmax_force = 41\n" + kDevice, "max_force is 41");
+  check_refused("[bridge]\ncontinuous_force = 0\n" + kDevice, "continuous_force is 0");
   check_refused("[bridge]\nconnect_timeout = 0\n" + kDevice, "connect_timeout is 0");
   check_refused("[bridge]\nserver = \"here\"\n" + kDevice, "'here' has no port");
   check_refused(kDevice, "given here and by --script", {.script = "b.csv"});

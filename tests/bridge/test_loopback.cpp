@@ -74,7 +74,7 @@ class Bridge {
       : device_(parse(script), HandParameters{}),
         link_(1),
         client_(link_, {.server = {"127.0.0.1", port}}, done_) {
-    loops_.emplace_back(device_, GuardLimits{});
+    loops_.emplace_back(device_, FilterLimits{});
     servo_.emplace(link_, loops_, ServoSettings{.duration = duration}, done_);
     client_.start();
     servo_->start();

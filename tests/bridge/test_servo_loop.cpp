@@ -26,6 +26,18 @@ class ProbeDevice : public HapticDevice {
   Vector3 force = Vector3::Constant(7.0);
 };
 
+constexpr std::int64_t kTickNs = 1'000'000;
+
+// So many ticks with a fresh force; the time after them.
+std::int64_t show(ServoLoop& loop, std::int64_t now_ns, int ticks, const Vector3& force_W) {
+  for (int i = 0; i < ticks; ++i, now_ns += kTickNs) {
+    loop.apply(
+        now_ns,
+        {.linked = true, .any_force = true, .force = {.sample_time_ns = now_ns, .force = force_W}});
+  }
+  return now_ns;
+}
+
 }  // namespace
 
 TEST_CASE("servo loop numbers its samples and stamps them") {
@@ -51,21 +63,32 @@ TEST_CASE("servo loop keeps the last good reading of a device that fails") {
   device.pose.tip.x() = std::numeric_limits<double>::quiet_NaN();
   loop.read(0.0);
   CHECK(loop.take_sample(0).tip == Vector3(1, 2, 3));
-  CHECK(loop.faults() == 1);
 }
 
-TEST_CASE("servo loop shows the guarded force and remembers the largest") {
+TEST_CASE("servo loop shows the filtered force and remembers the largest") {
   ProbeDevice device;
   ServoLoop loop(device, {.max_force = 2.0});
-  ServoInput input{.linked = true, .any_force = true, .force = {.force = Vector3(0, 5, 0)}};
-  loop.apply(0, input);
+  std::int64_t now_ns = show(loop, 0, 3, Vector3::Zero());
+  now_ns = show(loop, now_ns, 10, Vector3(0, 5, 0));
   CHECK(device.force.isApprox(Vector3(0, 2, 0)));
-  loop.apply(1'000'000'000, input);
-  CHECK(device.force == Vector3::Zero());
   CHECK(loop.peak_force() == Approx(2.0));
-  loop.apply(0, input);
   loop.rest();
   CHECK(device.force == Vector3::Zero());
+  now_ns = show(loop, now_ns, 3, Vector3(0, std::nan(""), 0));
+  device.pose.tip.x() = std::nan("");
+  loop.read(0.0);
+  show(loop, now_ns, 3, Vector3(0, 1, 0));
+  CHECK(loop.counts().demands == 3);
+  CHECK(loop.counts().readings == 3);
+  CHECK(loop.counts().faults == 1);
+  CHECK(device.force == Vector3::Zero());
+  device.pose.tip.x() = 0.0;
+  loop.read(0.0);
+  loop.restart();
+  now_ns = show(loop, now_ns, 3, Vector3::Zero());
+  show(loop, now_ns, 10, Vector3(0, 1, 0));
+  CHECK(device.force.isApprox(Vector3(0, 1, 0)));
+  CHECK(loop.counts().faults == 1);
 }
 
 TEST_CASE("servo loop takes a device to W and the force back to it") {
@@ -82,21 +105,20 @@ TEST_CASE("servo loop takes a device to W and the force back to it") {
   CHECK(sample.tip.isApprox(Vector3(1.6, 2.4, 2.8)));
   CHECK(sample.orientation.isApprox(mapping.workspace.rotation));
   CHECK(sample.buttons == (kGrabButton | kResetButton));
-  ServoInput input{.linked = true, .any_force = true, .force = {.force = Vector3(4, 0, 0)}};
-  loop.apply(0, input);
+  std::int64_t now_ns = show(loop, 0, 3, Vector3::Zero());
+  now_ns = show(loop, now_ns, 10, Vector3(4, 0, 0));
   CHECK(device.force.isApprox(Vector3(0, 0, 2)));
   // The limit is one of the force at the device.
-  input.force.force = Vector3(20, 0, 0);
-  loop.apply(0, input);
+  show(loop, now_ns, 10, Vector3(20, 0, 0));
   CHECK(device.force.isApprox(Vector3(0, 0, 3)));
 }
 
 TEST_CASE("servo loop: clutched, the tip stays in W, the force fades, the orientation follows") {
-  constexpr std::int64_t kTickNs = 1'000'000;
   ProbeDevice device;
   const DeviceMapping mapping{.workspace = {.position = Vector3(0, 1, 0), .scale = 2.0}};
   ServoLoop loop(device, {}, mapping);
-  std::int64_t now_ns = 0;
+  std::int64_t now_ns = show(loop, 0, 3, Vector3::Zero());
+  now_ns = show(loop, now_ns, 10, Vector3(0, 1, 0));
   Vector3 last_tip(0, 1, 0);
   double last_force = 1.0;
   Vector3 held = last_tip;

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "common/geometry.hpp"
+
+namespace irdm {
+
+struct PassivityLimits {
+  double damping = 6.0;  ///< at most [N s/m]
+  double most = 0.2;     ///< energy that is remembered as taken in, at most [J]
+  double least = -0.05;  ///< the same, given out in excess [J]
+};
+
+/// Time-domain passivity at the device's port. The observer adds up what the device takes from the
+/// hand, E = -sum f . dx with the forces really shown; a device that only gives back what it took
+/// keeps E >= 0. Where the coming tick would take E below zero, the controller asks for the damping
+/// that makes up for it, within its bound. What an object took in and lost to its own damping is
+/// forgotten above `most`, else the observer would be blind after a while. Pure, real-time safe.
+class Passivity {
+ public:
+  explicit Passivity(const PassivityLimits& limits) : limits_(limits) {}
+
+  /// The hand moved by this while `force` was shown [m, N], D.
+  void observe(const Vector3& displacement, const Vector3& force) noexcept;
+
+  /// Damping for the coming tick [N s/m], 0 to the limit.
+  /// @param force that is about to be shown [N], D
+  /// @param velocity of the hand [m/s], D
+  /// @param tick how long it will be shown [s]
+  double damping(const Vector3& force, const Vector3& velocity, double tick) const noexcept;
+
+  double energy() const noexcept { return energy_; }  ///< [J], least to most
+
+ private:
+  PassivityLimits limits_;
+  double energy_ = 0.0;
+};
+
+}  // namespace irdm

@@ -1,0 +1,136 @@
+#include "device_bridge/safety/safety_filter.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace irdm {
+namespace {
+
+// Later less earlier [ns], for any two times; no more than what counts as for ever.
+constexpr std::int64_t kForEver = std::numeric_limits<std::int64_t>::max() / 4;
+std::int64_t difference(std::int64_t later, std::int64_t earlier) noexcept {
+  const double rough = static_cast<double>(later) - static_cast<double>(earlier);
+  if (std::abs(rough) >= static_cast<double>(kForEver)) return rough > 0 ? kForEver : -kForEver;
+  return later - earlier;
+}
+
+// Both are needed: the stable norm of (0, NaN, 0) is zero.
+bool finite_magnitude(const Vector3& v) noexcept {
+  return v.allFinite() && std::isfinite(v.stableNorm());
+}
+
+}  // namespace
+
+SafetyFilter::SafetyFilter(const FilterLimits& limits, Guards guards)
+    : limits_(limits),
+      guards_(guards),
+      reading_(limits.reading, guards),
+      arming_(limits.arming, guards),
+      passivity_(limits.passivity),
+      thermal_({.peak = limits.max_force, .continuous = limits.continuous_force}) {
+  // A limit of force that becomes lower takes its share of the falling rate.
+  limits_.rate.fall -= ThermalLimits{}.slew;
+  if (!guards_.on(Guard::kRiseLimit)) limits_.rate.rise = 1e9;
+  if (!guards_.on(Guard::kFallLimit)) limits_.rate.fall = 1e9;
+}
+
+void SafetyFilter::fail() noexcept {
+  ++counts_.faults;
+  arming_.fail();
+}
+
+Vector3 SafetyFilter::step(std::int64_t now_ns, const DeviceReading& reading,
+                           const ForceDemand& demand) noexcept {
+  check(now_ns, reading);
+  passivity_.observe(reading_.displacement(), sent_);
+  thermal_.heat(sent_.norm(), reading_.elapsed(), reading.motor_warmth);
+  accept(now_ns, demand);
+  const Vector3 force = wanted();
+  const double share = arming_.step(reading_.elapsed(), fresh(now_ns), force.norm());
+  sent_ = limited(damped(share * force, share));
+  return sent_;
+}
+
+// Sanity of the reading and of the time.
+void SafetyFilter::check(std::int64_t now_ns, const DeviceReading& reading) noexcept {
+  const ReadingVerdict verdict = reading_.look(now_ns, reading.tip);
+  counts_.readings = reading_.unused();
+  if (verdict == ReadingVerdict::kFault) fail();
+  if (verdict != ReadingVerdict::kTrip) return;
+  ++counts_.trips;
+  arming_.trip();
+}
+
+// The newest demand. One that is not used changes nothing: the one before stays, and grows old.
+void SafetyFilter::accept(std::int64_t now_ns, const ForceDemand& demand) noexcept {
+  if (!demand.linked) {
+    if (!lost_since_ns_) lost_since_ns_ = now_ns;
+    return;
+  }
+  if (!demand.any) return;
+  const bool finite = finite_magnitude(demand.force) && demand.normal.allFinite();
+  const bool ordered = demand.sample_time_ns <= now_ns &&
+                       (!held_.any || demand.sample_time_ns >= held_.sample_time_ns);
+  if ((!finite && guards_.on(Guard::kFrameFinite)) ||
+      (!ordered && guards_.on(Guard::kFrameOrder))) {
+    ++counts_.demands;
+    return;
+  }
+  held_ = demand;
+  lost_since_ns_.reset();
+}
+
+// The share that its age leaves of a demand.
+double SafetyFilter::fresh(std::int64_t now_ns) const noexcept {
+  if (!held_.any) return 0.0;
+  const std::int64_t horizon_ns =
+      std::clamp(held_.horizon_ns, std::int64_t{0}, limits_.max_horizon_ns);
+  std::int64_t over_ns = difference(now_ns, held_.sample_time_ns) - horizon_ns;
+  if (!guards_.on(Guard::kAge)) over_ns = 0;
+  if (lost_since_ns_ && guards_.on(Guard::kLink)) {
+    over_ns = std::max(over_ns, difference(now_ns, *lost_since_ns_));
+  }
+  return std::clamp(1.0 - static_cast<double>(over_ns) / static_cast<double>(limits_.fade_ns), 0.0,
+                    1.0);
+}
+
+// Outward only, unless held.
+Vector3 SafetyFilter::wanted() const noexcept {
+  if (held_.contact == ContactState::kTouching && guards_.on(Guard::kPushOnly) &&
+      held_.force.dot(held_.normal) < 0.0) {
+    return Vector3::Zero();
+  }
+  return guards_.on(Guard::kForceLimit) ? shortened(held_.force) : held_.force;
+}
+
+// What passivity asks for, and damping while the force fades. It fades as well.
+Vector3 SafetyFilter::damped(const Vector3& force, double share) const noexcept {
+  if (share == 0.0 || held_.contact == ContactState::kFree) return force;
+  const Vector3& velocity = reading_.velocity();
+  double damping = 0.0;
+  if (guards_.on(Guard::kPassivity)) {
+    damping = passivity_.damping(force, velocity, reading_.elapsed());
+  }
+  if (arming_.state() == FilterState::kFading && guards_.on(Guard::kFadeDamping)) {
+    damping = std::max(damping, limits_.fade_damping);
+  }
+  return force - share * damping * velocity;
+}
+
+Vector3 SafetyFilter::limited(const Vector3& force) const noexcept {
+  const bool on = guards_.on(Guard::kForceLimit);
+  const Vector3 aim = on ? shortened(force) : force;
+  const Vector3 reached = limit_rate(sent_, aim, limits_.rate, reading_.elapsed());
+  return on ? shortened(reached) : reached;
+}
+
+// At most the largest force that the motors bear now; what is not finite becomes zero.
+Vector3 SafetyFilter::shortened(const Vector3& force) const noexcept {
+  if (!finite_magnitude(force)) return Vector3::Zero();
+  const double magnitude = force.stableNorm();
+  const double most = guards_.on(Guard::kThermal) ? thermal_.limit() : limits_.max_force;
+  return magnitude > most ? Vector3(most / magnitude * force) : force;
+}
+
+}  // namespace irdm

@@ -1,0 +1,103 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "common/geometry.hpp"
+#include "common/stylus.hpp"
+#include "device_bridge/safety/arming.hpp"
+#include "device_bridge/safety/guards.hpp"
+#include "device_bridge/safety/passivity.hpp"
+#include "device_bridge/safety/rate_limit.hpp"
+#include "device_bridge/safety/reading_check.hpp"
+#include "device_bridge/safety/thermal_derating.hpp"
+
+namespace irdm {
+
+/// The bounds of what a device may do to a hand. The defaults are those of a Touch.
+struct FilterLimits {
+  double max_force = 3.3;                    ///< [N], > 0
+  double continuous_force = 0.88;            ///< that the motors bear for ever [N], > 0
+  std::int64_t max_horizon_ns = 50'000'000;  ///< no demand is trusted for longer than this
+  std::int64_t fade_ns = 30'000'000;         ///< in which one that is too old goes to zero
+  double fade_damping = 2.0;                 ///< while it does [N s/m]
+  ReadingLimits reading = {};
+  ArmingLimits arming = {};
+  PassivityLimits passivity = {};
+  RateLimits rate = {};
+};
+
+/// The device at one tick.
+struct DeviceReading {
+  Vector3 tip = Vector3::Zero();  ///< [m], D; anything
+  double motor_warmth = 0.0;      ///< what the device says, 0 to 1; 0: it says nothing
+};
+
+/// The force that the world asks for at one tick, and what it rests on. Nothing in it is trusted.
+struct ForceDemand {
+  static constexpr std::int64_t kHoldHorizonNs = 20'000'000;
+
+  bool linked = false;                       ///< a session is on
+  bool any = false;                          ///< the rest means something
+  std::int64_t sample_time_ns = 0;           ///< of the newest stylus sample that it contains
+  std::int64_t horizon_ns = kHoldHorizonNs;  ///< how long after that it is good
+  ContactState contact = ContactState::kFree;
+  Vector3 force = Vector3::Zero();   ///< on the stylus [N], D
+  Vector3 normal = Vector3::Zero();  ///< outward, of the surface; unit, D; zero: not known
+};
+
+/// What the filter has done so far.
+struct FilterCounts {
+  std::uint64_t readings = 0;  ///< not used
+  std::uint64_t demands = 0;   ///< not used: not finite, old, of the future
+  std::uint64_t trips = 0;     ///< the force was dropped, to come back slowly
+  std::uint64_t faults = 0;    ///< the force was dropped for good
+};
+
+/// The last word before the device. Each tick, in this order: sanity of the reading; newest demand;
+/// its age; no pull unless held; passivity; rate limit; largest force; warmth of the motors. The
+/// observer of passivity is told the force that was really sent. Whatever comes in, no force that
+/// goes out is beyond the limits of magnitude and rate. Pure: knows no clock, thread or file; what
+/// it does depends on its arguments alone. Real-time safe. One thread.
+class SafetyFilter {
+ public:
+  /// @param guards all but in tests
+  explicit SafetyFilter(const FilterLimits& limits, Guards guards = {});
+
+  void arm() noexcept { arming_.arm(); }
+  void disarm() noexcept { arming_.disarm(); }
+  /// The device says that something is wrong with it.
+  void fail() noexcept;
+
+  /// The force to show from now until the next tick [N], D.
+  /// @param now_ns clock of ForceDemand::sample_time_ns; back is a fault
+  Vector3 step(std::int64_t now_ns, const DeviceReading& reading,
+               const ForceDemand& demand) noexcept;
+
+  FilterState state() const noexcept { return arming_.state(); }
+  const FilterCounts& counts() const noexcept { return counts_; }
+  double port_energy() const noexcept { return passivity_.energy(); }  ///< see Passivity [J]
+  double warmth() const noexcept { return thermal_.warmth(); }
+
+ private:
+  void check(std::int64_t now_ns, const DeviceReading& reading) noexcept;
+  void accept(std::int64_t now_ns, const ForceDemand& demand) noexcept;
+  double fresh(std::int64_t now_ns) const noexcept;
+  Vector3 wanted() const noexcept;
+  Vector3 damped(const Vector3& force, double share) const noexcept;
+  Vector3 limited(const Vector3& force) const noexcept;
+  Vector3 shortened(const Vector3& force) const noexcept;
+
+  FilterLimits limits_;
+  Guards guards_;
+  ReadingCheck reading_;
+  Arming arming_;
+  Passivity passivity_;
+  ThermalDerating thermal_;
+  ForceDemand held_;  ///< the newest that was accepted
+  std::optional<std::int64_t> lost_since_ns_;
+  Vector3 sent_ = Vector3::Zero();
+  FilterCounts counts_;
+};
+
+}  // namespace irdm

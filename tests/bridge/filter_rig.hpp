@@ -1,0 +1,49 @@
+#pragma once
+
+#include "device_bridge/safety/safety_filter.hpp"
+
+namespace irdm::test {
+
+inline constexpr std::int64_t kMs = 1'000'000;
+
+/// A safety filter on a virtual clock of 1 ms a tick, armed, with a device at rest.
+struct FilterRig {
+  explicit FilterRig(Guards guards = {}, const FilterLimits& limits = {}) : filter(limits, guards) {
+    filter.arm();
+  }
+
+  /// One tick later.
+  const Vector3& tick() {
+    now_ns += kMs;
+    shown = filter.step(now_ns, {.tip = tip}, demand);
+    return shown;
+  }
+  /// So many ticks, each with a demand of its own moment.
+  const Vector3& ticks(int count, const Vector3& force) {
+    for (int i = 0; i < count; ++i) {
+      demand_now(force);
+      tick();
+    }
+    return shown;
+  }
+  /// The demand is of the coming tick.
+  void demand_now(const Vector3& force) {
+    demand.linked = true;
+    demand.any = true;
+    demand.sample_time_ns = now_ns + kMs;
+    demand.force = force;
+  }
+  /// Without a step of force: it rises from nothing.
+  void engage(const Vector3& force) {
+    ticks(2, Vector3::Zero());
+    ticks(20, force);
+  }
+
+  SafetyFilter filter;
+  std::int64_t now_ns = 5'000 * kMs;
+  Vector3 tip = Vector3::Zero();
+  ForceDemand demand{.contact = ContactState::kTouching, .normal = Vector3::UnitY()};
+  Vector3 shown = Vector3::Zero();
+};
+
+}  // namespace irdm::test

@@ -1,0 +1,159 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <limits>
+#include <random>
+
+#include "device_bridge/safety/safety_filter.hpp"
+
+using namespace irdm;
+
+namespace {
+
+constexpr double kMaxForce = 3.3;
+constexpr double kRise = 300.0;
+constexpr double kFall = 1200.0;
+
+/// Everything that can go wrong with what the filter is told, mixed with stretches in which all is
+/// well, so that it gets to show large forces.
+class Hostility {
+ public:
+  explicit Hostility(std::uint64_t seed) : random_(seed) {}
+
+  std::int64_t now_ns = 0;
+  DeviceReading reading;
+  ForceDemand demand;
+
+  void next(SafetyFilter& filter) {
+    if (one_in(2000)) calm_ = !calm_;
+    now_ns = one_in(calm_ ? 100'000 : 300) ? wild_time() : step_time();
+    move();
+    if (one_in(calm_ ? 20 : 3)) demand_something();
+    demand.linked = !one_in(calm_ ? 5000 : 50);
+    reading.motor_warmth = one_in(50) ? wild() : 0.0;
+    if (one_in(calm_ ? 50'000 : 2000)) filter.fail();
+    if (one_in(5000)) filter.disarm();
+    if (one_in(100)) act(filter);
+  }
+
+ private:
+  bool one_in(std::uint32_t n) { return random_() % n == 0; }
+  double uniform(double least, double most) {
+    return least + (most - least) * static_cast<double>(random_() >> 11) * 0x1p-53;
+  }
+  double wild() {
+    switch (random_() % 8) {
+      case 0:
+        return std::numeric_limits<double>::quiet_NaN();
+      case 1:
+        return std::numeric_limits<double>::infinity();
+      case 2:
+        return -std::numeric_limits<double>::infinity();
+      case 3:
+        return 1e308;
+      case 4:
+        return 5e-324;
+      case 5:
+        return 0.0;
+      default:
+        return uniform(-1e3, 1e3);
+    }
+  }
+  Vector3 wild_vector() { return {wild(), wild(), wild()}; }
+  Vector3 vector(double most) {
+    return {uniform(-most, most), uniform(-most, most), uniform(-most, most)};
+  }
+  std::int64_t step_time() {
+    const auto step = static_cast<std::int64_t>(calm_ ? 1'000'000 : random_() % 3'000'000);
+    constexpr std::int64_t kFar = std::numeric_limits<std::int64_t>::max() / 2;
+    return now_ns > kFar ? 0 : now_ns + step;
+  }
+  std::int64_t wild_time() {
+    switch (random_() % 5) {
+      case 0:
+        return std::numeric_limits<std::int64_t>::max();
+      case 1:
+        return std::numeric_limits<std::int64_t>::min();
+      case 2:
+        return now_ns;
+      default:
+        return static_cast<std::int64_t>(random_());
+    }
+  }
+  void move() {
+    if (!calm_ && one_in(100)) reading.tip = wild_vector();
+    if (!reading.tip.allFinite() || reading.tip.norm() > 1.0) reading.tip.setZero();
+    reading.tip += vector(calm_ ? 3e-4 : 2e-3);
+    if (!calm_ && one_in(50)) reading.tip = wild_vector();
+  }
+  void demand_something() {
+    demand.any = !one_in(50);
+    demand.sample_time_ns = one_in(calm_ ? 1000 : 5) ? wild_time() : now_ns;
+    demand.horizon_ns = one_in(5) ? wild_time() : ForceDemand::kHoldHorizonNs;
+    demand.contact = static_cast<ContactState>(random_() % 3);
+    demand.force = one_in(calm_ ? 100 : 5) ? wild_vector() : vector(one_in(3) ? 8.0 : 1.0);
+    demand.normal = one_in(10) ? wild_vector() : vector(1.0).normalized();
+  }
+  void act(SafetyFilter& filter) {
+    if (filter.state() == FilterState::kFault) filter.disarm();
+    filter.arm();
+  }
+
+  std::mt19937_64 random_;
+  bool calm_ = false;
+};
+
+struct Extremes {
+  bool finite = true;
+  double force = 0.0;   ///< [N]
+  double rise = 0.0;    ///< of the magnitude, beyond what the time since the last tick allows [N]
+  double change = 0.0;  ///< the same of any change [N]
+  std::uint64_t engaged = 0;
+};
+
+// What counts of the time between two ticks [s].
+double since(std::int64_t earlier, std::int64_t later) {
+  if (later <= earlier) return 0.0;
+  const std::uint64_t way = static_cast<std::uint64_t>(later) - static_cast<std::uint64_t>(earlier);
+  return 1e-9 * static_cast<double>(std::min(way, std::uint64_t{2'000'000}));
+}
+
+Extremes run(std::uint64_t seed, int ticks) {
+  SafetyFilter filter({.max_force = kMaxForce});
+  Hostility hostility(seed);
+  Extremes most;
+  Vector3 before = Vector3::Zero();
+  std::int64_t before_ns = 0;
+  for (int i = 0; i < ticks; ++i) {
+    hostility.next(filter);
+    const Vector3 force = filter.step(hostility.now_ns, hostility.reading, hostility.demand);
+    const double elapsed = since(before_ns, hostility.now_ns);
+    most.finite = most.finite && force.allFinite();
+    most.force = std::max(most.force, force.norm());
+    most.rise = std::max(most.rise, force.norm() - before.norm() - kRise * elapsed);
+    most.change = std::max(most.change, (force - before).norm() - kFall * elapsed);
+    most.engaged += filter.state() == FilterState::kEngaged ? 1 : 0;
+    before = force;
+    before_ns = hostility.now_ns;
+  }
+  return most;
+}
+
+void check(std::uint64_t seed, int ticks) {
+  const Extremes most = run(seed, ticks);
+  CHECK(most.finite);
+  CHECK(most.force <= kMaxForce * (1.0 + 1e-12));
+  CHECK(most.force > 0.99 * kMaxForce);
+  CHECK(most.rise <= 1e-12);
+  CHECK(most.change <= 1e-12);
+  CHECK(most.engaged > static_cast<std::uint64_t>(ticks) / 10);
+}
+
+}  // namespace
+
+TEST_CASE("safety filter: nothing that comes in gets a force out that is beyond the limits") {
+  for (const std::uint64_t seed : {1u, 2u, 3u}) check(seed, 300'000);
+}
+
+TEST_CASE("safety filter: the same for a hundred million ticks", "[slow]") {
+  for (std::uint64_t seed = 10; seed < 20; ++seed) check(seed, 10'000'000);
+}

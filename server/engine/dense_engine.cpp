@@ -63,16 +63,18 @@ Vector3 DenseEngine<Scalar>::free_displacement(int node) const noexcept {
   return u;
 }
 
+// The answer of a to b `step` steps after the one in which b acted.
 template <typename Scalar>
-Matrix3 DenseEngine<Scalar>::within_step(const ContactPatch& a,
-                                         const ContactPatch& b) const noexcept {
+Matrix3 DenseEngine<Scalar>::after(std::size_t step, const ContactPatch& a,
+                                   const ContactPatch& b) const noexcept {
   Matrix3 sum = Matrix3::Zero();
   for (std::size_t i = 0; i < static_cast<std::size_t>(a.count); ++i) {
     for (std::size_t j = 0; j < static_cast<std::size_t>(b.count); ++j) {
       const double weight = a.weights[i] * b.weights[j];
       for (int row = 0; row < 3; ++row) {
         for (int column = 0; column < 3; ++column) {
-          const Scalar entry = *response(values_, 3 * a.nodes[i] + row, 3 * b.nodes[j] + column);
+          const Scalar entry =
+              response(values_, 3 * a.nodes[i] + row, 3 * b.nodes[j] + column)[step];
           sum(row, column) += weight * static_cast<double>(entry);
         }
       }
@@ -90,9 +92,54 @@ void DenseEngine<Scalar>::predict(std::span<const ContactPatch> patches, std::sp
     h[a] = mean(patches[a], [&](int node) { return free_displacement(node); });
     for (std::size_t b = 0; b < patches.size(); ++b) {
       compliance.block<3, 3>(static_cast<Eigen::Index>(3 * a), static_cast<Eigen::Index>(3 * b)) =
-          within_step(patches[a], patches[b]);
+          after(0, patches[a], patches[b]);
     }
   }
+}
+
+template <typename Scalar>
+Vector3 DenseEngine<Scalar>::after(std::size_t step, const ContactPatch& a,
+                                   const NodalForce& b) const noexcept {
+  Vector3 u = Vector3::Zero();
+  for (std::size_t i = 0; i < static_cast<std::size_t>(a.count); ++i) {
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 3; ++column) {
+        const Scalar entry = response(values_, 3 * a.nodes[i] + row, 3 * b.node + column)[step];
+        u[row] += a.weights[i] * static_cast<double>(entry) * b.force[column];
+      }
+    }
+  }
+  return u;
+}
+
+template <typename Scalar>
+void DenseEngine<Scalar>::foresee(const ContactPatch& patch, std::span<const NodalForce> held,
+                                  std::span<Vector3> path, std::span<Matrix3> response) noexcept {
+  const auto place = [&](int node, int shift) {
+    Vector3 u;
+    for (int axis = 0; axis < 3; ++axis) {
+      u[axis] = convolve(values_, history_, 3 * node + axis, shift);
+      if (centrifugal_ != nullptr) {
+        u[axis] += convolve(centrifugal_, spin_history_, 3 * node + axis, shift);
+      }
+    }
+    return u;
+  };
+  Vector3 by_held = Vector3::Zero();
+  for (std::size_t n = 0; n < path.size(); ++n) {
+    if (n < steps_) {
+      for (const NodalForce& force : held) by_held += after(n, patch, force);
+    }
+    path[n] = by_held + mean(patch, [&](int node) { return place(node, static_cast<int>(n) + 1); });
+  }
+  for (std::size_t n = 0; n < response.size(); ++n) {
+    response[n] = n < steps_ ? after(n, patch, patch) : Matrix3::Zero();
+  }
+}
+
+template <typename Scalar>
+void DenseEngine<Scalar>::add_past(std::span<const NodalForce> forces, int age) noexcept {
+  if (age < kMaxHorizon) history_.add_past(forces, age);
 }
 
 template <typename Scalar>

@@ -20,13 +20,17 @@ class DenseEngine final : public ResponseEngine {
   Vector3 free_displacement(int node) const noexcept override;
   void predict(std::span<const ContactPatch> patches, std::span<Vector3> h,
                ContactMatrix& compliance) noexcept override;
+  void foresee(const ContactPatch& patch, std::span<const NodalForce> held, std::span<Vector3> path,
+               std::span<Matrix3> response) noexcept override;
+  void add_past(std::span<const NodalForce> forces, int age) noexcept override;
   void advance(std::span<const NodalForce> forces) noexcept override;
   void displacement(Points& u) const override;
   Eigen::MatrixXd instant_compliance() const override;
   void reset() noexcept override;
 
  private:
-  Matrix3 within_step(const ContactPatch& a, const ContactPatch& b) const noexcept;
+  Matrix3 after(std::size_t step, const ContactPatch& a, const ContactPatch& b) const noexcept;
+  Vector3 after(std::size_t step, const ContactPatch& a, const NodalForce& b) const noexcept;
   /// Of R, or of the centrifugal response: entry (a, b) for s = 0..T-1, displacement of degree of
   /// freedom a by force or product b.
   const Scalar* response(const Scalar* values, int a, int b) const noexcept {

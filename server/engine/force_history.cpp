@@ -43,6 +43,31 @@ void ForceHistory::push(std::span<const NodalForce> forces) noexcept {
   }
 }
 
+void ForceHistory::add_past(std::span<const NodalForce> forces, int age) noexcept {
+  if (age < 0 || age >= steps_ || age > clock_) return;
+  const std::int64_t then = clock_ - age;
+  for (const NodalForce& nodal : forces) {
+    const auto index = static_cast<std::size_t>(nodal.node);
+    const bool active = first_[index] >= 0;
+    // What was not followed until now is zero from then on.
+    const auto known =
+        active ? static_cast<int>(std::min<std::int64_t>(clock_ - first_[index], steps_ - 1)) : -1;
+    for (int axis = 0; axis < 3; ++axis) {
+      double* values = slot(nodal.node, axis);
+      for (int i = known + 1; i <= age; ++i) {
+        const int at = (head_ + i) % steps_;
+        values[at] = values[at + steps_] = 0.0;
+      }
+      const int at = (head_ + age) % steps_;
+      values[at] += nodal.force[axis];
+      values[at + steps_] = values[at];
+    }
+    if (!active) active_.push_back(nodal.node);
+    first_[index] = active ? std::min(first_[index], then) : then;
+    last_[index] = active ? std::max(last_[index], then) : then;
+  }
+}
+
 void ForceHistory::clear() noexcept {
   for (const int node : active_) first_[static_cast<std::size_t>(node)] = -1;
   active_.clear();

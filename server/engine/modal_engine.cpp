@@ -14,8 +14,10 @@ ModalEngine<Scalar>::ModalEngine(std::shared_ptr<const Model> model) : model_(st
   shapes_ = &std::get<RowMatrix<Scalar>>(response.shapes);
   if (response.centrifugal.rows() > 0) centrifugal_ = response.centrifugal.data();
   modes_ = static_cast<std::size_t>(response.mode_count());
-  for (auto* values : {&a11_, &a12_, &a21_, &a22_, &b1_, &b2_, &coordinate_, &velocity_,
-                       &free_coordinate_, &free_velocity_, &modal_force_, &weighted_row_}) {
+  for (auto* values :
+       {&a11_, &a12_, &a21_, &a22_, &b1_, &b2_, &coordinate_, &velocity_, &free_coordinate_,
+        &free_velocity_, &modal_force_, &weighted_row_, &foreseen_coordinate_, &foreseen_velocity_,
+        &next_coordinate_, &next_velocity_}) {
     values->assign(modes_, 0.0);
   }
   contact_shapes_.assign(3 * kMaxContacts * modes_, 0.0);
@@ -29,6 +31,16 @@ ModalEngine<Scalar>::ModalEngine(std::shared_ptr<const Model> model) : model_(st
     a22_[i] = step.a22;
     b1_[i] = step.b1;
     b2_[i] = step.b2;
+  }
+  coordinate_after_ = b1_;
+  velocity_after_ = b2_;
+  coordinate_after_.resize(kMaxHorizon * modes_);
+  velocity_after_.resize(kMaxHorizon * modes_);
+  for (std::size_t from = 0; from + modes_ < coordinate_after_.size(); from += modes_) {
+    const std::size_t to = from + modes_;
+    transit({a11_.data(), a12_.data(), a21_.data(), a22_.data()}, coordinate_after_.data() + from,
+            velocity_after_.data() + from, coordinate_after_.data() + to,
+            velocity_after_.data() + to, modes_);
   }
 }
 
@@ -97,21 +109,87 @@ void ModalEngine<Scalar>::predict(std::span<const ContactPatch> patches, std::sp
 }
 
 template <typename Scalar>
+void ModalEngine<Scalar>::collect_modal_forces(std::span<const NodalForce> forces) noexcept {
+  std::fill(modal_force_.begin(), modal_force_.end(), 0.0);
+  for (const NodalForce& nodal : forces) {
+    const int dof = 3 * nodal.node;
+    accumulate({nodal.force.x(), nodal.force.y(), nodal.force.z()}, shape_row(dof),
+               shape_row(dof + 1), shape_row(dof + 2), modal_force_.data(), modes_);
+  }
+}
+
+template <typename Scalar>
+void ModalEngine<Scalar>::foresee(const ContactPatch& patch, std::span<const NodalForce> held,
+                                  std::span<Vector3> path, std::span<Matrix3> response) noexcept {
+  std::array<double*, 3> rows{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto index = static_cast<std::size_t>(axis);
+    rows[index] = contact_shapes_.data() + index * modes_;
+    mean_shape(patch, axis, rows[index]);
+  }
+  for (std::size_t n = 0; n < response.size(); ++n) {
+    for (int j = 0; j < 3; ++j) {
+      multiply(coordinate_after_.data() + n * modes_, rows[static_cast<std::size_t>(j)],
+               weighted_row_.data(), modes_);
+      for (int i = 0; i <= j; ++i) {
+        response[n](i, j) = response[n](j, i) =
+            dot(weighted_row_.data(), rows[static_cast<std::size_t>(i)], modes_);
+      }
+    }
+  }
+  collect_modal_forces(held);
+  foreseen_coordinate_ = free_coordinate_;
+  foreseen_velocity_ = free_velocity_;
+  for (std::size_t n = 0; n < path.size(); ++n) {
+    if (n > 0) {
+      transit({a11_.data(), a12_.data(), a21_.data(), a22_.data()}, foreseen_coordinate_.data(),
+              foreseen_velocity_.data(), next_coordinate_.data(), next_velocity_.data(), modes_);
+      foreseen_coordinate_.swap(next_coordinate_);
+      foreseen_velocity_.swap(next_velocity_);
+    }
+    if (!held.empty()) {
+      for (std::size_t i = 0; i < modes_; ++i) {
+        foreseen_coordinate_[i] += b1_[i] * modal_force_[i];
+        foreseen_velocity_[i] += b2_[i] * modal_force_[i];
+      }
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      path[n][axis] =
+          dot(rows[static_cast<std::size_t>(axis)], foreseen_coordinate_.data(), modes_);
+    }
+  }
+}
+
+template <typename Scalar>
+void ModalEngine<Scalar>::add_past(std::span<const NodalForce> forces, int age) noexcept {
+  if (age < 0 || age >= kMaxHorizon) return;
+  collect_modal_forces(forces);
+  const double* coordinate = coordinate_after_.data() + static_cast<std::size_t>(age) * modes_;
+  const double* velocity = velocity_after_.data() + static_cast<std::size_t>(age) * modes_;
+  for (std::size_t i = 0; i < modes_; ++i) {
+    coordinate_[i] += coordinate[i] * modal_force_[i];
+    velocity_[i] += velocity[i] * modal_force_[i];
+  }
+  move_freely();
+}
+
+template <typename Scalar>
 void ModalEngine<Scalar>::advance(std::span<const NodalForce> forces) noexcept {
   coordinate_.swap(free_coordinate_);
   velocity_.swap(free_velocity_);
   if (!forces.empty()) {
-    std::fill(modal_force_.begin(), modal_force_.end(), 0.0);
-    for (const NodalForce& nodal : forces) {
-      const int dof = 3 * nodal.node;
-      accumulate({nodal.force.x(), nodal.force.y(), nodal.force.z()}, shape_row(dof),
-                 shape_row(dof + 1), shape_row(dof + 2), modal_force_.data(), modes_);
-    }
+    collect_modal_forces(forces);
     for (std::size_t i = 0; i < modes_; ++i) {
       coordinate_[i] += b1_[i] * modal_force_[i];
       velocity_[i] += b2_[i] * modal_force_[i];
     }
   }
+  move_freely();
+}
+
+// Where the coming step leads without force.
+template <typename Scalar>
+void ModalEngine<Scalar>::move_freely() noexcept {
   transit({a11_.data(), a12_.data(), a21_.data(), a22_.data()}, coordinate_.data(),
           velocity_.data(), free_coordinate_.data(), free_velocity_.data(), modes_);
 }

@@ -19,6 +19,9 @@ class ModalEngine final : public ResponseEngine {
   Vector3 free_displacement(int node) const noexcept override;
   void predict(std::span<const ContactPatch> patches, std::span<Vector3> h,
                ContactMatrix& compliance) noexcept override;
+  void foresee(const ContactPatch& patch, std::span<const NodalForce> held, std::span<Vector3> path,
+               std::span<Matrix3> response) noexcept override;
+  void add_past(std::span<const NodalForce> forces, int age) noexcept override;
   void advance(std::span<const NodalForce> forces) noexcept override;
   void displacement(Points& u) const override;
   Eigen::MatrixXd instant_compliance() const override;
@@ -26,6 +29,8 @@ class ModalEngine final : public ResponseEngine {
 
  private:
   void mean_shape(const ContactPatch& patch, int axis, double* shape) const noexcept;
+  void collect_modal_forces(std::span<const NodalForce> forces) noexcept;
+  void move_freely() noexcept;
   const Scalar* shape_row(int dof) const noexcept {
     return shapes_->data() + static_cast<std::size_t>(dof) * modes_;
   }
@@ -42,6 +47,11 @@ class ModalEngine final : public ResponseEngine {
   std::vector<double> modal_force_;
   std::vector<double> contact_shapes_;  ///< (3 kMaxContacts, r): rows sum_i w_i Phi_i
   std::vector<double> weighted_row_;    ///< one such row times b1
+  /// (kMaxHorizon, r): coordinate and velocity of each mode at the end of the n-th step after the
+  /// one in which a modal force of 1 acted.
+  std::vector<double> coordinate_after_, velocity_after_;
+  std::vector<double> foreseen_coordinate_, foreseen_velocity_;
+  std::vector<double> next_coordinate_, next_velocity_;
 };
 
 }  // namespace irdm

@@ -3,7 +3,7 @@
 #include <memory>
 #include <span>
 
-#include "common/contact/contact_problem.hpp"
+#include "common/contact/contact_model.hpp"
 #include "common/geometry.hpp"
 #include "common/model/model.hpp"
 #include "server/contact/contact_patch.hpp"
@@ -40,6 +40,17 @@ class ResponseEngine {
   /// R_ij[0] of the (3m, 3m) matrix [m/N].
   virtual void predict(std::span<const ContactPatch> patches, std::span<Vector3> h,
                        ContactMatrix& compliance) noexcept = 0;
+
+  /// For one contact, the next path.size() = response.size() steps (kMaxHorizon at most): where the
+  /// mean displacement goes, path[n-1] at the end of the n-th coming step [m], if these forces are
+  /// held all the time and no others act; and how it answers, response[n] the blocks sum_ij w_i w_j
+  /// R_ij[n] [m/N]. Spin that is held acts in the coming step only.
+  virtual void foresee(const ContactPatch& patch, std::span<const NodalForce> held,
+                       std::span<Vector3> path, std::span<Matrix3> response) noexcept = 0;
+
+  /// These forces were held, besides the others, during the step `age` steps before the last one
+  /// (0: the last one itself). @param age below kMaxHorizon; what is older is left out
+  virtual void add_past(std::span<const NodalForce> forces, int age) noexcept = 0;
 
   /// Ends the coming step with these forces held during it.
   virtual void advance(std::span<const NodalForce> forces) noexcept = 0;

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "common/contact/contact_problem.hpp"
+#include "common/motion/free_motion.hpp"
 #include "server/collision/deformed_surface.hpp"
-#include "server/step/free_motion.hpp"
 #include "server/step/simulation_config.hpp"
 #include "server/step/step_record.hpp"
 

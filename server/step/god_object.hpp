@@ -55,6 +55,9 @@ class GodObject {
   /// A touching contact's offset: from its point to where the tip feels the surface [m, B].
   void set_inset(const Vector3& inset) noexcept { offset_ = inset; }
 
+  /// The tip is where a touch may begin.
+  bool outside() const noexcept { return outside_; }
+
   ContactState state() const noexcept { return state_; }
   int triangle() const noexcept { return triangle_; }
   const SurfacePoint& point() const noexcept { return point_; }

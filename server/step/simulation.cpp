@@ -1,6 +1,7 @@
 #include "server/step/simulation.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "common/error.hpp"
@@ -89,6 +90,39 @@ void Simulation::step(std::span<const StylusCommand> commands, StepRecord& recor
   for (std::size_t s = 0; s < stylus_count_; ++s) {
     write_stylus(s, commands[s], orientations, record);
   }
+}
+
+// The object that a stylus is in contact with, or else the nearest.
+SoftObject* Simulation::touched_by(std::size_t s, const Vector3& tip) noexcept {
+  SoftObject* nearest = nullptr;
+  double distance = std::numeric_limits<double>::infinity();
+  for (const auto& object : objects_) {
+    if (object->contact_state(s) != ContactState::kFree) return object.get();
+    if (objects_.size() == 1) return object.get();
+    const double here = object->distance(tip);
+    if (here < distance) nearest = object.get();
+    distance = std::min(distance, here);
+  }
+  return nearest;
+}
+
+void Simulation::foresee(std::size_t s, const Vector3& tip, int horizon,
+                         ContactModel& model) noexcept {
+  model.valid = false;
+  if (next_step_ == 0 || !tip.allFinite()) return;
+  SoftObject* object = touched_by(s, tip);
+  if (object == nullptr) return;
+  object->foresee(s, tip, horizon, model);
+  model.step = next_step_ - 1;
+  model.dt = dt_;
+}
+
+bool Simulation::enter_late(std::size_t s, const Vector3& force, int age) noexcept {
+  if (age < 0 || age >= kMaxHorizon || !force.allFinite()) return false;
+  for (const auto& object : objects_) {
+    if (object->enter_late(s, force, age)) return true;
+  }
+  return false;
 }
 
 // Step 6: -Q f.

@@ -33,6 +33,15 @@ class Simulation {
   /// so.
   void reset() noexcept;
 
+  /// For the bridge of stylus s, between steps: how its contact goes on after the last step.
+  /// @param tip where the stylus was in the last step [m], W
+  /// @param horizon steps to look ahead, 1 to kMaxHorizon
+  void foresee(std::size_t s, const Vector3& tip, int horizon, ContactModel& model) noexcept;
+
+  /// Between steps: stylus s exerted this force on the object [N], W, besides what is known, in the
+  /// step `age` steps before the last one. False: that is too long ago, or it touched nothing.
+  bool enter_late(std::size_t s, const Vector3& force, int age) noexcept;
+
   double dt() const noexcept { return dt_; }
   int object_count() const noexcept { return static_cast<int>(objects_.size()); }
   const SoftObject& object(int i = 0) const noexcept {
@@ -40,6 +49,7 @@ class Simulation {
   }
 
  private:
+  SoftObject* touched_by(std::size_t s, const Vector3& tip) noexcept;
   bool reset_pressed(std::span<const StylusCommand> commands) noexcept;
   void write_stylus(std::size_t s, const StylusCommand& command,
                     std::span<const Quaternion> orientations, StepRecord& record) const noexcept;

@@ -7,20 +7,9 @@
 #include "common/contact/contact_problem.hpp"
 #include "common/geometry.hpp"
 #include "common/model/model.hpp"
+#include "common/motion/free_motion.hpp"
 
 namespace irdm {
-
-/// How the free motion of an object is held back. Both act on the rigid motion alone.
-struct RigidDamping {
-  double linear = 0.0;   ///< velocity decays with this rate [1/s]; times dt at most 0.5
-  double angular = 0.0;  ///< angular momentum decays with this rate [1/s]; times dt at most 0.5
-};
-
-/// A soft spring from the object to its pose at the start. 0: none.
-struct Tether {
-  double stiffness = 0.0;          ///< [N/m]; times dt^2 at most the mass
-  double angular_stiffness = 0.0;  ///< [N m/rad]; times dt^2 at most the least moment of inertia
-};
 
 /// One object at the start.
 struct SimulationObject {

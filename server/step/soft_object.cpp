@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "common/contact/single_contact.hpp"
 #include "common/error.hpp"
 #include "server/step/inertial_loading.hpp"
 
@@ -13,14 +14,6 @@ Eigen::Index row(int i) {
   return static_cast<Eigen::Index>(3 * i);
 }
 
-// The rotation vector of a rotation, |v| at most pi.
-Vector3 rotation_vector(const Quaternion& q) noexcept {
-  const Quaternion short_way = q.w() < 0 ? Quaternion(-q.coeffs()) : q;
-  const double sine = short_way.vec().norm();
-  if (sine == 0.0) return Vector3::Zero();
-  return 2.0 * std::atan2(sine, short_way.w()) / sine * short_way.vec();
-}
-
 // Inside the cone of a touching contact.
 bool pushes(const ContactUnknown& contact) noexcept {
   const double push = -contact.force.dot(contact.normal);
@@ -29,6 +22,8 @@ bool pushes(const ContactUnknown& contact) noexcept {
          (std::isinf(contact.friction.static_) || along.norm() <= contact.friction.static_ * push);
 }
 
+// Over which the force of a stylus is averaged for what the bridges of others foresee [s].
+constexpr double kAverageTime = 0.2;
 // In which a contact catches up with a tip that has passed an edge [s].
 constexpr double kEdgeTime = 0.06;
 
@@ -54,6 +49,7 @@ SoftObject::SoftObject(const SimulationObject& object, const SimulationConfig& c
       body_(model_->body, model_->dt),
       feels_spin_(irdm::feels_spin(*model_, object.inertial_loading)),
       styluses_(config.styluses.size()),
+      last_(config.styluses.size()),
       problem_(kMaxContacts + (config.floor ? kMaxFloorContacts : 0)),
       solver_(problem_.capacity()),
       nodal_(kMaxContacts * kMaxPatchNodes + kMaxFloorContacts) {
@@ -63,6 +59,8 @@ SoftObject::SoftObject(const SimulationObject& object, const SimulationConfig& c
   start_.velocity = object.velocity;
   start_.angular_momentum = body_.angular_momentum(start_.orientation, object.angular_velocity);
   state_ = start_;
+  free_forces_ = {config.gravity, object.damping, object.tether, start_.position,
+                  start_.orientation};
   for (const SimulationStylus& stylus : config.styluses) {
     const double largest = PressureMask::largest_radius(rest_);
     if (stylus.radius > largest) {
@@ -83,13 +81,17 @@ void SoftObject::reset() noexcept {
   state_ = start_;
   engine_->reset();
   for (GodObject& stylus : styluses_) stylus.forget();
+  for (LastContact& last : last_) {
+    last.any = false;
+    last.average.setZero();
+  }
   if (floor_) floor_->reset();
 }
 
 void SoftObject::step(std::span<const StylusCommand> commands, ObjectRecord& record) noexcept {
   spin(record);
   surface_.begin_step(*engine_);
-  motion_ = predict_free_motion();
+  motion_ = free_motion(body_, free_forces_, state_);
   collect(commands);
   floor_count_ = floor_ ? floor_->find(motion_, surface_) : 0;
   solve(commands, record);
@@ -117,21 +119,6 @@ void SoftObject::spin(ObjectRecord& record) noexcept {
   engine_->hold_spin(record.spin);
 }
 
-FreeMotion SoftObject::predict_free_motion() const noexcept {
-  FreeMotion motion;
-  motion.force = body_.mass() * (config_.gravity - object_.damping.linear * state_.velocity) -
-                 object_.tether.stiffness * (state_.position - start_.position);
-  motion.torque = -object_.damping.angular * state_.angular_momentum;
-  if (object_.tether.angular_stiffness > 0) {
-    motion.torque -= object_.tether.angular_stiffness *
-                     rotation_vector(state_.orientation * start_.orientation.conjugate());
-  }
-  const RigidState end = body_.advance(state_, motion.force, motion.torque);
-  motion.position = end.position;
-  motion.orientation = end.orientation;
-  return motion;
-}
-
 // Decides which styluses are in contact in this step, and where.
 void SoftObject::collect(std::span<const StylusCommand> commands) noexcept {
   contact_count_ = 0;
@@ -149,14 +136,17 @@ void SoftObject::collect(std::span<const StylusCommand> commands) noexcept {
       const bool grab = (command.buttons & kGrabButton) != 0;
       stylus.find({motion_.to_body(command.tip), grab, config_.styluses[s].reach}, surface_);
     }
+    if (command.bridged && stylus.state() == ContactState::kFree && !command.bridged->isZero(0.0)) {
+      // The bridge found a contact that is none by now: its force acts where the tip is.
+      stylus.impose(ContactState::kTouching, surface_.closest(motion_.to_body(command.tip)).point);
+    }
     if (stylus.state() == ContactState::kFree) continue;
     if (stylus.fresh() && !settle_down(s, motion_.to_body(command.tip))) {
       stylus.pass_by();
       continue;
     }
     const auto a = static_cast<std::size_t>(contact_count_++);
-    contacts_[a] = {static_cast<int>(s), command.given.has_value(), Vector3::Zero(),
-                    Vector3::Zero()};
+    contacts_[a] = {.stylus = static_cast<int>(s), .given = command.given.has_value()};
     points_[a] = stylus.point();
     masks_[s].spread(points_[a], patches_[a]);
     if (stylus.state() != ContactState::kTouching || command.given) continue;
@@ -235,6 +225,11 @@ void SoftObject::pose_problem(std::span<const StylusCommand> commands) noexcept 
         unknown.law = ContactLaw::kReleased;
       }
     }
+    if (commands[s].bridged) {
+      contacts_[static_cast<std::size_t>(a)].law = unknown.law;
+      unknown.law = ContactLaw::kGiven;
+      unknown.force = state_.orientation.conjugate() * *commands[s].bridged;
+    }
   }
 }
 
@@ -261,9 +256,32 @@ void SoftObject::solve(std::span<const StylusCommand> commands, ObjectRecord& re
   pose_problem(commands);
   const ContactSolution solution =
       solver_.solve(problem_, floor_count_ > 0 ? kFloorLimits : SolverLimits{});
+  follow_bridged(commands);
   record.residual = solution.residual;
   record.sweeps = solution.sweeps;
   record.solved = solution.solved;
+}
+
+// What the contacts of bridges would do by themselves among the others' forces: that is how they
+// slip and end.
+void SoftObject::follow_bridged(std::span<const StylusCommand> commands) noexcept {
+  for (int a = 0; a < contact_count_; ++a) {
+    Contact& contact = contacts_[static_cast<std::size_t>(a)];
+    const auto s = static_cast<std::size_t>(contact.stylus);
+    if (!commands[s].bridged) continue;
+    const int row_a = floor_count_ + a;
+    ContactUnknown& unknown = problem_.contact(row_a);
+    Vector3 gap = unknown.gap;
+    for (int b = 0; b < problem_.count(); ++b) {
+      if (b != row_a) gap -= problem_.compliance(row_a, b) * problem_.contact(b).force;
+    }
+    const SingleContact own = solve_single_contact(problem_.compliance(row_a, row_a), gap,
+                                                   contact.law, unknown.normal, unknown.friction);
+    contact.lets_go = own.mode == ContactMode::kOpen;
+    unknown.law = contact.law;
+    unknown.slip = own.slip;
+    unknown.mode = contact.lets_go ? ContactMode::kSticking : own.mode;
+  }
 }
 
 // The contacts of the step, in B; the proxies are turned to W by the caller.
@@ -310,7 +328,7 @@ void SoftObject::settle(std::span<const StylusCommand> commands) noexcept {
     const Contact& contact = contacts_[static_cast<std::size_t>(a)];
     const auto s = static_cast<std::size_t>(contact.stylus);
     const ContactUnknown& solved = problem_.contact(floor_count_ + a);
-    if (solved.mode == ContactMode::kOpen) {
+    if (solved.mode == ContactMode::kOpen || contact.lets_go) {
       styluses_[s].let_go(motion_.to_body(commands[s].tip));
     } else {
       styluses_[s].stay(solved.slip, model_->dt / kEdgeTime, contact.arm, rest_);
@@ -327,13 +345,21 @@ void SoftObject::settle(std::span<const StylusCommand> commands) noexcept {
 
 // Step 5: the forces enter the history, and the rigid motion goes on.
 void SoftObject::advance() noexcept {
+  const double share = model_->dt / kAverageTime;
+  for (LastContact& last : last_) last.average *= 1.0 - share;
   nodal_.clear();
   Vector3 force = Vector3::Zero();
   Vector3 torque = Vector3::Zero();
   for (int a = 0; a < contact_count_; ++a) {
     const ContactUnknown& solved = problem_.contact(floor_count_ + a);
     if (solved.mode == ContactMode::kOpen) continue;
-    nodal_.add(patches_[static_cast<std::size_t>(a)], solved.force);
+    const auto index = static_cast<std::size_t>(a);
+    nodal_.add(patches_[index], solved.force);
+    LastContact& last = last_[static_cast<std::size_t>(contacts_[index].stylus)];
+    last.any = true;
+    last.patch = patches_[index];
+    last.arm = solved.arm;
+    last.average += share * solved.force;
     force += solved.force;
     torque += solved.arm.cross(solved.force);
   }

@@ -5,14 +5,14 @@
 #include <span>
 #include <vector>
 
-#include "common/contact/contact_problem.hpp"
+#include "common/contact/contact_model.hpp"
+#include "common/motion/free_motion.hpp"
+#include "common/motion/rigid_body.hpp"
 #include "server/collision/deformed_surface.hpp"
 #include "server/contact/pressure_mask.hpp"
 #include "server/contact/rounded_surface.hpp"
 #include "server/engine/response_engine.hpp"
-#include "server/motion/rigid_body.hpp"
 #include "server/step/floor_contacts.hpp"
-#include "server/step/free_motion.hpp"
 #include "server/step/god_object.hpp"
 #include "server/step/nodal_forces.hpp"
 #include "server/step/simulation_config.hpp"
@@ -35,6 +35,20 @@ class SoftObject {
   void step(std::span<const StylusCommand> commands, ObjectRecord& record) noexcept;
   void reset() noexcept;
 
+  /// What a bridge needs to solve the contact of stylus s by itself in the coming steps. The forces
+  /// of the floor are taken to stay as they were in the last step, those of other styluses as they
+  /// were on average over the last while: were they taken as they are, two bridges would answer
+  /// each other's last answer, and shake a stiff object. Between steps.
+  /// @param tip where the stylus was in the last step [m], W
+  /// @param horizon steps to look ahead, 1 to kMaxHorizon
+  void foresee(std::size_t s, const Vector3& tip, int horizon, ContactModel& model) noexcept;
+  /// A force on the object [N], W, that stylus s exerted, besides what is known, in the step `age`
+  /// steps before the last one, at the contact that it had last. Between steps. False: it had none.
+  bool enter_late(std::size_t s, const Vector3& force, int age) noexcept;
+  /// From the surface to a point of W, positive outside [m]. Between steps.
+  double distance(const Vector3& tip) noexcept;
+  ContactState contact_state(std::size_t s) const noexcept { return styluses_[s].state(); }
+
   const Model& model() const noexcept { return *model_; }
   const RigidState& state() const noexcept { return state_; }
   const ResponseEngine& engine() const noexcept { return *engine_; }
@@ -45,11 +59,21 @@ class SoftObject {
   struct Contact {
     int stylus = 0;
     bool given = false;
-    Vector3 arm = Vector3::Zero();     ///< r_a = X_a + h_a [m], B
-    Vector3 normal = Vector3::Zero();  ///< of a touching one
+    bool lets_go = false;                ///< bridged, and by itself it would be open
+    ContactLaw law = ContactLaw::kHeld;  ///< of a bridged one, were it not
+    Vector3 arm = Vector3::Zero();       ///< r_a = X_a + h_a [m], B
+    Vector3 normal = Vector3::Zero();    ///< of a touching one
   };
+  /// The last contact of a stylus.
+  struct LastContact {
+    bool any = false;
+    ContactPatch patch;
+    Vector3 arm = Vector3::Zero();      ///< of its force [m], B
+    Vector3 average = Vector3::Zero();  ///< of its force over the last while [N], B
+  };
+  void collect_others(std::size_t s, ContactModel& model) noexcept;
+  void follow_bridged(std::span<const StylusCommand> commands) noexcept;
   void spin(ObjectRecord& record) noexcept;
-  FreeMotion predict_free_motion() const noexcept;
   void collect(std::span<const StylusCommand> commands) noexcept;
   bool settle_down(std::size_t s, const Vector3& tip) noexcept;
   void predict_contacts() noexcept;
@@ -70,6 +94,7 @@ class SoftObject {
   DeformedSurface surface_;
   RigidBody body_;
   bool feels_spin_;
+  FreeForces free_forces_;
   RigidState start_;
   RigidState state_;
   std::vector<GodObject> styluses_;
@@ -82,6 +107,8 @@ class SoftObject {
   int contact_count_ = 0;  ///< of styluses; in the problem they come after those of the floor
   int floor_count_ = 0;
   std::array<Contact, kMaxContacts> contacts_{};
+  std::vector<LastContact> last_;  ///< one a stylus
+  ContactPatch foreseen_patch_;
   std::array<SurfacePoint, kMaxContacts> points_{};
   std::array<ContactPatch, kMaxContacts> patches_{};
   ContactMatrix elastic_;  ///< elastic compliance between the contacts, (3m, 3m) [m/N], B

@@ -29,6 +29,10 @@ struct StylusCommand {
   Vector3 tip =
       Vector3::Zero();  ///< at the end of the step [m], W; the step solves for the force ...
   std::optional<GivenForce> given;  ///< ... unless it is given
+  /// Force on the object that the bridge decided on [N], W: it acts in place of the one that the
+  /// step would find. Where the contact is, how it slips and when it ends is found here from the
+  /// tip.
+  std::optional<Vector3> bridged = {};
 };
 
 /// What one stylus did to one object in one step.

@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "server/motion/rigid_body.hpp"
+#include "common/motion/rigid_body.hpp"
 
 using namespace irdm;
 

@@ -24,6 +24,9 @@ class FakeEngine final : public ResponseEngine {
   }
   void predict(std::span<const ContactPatch>, std::span<Vector3>,
                ContactMatrix&) noexcept override {}
+  void foresee(const ContactPatch&, std::span<const NodalForce>, std::span<Vector3>,
+               std::span<Matrix3>) noexcept override {}
+  void add_past(std::span<const NodalForce>, int) noexcept override {}
   void advance(std::span<const NodalForce>) noexcept override {}
   void displacement(Points&) const override {}
   Eigen::MatrixXd instant_compliance() const override { return {}; }

@@ -30,6 +30,10 @@ class RigidBody {
   RigidState advance(const RigidState& state, const Vector3& force,
                      const Vector3& torque) const noexcept;
 
+  /// The state as it would be, to first order, had `force` [N] and `torque` [N m], both W, acted
+  /// besides during the step `age` steps before the last one (0: the last one itself).
+  RigidState with_past(const RigidState& state, const Vector3& force, const Vector3& torque,
+                       int age) const noexcept;
   /// Angular velocity that carries a body of this orientation and angular momentum through the
   /// coming step [rad/s], W.
   Vector3 step_angular_velocity(const Quaternion& orientation,

@@ -1,4 +1,4 @@
-#include "server/motion/rigid_body.hpp"
+#include "common/motion/rigid_body.hpp"
 
 #include <cmath>
 
@@ -42,6 +42,20 @@ RigidState RigidBody::advance(const RigidState& state, const Vector3& force,
   const Vector3 w = step_angular_velocity(state.orientation, next.angular_momentum);
   next.orientation = (rotation_from_vector(dt_ * w) * state.orientation).normalized();
   return next;
+}
+
+RigidState RigidBody::with_past(const RigidState& state, const Vector3& force,
+                                const Vector3& torque, int age) const noexcept {
+  if (!moves_) return state;
+  RigidState late = state;
+  const double since = (age + 1) * dt_;
+  late.velocity += dt_ / mass_ * force;
+  late.position += since * dt_ / mass_ * force;
+  late.angular_momentum += dt_ * torque;
+  const Quaternion& Q = state.orientation;
+  const Vector3 w = Q * (inverse_inertia_ * (Q.conjugate() * (dt_ * torque)));
+  late.orientation = (rotation_from_vector(since * w) * Q).normalized();
+  return late;
 }
 
 Vector3 RigidBody::mid_step_spin(const RigidState& state) const noexcept {

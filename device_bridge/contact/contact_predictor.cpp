@@ -1,0 +1,153 @@
+#include "device_bridge/contact/contact_predictor.hpp"
+
+#include "common/contact/single_contact.hpp"
+
+namespace irdm {
+namespace {
+
+Vector3 sideways(const Vector3& v, const Vector3& normal) noexcept {
+  return v - v.dot(normal) * normal;
+}
+
+}  // namespace
+
+bool ContactPredictor::reaches(std::uint64_t k) const noexcept {
+  return model_.valid && k > model_.step &&
+         k - model_.step <= static_cast<std::uint64_t>(model_.horizon);
+}
+
+bool ContactPredictor::missing(std::uint64_t step) const noexcept {
+  if (step > model_.step) return true;
+  const std::uint64_t age = model_.step - step;
+  return age < kKept && (model_.missing >> age & 1) != 0;
+}
+
+// The model's motion, with the forces that it lacks.
+void ContactPredictor::start_motion() noexcept {
+  motion_ = model_.motion;
+  moved_to_ = model_.step;
+  for (std::uint64_t age = 0; age < kKept && age <= model_.step; ++age) {
+    const std::uint64_t i = model_.step - age;
+    if (!missing(i) || past(i).step != i) continue;
+    Past& late = past(i);
+    late.force_B = motion_.orientation.conjugate() * late.force;
+    motion_ =
+        body_->with_past(motion_, late.force, motion_.orientation * late.arm.cross(late.force_B),
+                         static_cast<int>(age));
+  }
+}
+
+// Goes on with the motion to the end of step k, under our forces.
+void ContactPredictor::move_to(std::uint64_t k) noexcept {
+  for (; moved_to_ < k; ++moved_to_) {
+    const FreeMotion free = free_motion(*body_, model_.free_forces, motion_);
+    const Quaternion& Q = motion_.orientation;
+    Vector3 force = model_.other_force;
+    Vector3 torque = model_.other_torque;
+    Past& ours = past(moved_to_ + 1);
+    if (ours.step == moved_to_ + 1) {
+      ours.force_B = Q.conjugate() * ours.force;
+      force += ours.force_B;
+      torque += ours.arm.cross(ours.force_B);
+    }
+    motion_ = body_->advance(motion_, free.force + Q * force, free.torque + Q * torque);
+  }
+}
+
+// Where the model's place is at the end of step k under the forces up to step k - 1 [m], B.
+Vector3 ContactPredictor::surface_at(std::uint64_t k) const noexcept {
+  Vector3 place = model_.place + model_.path[k - model_.step - 1];
+  const auto horizon = static_cast<std::uint64_t>(model_.horizon);
+  for (std::uint64_t age = 1; age < horizon && age <= k; ++age) {
+    const std::uint64_t i = k - age;
+    if (past(i).step == i && missing(i)) place += model_.response[age] * past(i).force_B;
+  }
+  return place;
+}
+
+void ContactPredictor::receive(const ContactModel& model) noexcept {
+  if (body_ && model.step <= model_.step) return;
+  model_ = model;
+  if (!model_.valid) return end_touch();
+  body_.emplace(model_.body, model_.dt);
+  start_motion();
+  place_anew();
+}
+
+// What the server does not know of our contact yet, expressed on its newest model.
+void ContactPredictor::place_anew() noexcept {
+  const bool before_ours = model_.step < began_;  // the model is older than our contact
+  if (model_.state == ContactState::kHeld) return end_touch();
+  if (model_.state == ContactState::kFree && !before_ours) return end_touch();
+  if (!touching_) return;
+  offset_.setZero();
+  if (before_ours) {
+    offset_ = sideways(last_place_ - model_.place, model_.normal);
+    return;
+  }
+  for (std::uint64_t i = model_.step + 1; i <= last_step_ && i - model_.step < kKept; ++i) {
+    if (past(i).step == i) offset_ += past(i).slip;
+  }
+}
+
+void ContactPredictor::end_touch() noexcept {
+  touching_ = false;
+  slipping_ = false;
+  offset_.setZero();
+}
+
+// Whether there is a touch in this step; it begins straight below the tip.
+bool ContactPredictor::touch(std::uint64_t k, const Vector3& from_surface) noexcept {
+  if (!touching_) {
+    if (from_surface.dot(model_.normal) >= 0.0) return false;
+    touching_ = true;
+    // What the server touches already has a place.
+    const bool known = model_.state == ContactState::kTouching;
+    began_ = known ? 0 : k;
+    slipping_ = known && model_.slipping;
+    offset_ = known ? Vector3::Zero() : sideways(from_surface, model_.normal);
+  }
+  return true;
+}
+
+ContactPredictor::Answer ContactPredictor::solve(std::uint64_t k, const Vector3& tip) noexcept {
+  Answer answer;
+  past(k) = {.step = k};
+  last_step_ = k;
+  if (!reaches(k)) return answer;
+  answer.known = true;
+  move_to(k - 1);
+  const Quaternion Q = motion_.orientation;
+  const FreeMotion free = free_motion(*body_, model_.free_forces, motion_);
+  const RigidState end = body_->advance(motion_, free.force + Q * model_.other_force,
+                                        free.torque + Q * model_.other_torque);
+  const Vector3 tip_B = end.orientation.conjugate() * (tip - end.position);
+  const bool held = model_.state == ContactState::kHeld;
+  const Vector3 surface = surface_at(k);
+  if (!held && !touch(k, tip_B - surface)) return answer;
+  Friction friction = model_.friction;
+  if (slipping_) friction.static_ = friction.kinetic;
+  const Vector3 arm = surface + offset_;
+  const Matrix3 W = model_.response[0] + body_->mobility().between(arm, arm) + model_.series;
+  const SingleContact found = solve_single_contact(
+      W, tip_B - arm, held ? ContactLaw::kHeld : ContactLaw::kTouching, model_.normal, friction);
+  if (!found.force.allFinite()) return {};
+  if (found.mode == ContactMode::kOpen) {
+    end_touch();
+    return answer;
+  }
+  slipping_ = found.mode == ContactMode::kSlipping;
+  offset_ += found.slip;
+  last_place_ = model_.place + offset_;
+  answer.force = Q * found.force;
+  answer.state = held ? ContactState::kHeld : ContactState::kTouching;
+  answer.normal = end.orientation * model_.normal;
+  past(k) = {k, answer.force, found.force, arm, found.slip};
+  return answer;
+}
+
+Vector3 ContactPredictor::applied(std::uint64_t step) const noexcept {
+  return past(step).step == step ? past(step).force : Vector3::Zero();
+}
+
+}  // namespace irdm

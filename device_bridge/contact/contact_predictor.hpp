@@ -1,0 +1,80 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "common/contact/contact_model.hpp"
+
+namespace irdm {
+
+/// The contact of one stylus, solved at the bridge from what the server sent: it goes on with the
+/// rigid motion from the newest model's state, under the forces that the server did not know of
+/// yet, and solves in each step the contact problem that the server would solve
+/// (docs/architecture.md, one force step), with u the model's free path, R its response and f_i
+/// those forces in B:
+///
+///     (R_0 + rigid + series) f_k = Q^T (x - c) - place - u_k - sum_i R_{k-i} f_i
+///
+/// for what is held or sticks; a touching contact only pushes, inside its friction cone. Pure,
+/// real-time safe, one thread.
+class ContactPredictor {
+ public:
+  struct Answer {
+    bool known = false;               ///< false: there is no model that reaches this step
+    Vector3 force = Vector3::Zero();  ///< on the object [N], W; of step k
+    ContactState state = ContactState::kFree;
+    Vector3 normal = Vector3::Zero();  ///< outward, of the surface; W
+  };
+
+  /// Takes a newer model; one that is not newer is left aside.
+  /// @param model has passed check()
+  void receive(const ContactModel& model) noexcept;
+
+  /// The force of step k, from the tip at its end. Steps come in order, each at most once.
+  /// @param tip [m], W, finite
+  Answer solve(std::uint64_t k, const Vector3& tip) noexcept;
+
+  /// The force that was answered for a step [N], W; zero when that is too long ago.
+  Vector3 applied(std::uint64_t step) const noexcept;
+
+  /// Forgets everything.
+  void reset() noexcept { *this = ContactPredictor{}; }
+
+ private:
+  /// What was done in one step.
+  struct Past {
+    std::uint64_t step = ~std::uint64_t{0};
+    Vector3 force = Vector3::Zero();    ///< on the object [N], W
+    Vector3 force_B = Vector3::Zero();  ///< as the newest model's motion has it
+    Vector3 arm = Vector3::Zero();      ///< [m], B
+    Vector3 slip = Vector3::Zero();     ///< [m], B
+  };
+  static constexpr std::size_t kKept = 64;
+
+  Past& past(std::uint64_t step) noexcept { return past_[step % kKept]; }
+  const Past& past(std::uint64_t step) const noexcept { return past_[step % kKept]; }
+  bool reaches(std::uint64_t k) const noexcept;
+  bool missing(std::uint64_t step) const noexcept;
+  void start_motion() noexcept;
+  void move_to(std::uint64_t k) noexcept;
+  Vector3 surface_at(std::uint64_t k) const noexcept;
+  void place_anew() noexcept;
+  bool touch(std::uint64_t k, const Vector3& from_surface) noexcept;
+  void end_touch() noexcept;
+
+  ContactModel model_;
+  std::optional<RigidBody> body_;  ///< of the model
+  RigidState motion_;              ///< at the end of step moved_to_
+  std::uint64_t moved_to_ = 0;
+  std::array<Past, kKept> past_{};
+  // A touching contact as it is here: it may have begun, slipped or ended since the model. In B.
+  bool touching_ = false;
+  bool slipping_ = false;
+  std::uint64_t began_ = 0;           ///< in this step
+  Vector3 offset_ = Vector3::Zero();  ///< from the model's place to ours, along the surface [m]
+  std::uint64_t last_step_ = 0;
+  Vector3 last_place_ = Vector3::Zero();  ///< of a touching contact, object at rest [m]
+};
+
+}  // namespace irdm

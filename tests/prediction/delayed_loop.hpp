@@ -1,0 +1,58 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "device_bridge/virtual_hand.hpp"
+#include "server/step/simulation.hpp"
+
+namespace irdm::test {
+
+enum class LoopMode {
+  kDirect,   ///< hand and simulation in one step, nothing in between
+  kHold,     ///< the server's force arrives late and is held
+  kPredict,  ///< the contact is solved at the bridge
+};
+
+/// What lies between bridge and server, each way on its own.
+struct LoopLink {
+  double delay = 0.0;   ///< one way [s]
+  double jitter = 0.0;  ///< up to so much more, each message anew [s]
+  double loss = 0.0;    ///< share of messages
+  double slack = 0.0;   ///< by which the server's clock is further behind than it must [s]
+};
+
+/// A hand, what it wants, and its button.
+struct LoopHand {
+  HandParameters hand = {};
+  std::function<Vector3(double)> target;  ///< over time [m], W
+  bool grab = false;
+};
+
+struct LoopSetup {
+  SimulationConfig config;
+  std::vector<LoopHand> hands;
+  int steps = 1500;
+  int repeats = 8;  ///< forces of so many steps in each message
+};
+
+/// What happened, per hand and step.
+struct LoopRun {
+  std::vector<std::vector<Vector3>> force;  ///< on the hand [N], W
+  std::vector<std::vector<Vector3>> tip;    ///< [m], W
+  std::vector<double> lowest_energy;        ///< that the device had taken from the hand [J]
+  int refused = 0;                          ///< models that check() refused
+  int unknown = 0;                          ///< steps without a model that reaches them
+  int late = 0;                             ///< forces that the server entered afterwards
+  int lost = 0;                             ///< forces that came too late for that, or never
+};
+
+/// Runs hands, bridges, link and server on one virtual clock. The server's clock is behind the
+/// bridges' by the way up, jitter included, so that forces are there for their own step.
+LoopRun run_loop(const LoopSetup& setup, LoopMode mode, const LoopLink& link = {});
+
+/// Largest difference of the forces on a hand, as a share of the largest force of the reference.
+double largest_error(const LoopRun& run, const LoopRun& reference, std::size_t hand = 0);
+double peak(const LoopRun& run, std::size_t hand = 0);
+
+}  // namespace irdm::test

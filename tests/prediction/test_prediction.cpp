@@ -1,0 +1,187 @@
+#include <algorithm>
+#include <array>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "tests/prediction/delayed_loop.hpp"
+#include "tests/support/fem_cube.hpp"
+
+// Transparency of the contact that is solved at the bridge: the force on the hand with a link in
+// between, against the same loop without.
+
+using namespace irdm;
+using test::FemCube;
+using test::largest_error;
+using test::LoopHand;
+using test::LoopLink;
+using test::LoopMode;
+using test::LoopRun;
+using test::LoopSetup;
+using test::run_loop;
+
+namespace {
+
+constexpr double kHalfEdge = 0.06;
+
+LoopSetup cube(double youngs_modulus, ResponseKind kind = ResponseKind::kModal) {
+  LoopSetup setup;
+  setup.config.objects.resize(1);
+  setup.config.objects[0].model = test::fem_cube({.youngs_modulus = youngs_modulus}, kind);
+  setup.config.objects[0].friction = {0.6, 0.5};
+  setup.config.styluses = {{0.0, 2000.0, 0.005}};
+  return setup;
+}
+
+double smooth(double t, double from, double to) {
+  const double s = std::clamp((t - from) / (to - from), 0.0, 1.0);
+  return s * s * (3 - 2 * s);
+}
+
+// Held at a point and swung 5 cm to either side at 1.5 Hz, the start made smooth.
+LoopHand swinging(const Vector3& at) {
+  return {.target =
+              [at](double t) {
+                const double sway =
+                    0.05 * smooth(t, 0.1, 0.4) * std::sin(2 * M_PI * 1.5 * (t - 0.1));
+                return Vector3(at + Vector3(sway, 0, 0));
+              },
+          .grab = true};
+}
+
+LoopSetup swung(double youngs_modulus, ResponseKind kind = ResponseKind::kModal) {
+  LoopSetup setup = cube(youngs_modulus, kind);
+  setup.hands.push_back(swinging({0, kHalfEdge, 0}));
+  return setup;
+}
+
+// A cube at home by its tether, pressed from above; then the hand wants to go aside, so far that
+// the tip slips, and away again.
+LoopSetup pressed(double youngs_modulus, double aside) {
+  LoopSetup setup = cube(youngs_modulus);
+  setup.config.objects[0].tether = {1000.0, 10.0};
+  setup.config.objects[0].damping = {20.0, 20.0};
+  setup.hands.push_back({.target = [aside](double t) {
+    const double down = 0.02 * (smooth(t, 0.1, 0.6) - smooth(t, 2.2, 2.6));
+    return Vector3(aside * smooth(t, 0.8, 2.0), kHalfEdge + 0.005 - down, 0.01);
+  }});
+  return setup;
+}
+
+// Held at two opposite sides; one hand swings, the other follows.
+LoopSetup by_two(double youngs_modulus) {
+  LoopSetup setup = cube(youngs_modulus);
+  setup.config.styluses = {{0.0, 2000.0, 0.005}, {0.0, 2000.0, 0.005}};
+  setup.hands.push_back(swinging({-kHalfEdge, 0, 0}));
+  setup.hands.push_back({.target = [](double) { return Vector3(kHalfEdge, 0, 0); }, .grab = true});
+  return setup;
+}
+
+struct Compared {
+  double peak = 0.0;
+  LoopRun run;
+  double error = 0.0;
+};
+
+Compared compare(const LoopSetup& setup, const LoopRun& direct, LoopMode mode,
+                 const LoopLink& link) {
+  Compared compared{test::peak(direct), run_loop(setup, mode, link)};
+  for (std::size_t hand = 0; hand < setup.hands.size(); ++hand) {
+    compared.error = std::max(compared.error, largest_error(compared.run, direct, hand));
+  }
+  return compared;
+}
+
+// The largest error of a mode over a link.
+double error(const LoopSetup& setup, const LoopRun& direct, LoopMode mode, const LoopLink& link) {
+  return compare(setup, direct, mode, link).error;
+}
+
+constexpr std::array kStiffnesses{1e3, 2e3, 2e4, 1e5, 1e6};
+constexpr std::array kDelays{0.0, 0.002, 0.005, 0.01, 0.02};
+// What repeats of forces and a little slack make up for.
+constexpr LoopLink kBad{.delay = 0.005, .jitter = 0.01, .loss = 0.05, .slack = 0.004};
+
+}  // namespace
+
+TEST_CASE("prediction: a held point that is swung feels as without delay") {
+  for (const double E : kStiffnesses) {
+    const LoopSetup setup = swung(E);
+    const LoopRun direct = run_loop(setup, LoopMode::kDirect);
+    for (const double delay : kDelays) {
+      CAPTURE(E, delay);
+      const Compared predict = compare(setup, direct, LoopMode::kPredict, {.delay = delay});
+      CHECK(predict.error < 1e-9);
+      CHECK(predict.run.refused == 0);
+      CHECK(predict.run.lost == 0);
+    }
+    CHECK(error(setup, direct, LoopMode::kPredict, kBad) < 1e-9);
+    // What the prediction is there for.
+    CHECK(error(setup, direct, LoopMode::kHold, {.delay = 0.01}) > (E < 2e4 ? 0.5 : 1e3));
+  }
+}
+
+TEST_CASE("prediction: forces that come late are entered at their own step") {
+  const LoopSetup setup = swung(2e3);
+  const LoopRun direct = run_loop(setup, LoopMode::kDirect);
+  const Compared predict =
+      compare(setup, direct, LoopMode::kPredict, {.delay = 0.01, .loss = 0.05});
+  CHECK(predict.run.late > 50);
+  CHECK(predict.run.lost == 0);
+  CHECK(predict.error < 0.1);
+}
+
+TEST_CASE("prediction: the same with the dense engine") {
+  const LoopSetup setup = swung(2e3, ResponseKind::kDense);
+  const LoopRun direct = run_loop(setup, LoopMode::kDirect);
+  CHECK(error(setup, direct, LoopMode::kPredict, {.delay = 0.01}) < 1e-6);
+  const Compared late = compare(setup, direct, LoopMode::kPredict, {.delay = 0.01, .loss = 0.05});
+  CHECK(late.run.late > 50);
+  CHECK(late.error < 0.1);
+}
+
+TEST_CASE("prediction: a surface that is pressed feels as without delay") {
+  for (const double E : kStiffnesses) {
+    const LoopSetup setup = pressed(E, 0.0);
+    const LoopRun direct = run_loop(setup, LoopMode::kDirect);
+    for (const double delay : kDelays) {
+      CAPTURE(E, delay);
+      CHECK(error(setup, direct, LoopMode::kPredict, {.delay = delay}) < 1e-3);
+    }
+    CHECK(error(setup, direct, LoopMode::kPredict, kBad) < 0.01);
+  }
+}
+
+// Where the tip slips, the step in which it begins to makes a difference of a sixth of the
+// friction.
+TEST_CASE("prediction: a tip that slides on a surface") {
+  for (const double E : kStiffnesses) {
+    const LoopSetup setup = pressed(E, 0.03);
+    const LoopRun direct = run_loop(setup, LoopMode::kDirect);
+    for (const double delay : kDelays) {
+      CAPTURE(E, delay);
+      CHECK(error(setup, direct, LoopMode::kPredict, {.delay = delay}) <
+            (delay > 0.01 ? 0.2 : 0.1));
+    }
+    CHECK(error(setup, direct, LoopMode::kPredict, kBad) < 0.25);
+  }
+}
+
+// Each hand learns of the other's forces by the link only. A stiff object between two hands that
+// hold it is beyond that from 5 ms one way on.
+TEST_CASE("prediction: two hands on one object") {
+  for (const double E : {1e3, 2e3}) {
+    const LoopSetup setup = by_two(E);
+    const LoopRun direct = run_loop(setup, LoopMode::kDirect);
+    for (const double delay : {0.0, 0.002, 0.005, 0.01}) {
+      CAPTURE(E, delay);
+      CHECK(error(setup, direct, LoopMode::kPredict, {.delay = delay}) < 0.06);
+    }
+  }
+  for (const double E : {2e4, 1e5, 1e6}) {
+    const LoopSetup setup = by_two(E);
+    const LoopRun direct = run_loop(setup, LoopMode::kDirect);
+    CAPTURE(E);
+    CHECK(error(setup, direct, LoopMode::kPredict, {.delay = 0.002}) < 0.05);
+    CHECK(error(setup, direct, LoopMode::kHold, {.delay = 0.002}) > 1.0);
+  }
+}

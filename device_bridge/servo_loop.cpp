@@ -15,6 +15,7 @@ void ServoLoop::restart() noexcept {
   filter_ = SafetyFilter(limits_);
   filter_.arm();
   clutch_ = Clutch{};
+  reading_.reset();
   next_sequence_ = 0;
 }
 
@@ -37,9 +38,10 @@ StylusSample ServoLoop::take_sample(std::int64_t now_ns) noexcept {
 }
 
 void ServoLoop::apply(std::int64_t now_ns, const ServoInput& input) noexcept {
+  if (!reading_) return rest();
   const StylusForce& newest = input.force;
   const Vector3 force =
-      filter_.step(now_ns, {.tip = reading_},
+      filter_.step(now_ns, {.tip = *reading_},
                    {.linked = input.linked,
                     .any = input.any_force,
                     .sample_time_ns = newest.sample_time_ns,

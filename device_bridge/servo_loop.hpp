@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "common/stylus.hpp"
 #include "device_bridge/button_map.hpp"
@@ -37,7 +38,7 @@ class ServoLoop {
   /// @param now_ns goes into the sample, and comes back with the force that answers it
   StylusSample take_sample(std::int64_t now_ns) noexcept;
 
-  /// Shows what the filter makes of the force.
+  /// Shows what the filter makes of the force; none before the first read().
   /// @param now_ns the clock that samples are stamped with
   void apply(std::int64_t now_ns, const ServoInput& input) noexcept;
   /// Shows no force.
@@ -57,8 +58,8 @@ class ServoLoop {
   SafetyFilter filter_;
   Clutch clutch_;
   StylusPose pose_;  ///< the last good one, W; buttons as on the wire
-  Vector3 reading_ =
-      Vector3::Zero();  ///< tip as it was read last, not a number if of no use [m], D
+  /// Tip as it was read last, not a number if of no use; none since restart() [m], D.
+  std::optional<Vector3> reading_;
   std::uint64_t next_sequence_ = 0;
   double peak_force_ = 0.0;
   FilterCounts counts_;  ///< of the sessions before

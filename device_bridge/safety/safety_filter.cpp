@@ -42,24 +42,27 @@ void SafetyFilter::fail() noexcept {
 
 Vector3 SafetyFilter::step(std::int64_t now_ns, const DeviceReading& reading,
                            const ForceDemand& demand) noexcept {
-  check(now_ns, reading);
+  const ReadingVerdict verdict = check(now_ns, reading);
   passivity_.observe(reading_.displacement(), sent_);
   thermal_.heat(sent_.norm(), reading_.elapsed(), reading.motor_warmth);
   accept(now_ns, demand);
   const Vector3 force = wanted();
+  // Where no force is shown or asked for there is none to drop: a hand may be fast in free air.
+  if (verdict == ReadingVerdict::kTrip && !(sent_.isZero(0.0) && force.isZero(0.0))) {
+    ++counts_.trips;
+    arming_.trip();
+  }
   const double share = arming_.step(reading_.elapsed(), fresh(now_ns), force.norm());
   sent_ = limited(damped(share * force, share));
   return sent_;
 }
 
 // Sanity of the reading and of the time.
-void SafetyFilter::check(std::int64_t now_ns, const DeviceReading& reading) noexcept {
+ReadingVerdict SafetyFilter::check(std::int64_t now_ns, const DeviceReading& reading) noexcept {
   const ReadingVerdict verdict = reading_.look(now_ns, reading.tip);
   counts_.readings = reading_.unused();
   if (verdict == ReadingVerdict::kFault) fail();
-  if (verdict != ReadingVerdict::kTrip) return;
-  ++counts_.trips;
-  arming_.trip();
+  return verdict;
 }
 
 // The newest demand. One that is not used changes nothing: the one before stays, and grows old.

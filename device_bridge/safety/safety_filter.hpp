@@ -80,7 +80,7 @@ class SafetyFilter {
   double warmth() const noexcept { return thermal_.warmth(); }
 
  private:
-  void check(std::int64_t now_ns, const DeviceReading& reading) noexcept;
+  ReadingVerdict check(std::int64_t now_ns, const DeviceReading& reading) noexcept;
   void accept(std::int64_t now_ns, const ForceDemand& demand) noexcept;
   double fresh(std::int64_t now_ns) const noexcept;
   Vector3 wanted() const noexcept;

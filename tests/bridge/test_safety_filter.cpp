@@ -78,6 +78,24 @@ TEST_CASE("safety filter: a demand is trusted for its horizon, and none for more
   CHECK(rig.shown == Vector3::Zero());
 }
 
+TEST_CASE("safety filter: a hand that is fast in free air has lost nothing when it touches") {
+  FilterRig rig;
+  rig.ticks(2, Vector3::Zero());
+  for (int i = 0; i < 100; ++i) {
+    rig.tip.x() += 2e-3;
+    rig.ticks(1, Vector3::Zero());
+  }
+  CHECK(rig.ticks(10, kOneUp) == kOneUp);
+  CHECK(rig.filter.counts().trips == 0);
+  // One that is still fast when it touches has.
+  for (int i = 0; i < 10; ++i) {
+    rig.tip.x() += 2e-3;
+    rig.ticks(1, kOneUp);
+  }
+  CHECK(rig.filter.counts().trips == 8);
+  CHECK(rig.ticks(90, kOneUp) == Vector3::Zero());
+}
+
 TEST_CASE("safety filter: what the device says of its motors counts") {
   FilterRig rig;
   rig.engage(3.0 * kOneUp);

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "device_bridge/contact/contact_predictor.hpp"
+#include "device_bridge/safety/safety_filter.hpp"
 
 namespace irdm::test {
 namespace {
@@ -56,6 +57,7 @@ struct Up {
 struct Down {
   int step = 0;
   Vector3 force = Vector3::Zero();
+  ContactState contact = ContactState::kFree;
   ContactModel model;
 };
 
@@ -85,6 +87,9 @@ class Loop {
                           std::vector<std::optional<Vector3>>(steps)});
     predictors_.resize(count);
     shown_.assign(count, Vector3::Zero());
+    asked_.resize(count);
+    filters_.assign(count, SafetyFilter({}));
+    for (SafetyFilter& each : filters_) each.arm();
     newest_down_.assign(count, -1);
     energy_.assign(count, 0.0);
     commands_.resize(count);
@@ -101,6 +106,7 @@ class Loop {
       if (t >= behind_) serve(t - behind_, now);
       for (std::size_t s = 0; s < hands_.size(); ++s) {
         down_[s].deliver(now, [&](const Down& message) { take(s, message); });
+        if (setup_.filtered) filter(s, now);
         run_.force[s].push_back(shown_[s]);
       }
     }
@@ -124,13 +130,24 @@ class Loop {
     if (mode_ == LoopMode::kPredict) {
       const auto answer = predictors_[s].solve(static_cast<std::uint64_t>(t), tip);
       run_.unknown += answer.known ? 0 : 1;
-      shown_[s] = -answer.force;
+      asked_[s].force = -answer.force;
+      asked_[s].contact = answer.state;
+      asked_[s].normal = answer.normal;
+      shown_[s] = asked_[s].force;
       for (int i = 0; i < setup_.repeats && i <= t; ++i) {
         message.forces.push_back(predictors_[s].applied(static_cast<std::uint64_t>(t - i)));
       }
     }
     run_.tip[s].push_back(tip);
     up_[s].send(now, message);
+  }
+
+  // The age of what a demand contains is none of this loop's business.
+  void filter(std::size_t s, double now) {
+    const auto now_ns = std::llround(1e9 * now);
+    asked_[s].linked = asked_[s].any = true;
+    asked_[s].sample_time_ns = now_ns;
+    shown_[s] = filters_[s].step(now_ns, {.tip = run_.tip[s].back()}, asked_[s]);
   }
 
   void take(std::size_t s, const Down& message) {
@@ -140,7 +157,8 @@ class Loop {
       if (good) predictors_[s].receive(message.model);
     } else if (message.step > newest_down_[s]) {
       newest_down_[s] = message.step;
-      shown_[s] = message.force;
+      asked_[s].force = shown_[s] = message.force;
+      asked_[s].contact = message.contact;
     }
   }
 
@@ -184,8 +202,10 @@ class Loop {
       Down message;
       message.step = k;
       message.force = record_.stylus[s].force;
+      message.contact = record_.stylus[s].contact;
       if (mode_ == LoopMode::kDirect) {
-        shown_[s] = message.force;
+        asked_[s].force = shown_[s] = message.force;
+        asked_[s].contact = message.contact;
         continue;
       }
       if (mode_ == LoopMode::kHold) {
@@ -214,6 +234,8 @@ class Loop {
   std::vector<Known> known_;
   std::vector<ContactPredictor> predictors_;
   std::vector<Vector3> shown_;
+  std::vector<ForceDemand> asked_;
+  std::vector<SafetyFilter> filters_;
   std::vector<int> newest_down_;
   std::vector<double> energy_;
   std::vector<StylusCommand> commands_;

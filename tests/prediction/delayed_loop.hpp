@@ -33,7 +33,8 @@ struct LoopSetup {
   SimulationConfig config;
   std::vector<LoopHand> hands;
   int steps = 1500;
-  int repeats = 8;  ///< forces of so many steps in each message
+  int repeats = 8;        ///< forces of so many steps in each message
+  bool filtered = false;  ///< a safety filter before each device, a tick a step
 };
 
 /// What happened, per hand and step.

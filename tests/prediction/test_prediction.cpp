@@ -185,3 +185,22 @@ TEST_CASE("prediction: two hands on one object") {
     CHECK(error(setup, direct, LoopMode::kHold, {.delay = 0.002}) > 1.0);
   }
 }
+
+// The hand feels what the filter makes of the force; the object gets the force itself.
+TEST_CASE("prediction: behind the safety filter the device's port gives no energy") {
+  for (const double aside : {0.0, 0.03}) {
+    for (const double E : kStiffnesses) {
+      LoopSetup setup = pressed(E, aside);
+      setup.filtered = true;
+      const LoopRun direct = run_loop(setup, LoopMode::kDirect);
+      for (const double delay : {0.0, 0.005, 0.01, 0.02}) {
+        CAPTURE(aside, E, delay);
+        const Compared predict = compare(setup, direct, LoopMode::kPredict, {.delay = delay});
+        CHECK(predict.run.lowest_energy[0] > -1e-6);
+        CHECK(predict.error < (aside == 0.0 ? 1e-3 : 0.2));
+        // Held forces are wrong, but they no longer run away.
+        CHECK(error(setup, direct, LoopMode::kHold, {.delay = delay}) < 1.0);
+      }
+    }
+  }
+}

@@ -193,7 +193,7 @@ TEST_CASE("prediction: behind the safety filter the device's port gives no energ
       LoopSetup setup = pressed(E, aside);
       setup.filtered = true;
       const LoopRun direct = run_loop(setup, LoopMode::kDirect);
-      for (const double delay : {0.0, 0.005, 0.01, 0.02}) {
+      for (const double delay : {0.005, 0.02}) {
         CAPTURE(aside, E, delay);
         const Compared predict = compare(setup, direct, LoopMode::kPredict, {.delay = delay});
         CHECK(predict.run.lowest_energy[0] > -1e-6);

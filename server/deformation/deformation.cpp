@@ -1,5 +1,7 @@
 #include "server/deformation/deformation.hpp"
 
+#include <algorithm>
+
 #include "server/step/inertial_loading.hpp"
 
 namespace irdm {
@@ -10,6 +12,7 @@ SurfaceFrame rest_frame(const SimulationConfig& config) {
     frame.objects.push_back({object.position, object.orientation,
                              Points::Zero(object.model->mesh.surface_node_count(), 3)});
   }
+  frame.styluses.resize(config.styluses.size());
   return frame;
 }
 
@@ -44,6 +47,7 @@ void Deformation::follow(const StepRecord& record) {
   for (; next < record.force_step; ++next) advance(last_);
   advance(record);
   last_ = record;
+  trail_.follow(record);
   started_ = true;
 }
 
@@ -55,6 +59,8 @@ void Deformation::compute(SurfaceFrame& frame) const {
     frame.objects[i].orientation = last_.object[i].orientation;
     objects_[i].engine->displacement(frame.objects[i].displacement);
   }
+  std::copy_n(last_.stylus.begin(), frame.styluses.size(), frame.styluses.begin());
+  frame.trail = trail_;
 }
 
 }  // namespace irdm

@@ -15,5 +15,6 @@ int main(int argc, char** argv) {
       ->check(irdm::positive_number());
   app.add_flag("--lockstep", options.lockstep,
                "Simulated clock: step k uses exactly sample k of every stylus");
+  app.add_flag("--no-viewer", options.no_viewer, "Do not serve the view for browsers");
   return irdm::run_program(app, argc, argv, [&] { return irdm::run_server(options); });
 }

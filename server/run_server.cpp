@@ -18,6 +18,7 @@
 #include "server/threads/force_thread.hpp"
 #include "server/threads/recorder_thread.hpp"
 #include "server/threads/step_clock.hpp"
+#include "server/viewer_feed.hpp"
 
 namespace irdm {
 namespace {
@@ -99,6 +100,13 @@ std::unique_ptr<StepClock> make_clock(bool lockstep, NetworkServer& network,
   return std::make_unique<RealTimeClock>(dt);
 }
 
+std::unique_ptr<viewer::ViewerServer> make_viewer(const SceneConfig& scene,
+                                                  const ServerOptions& options,
+                                                  viewer::ViewerFeed feed) {
+  if (!scene.viewer.enabled || options.no_viewer) return nullptr;
+  return std::make_unique<viewer::ViewerServer>(viewer_settings(scene.viewer), std::move(feed));
+}
+
 int deformation_threads(const ServerConfig& config) {
   if (config.deformation_threads > 0) return config.deformation_threads;
   return std::max(1, omp_get_num_procs() - 1);
@@ -124,10 +132,16 @@ int run_server(const ServerOptions& options) {
   const auto steps = static_cast<std::uint64_t>(
       std::llround(std::ceil(options.duration.value_or(0.0) / dt - 1e-9)));
   ForceThread force(simulation, network, *clock, sinks, steps);
+  const std::unique_ptr<viewer::ViewerServer> viewers = make_viewer(
+      scene, options, viewer_feed(scene, config, options.lockstep, deformation, force, network));
 
   network.start();
   // In one piece, so that no other thread's line comes between.
   std::cout << "listening on " + network.endpoint() + "\n" << std::flush;
+  if (viewers) {
+    viewers->start();
+    std::cout << "listening on " + viewers->url() + "\n" << std::flush;
+  }
   if (recorder) recorder->start();
   deformation.start();
   force.start(scheduling(scene, options));
@@ -136,6 +150,7 @@ int run_server(const ServerOptions& options) {
   force.finish();
   network.stop();
   deformation.finish();
+  if (viewers) viewers->stop();
   if (recorder) recorder->finish();
   return print_report(
       {force, network, deformation, recorder.get(), dynamic_cast<RealTimeClock*>(clock.get())},

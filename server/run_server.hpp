@@ -12,6 +12,7 @@ struct ServerOptions {
   std::optional<std::filesystem::path> record;  ///< trace file
   std::optional<double> duration;               ///< [s], > 0
   bool lockstep = false;
+  bool no_viewer = false;  ///< whatever the scene says
 };
 
 /// Runs a server until its duration is over or a signal asks it to stop. Returns the exit status.

@@ -32,6 +32,25 @@ ServerConfig read_server(TomlTable table, int styluses) {
   return config;
 }
 
+ViewerConfig read_viewer(TomlTable table) {
+  constexpr std::size_t kShortest = 16;
+  constexpr std::size_t kLongest = 128;
+  ViewerConfig config;
+  config.enabled = table.boolean("enabled", config.enabled);
+  config.address = table.text("address", config.address);
+  config.port = table.integer("port", 0, 65535, config.port);
+  config.token = table.text("token", config.token);
+  const bool printable = std::all_of(config.token.begin(), config.token.end(),
+                                     [](char letter) { return letter > 0x20 && letter < 0x7F; });
+  const std::size_t length = config.token.size();
+  if (!printable || (length > 0 && length < kShortest) || length > kLongest) {
+    table.fail("token", "is not 16 to 128 printable ASCII characters without blanks",
+               "give such a one, for instance from: openssl rand -hex 16");
+  }
+  table.finish();
+  return config;
+}
+
 WorldConfig read_world(TomlTable table) {
   WorldConfig config;
   config.gravity = read_vector(table, "gravity");
@@ -153,6 +172,7 @@ ObjectConfig read_object(TomlTable table) {
 SceneConfig read_scene(TomlTable file) {
   SceneConfig scene;
   scene.world = read_world(file.table("world"));
+  scene.viewer = read_viewer(file.table("viewer"));
   scene.contact = read_contact(file.table("contact"));
   scene.floor = read_floor(file);
   for (TomlTable& stylus : file.tables("stylus")) {

@@ -24,6 +24,14 @@ struct ServerConfig {
   int deformation_threads = 0;  ///< OpenMP threads for them, 0..64; 0: all cores but one
 };
 
+/// [viewer]
+struct ViewerConfig {
+  bool enabled = true;                ///< whether irdm-server shows its objects to browsers
+  std::string address = "127.0.0.1";  ///< to listen on
+  int port = 0;                       ///< 0..65535; 0: any free one
+  std::string token;  ///< what a viewer has to know, 0 or 16..128 printable characters
+};
+
 /// [world]
 struct WorldConfig {
   Vector3 gravity = Vector3::Zero();  ///< [m/s^2], W
@@ -56,6 +64,7 @@ struct ObjectConfig {
 struct SceneConfig {
   std::optional<FloorConfig> floor;  ///< [floor] height [m], normal, friction = { static, kinetic }
   ServerConfig server;
+  ViewerConfig viewer;
   WorldConfig world;
   ContactConfig contact;
   std::vector<SimulationStylus> styluses;  ///< [[stylus]], one for every slot

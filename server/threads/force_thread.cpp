@@ -47,10 +47,26 @@ void ForceThread::run() noexcept {
   while ((steps_ == 0 || report_.steps < steps_) && clock_.wait(report_.steps)) {
     const std::int64_t begin = monotonic_ns();
     step();
-    report_.step_time.add(monotonic_ns() - begin);
+    const std::int64_t end = monotonic_ns();
+    report_.step_time.add(end - begin);
     ++report_.steps;
+    watch_health(begin, end);
   }
   finished_.signal();
+}
+
+void ForceThread::watch_health(std::int64_t begin_ns, std::int64_t end_ns) noexcept {
+  if (report_.steps == 1) window_begin_ns_ = begin_ns;
+  window_.step_time.add(end_ns - begin_ns);
+  if (clock_.last_delay() >= 0) window_.wakeup_delay.add(clock_.last_delay());
+  if (end_ns - window_begin_ns_ < kHealthPeriodNs) return;
+  window_.steps = report_.steps;
+  window_.resets = report_.resets;
+  window_.unsolved = report_.unsolved;
+  window_.missed = clock_.missed();
+  health_.put(window_);  // some 10 kB, once a second
+  window_ = ForceHealth{};
+  window_begin_ns_ = end_ns;
 }
 
 void ForceThread::step() noexcept {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/realtime/histogram.hpp"
+#include "common/realtime/mailbox.hpp"
 #include "common/realtime/scheduling.hpp"
 #include "common/realtime/wakeup.hpp"
 #include "server/network/network_server.hpp"
@@ -23,6 +24,16 @@ struct ForceThreadReport {
   std::uint64_t unsolved = 0;  ///< steps whose contact problem had no finite solution
   double peak_force = 0.0;     ///< largest |force| on a stylus [N]
   Histogram step_time;         ///< from the clock's go to the forces' hand-over [ns]
+};
+
+/// How the force thread fares while it runs.
+struct ForceHealth {
+  std::uint64_t steps = 0;  ///< this count and the next three: since the start
+  std::uint64_t resets = 0;
+  std::uint64_t unsolved = 0;
+  std::uint64_t missed = 0;  ///< deadlines
+  Histogram step_time;       ///< of the last kHealthPeriodNs [ns]
+  Histogram wakeup_delay;    ///< of the last kHealthPeriodNs [ns]; empty in lockstep
 };
 
 /// Takes the newest stylus samples, makes the force step and hands on what came of it, once for
@@ -43,12 +54,16 @@ class ForceThread {
   /// Becomes readable when the thread has made its last step.
   Wakeup& finished() noexcept { return finished_; }
   const ForceThreadReport& report() const noexcept { return report_; }
+  /// While it runs, anew about every kHealthPeriodNs; for one reader.
+  Mailbox<ForceHealth>& health() noexcept { return health_; }
+  static constexpr std::int64_t kHealthPeriodNs = 1'000'000'000;
   /// How the thread is scheduled, for a report.
   const std::string& scheduling() const noexcept { return scheduling_; }
 
  private:
   void run() noexcept;
   void step() noexcept;
+  void watch_health(std::int64_t begin_ns, std::int64_t end_ns) noexcept;
 
   Simulation& simulation_;
   NetworkServer& network_;
@@ -58,6 +73,9 @@ class ForceThread {
   std::vector<StylusCommand> commands_;
   StepRecord record_;
   ForceThreadReport report_;
+  ForceHealth window_;  ///< what is being gathered for health_
+  std::int64_t window_begin_ns_ = 0;
+  Mailbox<ForceHealth> health_;
   std::atomic<bool> reset_requested_{false};
   std::string scheduling_;
   Wakeup finished_;

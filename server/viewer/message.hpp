@@ -55,9 +55,9 @@ struct Percentiles {
 /// How the run goes. Counts are since the start.
 struct Health {
   std::uint64_t steps = 0;
-  Percentiles step_time;     ///< of the last second
-  Percentiles wakeup_delay;  ///< of the last second; not in lockstep
-  std::uint64_t missed = 0;  ///< deadlines
+  Percentiles step_time = {};     ///< of the last second
+  Percentiles wakeup_delay = {};  ///< of the last second; not in lockstep
+  std::uint64_t missed = 0;       ///< deadlines
   std::uint64_t unsolved = 0;
   std::uint64_t resets = 0;
   std::uint64_t lost_steps = 0;  ///< by the deformation
@@ -72,7 +72,7 @@ struct Health {
 
 /// The first message of a viewer.
 struct Hello {
-  std::string token;
+  std::string token = {};
 };
 
 enum class CommandKind : std::uint16_t { kPutBack = 1 };

@@ -1,0 +1,80 @@
+import * as THREE from "three";
+import { Contact, type SceneStylus, type StylusState } from "./protocol";
+import type { Theme } from "./theme";
+
+const SMALLEST_TIP = 0.0022; // a point must be seen [m]
+const METRES_PER_NEWTON = 0.04;
+const LEAST_FORCE = 0.005; // below it no arrow [N]
+const UP = new THREE.Vector3(0, 1, 0);
+
+/** Tip, proxy, and the force on the stylus as an arrow of 4 cm a newton. */
+export class Stylus {
+  readonly group = new THREE.Group();
+  private readonly tipMaterial = new THREE.MeshStandardMaterial({ roughness: 0.35 });
+  private readonly proxyMaterial = new THREE.MeshBasicMaterial({ depthTest: false, transparent: true, opacity: 0.9 });
+  private readonly arrowMaterial = new THREE.MeshStandardMaterial({ roughness: 0.5 });
+  private readonly lineMaterial = new THREE.LineBasicMaterial({ depthTest: false, transparent: true, opacity: 0.8 });
+  private readonly tip: THREE.Mesh;
+  private readonly proxy: THREE.Mesh;
+  private readonly link: THREE.Line;
+  private readonly arrow = new THREE.Group();
+  private readonly shaft: THREE.Mesh;
+  private readonly head: THREE.Mesh;
+
+  constructor(stylus: SceneStylus) {
+    const radius = Math.max(stylus.radius, SMALLEST_TIP);
+    this.tip = new THREE.Mesh(new THREE.SphereGeometry(radius, 32, 20), this.tipMaterial);
+    this.tip.castShadow = true;
+    this.proxy = new THREE.Mesh(new THREE.SphereGeometry(SMALLEST_TIP * 0.7, 20, 12), this.proxyMaterial);
+    this.proxy.renderOrder = 2;
+    this.link = new THREE.Line(
+      new THREE.BufferGeometry().setFromPoints([new THREE.Vector3(), new THREE.Vector3()]),
+      this.lineMaterial,
+    );
+    this.link.frustumCulled = false;
+    this.shaft = new THREE.Mesh(new THREE.CylinderGeometry(0.0009, 0.0009, 1, 16), this.arrowMaterial);
+    this.head = new THREE.Mesh(new THREE.ConeGeometry(0.0026, 0.007, 20), this.arrowMaterial);
+    this.arrow.add(this.shaft, this.head);
+    this.group.add(this.tip, this.proxy, this.link, this.arrow);
+    this.group.visible = false;
+  }
+
+  follow(state: StylusState): void {
+    this.group.visible = state.present;
+    if (!state.present) return;
+    const touches = state.contact !== Contact.Free;
+    this.tip.position.set(...state.tip);
+    this.proxy.visible = touches;
+    this.link.visible = touches;
+    this.proxy.position.set(...state.proxy);
+    const ends = this.link.geometry.getAttribute("position") as THREE.BufferAttribute;
+    ends.setXYZ(0, ...state.tip);
+    ends.setXYZ(1, ...state.proxy);
+    ends.needsUpdate = true;
+    this.point(new THREE.Vector3(...state.force), touches ? state.proxy : state.tip);
+  }
+
+  private point(force: THREE.Vector3, from: readonly [number, number, number]): void {
+    const size = force.length();
+    this.arrow.visible = size > LEAST_FORCE;
+    if (!this.arrow.visible) return;
+    const length = size * METRES_PER_NEWTON;
+    this.arrow.position.set(...from);
+    this.arrow.quaternion.setFromUnitVectors(UP, force.divideScalar(size));
+    this.shaft.scale.y = length;
+    this.shaft.position.y = length / 2;
+    this.head.position.y = length;
+  }
+
+  applyTheme(theme: Theme): void {
+    this.tipMaterial.color.set(theme.ink);
+    this.proxyMaterial.color.set(theme.accent);
+    this.lineMaterial.color.set(theme.accent);
+    this.arrowMaterial.color.set(theme.axes[0]);
+  }
+
+  dispose(): void {
+    for (const part of [this.tip, this.proxy, this.link, this.shaft, this.head]) part.geometry.dispose();
+    for (const one of [this.tipMaterial, this.proxyMaterial, this.arrowMaterial, this.lineMaterial]) one.dispose();
+  }
+}

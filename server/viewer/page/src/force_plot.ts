@@ -3,7 +3,7 @@ import type { ForceLog } from "./force_log";
 import type { Theme } from "./theme";
 
 const WINDOW_SECONDS = 5;
-const NAMES = ["x", "y", "z", "magnitude"];
+const NAMES = ["x", "y", "z", "|F|"];
 
 /** Curves of the last seconds; paused, they stay and can be zoomed by dragging. */
 export class ForcePlot {
@@ -51,7 +51,7 @@ export class ForcePlot {
       {
         ...this.size(),
         cursor: { drag: { x: true, y: false }, points: { size: 6 } },
-        legend: { live: true },
+        legend: { live: true, markers: { width: 0, fill: (_, i) => [...axes, ink][i - 1] ?? "" } },
         scales: {
           x: { time: false },
           y: { range: (_, low, high) => padded(low, high) },

@@ -16,7 +16,7 @@ export class SoftObject {
 
   private readonly creased: CreasedMesh;
   private readonly geometry = new THREE.BufferGeometry();
-  private readonly material = new THREE.MeshStandardMaterial({ roughness: 0.62, metalness: 0 });
+  private readonly material = new THREE.MeshStandardMaterial({ roughness: 0.48, metalness: 0 });
   private readonly rigid: THREE.LineSegments<THREE.WireframeGeometry, THREE.LineBasicMaterial>;
   private readonly values: Float32Array;
   private readonly world: Float32Array;

@@ -11,9 +11,11 @@ const UP = new THREE.Vector3(0, 1, 0);
 export class Stylus {
   readonly group = new THREE.Group();
   private readonly tipMaterial = new THREE.MeshStandardMaterial({ roughness: 0.35 });
+  private readonly ghostMaterial = new THREE.MeshBasicMaterial({ depthTest: false, transparent: true, opacity: 0.28 });
   private readonly proxyMaterial = new THREE.MeshBasicMaterial({ depthTest: false, transparent: true, opacity: 0.9 });
   private readonly arrowMaterial = new THREE.MeshStandardMaterial({ roughness: 0.5 });
   private readonly lineMaterial = new THREE.LineBasicMaterial({ depthTest: false, transparent: true, opacity: 0.8 });
+  private readonly radius: number;
   private readonly tip: THREE.Mesh;
   private readonly proxy: THREE.Mesh;
   private readonly link: THREE.Line;
@@ -22,9 +24,12 @@ export class Stylus {
   private readonly head: THREE.Mesh;
 
   constructor(stylus: SceneStylus) {
-    const radius = Math.max(stylus.radius, SMALLEST_TIP);
-    this.tip = new THREE.Mesh(new THREE.SphereGeometry(radius, 32, 20), this.tipMaterial);
+    this.radius = Math.max(stylus.radius, SMALLEST_TIP);
+    this.tip = new THREE.Mesh(new THREE.SphereGeometry(this.radius, 32, 20), this.tipMaterial);
     this.tip.castShadow = true;
+    const ghost = new THREE.Mesh(this.tip.geometry, this.ghostMaterial); // the tip is seen through the objects
+    ghost.renderOrder = 1;
+    this.tip.add(ghost);
     this.proxy = new THREE.Mesh(new THREE.SphereGeometry(SMALLEST_TIP * 0.7, 20, 12), this.proxyMaterial);
     this.proxy.renderOrder = 2;
     this.link = new THREE.Line(
@@ -51,16 +56,18 @@ export class Stylus {
     ends.setXYZ(0, ...state.tip);
     ends.setXYZ(1, ...state.proxy);
     ends.needsUpdate = true;
-    this.point(new THREE.Vector3(...state.force), touches ? state.proxy : state.tip);
+    this.point(new THREE.Vector3(...state.force), state.tip);
   }
 
-  private point(force: THREE.Vector3, from: readonly [number, number, number]): void {
+  /** From where the arrow leaves the tip. */
+  private point(force: THREE.Vector3, tip: readonly [number, number, number]): void {
     const size = force.length();
     this.arrow.visible = size > LEAST_FORCE;
     if (!this.arrow.visible) return;
     const length = size * METRES_PER_NEWTON;
-    this.arrow.position.set(...from);
-    this.arrow.quaternion.setFromUnitVectors(UP, force.divideScalar(size));
+    force.divideScalar(size);
+    this.arrow.position.set(...tip).addScaledVector(force, this.radius);
+    this.arrow.quaternion.setFromUnitVectors(UP, force);
     this.shaft.scale.y = length;
     this.shaft.position.y = length / 2;
     this.head.position.y = length;
@@ -68,6 +75,7 @@ export class Stylus {
 
   applyTheme(theme: Theme): void {
     this.tipMaterial.color.set(theme.ink);
+    this.ghostMaterial.color.set(theme.ink);
     this.proxyMaterial.color.set(theme.accent);
     this.lineMaterial.color.set(theme.accent);
     this.arrowMaterial.color.set(theme.axes[0]);
@@ -75,6 +83,7 @@ export class Stylus {
 
   dispose(): void {
     for (const part of [this.tip, this.proxy, this.link, this.shaft, this.head]) part.geometry.dispose();
-    for (const one of [this.tipMaterial, this.proxyMaterial, this.arrowMaterial, this.lineMaterial]) one.dispose();
+    const { tipMaterial, ghostMaterial, proxyMaterial, arrowMaterial, lineMaterial } = this;
+    for (const one of [tipMaterial, ghostMaterial, proxyMaterial, arrowMaterial, lineMaterial]) one.dispose();
   }
 }

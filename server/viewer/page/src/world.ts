@@ -26,8 +26,10 @@ export class World {
   private readonly renderer: THREE.WebGLRenderer;
   private readonly three = new THREE.Scene();
   private readonly controls: OrbitControls;
-  private readonly sun = new THREE.DirectionalLight(0xffffff, 2.6);
-  private readonly sky = new THREE.HemisphereLight(0xffffff, 0xb8c4cc, 1.5);
+  private readonly sun = new THREE.DirectionalLight(0xfff6ea, 2.0);
+  private readonly sky = new THREE.HemisphereLight(0xffffff, 0xa9b6be, 1.3);
+  /** Near by, so that flat faces get a gradient from it. */
+  private readonly lamp = new THREE.PointLight(0xe6f0ff, 1);
   private readonly ground: THREE.Mesh<THREE.PlaneGeometry, THREE.ShadowMaterial>;
   private grid: THREE.GridHelper | null = null;
   private styluses: Stylus[] = [];
@@ -44,16 +46,17 @@ export class World {
     this.theme = theme;
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true, powerPreference: "high-performance" });
     this.renderer.shadowMap.enabled = true;
-    this.renderer.shadowMap.type = THREE.PCFShadowMap;
+    this.renderer.shadowMap.type = THREE.VSMShadowMap; // the one that is soft at its edges
     this.renderer.toneMapping = THREE.NeutralToneMapping;
     this.sun.castShadow = true;
-    this.sun.shadow.mapSize.set(1024, 1024);
-    this.sun.shadow.radius = 5;
+    this.sun.shadow.mapSize.set(512, 512);
+    this.sun.shadow.radius = 7;
+    this.sun.shadow.blurSamples = 12;
     this.sun.shadow.normalBias = 0.002;
     this.sun.shadow.bias = -0.0005;
     this.ground = new THREE.Mesh(new THREE.PlaneGeometry(1, 1), new THREE.ShadowMaterial());
     this.ground.receiveShadow = true;
-    this.three.add(this.sun, this.sun.target, this.sky, this.ground);
+    this.three.add(this.sun, this.sun.target, this.sky, this.lamp, this.ground);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.addEventListener("change", () => this.invalidate());
     canvas.addEventListener("webglcontextrestored", () => this.invalidate());
@@ -102,20 +105,20 @@ export class World {
     this.theme = theme;
     for (const object of this.objects) object.applyTheme(theme);
     for (const stylus of this.styluses) stylus.applyTheme(theme);
-    this.ground.material.opacity = theme.dark ? 0.5 : 0.2;
-    this.sky.groundColor.set(theme.dark ? 0x39454d : 0xb8c4cc);
-    this.sky.intensity = theme.dark ? 1.1 : 1.5;
+    this.ground.material.opacity = theme.dark ? 0.4 : 0.13;
+    this.sky.groundColor.set(theme.dark ? 0x2f3a41 : 0xa9b6be);
+    this.sky.intensity = theme.dark ? 0.75 : 1.3;
     this.placeGround();
     this.invalidate();
   }
 
-  /** Everything in the picture, seen from the front, right and above. */
+  /** Everything in the picture with room to move, seen from the front, right and above. */
   fit(): void {
     if (this.scene === null) return;
     this.fitPending = false;
     const { center, radius } = this.bounds();
     const narrow = Math.min(1, this.camera.aspect);
-    const distance = (1.25 * radius) / Math.sin((FIELD_OF_VIEW * Math.PI) / 360) / narrow;
+    const distance = (1.6 * radius) / Math.sin((FIELD_OF_VIEW * Math.PI) / 360) / narrow;
     this.controls.target.copy(center);
     this.camera.position.copy(center).addScaledVector(VIEW_FROM, distance);
     this.camera.near = distance / 100;
@@ -164,6 +167,8 @@ export class World {
     const reach = 2.4 * radius;
     this.sun.target.position.copy(center);
     this.sun.position.copy(center).add(new THREE.Vector3(0.5, 1.5, 0.65).normalize().multiplyScalar(4 * radius));
+    this.lamp.position.copy(center).add(new THREE.Vector3(-1.1, 0.5, 1.6).multiplyScalar(radius));
+    this.lamp.intensity = 3.2 * (2 * radius) ** 2; // candela; it falls with the distance squared
     const shadow = this.sun.shadow.camera;
     shadow.left = shadow.bottom = -reach;
     shadow.right = shadow.top = reach;

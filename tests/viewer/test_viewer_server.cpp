@@ -138,7 +138,7 @@ TEST_CASE("what a browser still has is not sent again") {
   CHECK_THAT(again, !Contains("doctype"));
 }
 
-TEST_CASE("HEAD tells the length and sends no body; a connection serves several requests") {
+TEST_CASE("HEAD tells the length and sends no body, and a connection serves several requests") {
   Show show;
   WebPeer peer(show.server.port());
   for (int i = 0; i < 3; ++i) {

@@ -1,0 +1,130 @@
+// The viewer of a real irdm-server.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <cstring>
+
+#include "server/viewer/message.hpp"
+#include "tests/support/eventually.hpp"
+#include "tests/system/stage.hpp"
+#include "tests/system/trace.hpp"
+#include "tests/viewer/web_peer.hpp"
+
+using Catch::Matchers::Contains;
+using namespace irdm;
+using namespace irdm::test;
+
+namespace {
+
+const std::string kUrl = "listening on http://127.0.0.1:";
+
+std::uint16_t viewer_port(ChildProcess& server) {
+  return static_cast<std::uint16_t>(std::stoi(server.line_with(kUrl).substr(kUrl.size())));
+}
+
+WebPeer watch(std::uint16_t port, int receive_buffer = 0) {
+  WebPeer peer(port, receive_buffer);
+  peer.open();
+  peer.send_message(encode(viewer::ClientMessage(viewer::Hello{})));
+  return peer;
+}
+
+/// The next message of a type, whatever else comes before it.
+WebPeer::Message next(WebPeer& peer, int type) {
+  for (;;) {
+    auto message = peer.receive();
+    REQUIRE(message);
+    REQUIRE(message->opcode == 2);
+    if (message->payload.at(6) == type) return *message;
+  }
+}
+constexpr int kScene = 1;
+constexpr int kFrame = 2;
+constexpr int kHealth = 3;
+
+std::size_t nodes_of(const WebPeer::Message& scene) {
+  return static_cast<std::size_t>(viewer::decode_scene(scene.payload).objects.at(0).rest.rows());
+}
+
+}  // namespace
+
+TEST_CASE("viewer: put back over the WebSocket shows up in the trace and in health") {
+  const Stage stage;
+  stage.write("scene.toml", scene_text("[world]\ngravity = [0, -1, 0]\n"));
+  Server server = stage.start_server({"--record", stage.path("trace.h5").string()});
+  WebPeer peer = watch(viewer_port(server.process));
+  const std::size_t nodes = nodes_of(next(peer, kScene));
+  const auto height = [&] {
+    const auto frame = viewer::decode_frame(next(peer, kFrame).payload, {&nodes, 1});
+    return frame.objects.at(0).position.y();
+  };
+  REQUIRE(eventually([&] { return height() < -0.1; }));  // it falls
+  peer.send_message(encode(viewer::ClientMessage(viewer::Command{})));
+  CHECK(eventually([&] { return height() > -0.05; }));
+  CHECK(eventually([&] { return viewer::decode_health(next(peer, kHealth).payload).resets == 1; }));
+  server.process.signal(SIGTERM);
+  CHECK(server.process.wait() == 0);
+  const Trace trace = read_trace(stage.path("trace.h5"));
+  CHECK(std::count(trace.reset.begin(), trace.reset.end(), 1) == 1);
+  while (const auto message = peer.receive()) {
+    if (message->opcode == 8) CHECK(message->close_code() == 1001);
+  }
+}
+
+TEST_CASE("viewer: in lockstep, viewers change no bit of the run, and see its last step") {
+  const auto play = [](bool watched) {
+    const Stage stage;
+    Server server = stage.start_server({"--lockstep", "--record", stage.path("trace.h5").string()});
+    const std::uint16_t port = viewer_port(server.process);
+    std::vector<WebPeer> viewers;
+    if (watched) {
+      viewers.push_back(watch(port));
+      viewers.push_back(watch(port, 4096));  // never reads
+    }
+    ChildProcess bridge = stage.start_bridge(server);
+    REQUIRE(bridge.wait() == 0);
+    REQUIRE(server.process.wait() == 0);
+    const Trace trace = read_trace(stage.path("trace.h5"));
+    if (watched) {
+      const std::size_t nodes = nodes_of(next(viewers[0], kScene));
+      std::uint64_t newest = 0;
+      while (const auto message = viewers[0].receive()) {
+        if (message->opcode != 2 || message->payload.at(6) != kFrame) continue;
+        const auto frame = viewer::decode_frame(message->payload, {&nodes, 1});
+        newest = frame.force_step;
+        REQUIRE(newest < trace.rows());
+        if (!frame.styluses.at(0).present) continue;
+        CHECK(frame.styluses.at(0).tip == trace.vector("/stylus/0/tip", newest));
+      }
+      CHECK(newest == trace.rows() - 1);
+    }
+    return trace;
+  };
+  const Trace alone = play(false);
+  const Trace watched = play(true);
+  REQUIRE(alone.rows() == watched.rows());
+  for (const auto& [name, values] : alone.numbers) {
+    CAPTURE(name);
+    CHECK(std::memcmp(values.data(), watched.numbers.at(name).data(),
+                      values.size() * sizeof(double)) == 0);
+  }
+}
+
+TEST_CASE("viewer: it can be left out, by the scene and by --no-viewer") {
+  const Stage stage;
+  const bool by_option = GENERATE(true, false);
+  if (!by_option) stage.write("scene.toml", "[viewer]\nenabled = false\n" + scene_text());
+  Server server = stage.start_server(by_option ? std::vector<std::string>{"--no-viewer"}
+                                               : std::vector<std::string>{});
+  server.process.signal(SIGTERM);
+  CHECK(server.process.wait() == 0);
+  CHECK_THAT(server.process.out(), !Contains("http"));
+}
+
+TEST_CASE("viewer: an address that can be reached from elsewhere needs a token") {
+  const Stage stage;
+  stage.write("scene.toml", "[viewer]\naddress = \"0.0.0.0\"\n" + scene_text());
+  const FinishedProgram ended = run_to_end({IRDM_SERVER, stage.path("scene.toml").string()});
+  CHECK(ended.status == 1);
+  CHECK_THAT(ended.err, Contains("set viewer.token"));
+}

@@ -47,3 +47,25 @@ TEST_CASE("a reset that is asked for comes before the next step, once") {
     if (k == 10) CHECK(record.object[0].position.norm() < 0.1 * fallen.norm());
   }
 }
+
+TEST_CASE("the force thread tells how it fares while it runs, about once a second") {
+  SimulationConfig config;
+  config.objects.resize(1);
+  config.objects[0].model = std::make_shared<const Model>(synthetic_cube(2, 5, 10));
+  Simulation simulation(config);
+  NetworkServer network({});
+  RealTimeClock clock(0.002);
+  ForceThread force(simulation, network, clock, {}, 0);
+  force.request_reset();
+  force.start(RealTimeScheduling::kIgnore);
+  REQUIRE(eventually([&] { return force.health().receive(); }));
+  const ForceHealth first = force.health().front();
+  CHECK(first.steps > 0);
+  CHECK(first.resets == 1);
+  CHECK(first.step_time.count() == first.steps);
+  CHECK(first.wakeup_delay.count() == first.steps - 1);  // the first one waits for nothing
+  REQUIRE(eventually([&] { return force.health().receive(); }));
+  const ForceHealth& second = force.health().front();
+  CHECK(second.step_time.count() == second.steps - first.steps);  // of the last second alone
+  force.finish();
+}

@@ -140,6 +140,33 @@ TEST_CASE("a scene has up to four objects and four styluses") {
                     "server.styluses or leave it out"));
 }
 
+TEST_CASE("the viewer of a scene: defaults, keys, and what is no token") {
+  const ViewerConfig usual = scene(kObject).viewer;
+  CHECK(usual.enabled);
+  CHECK(usual.address == "127.0.0.1");
+  CHECK(usual.port == 0);
+  CHECK(usual.token.empty());
+  const ViewerConfig viewer = scene(
+                                  "[viewer]\nenabled = false\naddress = \"0.0.0.0\"\nport = 8080\n"
+                                  "token = \"0123456789abcdef\"\n" +
+                                  kObject)
+                                  .viewer;
+  CHECK_FALSE(viewer.enabled);
+  CHECK(viewer.address == "0.0.0.0");
+  CHECK(viewer.port == 8080);
+  CHECK(viewer.token == "0123456789abcdef");
+  const auto with_token = [](const std::string& token) {
+    return rejection("[viewer]\ntoken = \"" + token + "\"\n" + kObject);
+  };
+  CHECK(with_token(std::string(128, 'x')) == "no error");
+  for (const std::string& bad :
+       {std::string(15, 'x'), std::string(129, 'x'), std::string("sixteen or more x")}) {
+    CHECK_THAT(with_token(bad), StartsWith("s.toml:2: viewer.token is not 16 to 128 printable"));
+  }
+  CHECK_THAT(rejection("[viewer]\nport = 65536\n" + kObject), StartsWith("s.toml:2: viewer.port"));
+  CHECK_THAT(rejection("[viewer]\nsize = 1\n" + kObject), StartsWith("s.toml:2: viewer.size"));
+}
+
 TEST_CASE("an object's name must do for a group of the trace file") {
   for (const char* good : {"cube", "left lobe", "Würfel", "..", "a.b", "0"}) {
     CHECK(rejection(kObject + "name = \"" + good + "\"\n") == "no error");

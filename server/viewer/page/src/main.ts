@@ -95,6 +95,7 @@ const connection = new Connection(live.href, token, { message: take, state: show
 
 const exaggeration = element<HTMLInputElement>("exaggeration");
 const rigid = element<HTMLInputElement>("rigid");
+const follow = element<HTMLInputElement>("follow");
 const colours = [...document.querySelectorAll<HTMLInputElement>("input[name=colour]")];
 
 function applyLook(): void {
@@ -104,7 +105,7 @@ function applyLook(): void {
   element("legend").hidden = colouring === "none" || world === null;
   element("legend-title").textContent = colouring === "velocity" ? "Speed of the surface" : "Displacement";
   if (world === null) return;
-  world.look = { exaggeration: factor, colouring, rigid: rigid.checked };
+  world.look = { exaggeration: factor, colouring, rigid: rigid.checked, follow: follow.checked };
   world.applyLook();
 }
 
@@ -126,7 +127,7 @@ function togglePause(): void {
   askPlot();
 }
 
-for (const input of [exaggeration, rigid, ...colours]) input.addEventListener("input", applyLook);
+for (const input of [exaggeration, rigid, follow, ...colours]) input.addEventListener("input", applyLook);
 element("put-back").onclick = () => connection.putBack();
 element("fit").onclick = () => world?.fit();
 element("pause").onclick = togglePause;

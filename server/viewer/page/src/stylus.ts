@@ -78,7 +78,7 @@ export class Stylus {
     this.ghostMaterial.color.set(theme.ink);
     this.proxyMaterial.color.set(theme.accent);
     this.lineMaterial.color.set(theme.accent);
-    this.arrowMaterial.color.set(theme.axes[0]);
+    this.arrowMaterial.color.set(theme.force);
   }
 
   dispose(): void {

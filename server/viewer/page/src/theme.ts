@@ -8,6 +8,7 @@ export interface Theme {
   accent: string;
   object: string;
   wire: string;
+  force: string;
   axes: [string, string, string];
 }
 
@@ -25,6 +26,7 @@ export function currentTheme(): Theme {
     accent: colour("accent"),
     object: colour("object"),
     wire: colour("wire"),
+    force: colour("force"),
     axes: [colour("x"), colour("y"), colour("z")],
   };
 }

@@ -12,13 +12,15 @@ export interface Look {
   exaggeration: number;
   colouring: Colouring;
   rigid: boolean;
+  /** the camera goes along with objects that leave the middle of the picture */
+  follow: boolean;
 }
 
 /** The three-dimensional picture. It is drawn when something has changed, and not otherwise. */
 export class World {
   readonly camera = new THREE.PerspectiveCamera(FIELD_OF_VIEW, 1, 0.005, 50);
   objects: SoftObject[] = [];
-  look: Look = { exaggeration: 1, colouring: "none", rigid: false };
+  look: Look = { exaggeration: 1, colouring: "none", rigid: false, follow: true };
   /** value at the end of the colours' ramp [m or m/s] */
   colourScale = 0;
   onDraw: () => void = () => {};
@@ -26,10 +28,10 @@ export class World {
   private readonly renderer: THREE.WebGLRenderer;
   private readonly three = new THREE.Scene();
   private readonly controls: OrbitControls;
-  private readonly sun = new THREE.DirectionalLight(0xfff6ea, 2.0);
+  private readonly sun = new THREE.DirectionalLight(0xfff6ea, 2.3);
   private readonly sky = new THREE.HemisphereLight(0xffffff, 0xa9b6be, 1.3);
   /** Near by, so that flat faces get a gradient from it. */
-  private readonly lamp = new THREE.PointLight(0xe6f0ff, 1);
+  private readonly lamp = new THREE.PointLight(0xf4f8ff, 1);
   private readonly ground: THREE.Mesh<THREE.PlaneGeometry, THREE.ShadowMaterial>;
   private grid: THREE.GridHelper | null = null;
   private styluses: Stylus[] = [];
@@ -46,12 +48,11 @@ export class World {
     this.theme = theme;
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true, powerPreference: "high-performance" });
     this.renderer.shadowMap.enabled = true;
-    this.renderer.shadowMap.type = THREE.VSMShadowMap; // the one that is soft at its edges
+    this.renderer.shadowMap.type = THREE.PCFShadowMap;
     this.renderer.toneMapping = THREE.NeutralToneMapping;
     this.sun.castShadow = true;
     this.sun.shadow.mapSize.set(512, 512);
-    this.sun.shadow.radius = 7;
-    this.sun.shadow.blurSamples = 12;
+    this.sun.shadow.radius = 4;
     this.sun.shadow.normalBias = 0.002;
     this.sun.shadow.bias = -0.0005;
     this.ground = new THREE.Mesh(new THREE.PlaneGeometry(1, 1), new THREE.ShadowMaterial());
@@ -91,8 +92,29 @@ export class World {
     const largest = Math.max(...this.objects.map((object) => object.largest));
     this.colourScale = Math.max(largest, this.colourScale * 0.995);
     if (this.fitPending) this.fit();
+    else if (this.look.follow) this.goAlong(frame);
     this.invalidate();
   }
+
+  /** Moves camera, light and shadow, gently, when the objects' middle is further off than they are large. */
+  private goAlong(frame: Frame): void {
+    const middle = new THREE.Vector3();
+    for (const object of frame.objects) middle.add(new THREE.Vector3(...object.position));
+    middle.divideScalar(frame.objects.length);
+    const way = middle.sub(this.controls.target);
+    const excess = 1 - (0.6 * this.radius) / way.length();
+    if (!(excess > 0)) return;
+    way.multiplyScalar(Math.min(1, 0.12 * excess));
+    this.controls.target.add(way);
+    this.camera.position.add(way);
+    this.sun.position.add(way);
+    this.sun.target.position.add(way);
+    this.lamp.position.add(way);
+    this.sun.target.updateMatrixWorld();
+    if (this.scene?.floor === null) this.ground.position.add(way);
+    this.controls.update();
+  }
+  private radius = 0.1;
 
   applyLook(): void {
     for (const object of this.objects) object.showsRigid = this.look.rigid;
@@ -117,6 +139,7 @@ export class World {
     if (this.scene === null) return;
     this.fitPending = false;
     const { center, radius } = this.bounds();
+    this.radius = radius;
     const narrow = Math.min(1, this.camera.aspect);
     const distance = (1.6 * radius) / Math.sin((FIELD_OF_VIEW * Math.PI) / 360) / narrow;
     this.controls.target.copy(center);
@@ -168,7 +191,7 @@ export class World {
     this.sun.target.position.copy(center);
     this.sun.position.copy(center).add(new THREE.Vector3(0.5, 1.5, 0.65).normalize().multiplyScalar(4 * radius));
     this.lamp.position.copy(center).add(new THREE.Vector3(-1.1, 0.5, 1.6).multiplyScalar(radius));
-    this.lamp.intensity = 3.2 * (2 * radius) ** 2; // candela; it falls with the distance squared
+    this.lamp.intensity = 1.1 * (2 * radius) ** 2; // candela; it falls with the distance squared
     const shadow = this.sun.shadow.camera;
     shadow.left = shadow.bottom = -reach;
     shadow.right = shadow.top = reach;

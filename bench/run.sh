@@ -6,5 +6,8 @@ scripts/build.sh release
 echo "## Force step"
 build/release/bin/bench_force_step "${1:-3}"
 echo
+echo "## Contacts"
+build/release/bin/bench_contact_step
+echo
 echo "## Deformation"
 build/release/bin/bench_deformation

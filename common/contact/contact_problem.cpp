@@ -12,6 +12,9 @@ using DirectMatrix = ContactMatrix;
 using DirectVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3 * kMaxContacts, 1>;
 using Active = std::array<bool, kMaxContacts>;
 
+// What is added to the compliance of contacts that are held together, as a share of its mean.
+constexpr double kHeldRidge = 1e-9;
+
 // Displacement of a contact's point by all forces.
 Vector3 moved(const ContactProblem& problem, int a) noexcept {
   Vector3 sum = Vector3::Zero();
@@ -119,10 +122,9 @@ ContactSolution ContactSolver::solve(ContactProblem& problem, const SolverLimits
   } else {
     solution = iterate(problem, limits);
   }
-  if (!finite(problem)) {
-    give_up(problem);
-    return {solution.sweeps, 0.0, false};
-  }
+  if (solution.solved && finite(problem)) return solution;
+  give_up(problem);
+  solution.solved = false;
   return solution;
 }
 
@@ -161,49 +163,114 @@ bool ContactSolver::stick(ContactProblem& problem) noexcept {
   return false;
 }
 
-ContactSolution ContactSolver::iterate(ContactProblem& problem,
-                                       const SolverLimits& limits) noexcept {
-  const int m = problem.count();
-  auto u = elastic_displacement_.head(3 * m);
+void ContactSolver::start(const ContactProblem& problem) noexcept {
+  auto u = elastic_displacement_.head(3 * problem.count());
   u.setZero();
-  Vector3 push = Vector3::Zero();
-  Vector3 turn = Vector3::Zero();
-  for (int b = 0; b < m; ++b) {
+  push_.setZero();
+  turn_.setZero();
+  for (int b = 0; b < problem.count(); ++b) {
     const ContactUnknown& contact = problem.contact(b);
     if (contact.force.isZero(0.0)) continue;
     u.noalias() += problem.elastic_column(b) * contact.force;
-    push += contact.force;
-    turn += contact.arm.cross(contact.force);
+    push_ += contact.force;
+    turn_ += contact.arm.cross(contact.force);
   }
+}
+
+// Two tips may hold the same place: a little compliance keeps the block regular. The iteration goes
+// on to what the contacts ask for.
+void ContactSolver::factor_held(ContactProblem& problem) noexcept {
+  held_count_ = 0;
+  for (int a = 0; a < problem.count() && held_count_ < kMaxContacts; ++a) {
+    if (problem.contact(a).law == ContactLaw::kHeld) {
+      held_[static_cast<std::size_t>(held_count_++)] = a;
+    }
+  }
+  if (held_count_ == 0) return;
+  ContactMatrix W = ContactMatrix::Zero(3 * held_count_, 3 * held_count_);
+  for (int i = 0; i < held_count_; ++i) {
+    for (int j = 0; j < held_count_; ++j) {
+      W.block<3, 3>(3 * i, 3 * j) = problem.compliance(held_[static_cast<std::size_t>(i)],
+                                                       held_[static_cast<std::size_t>(j)]);
+    }
+  }
+  W.diagonal().array() += kHeldRidge * W.trace() / (3 * held_count_);
+  held_block_.compute(W);
+}
+
+Vector3 ContactSolver::displacement(const ContactProblem& problem, int a) const noexcept {
+  return elastic_displacement_.segment<3>(3 * a) + problem.rigid.translation * push_ -
+         problem.contact(a).arm.cross(problem.rigid.rotation * turn_);
+}
+
+void ContactSolver::change(ContactProblem& problem, int a, const Vector3& force) noexcept {
+  ContactUnknown& contact = problem.contact(a);
+  const Vector3 step = force - contact.force;
+  if (step.isZero(0.0)) return;
+  contact.force = force;
+  elastic_displacement_.head(3 * problem.count()).noalias() += problem.elastic_column(a) * step;
+  push_ += step;
+  turn_ += contact.arm.cross(step);
+}
+
+// Returns how far a contact was off [m].
+double ContactSolver::solve_held(ContactProblem& problem) noexcept {
+  DirectVector off(3 * held_count_);
+  double largest = 0.0;
+  for (int i = 0; i < held_count_; ++i) {
+    const int a = held_[static_cast<std::size_t>(i)];
+    problem.contact(a).mode = ContactMode::kSticking;
+    problem.contact(a).slip.setZero();
+    off.segment<3>(3 * i) = problem.contact(a).gap - displacement(problem, a);
+    largest = std::max(largest, off.segment<3>(3 * i).norm());
+  }
+  const DirectVector step = held_block_.solve(off);
+  for (int i = 0; i < held_count_; ++i) {
+    const int a = held_[static_cast<std::size_t>(i)];
+    change(problem, a, problem.contact(a).force + step.segment<3>(3 * i));
+  }
+  return largest;
+}
+
+double ContactSolver::solve_touching(ContactProblem& problem, int a) noexcept {
+  ContactUnknown& contact = problem.contact(a);
+  const Matrix3 W = problem.compliance(a, a);
+  const Vector3 own = contact.gap - displacement(problem, a) + W * contact.force;
+  const SingleContact found =
+      solve_single_contact(W, own, contact.law, contact.normal, contact.friction);
+  const double off = (W * (found.force - contact.force)).norm();
+  contact.mode = found.mode;
+  contact.slip = found.slip;
+  change(problem, a, found.force);
+  return off;
+}
+
+double ContactSolver::sweep(ContactProblem& problem) noexcept {
+  double largest = held_count_ > 0 ? solve_held(problem) : 0.0;
+  int held = 0;
+  for (int a = 0; a < problem.count(); ++a) {
+    ContactUnknown& contact = problem.contact(a);
+    if (contact.law == ContactLaw::kGiven) {
+      contact.mode = ContactMode::kSticking;
+    } else if (contact.law != ContactLaw::kHeld || held++ >= held_count_) {
+      largest = std::max(largest, solve_touching(problem, a));
+    }
+  }
+  return largest;
+}
+
+ContactSolution ContactSolver::iterate(ContactProblem& problem,
+                                       const SolverLimits& limits) noexcept {
+  start(problem);
+  factor_held(problem);
   ContactSolution solution;
   while (solution.sweeps < limits.max_sweeps) {
     ++solution.sweeps;
-    double change = 0.0;
-    for (int a = 0; a < m; ++a) {
-      ContactUnknown& contact = problem.contact(a);
-      if (contact.law == ContactLaw::kGiven) {
-        contact.mode = ContactMode::kSticking;
-        continue;
-      }
-      const Matrix3 W = problem.compliance(a, a);
-      const Vector3 displacement = u.segment<3>(3 * a) + problem.rigid.translation * push -
-                                   contact.arm.cross(problem.rigid.rotation * turn);
-      const Vector3 own = contact.gap - displacement + W * contact.force;
-      const SingleContact found =
-          solve_single_contact(W, own, contact.law, contact.normal, contact.friction);
-      const Vector3 step = found.force - contact.force;
-      contact.mode = found.mode;
-      contact.slip = found.slip;
-      if (step.isZero(0.0)) continue;
-      contact.force = found.force;
-      u.noalias() += problem.elastic_column(a) * step;
-      push += step;
-      turn += contact.arm.cross(step);
-      change = std::max(change, (W * step).norm());
-    }
-    solution.residual = change;
-    if (!(change > limits.tolerance)) break;
+    solution.residual = sweep(problem);
+    const double enough = solution.sweeps < limits.usual_sweeps ? limits.tolerance : limits.usual;
+    if (!(solution.residual > enough)) break;
   }
+  solution.solved = solution.residual <= limits.worst;
   return solution;
 }
 

@@ -102,18 +102,22 @@ class ContactProblem {
 struct ContactSolution {
   int sweeps = 0;         ///< of the iteration; 0: solved directly
   double residual = 0.0;  ///< largest violation of a contact's law [m]
-  bool finite = true;     ///< false: not solvable; all forces are zero, all contacts open
+  bool solved = true;     ///< false: no solution was found; all forces are zero, all contacts open
 };
 
 struct SolverLimits {
   int max_sweeps = 200;
-  double tolerance = 1e-12;  ///< the iteration ends below this residual [m]
+  double tolerance = 1e-12;  ///< the iteration ends below this residual [m] ...
+  int usual_sweeps = 200;    ///< ... or after so many sweeps ...
+  double usual = 1e-12;      ///< ... below this one [m]
+  double worst = 1e-3;       ///< a residual above this one after all sweeps is no solution [m]
 };
 
 /// Solves all contacts of a problem together. When sticking and being held suffices for all of at
 /// most kMaxContacts contacts (the strongest pull lets go first), that is the solution, found
-/// directly. Otherwise the laws are met by nonlinear block Gauss-Seidel: one contact after the
-/// other is solved exactly with the others' forces as they stand, from the forces given in.
+/// directly. Otherwise the laws are met by nonlinear block Gauss-Seidel: one touching contact after
+/// the other, and all that are held at a time, are solved exactly with the others' forces as they
+/// stand, from the forces given in.
 /// Bounded, real-time safe, no exceptions.
 class ContactSolver {
  public:
@@ -123,8 +127,21 @@ class ContactSolver {
  private:
   bool stick(ContactProblem& problem) noexcept;
   ContactSolution iterate(ContactProblem& problem, const SolverLimits& limits) noexcept;
+  void start(const ContactProblem& problem) noexcept;
+  void factor_held(ContactProblem& problem) noexcept;
+  double sweep(ContactProblem& problem) noexcept;
+  double solve_held(ContactProblem& problem) noexcept;
+  double solve_touching(ContactProblem& problem, int a) noexcept;
+  Vector3 displacement(const ContactProblem& problem, int a) const noexcept;
+  void change(ContactProblem& problem, int a, const Vector3& force) noexcept;
 
-  Eigen::VectorXd elastic_displacement_;  ///< (3 capacity) [m]
+  // Of the iteration under way: what all forces do.
+  Eigen::VectorXd elastic_displacement_;   ///< (3 capacity) [m]
+  Vector3 push_ = Vector3::Zero();         ///< sum of the forces [N]
+  Vector3 turn_ = Vector3::Zero();         ///< their torque [N m]
+  std::array<int, kMaxContacts> held_{};   ///< contacts that are held ...
+  int held_count_ = 0;                     ///< ... so many of them; more are solved one by one
+  Eigen::LDLT<ContactMatrix> held_block_;  ///< compliance between them
 };
 
 }  // namespace irdm

@@ -9,8 +9,6 @@ namespace {
 constexpr int kMaxMoves = 16;
 // Triangles along the way of a tip in one step that are looked at.
 constexpr std::size_t kMaxCandidates = 64;
-// Largest displacement gradient along the surface that turns a contact's normal.
-constexpr double kMaxGradient = 0.5;
 }  // namespace
 
 DeformedSurface::DeformedSurface(const RestSurface& rest)
@@ -30,33 +28,6 @@ const Vector3& DeformedSurface::node(int i) noexcept {
     known_in_[index] = step_;
   }
   return positions_[index];
-}
-
-// With t the tangents at rest, d the nodes' places about their mean and u their displacements
-// about theirs: the gradient G = (sum w u (t.d)^T) (sum w (t.d)(t.d)^T)^-1 fits u = G (t.d) best,
-// and the tangents become t + G.
-Vector3 DeformedSurface::smooth_normal(const ContactPatch& patch) noexcept {
-  const Vector3 at_rest = rest_.smooth_normal(patch);
-  if (patch.count <= 3) return at_rest;
-  Eigen::Matrix<double, 3, 2> tangents;
-  tangents.col(0) = at_rest.unitOrthogonal();
-  tangents.col(1) = at_rest.cross(tangents.col(0));
-  const Vector3 centre = mean(patch, [&](int i) { return rest_.node(i); });
-  const Vector3 shift = mean(patch, [&](int i) { return node(i); }) - centre;
-  Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
-  Eigen::Matrix<double, 3, 2> moved = Eigen::Matrix<double, 3, 2>::Zero();
-  for (std::size_t i = 0; i < static_cast<std::size_t>(patch.count); ++i) {
-    const Vector3& X = rest_.node(patch.nodes[i]);
-    const Eigen::RowVector2d along = (X - centre).transpose() * tangents;
-    const Vector3 u = node(patch.nodes[i]) - X - shift;
-    spread += patch.weights[i] * along.transpose() * along;
-    moved += patch.weights[i] * u * along;
-  }
-  if (!(spread.determinant() > 1e-6 * spread.trace() * spread.trace())) return at_rest;
-  Eigen::Matrix<double, 3, 2> gradient = moved * spread.inverse();
-  gradient *= std::min(1.0, kMaxGradient / gradient.norm());
-  const Eigen::Matrix<double, 3, 2> turned = tangents + gradient;
-  return turned.col(0).cross(turned.col(1)).normalized();
 }
 
 TriangleCorners DeformedSurface::corners(int triangle) noexcept {

@@ -44,13 +44,6 @@ class DeformedSurface {
   std::optional<SurfaceHit> first_crossing(const Vector3& from, const Vector3& to,
                                            const SurfaceHit& near) noexcept;
 
-  /// Outward unit normal of what a fingertip presses on. The rest surface's mean normal, turned as
-  /// the tangent plane that fits the patch's nodes turns with their displacements. Tilts beyond
-  /// about 27 degrees are cut: linear elasticity means nothing there. A point contact (a patch of
-  /// one triangle) keeps the normal at rest, since the dent under a point is the mesh's, not the
-  /// object's.
-  Vector3 smooth_normal(const ContactPatch& patch) noexcept;
-
   /// Outward unit normal of a deformed triangle.
   Vector3 normal(int triangle) noexcept;
 

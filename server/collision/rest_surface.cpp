@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "server/collision/straight_walk.hpp"
+
 namespace irdm {
 namespace {
 // Bounds the way of one step; a tip at 2 m/s passes far fewer triangles in 2 ms.
@@ -12,27 +14,6 @@ bool contains(const std::array<int, 3>& nodes, int node) noexcept {
   return std::find(nodes.begin(), nodes.end(), node) != nodes.end();
 }
 
-// How the weights of a point change as it moves along d in the triangle's plane [1/m].
-Barycentric weight_rates(const TriangleCorners& triangle, const Vector3& d) noexcept {
-  const Vector3 normal = area_normal(triangle);
-  const double scale = 1.0 / normal.squaredNorm();
-  Barycentric rates;
-  for (std::size_t i = 0; i < 3; ++i) {
-    rates[i] = scale * normal.cross(triangle[(i + 2) % 3] - triangle[(i + 1) % 3]).dot(d);
-  }
-  return rates;
-}
-
-// The same point on an edge, with the nodes of the triangle beyond it.
-SurfacePoint carried_over(const SurfacePoint& point, const std::array<int, 3>& nodes) noexcept {
-  SurfacePoint carried{nodes, {0.0, 0.0, 0.0}};
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) {
-      if (point.nodes[j] == nodes[i]) carried.weights[i] = point.weights[j];
-    }
-  }
-  return carried;
-}
 }  // namespace
 
 RestSurface::RestSurface(const ModelMesh& mesh) : tree_(mesh), topology_(mesh) {
@@ -105,11 +86,10 @@ SurfaceLocation RestSurface::locate(const SurfacePoint& point) const noexcept {
   return found;
 }
 
-// The neighbour over the edge that lies opposite to a corner.
-int RestSurface::across(int triangle, int corner) const noexcept {
+int RestSurface::across(int triangle, std::size_t corner) const noexcept {
   const std::array<int, 3>& nodes = topology_.corners(triangle);
-  const int a = nodes[static_cast<std::size_t>((corner + 1) % 3)];
-  const int b = nodes[static_cast<std::size_t>((corner + 2) % 3)];
+  const int a = nodes[(corner + 1) % 3];
+  const int b = nodes[(corner + 2) % 3];
   for (const int candidate : topology_.triangles_around(a)) {
     if (candidate != triangle && contains(topology_.corners(candidate), b)) return candidate;
   }
@@ -118,42 +98,11 @@ int RestSurface::across(int triangle, int corner) const noexcept {
 
 SurfaceLocation RestSurface::straight_on(const SurfaceLocation& from, const Vector3& direction,
                                          double length) const noexcept {
-  SurfaceLocation here = from;
-  TriangleCorners triangle = corners(here.triangle);
-  Vector3 normal = area_normal(triangle).normalized();
-  Vector3 d = direction - direction.dot(normal) * normal;
-  if (!(d.norm() > 1e-12 * direction.norm())) return here;
-  d.normalize();
-  for (int move = 0; move < kMaxMoves; ++move) {
-    const Barycentric rates = weight_rates(triangle, d);
-    std::size_t corner = 3;  // whose opposite edge is reached first
-    double way = length;
-    for (std::size_t i = 0; i < 3; ++i) {
-      if (!(rates[i] < 0)) continue;
-      const double until = std::max(0.0, -here.point.weights[i] / rates[i]);
-      if (until < way) {
-        way = until;
-        corner = i;
-      }
-    }
-    for (std::size_t i = 0; i < 3; ++i) here.point.weights[i] += way * rates[i];
-    length -= way;
-    if (corner == 3) break;
-    here.point.weights[corner] = 0.0;
-    const Vector3 edge = (triangle[(corner + 2) % 3] - triangle[(corner + 1) % 3]).normalized();
-    const Vector3 out = edge.cross(normal);
-    const double along_edge = d.dot(edge);
-    const double over_edge = d.dot(out);
-    const int next = across(here.triangle, static_cast<int>(corner));
-    here.point = carried_over(here.point, topology_.corners(next));
-    here.triangle = next;
-    triangle = corners(next);
-    normal = area_normal(triangle).normalized();
-    d = along_edge * edge + over_edge * edge.cross(normal);
+  StraightWalk walk(*this, from, direction);
+  for (int leg = 0; leg < kMaxMoves && length > 0.0 && walk.moves(); ++leg) {
+    length -= walk.leg(length);
   }
-  for (double& weight : here.point.weights) weight = std::max(0.0, weight);
-  here.position = at(triangle, here.point.weights);
-  return here;
+  return walk.here();
 }
 
 Vector3 RestSurface::smooth_normal(const SurfacePoint& point) const noexcept {
@@ -162,10 +111,6 @@ Vector3 RestSurface::smooth_normal(const SurfacePoint& point) const noexcept {
     sum += point.weights[i] * normals_[static_cast<std::size_t>(point.nodes[i])];
   }
   return sum.normalized();
-}
-
-Vector3 RestSurface::smooth_normal(const ContactPatch& patch) const noexcept {
-  return mean(patch, [&](int i) { return normals_[static_cast<std::size_t>(i)]; }).normalized();
 }
 
 }  // namespace irdm

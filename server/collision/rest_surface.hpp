@@ -5,7 +5,6 @@
 #include "server/collision/surface_topology.hpp"
 #include "server/collision/surface_tree.hpp"
 #include "server/collision/triangle.hpp"
-#include "server/contact/contact_patch.hpp"
 
 namespace irdm {
 
@@ -33,17 +32,18 @@ class RestSurface {
   /// nearer until none is: across edges and round corners, but not through the object.
   SurfaceLocation walk(int triangle, const Vector3& p) const noexcept;
 
-  /// Straight on along the surface from a point: in its triangle towards `direction` [m, B] (as far
-  /// as that lies in the triangle's plane), over edges as if they were unfolded, for `length` [m].
+  /// The end of a StraightWalk of a `length` [m].
   SurfaceLocation straight_on(const SurfaceLocation& from, const Vector3& direction,
                               double length) const noexcept;
   /// The triangle that a point belongs to, with its place.
   SurfaceLocation locate(const SurfacePoint& point) const noexcept;
 
+  /// The neighbour over the edge that lies opposite to a corner (0..2) of a triangle.
+  int across(int triangle, std::size_t corner) const noexcept;
+
   /// Outward unit normal that varies continuously over the surface: the nodes' normals (of the
   /// faces round them, weighted with their angles), interpolated.
   Vector3 smooth_normal(const SurfacePoint& point) const noexcept;
-  Vector3 smooth_normal(const ContactPatch& patch) const noexcept;
   int node_count() const noexcept { return static_cast<int>(positions_.size()); }
   /// Mean length of the triangles' edges [m].
   double mean_edge() const noexcept { return mean_edge_; }
@@ -51,7 +51,6 @@ class RestSurface {
   double mean_square_edge() const noexcept { return mean_square_edge_; }
 
  private:
-  int across(int triangle, int corner) const noexcept;
   SurfaceLocation on(int triangle, const Vector3& p) const noexcept;
 
   SurfaceTree tree_;

@@ -8,10 +8,10 @@
 namespace irdm {
 
 /// The pressure of a round fingertip on the surface: with s the distance from the middle over the
-/// radius, proportional to 1 - s^2, as under an elastic ball of small stiffness. The pressure is
-/// summed at points on rings round the middle, laid along the surface and round its edges; each
-/// passes its share to its triangle's corners. So the force spreads alike on any mesh whose edges
-/// are not longer than the radius, and moves smoothly with the contact. Radius 0: the point itself.
+/// radius, proportional to 1 - s^2, as under an elastic ball of small stiffness. It is summed at
+/// points on rings round the middle, laid along the surface and round its edges; each passes its
+/// share to its triangle's corners. So the force spreads alike on any mesh whose edges are not
+/// longer than the radius, and moves smoothly with the contact. Radius 0: the point itself.
 /// Real-time safe after construction; one thread.
 class PressureMask {
  public:
@@ -32,7 +32,8 @@ class PressureMask {
     double distance;      ///< along the surface [m]
     double weight;        ///< share of the force
   };
-  void add(int node, double weight, ContactPatch& patch) noexcept;
+  void add(const SurfacePoint& sample, double weight, ContactPatch& patch) noexcept;
+  void normalise(ContactPatch& patch) noexcept;
 
   const RestSurface& surface_;
   double radius_;

@@ -21,13 +21,15 @@ double fading(double value, double from, double to) noexcept {
 void GodObject::find(const Input& input, DeformedSurface& surface) noexcept {
   tip_moved_ = (input.tip - tip_).norm();
   tip_ = input.tip;
+  fresh_ = false;
   if (state_ == ContactState::kFree && !reach_for(input, surface)) touch(input.tip, surface);
   if (state_ == ContactState::kFree) {
     grabbed_before_ = input.grab;
     return;
   }
-  // The touched point goes on from where it is, so that taking hold makes no jump.
-  if (input.grab) {
+  // What is touched goes on from where it is, and only what pushes is taken hold of (hence not in the
+  // step in which it begins): so a grab makes no jump.
+  if (input.grab && !fresh_) {
     state_ = ContactState::kHeld;
     releasing_ = false;
   } else if (state_ == ContactState::kHeld) {
@@ -48,6 +50,8 @@ void GodObject::touch(const Vector3& tip, DeformedSurface& surface) noexcept {
     triangle_ = at.triangle;
     point_ = at.point;
     offset_.setZero();
+    fresh_ = true;
+    reached_ = false;
     slipping_ = false;
   }
   if (hit.signed_distance > 0) outside_ = true;
@@ -69,6 +73,7 @@ bool GodObject::reach_for(const Input& input, DeformedSurface& surface) noexcept
   point_.weights = {0.0, 0.0, 0.0};
   point_.weights[nearest] = 1.0;
   offset_ = input.tip - surface.node(hit.point.nodes[nearest]);
+  reached_ = true;
   slipping_ = false;
   return true;
 }
@@ -77,6 +82,8 @@ void GodObject::impose(ContactState state, const SurfacePoint& point) noexcept {
   state_ = state;
   point_ = point;
   offset_.setZero();
+  fresh_ = false;
+  reached_ = false;
   slipping_ = false;
   releasing_ = false;
 }
@@ -119,8 +126,12 @@ void GodObject::follow(const Vector3& tip, double share, const RestSurface& rest
 
 void GodObject::turn_to_touching() noexcept {
   state_ = ContactState::kTouching;
-  offset_.setZero();
   releasing_ = false;
+}
+
+void GodObject::pass_by() noexcept {
+  state_ = ContactState::kFree;
+  outside_ = false;
 }
 
 void GodObject::let_go(const Vector3& tip) noexcept {

@@ -41,15 +41,28 @@ class GodObject {
   /// another one and the nearer it is. Without this a tip could hook a soft edge and pull it along
   /// from beyond.
   void follow(const Vector3& tip, double share, const RestSurface& rest) noexcept;
+  /// Goes a way along the surface.
+  void slide(const Vector3& towards, double length, const RestSurface& rest) noexcept;
   /// After the step: a point that is given up is pushed on, so that it can be touched on.
   void turn_to_touching() noexcept;
   /// After the step: the contact let go, and the tip [m, B] is outside.
   void let_go(const Vector3& tip) noexcept;
 
+  /// In place of a contact that began: none, and the tip has to come out before it can touch.
+  void pass_by() noexcept;
+  /// How far the tip has moved since the step before [m].
+  double tip_moved() const noexcept { return tip_moved_; }
+  /// A touching contact's offset: from its point to where the tip feels the surface [m, B].
+  void set_inset(const Vector3& inset) noexcept { offset_ = inset; }
+
   ContactState state() const noexcept { return state_; }
   int triangle() const noexcept { return triangle_; }
   const SurfacePoint& point() const noexcept { return point_; }
   const Vector3& offset() const noexcept { return offset_; }
+  /// It began to touch in this step.
+  bool fresh() const noexcept { return fresh_; }
+  /// Held at an offset, by its reach.
+  bool reached() const noexcept { return reached_; }
   /// It slipped in the last step.
   bool slipping() const noexcept { return slipping_; }
   /// The button is up, but the point is not given up yet.
@@ -60,7 +73,6 @@ class GodObject {
  private:
   /// How far to go in one step of `length` that are wanted.
   double catch_up(double length, double share) const noexcept;
-  void slide(const Vector3& towards, double length, const RestSurface& rest) noexcept;
   void touch(const Vector3& tip, DeformedSurface& surface) noexcept;
   bool reach_for(const Input& input, DeformedSurface& surface) noexcept;
 
@@ -68,6 +80,8 @@ class GodObject {
   int triangle_ = 0;
   SurfacePoint point_;
   Vector3 offset_ = Vector3::Zero();
+  bool fresh_ = false;
+  bool reached_ = false;
   bool slipping_ = false;
   bool releasing_ = false;
   int release_steps_ = 0;

@@ -30,10 +30,16 @@ bool pushes(const ContactUnknown& contact) noexcept {
 }
 
 // In which a contact catches up with a tip that has passed an edge [s].
-constexpr double kEdgeTime = 0.05;
+constexpr double kEdgeTime = 0.06;
+
+// Rounds of finding where a contact begins, and when it is found [m].
+constexpr int kSettlingRounds = 8;
+constexpr double kSettled = 1e-6;
+// How deep below the surface a contact may begin, beyond the way of the tip in the step [m].
+constexpr double kDeepest = 2e-3;
 
 // The iteration goes on in the next step from where it was left, so a few sweeps are enough.
-constexpr SolverLimits kFloorLimits{8, 1e-10};
+constexpr SolverLimits kFloorLimits{40, 1e-10, 8, 1e-6, 1e-3};
 
 }  // namespace
 
@@ -66,6 +72,7 @@ SoftObject::SoftObject(const SimulationObject& object, const SimulationConfig& c
                   "use at most " + std::to_string(largest) + " m or a coarser mesh");
     }
     masks_.emplace_back(rest_, stylus.radius);
+    rounded_.emplace_back(rest_, stylus.radius);
   }
   if (config.floor && body_.moves()) {
     floor_ = std::make_unique<FloorContacts>(*config.floor, rest_, *engine_);
@@ -143,11 +150,39 @@ void SoftObject::collect(std::span<const StylusCommand> commands) noexcept {
       stylus.find({motion_.to_body(command.tip), grab, config_.styluses[s].reach}, surface_);
     }
     if (stylus.state() == ContactState::kFree) continue;
+    if (stylus.fresh() && !settle_down(s, motion_.to_body(command.tip))) {
+      stylus.pass_by();
+      continue;
+    }
     const auto a = static_cast<std::size_t>(contact_count_++);
-    contacts_[a] = {static_cast<int>(s), command.given.has_value(), Vector3::Zero()};
+    contacts_[a] = {static_cast<int>(s), command.given.has_value(), Vector3::Zero(),
+                    Vector3::Zero()};
     points_[a] = stylus.point();
     masks_[s].spread(points_[a], patches_[a]);
+    if (stylus.state() != ContactState::kTouching || command.given) continue;
+    const RoundedSurface::Place place = rounded_[s].at(points_[a]);
+    contacts_[a].normal = place.normal;
+    stylus.set_inset(place.position - mean(patches_[a], [&](int i) { return rest_.node(i); }));
   }
+}
+
+// A contact begins where the tip is straight below the surface that it feels: were it drawn aside
+// from the start, it would get energy from nowhere. False: it is deeper there than it can have come
+// in this step. Such a tip was inside all along, and there is no telling how it got there.
+bool SoftObject::settle_down(std::size_t s, const Vector3& tip) noexcept {
+  GodObject& stylus = styluses_[s];
+  double depth = 0.0;
+  for (int round = 0; round < kSettlingRounds; ++round) {
+    const RoundedSurface::Place place = rounded_[s].at(stylus.point());
+    const Vector3 moved = interpolate(
+        stylus.point(), [&](int i) -> Vector3 { return surface_.node(i) - rest_.node(i); });
+    const Vector3 gap = tip - place.position - moved;
+    depth = -gap.dot(place.normal);
+    const Vector3 aside = gap + depth * place.normal;
+    if (aside.norm() < kSettled) break;
+    stylus.slide(aside, aside.norm(), rest_);
+  }
+  return depth <= stylus.tip_moved() + kDeepest;
 }
 
 // Steps 1 and 3: where the contacts' points would be without force, and the elastic compliance
@@ -182,11 +217,13 @@ void SoftObject::pose_problem(std::span<const StylusCommand> commands) noexcept 
       continue;
     }
     unknown.law = stylus.state() == ContactState::kHeld ? ContactLaw::kHeld : ContactLaw::kTouching;
-    unknown.normal = surface_.smooth_normal(patches_[static_cast<std::size_t>(a)]);
+    unknown.normal = contact.normal;
     unknown.friction = object_.friction;
     // What slips goes on slipping until kinetic friction can hold it.
     if (stylus.slipping()) unknown.friction.static_ = unknown.friction.kinetic;
-    unknown.gap = motion_.to_body(commands[s].tip) - stylus.offset() - contact.arm;
+    // The tip pushes where it is, so that what it does is what the object gets.
+    unknown.arm = contact.arm + stylus.offset();
+    unknown.gap = motion_.to_body(commands[s].tip) - unknown.arm;
     const double stiffness = config_.styluses[s].coupling_stiffness;
     if (stiffness > 0) problem_.elastic(row_a, row_a).diagonal().array() += 1.0 / stiffness;
     if (stylus.releasing()) {
@@ -226,7 +263,7 @@ void SoftObject::solve(std::span<const StylusCommand> commands, ObjectRecord& re
       solver_.solve(problem_, floor_count_ > 0 ? kFloorLimits : SolverLimits{});
   record.residual = solution.residual;
   record.sweeps = solution.sweeps;
-  record.solved = solution.finite;
+  record.solved = solution.solved;
 }
 
 // The contacts of the step, in B; the proxies are turned to W by the caller.
@@ -280,7 +317,7 @@ void SoftObject::settle(std::span<const StylusCommand> commands) noexcept {
       if (solved.law == ContactLaw::kTouching && !std::isinf(solved.friction.kinetic)) {
         styluses_[s].follow(motion_.to_body(commands[s].tip), model_->dt / kEdgeTime, rest_);
       }
-      if (styluses_[s].releasing() && pushes(solved) && styluses_[s].offset().isZero(0.0)) {
+      if (styluses_[s].releasing() && pushes(solved) && !styluses_[s].reached()) {
         styluses_[s].turn_to_touching();
       }
     }

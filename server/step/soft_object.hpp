@@ -8,6 +8,7 @@
 #include "common/contact/contact_problem.hpp"
 #include "server/collision/deformed_surface.hpp"
 #include "server/contact/pressure_mask.hpp"
+#include "server/contact/rounded_surface.hpp"
 #include "server/engine/response_engine.hpp"
 #include "server/motion/rigid_body.hpp"
 #include "server/step/floor_contacts.hpp"
@@ -44,11 +45,13 @@ class SoftObject {
   struct Contact {
     int stylus = 0;
     bool given = false;
-    Vector3 arm = Vector3::Zero();  ///< r_a = X_a + h_a [m], B
+    Vector3 arm = Vector3::Zero();     ///< r_a = X_a + h_a [m], B
+    Vector3 normal = Vector3::Zero();  ///< of a touching one
   };
   void spin(ObjectRecord& record) noexcept;
   FreeMotion predict_free_motion() const noexcept;
   void collect(std::span<const StylusCommand> commands) noexcept;
+  bool settle_down(std::size_t s, const Vector3& tip) noexcept;
   void predict_contacts() noexcept;
   void pose_problem(std::span<const StylusCommand> commands) noexcept;
   void solve(std::span<const StylusCommand> commands, ObjectRecord& record) noexcept;
@@ -71,6 +74,7 @@ class SoftObject {
   RigidState state_;
   std::vector<GodObject> styluses_;
   std::vector<PressureMask> masks_;
+  std::vector<RoundedSurface> rounded_;   ///< as each stylus feels it
   std::unique_ptr<FloorContacts> floor_;  ///< null: no floor
 
   // Of the step under way.

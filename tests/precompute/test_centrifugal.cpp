@@ -52,7 +52,7 @@ TEST_CASE("the six loads add up to the centrifugal force of any spin") {
   CHECK(sum.norm() < 1e-12 * load.lpNorm<1>());
 }
 
-TEST_CASE("neither angular nor uniform acceleration moves an elastic mode; a spin does") {
+TEST_CASE("neither angular nor uniform acceleration moves an elastic mode, but a spin does") {
   const Centred box;
   const ElasticModes modes = elastic_modes(box.body.stiffness, box.nodes, box.body.mass);
   for (const Vector3& a : {Vector3(1, 0, 0), Vector3(0, 1, 0), Vector3(0.3, -2, 1)}) {

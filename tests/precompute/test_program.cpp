@@ -287,29 +287,31 @@ TEST_CASE("bad mesh: one line on stderr, status 1, no output") {
   refused(replaced(eight_nodes, "2 3 4 5", "5 6 7 8"), "2 pieces");
 }
 
-TEST_CASE("a surface in millimetres is filled; its edge length is in metres") {
+TEST_CASE("a surface in millimetres is filled, its edge length is in metres") {
   Run run;
-  // A tetrahedron of 120 mm, which has 4 nodes.
-  const std::string corner =
-      "v 0 0 0\nv 120 0 0\nv 0 120 0\nv 0 0 120\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+  // A cube of 120 mm, which has 8 nodes.
+  const std::string cube =
+      "v 0 0 0\nv 0 0 120\nv 0 120 0\nv 0 120 120\nv 120 0 0\nv 120 0 120\nv 120 120 0\n"
+      "v 120 120 120\nf 1 2 4\nf 1 4 3\nf 5 7 8\nf 5 8 6\nf 1 5 6\nf 1 6 2\nf 3 4 8\nf 3 8 7\n"
+      "f 1 3 7\nf 1 7 5\nf 2 6 8\nf 2 8 4\n";
   const auto config = [](const std::string& more) {
     return "[mesh]\nfile = \"s.obj\"\n" + more + "\n" + kMaterial;
   };
-  run.write("s.obj", corner);
+  run.write("s.obj", cube);
   run.write("c.toml", config("unit = \"mm\"\nedge_length = 0.04"));
   run.start("c.toml -o made/model.h5");
   CAPTURE(run.err);
   REQUIRE(run.status == 0);
   CHECK_THAT(run.out, Contains("bounding box                      0.12 x 0.12 x 0.12 m"));
   const Model model = read_model(run.model(), ResponseKind::kModal);
-  CHECK(model.body.mass == Approx(110 * 0.12 * 0.12 * 0.12 / 6.0));
+  CHECK(model.body.mass == Approx(110 * 0.12 * 0.12 * 0.12));
   CHECK(model.mesh.nodes.rows() > 20);
   std::filesystem::remove(run.model());
   run.write("c.toml", config("edge_length = 0.04"));  // the unit forgotten: of 120 m
-  run.check_refused("s.obj: mesh.edge_length is 0.0002");
+  run.check_refused("s.obj: mesh.edge_length is 0.000192");
   run.write("c.toml", config("unit = \"mm\"\nedge_length = 40"));
-  run.check_refused("s.obj: mesh.edge_length is 235.7");
-  run.write("s.obj", replaced(corner, "f 1 4 3\n", ""));
+  run.check_refused("s.obj: mesh.edge_length is 192.45");
+  run.write("s.obj", replaced(cube, "f 2 8 4\n", ""));
   run.check_refused("s.obj: the surface is open at 3 edges, for instance from (");
 }
 

@@ -165,7 +165,7 @@ TEST_CASE("many contacts together meet Coulomb's law, and no friction force give
       problem.contact(a).friction = {0.5, 0.5};
     }
     const ContactSolution solution = solve(problem);
-    REQUIRE(solution.finite);
+    REQUIRE(solution.solved);
     for (int a = 0; a < problem.count(); ++a) {
       const ContactUnknown& contact = problem.contact(a);
       INFO("seed " << seed << ", contact " << a << " of " << problem.count() << ", sweeps "
@@ -196,7 +196,7 @@ TEST_CASE("a problem that cannot be solved gives no force and says so") {
   ContactProblem problem = random_problem(2, 9);
   problem.contact(1).gap[1] = std::numeric_limits<double>::quiet_NaN();
   const ContactSolution solution = solve(problem);
-  CHECK_FALSE(solution.finite);
+  CHECK_FALSE(solution.solved);
   CHECK(problem.contact(0).force.norm() == 0.0);
   CHECK(problem.contact(1).force.norm() == 0.0);
 }
@@ -204,6 +204,6 @@ TEST_CASE("a problem that cannot be solved gives no force and says so") {
 TEST_CASE("no contacts, no forces") {
   ContactProblem problem = random_problem(0, 1);
   const ContactSolution solution = solve(problem);
-  CHECK(solution.finite);
+  CHECK(solution.solved);
   CHECK(solution.sweeps == 0);
 }

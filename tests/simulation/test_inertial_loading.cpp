@@ -296,8 +296,10 @@ TEST_CASE("inertial loading: momentum still changes by exactly the impulses") {
     Vector3 impulse = Vector3::Zero();
     Vector3 turn = Vector3::Zero();
     if (contact.state != ContactState::kFree) {
-      // The lever arm: where the point ends less what the force of this step moved it.
-      Vector3 arm = after.orientation.conjugate() * (contact.proxy - after.position);
+      // The lever arm: where the tip is felt, the point's end less what the force of this step
+      // moved it and the offset.
+      Vector3 arm =
+          after.orientation.conjugate() * (contact.proxy - after.position) + contact.offset;
       for (std::size_t i = 0; i < 3; ++i) {
         for (std::size_t j = 0; j < 3; ++j) {
           arm -= contact.point.weights[i] * contact.point.weights[j] *

@@ -217,7 +217,8 @@ TEST_CASE("gallery, slide: the contact slips along the top, with kinetic frictio
         0.04);
 }
 
-TEST_CASE("gallery, rest: the floor carries the cube that has dropped on it; pushed, it slides") {
+TEST_CASE(
+    "gallery, rest: the floor carries the cube that has dropped on it, and pushed it slides") {
   Played played("rest");
   const double weight = 9.81 * played.mass();
   double mean = 0.0;

@@ -1,0 +1,95 @@
+// How long a force step takes with contacts of all kinds, on the paper's cube (866 surface nodes,
+// all its modes): points and fingertips, held, sticking and slipping, one and two, and the floor.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <vector>
+
+#include "bench/statistics.hpp"
+#include "server/step/simulation.hpp"
+#include "tests/support/fem_cube.hpp"
+
+using namespace irdm;
+
+namespace {
+
+constexpr double kHalfEdge = 0.06;
+constexpr int kSettling = 500;
+constexpr int kMeasured = 2000;
+
+using Commands = std::function<std::vector<StylusCommand>(int k)>;
+
+SimulationConfig scene(double radius, int styluses, const Friction& friction) {
+  SimulationConfig config;
+  config.objects.resize(1);
+  config.objects[0].model = test::fem_cube({12});
+  config.objects[0].friction = friction;
+  config.objects[0].tether = {1000.0, 10.0};
+  config.objects[0].damping = {20.0, 20.0};
+  config.styluses.assign(static_cast<std::size_t>(styluses), {radius, 2000.0, 0.0});
+  return config;
+}
+
+StylusCommand at(const Vector3& tip, bool grab = false) {
+  return {true, grab ? kGrabButton : 0u, tip, std::nullopt};
+}
+
+void measure(const char* name, const SimulationConfig& config, const Commands& commands) {
+  Simulation simulation(config);
+  StepRecord record;
+  std::vector<double> times;
+  std::vector<double> sweeps;
+  int nodes_down = 0;
+  for (int k = 0; k < kSettling + kMeasured; ++k) {
+    const std::vector<StylusCommand> now = commands(k);
+    const double time = bench::seconds([&] { simulation.step(now, record); });
+    if (k < kSettling) continue;
+    times.push_back(1e6 * time);
+    sweeps.push_back(record.object[0].sweeps);
+    nodes_down = std::max(nodes_down, record.object[0].floor_count);
+  }
+  std::printf("| %s | %.0f, %.0f | %.0f | %d |\n", name, bench::percentile(times, 0.5),
+              bench::percentile(times, 0.99), bench::percentile(sweeps, 0.5), nodes_down);
+  std::fflush(stdout);
+}
+
+// Down on the top within 0.2 s, then to and fro.
+Vector3 press(int k, double amplitude) {
+  const double down = std::min(1.0, k / 100.0);
+  return {amplitude * std::sin(0.01 * k), kHalfEdge + 0.002 - 0.006 * down, 0.003};
+}
+
+}  // namespace
+
+int main() {
+  std::printf("force step with contacts, paper's cube, modal, dt = 2 ms\n\n");
+  std::printf("| contact | median, p99 [us] | sweeps, median | floor contacts, most |\n");
+  std::printf("|---|---|---|---|\n");
+  const Friction rough{1.0, 1.0};
+  const Friction smooth{0.2, 0.2};
+  measure("tip near the surface", scene(0.0, 1, rough), [](int) {
+    return std::vector<StylusCommand>{at({0.003, kHalfEdge + 0.004, 0.003})};
+  });
+  measure("point, held", scene(0.0, 1, rough),
+          [](int k) { return std::vector<StylusCommand>{at(press(k, 0.002), k > 60)}; });
+  measure("point, touching, slipping to and fro", scene(0.0, 1, smooth),
+          [](int k) { return std::vector<StylusCommand>{at(press(k, 0.02))}; });
+  measure("fingertip of 1.5 cm, sticking", scene(0.015, 1, rough),
+          [](int k) { return std::vector<StylusCommand>{at(press(k, 0.0))}; });
+  measure("fingertip of 1.5 cm, slipping to and fro", scene(0.015, 1, smooth),
+          [](int k) { return std::vector<StylusCommand>{at(press(k, 0.02))}; });
+  measure("two fingertips of 1.5 cm that pinch", scene(0.015, 2, rough), [](int k) {
+    const double depth = 0.004 * std::min(1.0, k / 100.0) - 0.001;
+    return std::vector<StylusCommand>{at({kHalfEdge - depth, 0.0, 0.0}),
+                                      at({depth - kHalfEdge, 0.0, 0.0})};
+  });
+  SimulationConfig resting = scene(0.0, 1, rough);
+  resting.gravity = Vector3(0, -9.81, 0);
+  resting.objects[0].tether = {};
+  resting.floor = FloorConfig{Vector3(0, 1, 0), -kHalfEdge, {0.5, 0.5}};
+  measure("resting on the floor", resting,
+          [](int) { return std::vector<StylusCommand>{StylusCommand{}}; });
+}

@@ -1,0 +1,70 @@
+#include "server/contact/rounded_surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "server/collision/straight_walk.hpp"
+
+namespace irdm {
+namespace {
+
+// Edges are rounded off at least over this many edges of the mesh.
+constexpr double kLeastEdges = 1.0;
+// The first ray is turned by this share of the angle between two, so that none runs along the edges
+// of a regular mesh.
+constexpr double kTurned = 0.3;
+// Bounds the legs of a ray.
+constexpr int kMaxLegs = 64;
+
+// The share of the weights 1 - s^2 within s of the middle, and their first moment.
+double share(double s) noexcept {
+  return s * s * (2.0 - s * s);
+}
+double moment(double s) noexcept {
+  return s * s * s * (4.0 / 3.0 - 0.8 * s * s);
+}
+
+}  // namespace
+
+RoundedSurface::RoundedSurface(const RestSurface& surface, double tip_radius)
+    : surface_(surface), radius_(std::max(tip_radius, kLeastEdges * surface.mean_edge())) {
+  for (std::size_t i = 0; i < rays_.size(); ++i) {
+    const double angle = 2.0 * std::numbers::pi * (static_cast<double>(i) + kTurned) / kRays;
+    rays_[i] = {std::cos(angle), std::sin(angle)};
+  }
+}
+
+RoundedSurface::Place RoundedSurface::at(const SurfacePoint& middle) const noexcept {
+  const SurfaceLocation centre = surface_.locate(middle);
+  const Vector3 normal = area_normal(surface_.corners(centre.triangle)).normalized();
+  const Vector3 x = normal.unitOrthogonal();
+  const Vector3 y = normal.cross(x);
+  Means means;
+  for (const Ray& ray : rays_) add_ray(centre, ray.cosine * x + ray.sine * y, ray, means);
+  return {means.position / kRays, means.along_x.cross(means.along_y).normalized()};
+}
+
+// Within a leg the place is start + (s - s0) radius heading, and what moves along x or y in the
+// middle moves along the same combination of heading and what is beside it: exact integrals over s.
+// As the middle moves, every point of the disc moves alike, so the mean of these directions is how
+// the place moves.
+void RoundedSurface::add_ray(const SurfaceLocation& centre, const Vector3& direction,
+                             const Ray& ray, Means& means) const noexcept {
+  StraightWalk walk(surface_, centre, direction);
+  double s = 0.0;
+  for (int leg = 0; leg < kMaxLegs && s < 1.0; ++leg) {
+    const double way = walk.leg((1.0 - s) * radius_) / radius_;
+    const double end = leg + 1 == kMaxLegs ? 1.0 : std::min(1.0, s + way);
+    const double weight = share(end) - share(s);
+    const Vector3& heading = walk.heading();
+    const Vector3 beside = walk.normal().cross(heading);
+    means.position += weight * (walk.start() - s * radius_ * heading) +
+                      (moment(end) - moment(s)) * radius_ * heading;
+    means.along_x += weight * (ray.cosine * heading - ray.sine * beside);
+    means.along_y += weight * (ray.sine * heading + ray.cosine * beside);
+    s = end;
+  }
+}
+
+}  // namespace irdm

@@ -1,0 +1,139 @@
+// What a fingertip presses on, and that the force under it is the object's, not the mesh's.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <iostream>
+#include <map>
+
+#include "tests/simulation/pressed_cube.hpp"
+#include "tests/support/static_cube.hpp"
+
+using namespace irdm;
+using namespace irdm::test;
+
+namespace {
+
+const Vector3 kUp(0, 1, 0);
+
+ContactPatch patch_at(const RestSurface& surface, double radius, double x, double z) {
+  PressureMask mask(surface, radius);
+  ContactPatch patch;
+  mask.spread(surface.closest({x, kHalfEdge, z}).point, patch);
+  return patch;
+}
+
+double largest_over_least(const std::vector<double>& values) {
+  return *std::max_element(values.begin(), values.end()) /
+         *std::min_element(values.begin(), values.end());
+}
+
+}  // namespace
+
+TEST_CASE("fingertip: the mask of a fingertip sums to one, is symmetric, and moves smoothly") {
+  const auto model = fem_cube({8});
+  const RestSurface surface(model->mesh);
+  PressureMask mask(surface, 0.015);
+  ContactPatch before, now;
+  double largest = 0.0;
+  for (int k = 0; k <= 400; ++k) {
+    const SurfaceLocation middle = surface.closest({-0.04 + 0.0002 * k, kHalfEdge, 0.011});
+    mask.spread(middle.point, now);
+    double sum = 0.0;
+    Vector3 centre = Vector3::Zero();
+    for (std::size_t i = 0; i < static_cast<std::size_t>(now.count); ++i) {
+      REQUIRE(now.weights[i] >= 0.0);
+      sum += now.weights[i];
+      centre += now.weights[i] * surface.node(now.nodes[i]);
+    }
+    REQUIRE(sum == Approx(1.0).epsilon(1e-12));
+    REQUIRE((centre - middle.position).norm() < 1e-3);
+    if (k > 0) {
+      std::map<int, double> change;
+      for (std::size_t i = 0; i < static_cast<std::size_t>(now.count); ++i)
+        change[now.nodes[i]] += now.weights[i];
+      for (std::size_t i = 0; i < static_cast<std::size_t>(before.count); ++i)
+        change[before.nodes[i]] -= before.weights[i];
+      for (const auto& [node, difference] : change)
+        largest = std::max(largest, std::abs(difference));
+    }
+    before = now;
+  }
+  CHECK(largest < 0.02);  // 0.2 mm of a fingertip of 15 mm
+}
+
+TEST_CASE("fingertip: the force spreads as wide as asked on any mesh that is fine enough") {
+  // The pressure 1 - s^2 has a mean square distance of a third of the radius squared.
+  for (const int cells : {8, 12, 20}) {
+    const ModelMesh mesh = StaticCube(cells, 0.3, 1).mesh();
+    const RestSurface surface(mesh);
+    double mean_square = 0.0;
+    int places = 0;
+    for (double x = -0.02; x <= 0.02; x += 0.0037) {
+      for (double z = -0.02; z <= 0.02; z += 0.0043) {
+        const ContactPatch patch = patch_at(surface, 0.02, x, z);
+        for (std::size_t i = 0; i < static_cast<std::size_t>(patch.count); ++i) {
+          mean_square += patch.weights[i] *
+                         (surface.node(patch.nodes[i]) - Vector3(x, kHalfEdge, z)).squaredNorm();
+        }
+        ++places;
+      }
+    }
+    INFO(cells << " cells");
+    CHECK(mean_square / places == Approx(0.02 * 0.02 / 3.0).epsilon(0.02));
+  }
+}
+
+TEST_CASE("fingertip: at rest the force is that of a static solve on the whole mesh") {
+  const double radius = GENERATE(0.0, 0.015);
+  FemCube cube;
+  cube.cells = 4;
+  cube.order = 2;
+  cube.poisson_ratio = 0.3;
+  SimulationConfig config = tethered(cube, radius, {0.5, 0.5});
+  config.styluses[0].coupling_stiffness = 0.0;
+  Simulation simulation(config);
+  StepRecord record;
+  Vector3 tip;
+  for (int k = 0; k < 4000; ++k) {
+    // Held as soon as it touches, so that it stays where it came down.
+    tip = press(0.002 * (k + 1), 0.01, 0.003, 0.004);
+    const StylusCommand command = at_tip(tip, true);
+    simulation.step({&command, 1}, record);
+  }
+  const ContactRecord& contact = record.object[0].contact[0];
+  REQUIRE(contact.state == ContactState::kHeld);
+  const RestSurface& surface = simulation.object().surface();
+  PressureMask mask(surface, radius);
+  ContactPatch patch;
+  mask.spread(contact.point, patch);
+  const StaticCube reference(4, 0.3, 2);
+  const Vector3 moved =
+      record.object[0].orientation.conjugate() * (tip - record.object[0].position) -
+      mean(patch, [&](int i) { return surface.node(i); });
+  const Vector3 expected = reference.compliance(patch).ldlt().solve(moved);
+  CHECK((contact.force - expected).norm() < 1e-3 * expected.norm());
+}
+
+TEST_CASE("fingertip: the force at an indentation does not depend on the mesh", "[slow]") {
+  // 1 cm with a tip of 1.5 cm; quadratic elements, since linear ones are themselves too stiff.
+  for (const Vector3& place : {Vector3(0.003, 0.0, 0.004), Vector3(0.02, 0.0, -0.01)}) {
+    std::vector<double> tip, point;
+    for (const int cells : {6, 8, 10}) {
+      const StaticCube cube(cells, 0.3, 2);
+      const ModelMesh mesh = cube.mesh();
+      const RestSurface surface(mesh);
+      const auto force = [&](double radius) {
+        return 0.01 /
+               kUp.dot(cube.compliance(patch_at(surface, radius, place.x(), place.z())) * kUp);
+      };
+      tip.push_back(force(0.015));
+      point.push_back(force(0.0));
+    }
+    std::cout << "at " << place.x() << ", " << place.z() << ": fingertip " << tip[0] << " "
+              << tip[1] << " " << tip[2] << " N, a factor of " << largest_over_least(tip)
+              << "; point " << point[0] << " " << point[1] << " " << point[2] << " N, "
+              << largest_over_least(point) << "\n";
+    CHECK(largest_over_least(tip) < 1.05);
+    CHECK(largest_over_least(point) > 1.05);
+  }
+}

@@ -32,21 +32,47 @@ ServerConfig read_server(TomlTable table, int styluses) {
   return config;
 }
 
-ViewerConfig read_viewer(TomlTable table) {
+std::string read_token(TomlTable& table, const std::string& key) {
   constexpr std::size_t kShortest = 16;
   constexpr std::size_t kLongest = 128;
+  const std::string token = table.text(key, "");
+  const bool printable = std::all_of(token.begin(), token.end(),
+                                     [](char letter) { return letter > 0x20 && letter < 0x7F; });
+  const std::size_t length = token.size();
+  if (!printable || (length > 0 && length < kShortest) || length > kLongest) {
+    table.fail(key, "is not 16 to 128 printable ASCII characters without blanks",
+               "give such a one, for instance from: openssl rand -hex 16");
+  }
+  return token;
+}
+
+void read_viewer_stylus(TomlTable table, double radius, ViewerConfig& config) {
+  SimulationStylus& stylus = config.stylus;
+  stylus.radius = table.number("radius", between(0.0, 1.0), radius);
+  stylus.coupling_stiffness =
+      table.number("coupling_stiffness", between(1.0, 1e5), stylus.coupling_stiffness);
+  stylus.reach = table.number("reach", between(0.0, 1.0), stylus.reach);
+  config.max_force = table.number("max_force", between(0.1, 100.0), config.max_force);
+  table.finish();
+}
+
+// Needs the styluses of the scene.
+ViewerConfig read_viewer(TomlTable table, const std::vector<SimulationStylus>& styluses) {
   ViewerConfig config;
   config.enabled = table.boolean("enabled", config.enabled);
   config.address = table.text("address", config.address);
   config.port = table.integer("port", 0, 65535, config.port);
-  config.token = table.text("token", config.token);
-  const bool printable = std::all_of(config.token.begin(), config.token.end(),
-                                     [](char letter) { return letter > 0x20 && letter < 0x7F; });
-  const std::size_t length = config.token.size();
-  if (!printable || (length > 0 && length < kShortest) || length > kLongest) {
-    table.fail("token", "is not 16 to 128 printable ASCII characters without blanks",
-               "give such a one, for instance from: openssl rand -hex 16");
+  config.token = read_token(table, "token");
+  config.onlooker_token = read_token(table, "onlooker_token");
+  if (!config.onlooker_token.empty() && config.token.empty()) {
+    table.fail("onlooker_token", "is set without a token", "set viewer.token too");
   }
+  if (!config.onlooker_token.empty() && config.onlooker_token == config.token) {
+    table.fail("onlooker_token", "is the token itself", "give another one");
+  }
+  if (table.has("recordings")) config.recordings = table.path("recordings");
+  config.mouse = table.boolean("mouse", config.mouse);
+  read_viewer_stylus(table.table("stylus"), styluses.front().radius, config);
   table.finish();
   return config;
 }
@@ -163,6 +189,7 @@ ObjectConfig read_object(TomlTable table) {
   config.damping = read_damping(table.table("damping"));
   config.tether = read_tether(table.table("tether"));
   config.inertial_loading = table.boolean("inertial_loading", config.inertial_loading);
+  config.switchable = table.boolean("switchable", config.switchable);
   table.finish();
   return config;
 }
@@ -172,7 +199,6 @@ ObjectConfig read_object(TomlTable table) {
 SceneConfig read_scene(TomlTable file) {
   SceneConfig scene;
   scene.world = read_world(file.table("world"));
-  scene.viewer = read_viewer(file.table("viewer"));
   scene.contact = read_contact(file.table("contact"));
   scene.floor = read_floor(file);
   for (TomlTable& stylus : file.tables("stylus")) {
@@ -189,6 +215,7 @@ SceneConfig read_scene(TomlTable file) {
   }
   scene.styluses.resize(static_cast<std::size_t>(scene.server.styluses),
                         {0.0, scene.contact.coupling_stiffness, 0.0});
+  scene.viewer = read_viewer(file.table("viewer"), scene.styluses);
   std::set<std::string> names;
   for (TomlTable& object : file.tables("object")) {
     scene.objects.push_back(read_object(object));

@@ -24,13 +24,20 @@ struct ObjectSurface {
   }
 };
 
+/// Where a stylus touches the object that it touches.
+struct StylusContact {
+  Vector3 place = Vector3::Zero();  ///< on the surface at rest [m], B; means nothing when free
+  bool slipping = false;
+};
+
 /// All deformed objects at the end of a step, and the styluses among them.
 struct SurfaceFrame {
   std::uint64_t force_step = 0;
   double time = 0.0;  ///< [s]
   std::vector<ObjectSurface> objects;
   std::vector<StylusRecord> styluses;
-  ForceTrail trail;  ///< up to this step
+  std::vector<StylusContact> contacts;  ///< of each of them, with the object that it touches
+  ForceTrail trail;                     ///< up to this step
 };
 
 /// A frame of the objects at rest, no stylus present.
@@ -61,7 +68,10 @@ class Deformation {
     std::unique_ptr<RestSurface> surface;
     std::unique_ptr<RecordedForces> forces;
     bool feels_spin;
+    double material_damping = 1.0;
   };
+  void follow_settings(const StepRecord& record);
+  StylusContact contact(std::size_t s) const;
   void advance(const StepRecord& record);
 
   std::vector<Follower> objects_;

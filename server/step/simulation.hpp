@@ -33,6 +33,10 @@ class Simulation {
   /// so.
   void reset() noexcept;
 
+  /// From the next step on. They must have passed check_settings(). Real-time safe.
+  void set(const Settings& settings) noexcept;
+  const Settings& settings() const noexcept { return settings_; }
+
   double dt() const noexcept { return dt_; }
   int object_count() const noexcept { return static_cast<int>(objects_.size()); }
   const SoftObject& object(int i = 0) const noexcept {
@@ -45,6 +49,8 @@ class Simulation {
                     std::span<const Quaternion> orientations, StepRecord& record) const noexcept;
 
   double dt_ = 0.0;
+  Settings settings_;
+  std::uint32_t settings_change_ = 0;
   std::uint64_t next_step_ = 0;
   std::uint64_t reset_step_ = 0;
   bool was_reset_ = false;  ///< since the last step

@@ -7,6 +7,7 @@
 #include "common/contact/contact_problem.hpp"
 #include "common/geometry.hpp"
 #include "common/model/model.hpp"
+#include "server/engine/response_engine.hpp"
 
 namespace irdm {
 
@@ -14,12 +15,16 @@ namespace irdm {
 struct RigidDamping {
   double linear = 0.0;   ///< velocity decays with this rate [1/s]; times dt at most 0.5
   double angular = 0.0;  ///< angular momentum decays with this rate [1/s]; times dt at most 0.5
+
+  bool operator==(const RigidDamping&) const = default;
 };
 
 /// A soft spring from the object to its pose at the start. 0: none.
 struct Tether {
   double stiffness = 0.0;          ///< [N/m]; times dt^2 at most the mass
   double angular_stiffness = 0.0;  ///< [N m/rad]; times dt^2 at most the least moment of inertia
+
+  bool operator==(const Tether&) const = default;
 };
 
 /// One object at the start.
@@ -34,6 +39,9 @@ struct SimulationObject {
   Tether tether;
   /// Centrifugal loading of the elastic part by the body's own spin. false: none, as in the paper.
   bool inertial_loading = false;
+  /// The same model with the other form of its response, so that the engine can be switched while
+  /// it runs; null: it cannot.
+  std::shared_ptr<const Model> other_model = nullptr;
 };
 
 /// A plane on which objects rest; the side that the normal points to is free.

@@ -34,6 +34,8 @@ class SoftObject {
   /// One step of dt. `commands`: one a stylus.
   void step(std::span<const StylusCommand> commands, ObjectRecord& record) noexcept;
   void reset() noexcept;
+  /// From the next step on.
+  void set(const Vector3& gravity, const ObjectSettings& settings) noexcept;
 
   const Model& model() const noexcept { return *model_; }
   const RigidState& state() const noexcept { return state_; }
@@ -69,6 +71,7 @@ class SoftObject {
   RestSurface rest_;
   DeformedSurface surface_;
   RigidBody body_;
+  double material_damping_ = 1.0;
   bool feels_spin_;
   RigidState start_;
   RigidState state_;

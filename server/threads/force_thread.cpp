@@ -19,14 +19,20 @@ StylusForce to_answer(const StepRecord& record, const StylusRecord& stylus,
 
 }  // namespace
 
-ForceThread::ForceThread(Simulation& simulation, NetworkServer& network, StepClock& clock,
-                         std::vector<StepSink*> sinks, std::uint64_t steps)
+ForceThread::ForceThread(Simulation& simulation, NetworkServer& network, RunControl& control,
+                         StepClock& clock, std::vector<StepSink*> sinks, std::uint64_t steps)
     : simulation_(simulation),
       network_(network),
+      control_(control),
       clock_(clock),
       sinks_(std::move(sinks)),
       steps_(steps),
       commands_(static_cast<std::size_t>(network.styluses())) {}
+
+void ForceThread::add_viewer_stylus(const ViewerStylus& stylus) {
+  viewer_stylus_ = stylus;
+  commands_.resize(static_cast<std::size_t>(network_.styluses()) + 1);
+}
 
 ForceThread::~ForceThread() {
   finish();
@@ -45,6 +51,10 @@ void ForceThread::finish() {
 
 void ForceThread::run() noexcept {
   while ((steps_ == 0 || report_.steps < steps_) && clock_.wait(report_.steps)) {
+    if (!control_.take_step()) {
+      stand_still();
+      continue;
+    }
     const std::int64_t begin = monotonic_ns();
     step();
     const std::int64_t end = monotonic_ns();
@@ -69,21 +79,51 @@ void ForceThread::watch_health(std::int64_t begin_ns, std::int64_t end_ns) noexc
   window_begin_ns_ = end_ns;
 }
 
-void ForceThread::step() noexcept {
-  for (std::size_t s = 0; s < commands_.size(); ++s) {
+// A hand feels nothing meanwhile.
+void ForceThread::stand_still() noexcept {
+  stood_still_ = true;
+  clock_.rest();
+  if (clock_.lockstep()) return;  // the bridges wait
+  const std::size_t bridges = static_cast<std::size_t>(network_.styluses());
+  for (std::size_t s = 0; s < bridges; ++s) {
+    StylusPort& port = network_.port(static_cast<int>(s));
+    port.in.receive();
+    if (!port.in.front().present) continue;
+    StylusRecord nothing;
+    nothing.proxy = port.in.front().sample.tip;
+    port.out.put(to_answer(record_, nothing, port.in.front().sample));
+  }
+  network_.forces_ready().signal();
+}
+
+void ForceThread::take_commands() noexcept {
+  const std::size_t bridges = static_cast<std::size_t>(network_.styluses());
+  for (std::size_t s = 0; s < bridges; ++s) {
     StylusPort& port = network_.port(static_cast<int>(s));
     port.in.receive();
     commands_[s] = to_command(port.in.front());
+    // Who feels nothing has to come from outside again; a step without it makes it so.
+    if (stood_still_ && !clock_.lockstep()) commands_[s].present = false;
   }
-  const bool put_back = reset_requested_.load(std::memory_order_relaxed) &&
-                        reset_requested_.exchange(false, std::memory_order_relaxed);
-  simulation_.step(commands_, record_, put_back);
+  if (!control_.paused()) stood_still_ = false;
+  if (!viewer_stylus_) return;
+  control_.stylus().receive();
+  commands_[bridges] =
+      viewer_stylus_->next(to_command(control_.stylus().front()), record_.stylus[bridges]);
+}
+
+void ForceThread::step() noexcept {
+  take_commands();
+  if (const Settings* settings = control_.take_settings()) simulation_.set(*settings);
+  simulation_.step(commands_, record_, control_.take_reset());
   if (record_.reset) ++report_.resets;
+  const std::size_t bridges = static_cast<std::size_t>(network_.styluses());
   for (std::size_t s = 0; s < commands_.size(); ++s) {
     if (!commands_[s].present) continue;
+    report_.peak_force = std::max(report_.peak_force, record_.stylus[s].force.norm());
+    if (s >= bridges) continue;
     StylusPort& port = network_.port(static_cast<int>(s));
     port.out.put(to_answer(record_, record_.stylus[s], port.in.front().sample));
-    report_.peak_force = std::max(report_.peak_force, record_.stylus[s].force.norm());
   }
   network_.forces_ready().signal();
   for (int i = 0; i < record_.object_count; ++i) {

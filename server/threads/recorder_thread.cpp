@@ -1,16 +1,25 @@
 #include "server/threads/recorder_thread.hpp"
 
 #include <exception>
+#include <mutex>
+
+#include "common/hdf5/library_lock.hpp"
 
 namespace irdm {
 namespace {
-constexpr std::size_t kQueueCapacity = 4096;  // 4 s at 1 kHz
 constexpr std::size_t kBatch = 512;
 constexpr int kPeriodMs = 50;
 }  // namespace
 
-RecorderThread::RecorderThread(const std::filesystem::path& path, const TraceHeader& header)
-    : writer_(path, header), sink_(kQueueCapacity) {
+RecorderThread::RecorderThread(const std::filesystem::path& path, const TraceHeader& header,
+                               StepSink& sink, From from)
+    : writer_([&] {
+        const std::lock_guard lock(hdf5::library_mutex());
+        return TraceWriter(path, header);
+      }()),
+      sink_(sink),
+      lost_before_(sink.lost()),
+      begun_(from == From::kAny) {
   batch_.reserve(kBatch);
 }
 
@@ -34,9 +43,11 @@ void RecorderThread::run() {
   try {
     while (!(stopped = stop_.wait(kPeriodMs))) {
       drain();
+      const std::lock_guard lock(hdf5::library_mutex());
       writer_.flush();
     }
     drain();
+    const std::lock_guard lock(hdf5::library_mutex());
     writer_.close();
   } catch (const std::exception& error) {
     error_ = error.what();
@@ -58,7 +69,11 @@ void RecorderThread::drain() {
   StepRecord record;
   do {
     batch_.clear();
-    while (batch_.size() < kBatch && sink_.take(record)) batch_.push_back(record);
+    while (batch_.size() < kBatch && sink_.take(record)) {
+      begun_ = begun_ || record.reset;
+      if (begun_) batch_.push_back(record);
+    }
+    const std::lock_guard lock(hdf5::library_mutex());
     writer_.append(batch_);
     rows_.fetch_add(batch_.size(), std::memory_order_relaxed);
   } while (batch_.size() == kBatch);

@@ -45,6 +45,11 @@ bool LockstepClock::room() const noexcept {
                      [](const StepSink* sink) { return sink->has_room(); });
 }
 
+// The step that wait() has let through would come at once again.
+void LockstepClock::rest() noexcept {
+  sleep_until(monotonic_ns() + kRoomPauseNs);
+}
+
 bool LockstepClock::wait(std::uint64_t step) noexcept {
   while (!stopped() && !room()) sleep_until(monotonic_ns() + kRoomPauseNs);
   while (!stopped()) {

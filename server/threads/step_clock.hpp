@@ -17,6 +17,10 @@ class StepClock {
   virtual ~StepClock() = default;
   /// Returns when step k may run; false when there is to be no further step. Force thread.
   virtual bool wait(std::uint64_t step) noexcept = 0;
+  /// In place of a step: returns after a moment. Force thread.
+  virtual void rest() noexcept {}
+  /// Whether time is simulated.
+  virtual bool lockstep() const noexcept { return false; }
   /// How late the last wait() ended [ns]; -1: no such thing. Force thread.
   virtual std::int64_t last_delay() const noexcept { return -1; }
   /// Steps that were left out so far because an earlier one was late. Force thread, or after the
@@ -57,6 +61,8 @@ class LockstepClock final : public StepClock {
   /// The force thread's side of `network` and of the sinks; they must outlive the clock.
   LockstepClock(NetworkServer& network, std::vector<StepSink*> sinks);
   bool wait(std::uint64_t step) noexcept override;
+  void rest() noexcept override;
+  bool lockstep() const noexcept override { return true; }
 
  private:
   enum class Samples { kComplete, kAwaited, kEnded };

@@ -27,7 +27,7 @@ using Response = http::response<http::span_body<const char>>;
 
 constexpr char kLivePath[] = "/live";
 constexpr std::size_t kHeaderLimit = 8192;
-constexpr std::size_t kMessageLimit = 256;
+constexpr std::size_t kMessageLimit = 512;
 constexpr std::size_t kDrainLimit = 1 << 20;
 constexpr std::chrono::seconds kDrainTime(1);
 constexpr int kSendBuffer = 256 * 1024;  // what the kernel may hold for a viewer that is slow
@@ -61,8 +61,10 @@ class BeastConnection final : public Connection,
   void start() override { read_request(); }
   bool upgraded() const override { return socket_.has_value(); }
   bool watching() const override { return watching_ && !closing_; }
+  bool looks_on() const override { return looks_on_; }
   void offer_frame(SharedBytes frame) override { offer(frame_, std::move(frame)); }
   void offer_health(SharedBytes health) override { offer(health_, std::move(health)); }
+  void offer_state(SharedBytes state) override { offer(state_, std::move(state)); }
   void check_time(std::int64_t now_ns) override;
   void finish() override;
   void abort() override;
@@ -79,7 +81,11 @@ class BeastConnection final : public Connection,
   void open_socket(const Request& request);
   void read_message();
   void take_message();
-  void greet(const Hello& hello);
+  void take(const Hello& hello);
+  void take(const Command& command);
+  void take(const SettingsRequest& request);
+  void take(const StylusRequest& request);
+  void expect_hello() const;
   void offer(SharedBytes& slot, SharedBytes bytes);
   void write_next();
   void close(websocket::close_code code, const char* reason);
@@ -97,9 +103,11 @@ class BeastConnection final : public Connection,
   std::int64_t opened_ns_ = 0;
   bool accepted_ = false;
   bool watching_ = false;
+  bool looks_on_ = false;
   bool closing_ = false;
   bool finishing_ = false;
-  SharedBytes scene_;  ///< these three wait to be sent
+  SharedBytes scene_;  ///< these four wait to be sent
+  SharedBytes state_;
   SharedBytes frame_;
   SharedBytes health_;
   SharedBytes sending_;
@@ -258,13 +266,7 @@ void BeastConnection::take_message() {
     const ClientMessage message =
         decode_client({static_cast<const std::uint8_t*>(data.data()), data.size()});
     buffer_.clear();
-    if (const auto* hello = std::get_if<Hello>(&message)) {
-      greet(*hello);
-    } else if (!watching_) {
-      throw MessageError("it comes before Hello");
-    } else {
-      hub_.put_back();
-    }
+    std::visit([this](const auto& content) { take(content); }, message);
   } catch (const MessageError& error) {
     spdlog::warn("viewer: a message is wrong: {}; connection closed", error.what());
     close(websocket::close_code::protocol_error, "wrong message");
@@ -272,18 +274,42 @@ void BeastConnection::take_message() {
   if (!closing_) read_message();
 }
 
-void BeastConnection::greet(const Hello& hello) {
+void BeastConnection::take(const Hello& hello) {
   if (watching_) throw MessageError("it is a second Hello");
   const std::string& token = hub_.settings().token;
-  if (!token.empty() && !same_token(hello.token, token)) {
+  const std::string& onlooker_token = hub_.settings().onlooker_token;
+  const bool full = token.empty() || same_token(hello.token, token);
+  const bool onlooker = !onlooker_token.empty() && same_token(hello.token, onlooker_token);
+  if (!full && !onlooker) {
     spdlog::warn("viewer: wrong token; connection closed");
     return close(websocket::close_code::policy_error, "wrong token");
   }
   watching_ = true;
+  looks_on_ = !full || hello.looks_on;
   scene_ = hub_.scene();
+  state_ = hub_.newest_state(*this);
   frame_ = hub_.newest_frame();
   health_ = hub_.newest_health();
   write_next();
+}
+
+void BeastConnection::expect_hello() const {
+  if (!watching_) throw MessageError("it comes before Hello");
+}
+
+void BeastConnection::take(const Command& command) {
+  expect_hello();
+  if (!looks_on_) hub_.carry_out(command);
+}
+
+void BeastConnection::take(const SettingsRequest& request) {
+  expect_hello();
+  if (!looks_on_) hub_.carry_out(request);
+}
+
+void BeastConnection::take(const StylusRequest& request) {
+  expect_hello();
+  if (!looks_on_) hub_.carry_out(request, *this);
 }
 
 void BeastConnection::offer(SharedBytes& slot, SharedBytes bytes) {
@@ -293,7 +319,7 @@ void BeastConnection::offer(SharedBytes& slot, SharedBytes bytes) {
 
 void BeastConnection::write_next() {
   if (sending_ || closing_) return;
-  for (SharedBytes* waiting : {&scene_, &health_, &frame_}) {
+  for (SharedBytes* waiting : {&scene_, &state_, &health_, &frame_}) {
     if (!*waiting) continue;
     sending_ = std::exchange(*waiting, nullptr);
     socket_->async_write(boost::asio::buffer(*sending_),

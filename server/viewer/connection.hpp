@@ -11,6 +11,8 @@ namespace irdm::viewer {
 /// Bytes that several viewers are sent.
 using SharedBytes = std::shared_ptr<const Bytes>;
 
+class Connection;
+
 /// What a connection needs of the server that it belongs to. Viewer's thread.
 class Hub {
  public:
@@ -21,7 +23,11 @@ class Hub {
   virtual SharedBytes scene() = 0;
   virtual SharedBytes newest_frame() = 0;
   virtual SharedBytes newest_health() = 0;
-  virtual void put_back() = 0;
+  virtual SharedBytes newest_state(const Connection& viewer) = 0;
+  /// What a viewer asks for that may ask.
+  virtual void carry_out(const Command& command) = 0;
+  virtual void carry_out(const SettingsRequest& request) = 0;
+  virtual void carry_out(const StylusRequest& request, const Connection& viewer) = 0;
 };
 
 /// One connection from accept to close: HTTP requests, and perhaps a WebSocket in the end. It keeps
@@ -34,9 +40,12 @@ class Connection {
   virtual bool upgraded() const = 0;
   /// Its Hello was right.
   virtual bool watching() const = 0;
+  /// It may not ask for anything.
+  virtual bool looks_on() const = 0;
   /// Newest wins: takes the place of the one that still waits.
   virtual void offer_frame(SharedBytes frame) = 0;
   virtual void offer_health(SharedBytes health) = 0;
+  virtual void offer_state(SharedBytes state) = 0;
   /// Applies the time limit for Hello.
   virtual void check_time(std::int64_t now_ns) = 0;
   /// Sends what waits and says goodbye.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <list>
 #include <sstream>
 #include <thread>
 #include <vector>
@@ -13,24 +14,34 @@
 #include "common/error.hpp"
 #include "common/realtime/clock.hpp"
 #include "server/viewer/connection.hpp"
+#include "server/viewer/stylus_holder.hpp"
 
 namespace irdm::viewer {
 
 using boost::asio::ip::tcp;
 using boost::system::error_code;
 
+namespace {
+constexpr std::int64_t kNanosecondsPerMillisecond = 1'000'000;
+constexpr int kTicks = 5;  // of the timer between two messages of health
+}  // namespace
+
 class ViewerServer::Impl final : public Hub {
  public:
-  Impl(ViewerSettings settings, ViewerFeed feed)
+  Impl(ViewerSettings settings, ViewedRun& run)
       : settings_(std::move(settings)),
-        feed_(std::move(feed)),
+        run_(run),
+        sources_(run.sources()),
         acceptor_(io_),
-        surface_descriptor_(io_),
-        timer_(io_) {
+        timer_(io_),
+        stylus_(run, settings_.stylus_timeout_ms * kNanosecondsPerMillisecond) {
     spdlog::default_logger();  // made before any thread logs, as in the network server
     listen();
-    surface_descriptor_.assign(::dup(feed_.surface_ready.descriptor()));
-    scene_ = std::make_shared<const Bytes>(encode(feed_.scene));
+    for (const SurfaceSource& source : sources_) {
+      descriptors_.emplace_back(io_, ::dup(source.ready.descriptor()));
+    }
+    scene_ = std::make_shared<const Bytes>(encode(run_.scene()));
+    state_ = common_state();
   }
   ~Impl() override { stop(); }
 
@@ -43,7 +54,10 @@ class ViewerServer::Impl final : public Hub {
   SharedBytes scene() override { return scene_; }
   SharedBytes newest_frame() override;
   SharedBytes newest_health() override;
-  void put_back() override { feed_.put_back(); }
+  SharedBytes newest_state(const Connection& viewer) override;
+  void carry_out(const Command& command) override;
+  void carry_out(const SettingsRequest& request) override;
+  void carry_out(const StylusRequest& request, const Connection& viewer) override;
 
   std::uint16_t port_ = 0;
   std::atomic<std::uint32_t> viewers_{0};
@@ -53,20 +67,30 @@ class ViewerServer::Impl final : public Hub {
   void run() noexcept;
   void accept();
   void admit(tcp::socket socket);
-  void await_surface();
+  template <typename Use>
+  void for_each_watching(const Use& use);
+  void await_surface(std::size_t source);
   void await_tick();
+  void spread_state();
+  void spread_new_state();
+  State common_state();
   void tidy();
   void shut_down();
   void await_end(std::int64_t deadline_ns);
 
   ViewerSettings settings_;
-  ViewerFeed feed_;
+  ViewedRun& run_;
+  std::vector<SurfaceSource> sources_;
   boost::asio::io_context io_{1};
   tcp::acceptor acceptor_;
-  boost::asio::posix::stream_descriptor surface_descriptor_;
+  std::list<boost::asio::posix::stream_descriptor> descriptors_;  ///< of the sources
   boost::asio::steady_timer timer_;  ///< for the ticks, and at last for the end
   SharedBytes scene_;
   SharedBytes frame_;  ///< of the newest surface; null: not encoded yet
+  std::size_t frame_source_ = 0;
+  StylusHolder stylus_;
+  State state_;  ///< that all were told last
+  int ticks_ = 0;
   /// They keep themselves alive; what is gone, is over.
   std::vector<std::weak_ptr<Connection>> connections_;
   bool accepting_ = false;
@@ -104,7 +128,7 @@ std::string ViewerServer::Impl::url() const {
 
 void ViewerServer::Impl::start() {
   accept();
-  await_surface();
+  for (std::size_t source = 0; source < sources_.size(); ++source) await_surface(source);
   await_tick();
   thread_ = std::thread([this] { run(); });
 }
@@ -170,10 +194,12 @@ bool ViewerServer::Impl::has_room() const {
 }
 
 SharedBytes ViewerServer::Impl::newest_frame() {
-  if (feed_.surfaces.receive()) frame_ = nullptr;
+  const std::size_t shown = run_.shown_source();
+  if (sources_[shown].surfaces.receive() || shown != frame_source_) frame_ = nullptr;
+  frame_source_ = shown;
   if (!frame_) {
     auto bytes = std::make_shared<Bytes>();
-    encode(feed_.surfaces.front(), *bytes);
+    encode(sources_[shown].surfaces.front(), *bytes);
     frame_ = std::move(bytes);
   }
   return frame_;
@@ -181,36 +207,87 @@ SharedBytes ViewerServer::Impl::newest_frame() {
 
 SharedBytes ViewerServer::Impl::newest_health() {
   tidy();
-  Health health = feed_.health();
+  Health health = run_.health();
   health.viewers = viewers_.load(std::memory_order_relaxed);
   return std::make_shared<const Bytes>(encode(health));
 }
 
-void ViewerServer::Impl::await_surface() {
-  surface_descriptor_.async_wait(boost::asio::posix::stream_descriptor::wait_read,
-                                 [this](error_code error) {
-                                   if (error) return;
-                                   feed_.surface_ready.consume();
-                                   for (const auto& weak : connections_) {
-                                     const auto connection = weak.lock();
-                                     if (connection && connection->watching())
-                                       connection->offer_frame(newest_frame());
-                                   }
-                                   if (!stopping_) await_surface();
-                                 });
+SharedBytes ViewerServer::Impl::newest_state(const Connection& viewer) {
+  State state = state_;
+  state.looks_on = viewer.looks_on();
+  state.holds_stylus = stylus_.held_by(&viewer);
+  return std::make_shared<const Bytes>(encode(state));
+}
+
+void ViewerServer::Impl::carry_out(const Command& command) {
+  run_.carry_out(command);
+  spread_state();
+}
+
+void ViewerServer::Impl::carry_out(const SettingsRequest& request) {
+  run_.carry_out(request);
+  spread_state();
+}
+
+void ViewerServer::Impl::carry_out(const StylusRequest& request, const Connection& viewer) {
+  if (!run_.scene().viewer_stylus) return;
+  if (stylus_.take(request, &viewer, monotonic_ns())) spread_state();
+}
+
+template <typename Use>
+void ViewerServer::Impl::for_each_watching(const Use& use) {
+  for (const auto& weak : connections_) {
+    const auto connection = weak.lock();
+    if (connection && connection->watching()) use(*connection);
+  }
+}
+
+State ViewerServer::Impl::common_state() {
+  State state = run_.state();
+  state.stylus_free = run_.scene().viewer_stylus && stylus_.free();
+  return state;
+}
+
+void ViewerServer::Impl::spread_new_state() {
+  if (common_state() != state_) spread_state();
+}
+
+void ViewerServer::Impl::spread_state() {
+  state_ = common_state();
+  for_each_watching([this](Connection& viewer) { viewer.offer_state(newest_state(viewer)); });
+}
+
+void ViewerServer::Impl::await_surface(std::size_t source) {
+  const auto descriptor = std::next(descriptors_.begin(), static_cast<std::ptrdiff_t>(source));
+  descriptor->async_wait(
+      boost::asio::posix::stream_descriptor::wait_read, [this, source](error_code error) {
+        if (error) return;
+        sources_[source].ready.consume();
+        if (source == run_.shown_source()) {
+          for_each_watching([this](Connection& viewer) { viewer.offer_frame(newest_frame()); });
+        }
+        if (!stopping_) await_surface(source);
+      });
 }
 
 void ViewerServer::Impl::await_tick() {
-  timer_.expires_after(std::chrono::milliseconds(settings_.health_period_ms));
+  timer_.expires_after(std::chrono::milliseconds(settings_.health_period_ms) / kTicks);
   timer_.async_wait([this](error_code error) {
     if (error || stopping_) return;
-    const SharedBytes health = newest_health();
+    const std::int64_t now_ns = monotonic_ns();
     for (const auto& weak : connections_) {
-      const auto connection = weak.lock();
-      if (!connection) continue;
-      connection->check_time(monotonic_ns());
-      if (connection->watching()) connection->offer_health(health);
+      if (const auto connection = weak.lock()) connection->check_time(now_ns);
     }
+    stylus_.expire(now_ns, [this](const void* holder) {
+      bool there = false;
+      for_each_watching([&](const Connection& viewer) { there = there || &viewer == holder; });
+      return there;
+    });
+    if (++ticks_ % kTicks == 0) {
+      const SharedBytes health = newest_health();
+      for_each_watching([&](Connection& viewer) { viewer.offer_health(health); });
+    }
+    spread_new_state();
     if (!accepting_) accept();
     await_tick();
   });
@@ -221,7 +298,7 @@ void ViewerServer::Impl::shut_down() {
   stopping_ = true;
   error_code ignored;
   acceptor_.close(ignored);
-  surface_descriptor_.close(ignored);
+  for (auto& descriptor : descriptors_) descriptor.close(ignored);
   const SharedBytes last = newest_frame();
   for (const auto& weak : connections_) {
     const auto connection = weak.lock();
@@ -247,8 +324,8 @@ void ViewerServer::Impl::await_end(std::int64_t deadline_ns) {
   timer_.async_wait([this, deadline_ns](error_code) { await_end(deadline_ns); });
 }
 
-ViewerServer::ViewerServer(ViewerSettings settings, ViewerFeed feed)
-    : impl_(std::make_unique<Impl>(std::move(settings), std::move(feed))) {}
+ViewerServer::ViewerServer(ViewerSettings settings, ViewedRun& run)
+    : impl_(std::make_unique<Impl>(std::move(settings), run)) {}
 ViewerServer::~ViewerServer() = default;
 
 std::string ViewerServer::url() const {

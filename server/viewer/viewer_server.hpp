@@ -1,14 +1,11 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <string>
 
-#include "common/realtime/mailbox.hpp"
-#include "common/realtime/wakeup.hpp"
-#include "server/viewer/message.hpp"
 #include "server/viewer/page_files.hpp"
+#include "server/viewer/viewed_run.hpp"
 
 namespace irdm::viewer {
 
@@ -16,6 +13,7 @@ struct ViewerSettings {
   std::string address = "127.0.0.1";  ///< numeric IPv4 or IPv6 address of this machine
   std::uint16_t port = 0;             ///< 0: any free one
   std::string token = {};             ///< needed off the loopback address
+  std::string onlooker_token = {};    ///< for viewers that may only look on
   PageFiles page = {};
   std::size_t max_viewers = 16;
   std::size_t max_connections = 64;
@@ -23,24 +21,16 @@ struct ViewerSettings {
   int idle_timeout_ms = 20'000;     ///< without a sign of life from a viewer
   int request_timeout_ms = 10'000;  ///< for an HTTP request, and to take its answer
   int health_period_ms = 500;
-};
-
-/// What there is to see, and what a viewer can ask for. All of it is used by the viewer's thread.
-struct ViewerFeed {
-  Scene scene;
-  Mailbox<SurfaceFrame>& surfaces;  ///< this thread is its reader
-  Wakeup& surface_ready;            ///< signalled whenever there is a new one
-  std::function<Health()> health;   ///< all but the number of viewers
-  std::function<void()> put_back;   ///< must not wait
+  int stylus_timeout_ms = 250;  ///< in which the viewer that holds the stylus has to say so again
 };
 
 /// Serves the page over HTTP and the live view over WebSocket (docs/viewer-protocol.md), on a
-/// thread of its own under normal scheduling. Reads a mailbox, and waits for nobody.
+/// thread of its own under normal scheduling. Waits for nobody.
 class ViewerServer {
  public:
-  /// Binds and listens. Throws Error when it cannot, or when a token is needed and not there. What
-  /// the feed refers to must outlive the server.
-  ViewerServer(ViewerSettings settings, ViewerFeed feed);
+  /// Binds and listens. Throws Error when it cannot, or when a token is needed and not there.
+  /// @param run must outlive the server
+  ViewerServer(ViewerSettings settings, ViewedRun& run);
   ViewerServer(const ViewerServer&) = delete;
   ViewerServer& operator=(const ViewerServer&) = delete;
   ~ViewerServer();  ///< stops

@@ -20,6 +20,11 @@ inline viewer::Scene example_scene() {
   viewer::SceneObject second{"tet", Points::Zero(4, 3), Triangles(4, 3), 0.5F, 1e5F};
   second.rest.bottomRows(3).setIdentity();
   second.triangles << 0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3;
+  for (int i = 0; i < first.rest.rows(); ++i) {
+    first.compliance.push_back(0.001F * static_cast<float>(i));
+  }
+  scene.viewer_stylus = true;
+  scene.max_force = 3.3F;
   scene.objects = {first, second};
   return scene;
 }
@@ -55,6 +60,7 @@ inline SurfaceFrame example_frame(const viewer::Scene& scene, double size, unsig
     stylus.tip = vector();
     stylus.proxy = vector();
     frame.styluses.push_back(stylus);
+    frame.contacts.push_back({vector().cast<float>().cast<double>(), s == 0});
   }
   for (const auto& object : scene.objects) {
     ObjectSurface surface;
@@ -66,6 +72,26 @@ inline SurfaceFrame example_frame(const viewer::Scene& scene, double size, unsig
     frame.objects.push_back(surface);
   }
   return frame;
+}
+
+/// A state of that scene.
+inline viewer::State example_state() {
+  viewer::State state;
+  state.stylus_free = true;
+  state.paused = true;
+  state.playback = true;
+  state.can_record = true;
+  state.settings_changes = 3;
+  state.length = 12.5;
+  state.speed = 0.5;
+  state.shown = 1;
+  state.recordings = {{0, "run-1.h5"}, {1, "l\xC3\xA4ufe.h5"}};
+  state.notice = "a notice for a person";
+  state.settings.gravity = Vector3(0, -9.81, 0);
+  state.settings.object[0] = {{0.6, 0.5}, {0.1, 0.2}, {3.0, 0.01}, 2.0, EngineKind::kModal, true};
+  state.settings.object[1] = {{0.3, 0.3}, {0, 0}, {0, 0}, 1.0, EngineKind::kDense, false};
+  state.choices = {{true, false, true}, {false, true, false}};
+  return state;
 }
 
 }  // namespace irdm::test

@@ -32,6 +32,19 @@ Bytes frame_bytes(const SurfaceFrame& frame) {
   return bytes;
 }
 
+SettingsRequest example_settings() {
+  SettingsRequest request;
+  request.objects = 1;
+  request.settings.gravity = Vector3(0, -1, 0);
+  request.settings.object[0] = {{1.0, 0.5}, {2.0, 4.0}, {8.0, 0.25}, 0.5, EngineKind::kDense, true};
+  return request;
+}
+
+const char* const kSettingsHex =
+    "0000000000000000 000000000000f0bf 0000000000000000 | 000000000000f03f 000000000000e03f"
+    "0000000000000040 0000000000001040 0000000000002040 000000000000d03f 000000000000e03f"
+    "01 01 00 000000000000000000000000000000000000000000";
+
 Scene one_point_scene() {
   Scene scene;
   scene.dt = 0.002;
@@ -39,6 +52,7 @@ Scene one_point_scene() {
   SceneObject object{"ab", Points(1, 3), Triangles(1, 3), 0.5F, 2000.0F};
   object.rest << 0.5, -1.0, 2.0;
   object.triangles << 0, 0, 0;
+  object.compliance = {0.25F};
   scene.objects = {object};
   return scene;
 }
@@ -56,6 +70,7 @@ SurfaceFrame one_point_frame(const Vector3& displacement) {
   stylus.proxy = Vector3(0, 0.5, 0);
   stylus.force = Vector3(0, 2, -0.5);
   frame.styluses = {stylus};
+  frame.contacts = {{Vector3(0.25, 0, 1), true}};
   StepRecord record;
   record.force_step = 2;
   record.stylus[0] = stylus;
@@ -106,7 +121,7 @@ TEST_CASE("a scene's bytes are those of the document") {
                  "0000000000000000 0000000000000000 0000000000000000 | 0000000000000000"
                  "0000003f 0000fa44 0000803e 00000000 |"
                  "01000000 01000000 02000000 0000003f 0000fa44 00000000 61620000"
-                 "0000003f 000080bf 00000040 | 00000000 00000000 00000000"));
+                 "0000003f 000080bf 00000040 | 00000000 00000000 00000000 | 0000803e"));
 }
 
 TEST_CASE("a frame's bytes are those of the document") {
@@ -115,7 +130,8 @@ TEST_CASE("a frame's bytes are those of the document") {
         from_hex("49525657 0100 0200 | 0100 0100 0100 0000 0200000000000000 000000000000e03f |"
                  "01 01 0000 01000000 000000000000f03f 0000000000000040 000000000000f0bf"
                  "0000000000000000 000000000000e03f 0000000000000000"
-                 "00000000 00000040 000000bf 00000000 | 00000000 00000040 000000bf |"
+                 "00000000 00000040 000000bf 0000803e 00000000 0000803f 01 00000000000000 |"
+                 "00000000 00000040 000000bf |"
                  "000000000000f03f 0000000000000000 0000000000000000"
                  "0000803f 00000000 00000000 00000000 02 000000 ccbc8c2b"
                  "0000 0000 0000 0000"));
@@ -123,8 +139,8 @@ TEST_CASE("a frame's bytes are those of the document") {
 
 TEST_CASE("displacements beyond 32.8 cm take four bytes, in units of 0.01 mm") {
   const Bytes bytes = frame_bytes(one_point_frame(Vector3(1.0, -2.0, 0.0)));
-  REQUIRE(bytes.size() == 32 + 72 + 12 + 48 + 12);
-  CHECK(Bytes(bytes.begin() + 156, bytes.end()) ==
+  REQUIRE(bytes.size() == 32 + 88 + 12 + 48 + 12);
+  CHECK(Bytes(bytes.begin() + 172, bytes.end()) ==
         from_hex("04 000000 abc52737 | a0860100 c0f2fcff 00000000"));
 }
 
@@ -143,32 +159,79 @@ TEST_CASE("health's bytes are those of the document") {
   health.forces = 9;
   health.forces_replaced = 10;
   health.protocol_errors = 11;
+  health.links = {{true, {1.0F, 2.0F, 4.0F}, {0.5F, 1.0F, 2.0F}}, {}};
   const Bytes bytes = encode(health);
-  CHECK(bytes == from_hex("49525657 0100 0300 0100000000000000 0000803f 00000040 00008040"
-                          "0000c07f 0000c07f 0000c07f 0200000000000000 0300000000000000"
-                          "0400000000000000 0500000000000000 0000003f 06000000"
-                          "0700000000000000 0800000000000000 0900000000000000"
-                          "0a00000000000000 0b00000000000000"));
+  CHECK(bytes ==
+        from_hex("49525657 0100 0300 0100000000000000 0000803f 00000040 00008040"
+                 "0000c07f 0000c07f 0000c07f 0200000000000000 0300000000000000"
+                 "0400000000000000 0500000000000000 0000003f 06000000"
+                 "0700000000000000 0800000000000000 0900000000000000"
+                 "0a00000000000000 0b00000000000000 0200 000000000000"
+                 "01000000 0000803f 00000040 00008040 0000003f 0000803f 00000040 00000000"
+                 "00000000 0000c07f 0000c07f 0000c07f 0000c07f 0000c07f 0000c07f 00000000"));
   CHECK(encode(decode_health(bytes)) == bytes);
 }
 
+TEST_CASE("state's bytes are those of the document") {
+  State state;
+  state.looks_on = true;
+  state.playing = true;
+  state.settings_changes = 2;
+  state.length = 2.0;
+  state.speed = 0.5;
+  state.shown = 1;
+  state.recordings = {{1, "a.h5"}};
+  state.notice = "hm";
+  state.settings = example_settings().settings;
+  state.choices = {{false, false, false}};
+  const std::string zeros(2 * 60, '0');
+  CHECK(encode(state) ==
+        from_hex("49525657 0100 0400 41000000 02000000 0000000000000040 000000000000e03f"
+                 "0100 0100 0200 0000" +
+                 std::string(kSettingsHex) + "0100 0400 612e6835" + zeros + "686d 0000"));
+  CHECK(decode_state(encode(state), 1) == state);
+  const State all = example_state();
+  CHECK(decode_state(encode(all), 2) == all);
+}
+
 TEST_CASE("a viewer's messages are those of the document") {
-  CHECK(encode(ClientMessage(Hello{"key"})) == from_hex("49525657 0100 1000 0300 6b6579"));
-  CHECK(encode(ClientMessage(Command{})) == from_hex("49525657 0100 1100 0100 0000"));
-  CHECK(std::get<Hello>(decode_client(encode(ClientMessage(Hello{"key"})))).token == "key");
-  CHECK(std::holds_alternative<Command>(decode_client(encode(ClientMessage(Command{})))));
+  const auto same = [](const ClientMessage& message, const std::string& hex) {
+    CHECK(encode(message) == from_hex(hex));
+    CHECK(encode(decode_client(from_hex(hex))) == from_hex(hex));
+  };
+  same(Hello{"key"}, "49525657 0100 1000 0300 0000 6b6579");
+  same(Hello{"key", true}, "49525657 0100 1000 0300 0100 6b6579");
+  same(Command{}, "49525657 0100 1100 0100 0000 00000000 0000000000000000");
+  same(Command{CommandKind::kSeek, 7, 0.5},
+       "49525657 0100 1100 0b00 0700 00000000 000000000000e03f");
+  same(StylusRequest{true, 1, Vector3(1, 0, -1)},
+       "49525657 0100 1200 01 000000 01000000 000000000000f03f 0000000000000000 000000000000f0bf");
+  same(example_settings(), std::string("49525657 0100 1300 0100 000000000000") + kSettingsHex);
 }
 
 TEST_CASE("a viewer's message that breaks the rules is refused") {
-  const char* spoilt = GENERATE("", "49", "49525658 0100 1100 0100 0000",  // magic
-                                "49525657 0200 1100 0100 0000",            // version
-                                "49525657 0100 0200 0100 0000",            // direction
-                                "49525657 0100 1200 0100 0000",            // type
-                                "49525657 0100 1100 0200 0000",            // command
-                                "49525657 0100 1100 0100",                 // too short
-                                "49525657 0100 1100 0100 0000 00",         // too long
-                                "49525657 0100 1000 0400 6b6579",          // token cut
-                                "49525657 0100 1000 8100");                // token's length
+  const char* spoilt =
+      GENERATE("", "49", "49525658 0100 1100 0100 0000 00000000 0000000000000000",  // magic
+               "49525657 0200 1100 0100 0000 00000000 0000000000000000",            // version
+               "49525657 0100 0200 0100 0000 00000000 0000000000000000",            // direction
+               "49525657 0100 1400 0100 0000 00000000 0000000000000000",            // type
+               "49525657 0100 1100 0000 0000 00000000 0000000000000000",            // command
+               "49525657 0100 1100 0d00 0000 00000000 0000000000000000",            // command
+               "49525657 0100 1100 0400 0000 00000000 0000000000000000",     // no step at all
+               "49525657 0100 1100 0b00 0000 00000000 000000000000f0bf",     // before the start
+               "49525657 0100 1100 0c00 0000 00000000 0000000000000000",     // speed
+               "49525657 0100 1100 0c00 0000 00000000 000000000000f87f",     // NaN
+               "49525657 0100 1100 0100 0000 00000000 00000000000000",       // too short
+               "49525657 0100 1100 0100 0000 00000000 0000000000000000 00",  // too long
+               "49525657 0100 1000 0400 0000 6b6579",                        // token cut
+               "49525657 0100 1000 0000 0200",                               // what else
+               "49525657 0100 1000 8100 0000",                               // token's length
+               "49525657 0100 1200 02 000000 00000000 000000000000f03f 000000000000f03f "
+               "000000000000f03f",  // present
+               "49525657 0100 1200 01 000000 00000000 000000000000f87f 000000000000f03f "
+               "000000000000f03f",                     // NaN
+               "49525657 0100 1300 0500 000000000000"  // objects
+      );
   CHECK_THROWS_AS(decode_client(from_hex(spoilt)), MessageError);
 }
 
@@ -221,6 +284,11 @@ TEST_CASE("whatever the bytes are, decoding ends in an answer or in MessageError
                  [](const Bytes& bytes) { decode_client(bytes); });
   check_survives(encode(ClientMessage(Command{})),
                  [](const Bytes& bytes) { decode_client(bytes); });
+  check_survives(encode(ClientMessage(StylusRequest{})),
+                 [](const Bytes& bytes) { decode_client(bytes); });
+  check_survives(encode(ClientMessage(example_settings())),
+                 [](const Bytes& bytes) { decode_client(bytes); });
+  check_survives(encode(example_state()), [](const Bytes& bytes) { decode_state(bytes, 2); });
 }
 
 TEST_CASE("a trail of forces begins anew after a gap") {

@@ -38,23 +38,50 @@ PageFiles example_page() {
   return PageFiles::read(folder.path());
 }
 
-/// A server that shows the example scene.
+/// Shows the example scene and counts what it is asked for.
+struct ExampleRun final : ViewedRun {
+  const Scene& scene() const override { return scene_; }
+  std::vector<SurfaceSource> sources() override {
+    return {{surfaces, ready}, {other_surfaces, other_ready}};
+  }
+  std::size_t shown_source() const override { return shown; }
+  Health health() override { return {.steps = 77}; }
+  State state() override {
+    State state = example_state();
+    state.notice = shown == 0 ? "the first one" : "the other one";
+    return state;
+  }
+  void carry_out(const Command& command) override {
+    if (command.kind == CommandKind::kPutBack) ++put_backs;
+    if (command.kind == CommandKind::kShowRecording) shown = 1;
+  }
+  void carry_out(const SettingsRequest&) override { ++settings; }
+  void carry_out(const StylusRequest& request) override {
+    (request.present ? presses : releases)++;
+  }
+
+  Scene scene_ = example_scene();
+  Mailbox<SurfaceFrame> surfaces{example_frame(scene_, 0.001)};
+  Mailbox<SurfaceFrame> other_surfaces{example_frame(scene_, 0.001, 5)};
+  Wakeup ready, other_ready;
+  std::atomic<std::size_t> shown{0};
+  std::atomic<int> put_backs{0}, settings{0}, presses{0}, releases{0};
+};
+
+/// A server that shows it.
 struct Show {
-  explicit Show(ViewerSettings settings = {}) : server(with_page(std::move(settings)), feed()) {
+  explicit Show(ViewerSettings settings = {}) : server(with_page(std::move(settings)), run) {
     server.start();
   }
   static ViewerSettings with_page(ViewerSettings settings) {
     settings.page = example_page();
     return settings;
   }
-  ViewerFeed feed() {
-    return {scene, surfaces, ready, [] { return Health{.steps = 77}; }, [this] { ++put_backs; }};
-  }
   void publish(std::uint64_t step) {
-    surfaces.back() = example_frame(scene, 0.01);
-    surfaces.back().force_step = step;
-    surfaces.publish();
-    ready.signal();
+    run.surfaces.back() = example_frame(scene, 0.01);
+    run.surfaces.back().force_step = step;
+    run.surfaces.publish();
+    run.ready.signal();
   }
   /// Asks and returns the whole answer.
   std::string ask(const std::string& request) {
@@ -67,17 +94,15 @@ struct Show {
   std::string get(const std::string& path, const std::string& more = "") {
     return ask("GET " + path + " HTTP/1.1\r\nHost: x\r\nConnection: close\r\n" + more + "\r\n");
   }
-  WebPeer watch(const std::string& token = "", int receive_buffer = 0) {
+  WebPeer watch(const std::string& token = "", int receive_buffer = 0, bool looks_on = false) {
     WebPeer peer(server.port(), receive_buffer);
     peer.open();
-    peer.send_message(encode(ClientMessage(Hello{token})));
+    peer.send_message(encode(ClientMessage(Hello{token, looks_on})));
     return peer;
   }
 
-  Scene scene = example_scene();
-  Mailbox<SurfaceFrame> surfaces{example_frame(scene, 0.001)};
-  Wakeup ready;
-  std::atomic<int> put_backs{0};
+  ExampleRun run;
+  const Scene& scene = run.scene_;
   ViewerServer server;
 };
 
@@ -88,6 +113,16 @@ SurfaceFrame next_frame(WebPeer& peer, const Scene& scene) {
     REQUIRE(message);
     REQUIRE(message->opcode == 2);
     if (message->payload.at(6) == 2) return decode_frame(message->payload, node_counts(scene));
+  }
+}
+
+/// The next state, whatever else comes before it.
+State next_state(WebPeer& peer) {
+  for (;;) {
+    const auto message = peer.receive();
+    REQUIRE(message);
+    REQUIRE(message->opcode == 2);
+    if (message->payload.at(6) == 4) return decode_state(message->payload, 2);
   }
 }
 
@@ -173,10 +208,8 @@ TEST_CASE("a request that breaks the rules is refused with a word of why") {
 }
 
 TEST_CASE("a page that was not built is told") {
-  const Scene scene = example_scene();
-  Mailbox<SurfaceFrame> surfaces(example_frame(scene, 0.001));
-  Wakeup ready;
-  ViewerServer server({}, {scene, surfaces, ready, [] { return Health{}; }, [] {}});
+  ExampleRun run;
+  ViewerServer server({}, run);
   server.start();
   WebPeer peer(server.port());
   peer.send("GET / HTTP/1.0\r\n\r\n");
@@ -205,12 +238,15 @@ TEST_CASE("which origins are allowed") {
   CHECK_FALSE(origin_allowed("http://127.0.0.1.evil.example", "127.0.0.1.evil.example", false));
 }
 
-TEST_CASE("a viewer gets the scene, health and a frame, and then every newer one") {
+TEST_CASE("a viewer gets the scene, state, health and a frame, and then every newer one") {
   Show show;
   WebPeer peer = show.watch();
   const auto scene = peer.receive();
   REQUIRE(scene);
   CHECK(encode(decode_scene(scene->payload)) == encode(show.scene));
+  const auto state = peer.receive();
+  REQUIRE(state);
+  CHECK(decode_state(state->payload, 2).stylus_free);
   const auto health = peer.receive();
   REQUIRE(health);
   CHECK(decode_health(health->payload).steps == 77);
@@ -242,7 +278,77 @@ TEST_CASE("a viewer can put everything back") {
   Show show;
   WebPeer peer = show.watch();
   peer.send_message(encode(ClientMessage(Command{})));
-  CHECK(eventually([&] { return show.put_backs == 1; }));
+  CHECK(eventually([&] { return show.run.put_backs == 1; }));
+}
+
+TEST_CASE("viewers are told the state at first and whenever it changes") {
+  Show show;
+  WebPeer peer = show.watch();
+  CHECK(next_state(peer).notice == "the first one");
+  peer.send_message(encode(ClientMessage(Command{CommandKind::kShowRecording, 1, 0.0})));
+  CHECK(next_state(peer).notice == "the other one");
+  // From here on frames come from there.
+  show.run.other_surfaces.back() = example_frame(show.scene, 0.01);
+  show.run.other_surfaces.back().force_step = 8000;
+  show.run.other_surfaces.publish();
+  show.run.other_ready.signal();
+  std::uint64_t step = 0;
+  while (step != 8000) step = next_frame(peer, show.scene).force_step;
+  CHECK(step == 8000);
+}
+
+TEST_CASE("the stylus is that of the viewer who presses first, until it lets go") {
+  Show show({.stylus_timeout_ms = 60'000});
+  WebPeer first = show.watch();
+  WebPeer second = show.watch();
+  CHECK(next_state(first).stylus_free);
+  CHECK(next_state(second).stylus_free);
+  const Bytes press = encode(ClientMessage(StylusRequest{true, 0, Vector3::Zero()}));
+  const Bytes release = encode(ClientMessage(StylusRequest{}));
+  first.send_message(press);
+  CHECK(next_state(first).holds_stylus);
+  const State seen = next_state(second);
+  CHECK_FALSE(seen.stylus_free);
+  CHECK_FALSE(seen.holds_stylus);
+  second.send_message(press);  // not looked at
+  second.send_message(release);
+  first.send_message(press);
+  CHECK(eventually([&] { return show.run.presses == 2; }));
+  first.send_message(release);
+  CHECK(next_state(first).stylus_free);
+  CHECK(next_state(second).stylus_free);
+  CHECK(show.run.presses == 2);
+  CHECK(show.run.releases == 1);
+  second.send_message(press);
+  CHECK(next_state(second).holds_stylus);
+}
+
+TEST_CASE("a viewer that falls silent or goes loses the stylus") {
+  const bool goes = GENERATE(false, true);
+  Show show({.health_period_ms = 50, .stylus_timeout_ms = goes ? 60'000 : 200});
+  std::optional<WebPeer> peer = show.watch();
+  peer->send_message(encode(ClientMessage(StylusRequest{true, 0, Vector3::Zero()})));
+  REQUIRE(eventually([&] { return show.run.presses == 1; }));
+  if (goes) peer.reset();
+  CHECK(eventually([&] { return show.run.releases == 1; }));
+}
+
+TEST_CASE("who only looks on is sent everything and asks for nothing") {
+  const std::string onlooker_token = "another token of 16";
+  const bool by_token = GENERATE(false, true);
+  Show show({.token = kToken, .onlooker_token = onlooker_token});
+  WebPeer peer = by_token ? show.watch(onlooker_token) : show.watch(kToken, 0, true);
+  CHECK(next_state(peer).looks_on);
+  CHECK(next_frame(peer, show.scene).force_step == 1039);
+  peer.send_message(encode(ClientMessage(Command{})));
+  peer.send_message(encode(ClientMessage(SettingsRequest{example_state().settings, 2})));
+  peer.send_message(encode(ClientMessage(StylusRequest{true, 0, Vector3::Zero()})));
+  WebPeer other = show.watch(kToken);
+  other.send_message(encode(ClientMessage(SettingsRequest{example_state().settings, 2})));
+  REQUIRE(eventually([&] { return show.run.settings == 1; }));
+  other.send_message(encode(ClientMessage(Command{})));
+  REQUIRE(eventually([&] { return show.run.put_backs == 1; }));
+  CHECK(show.run.presses == 0);
 }
 
 TEST_CASE("a message that breaks the rules ends the session") {
@@ -263,10 +369,10 @@ TEST_CASE("a message that breaks the rules ends the session") {
     CHECK(close_code(peer) == 1002);
   }
   SECTION("too long") {
-    peer.send_message(Bytes(300, 0));
+    peer.send_message(Bytes(600, 0));
     CHECK(close_code(peer) == 1009);
   }
-  CHECK(show.put_backs == 0);
+  CHECK(show.run.put_backs == 0);
   WebPeer next = show.watch();
   CHECK(next_frame(next, show.scene).force_step == 1039);
 }
@@ -282,14 +388,11 @@ TEST_CASE("where a token is needed, only the right one opens") {
 }
 
 TEST_CASE("an address that can be reached from elsewhere needs a token") {
-  const Scene scene = example_scene();
-  Mailbox<SurfaceFrame> surfaces(example_frame(scene, 0.001));
-  Wakeup ready;
-  const ViewerFeed feed{scene, surfaces, ready, [] { return Health{}; }, [] {}};
-  CHECK_THROWS_WITH(ViewerServer({.address = "0.0.0.0"}, feed), Contains("viewer.token"));
-  CHECK_THROWS_WITH(ViewerServer({.address = "nowhere"}, feed), Contains("not an address"));
-  const ViewerServer with_token({.address = "0.0.0.0", .token = kToken}, feed);
-  CHECK_THROWS_AS(ViewerServer({.port = with_token.port()}, feed), Error);
+  ExampleRun run;
+  CHECK_THROWS_WITH(ViewerServer({.address = "0.0.0.0"}, run), Contains("viewer.token"));
+  CHECK_THROWS_WITH(ViewerServer({.address = "nowhere"}, run), Contains("not an address"));
+  const ViewerServer with_token({.address = "0.0.0.0", .token = kToken}, run);
+  CHECK_THROWS_AS(ViewerServer({.port = with_token.port()}, run), Error);
 }
 
 TEST_CASE("there is a limit to viewers and to connections") {
@@ -372,9 +475,7 @@ TEST_CASE("stopping says goodbye to every viewer, and waits for none that does n
 }
 
 TEST_CASE("a server that is not started ends well, too") {
-  const Scene scene = example_scene();
-  Mailbox<SurfaceFrame> surfaces(example_frame(scene, 0.001));
-  Wakeup ready;
-  const ViewerServer server({}, {scene, surfaces, ready, [] { return Health{}; }, [] {}});
+  ExampleRun run;
+  const ViewerServer server({}, run);
   CHECK_THAT(server.url(), StartsWith("http://127.0.0.1:"));
 }

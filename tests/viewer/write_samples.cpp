@@ -49,7 +49,16 @@ int main(int argc, char** argv) {
   health.protocol_errors = 9;
   write(folder / "health.bin", encode(health));
   write(folder / "hello.bin", encode(viewer::ClientMessage(viewer::Hello{"token \xC3\xBC"})));
-  write(folder / "put_back.bin", encode(viewer::ClientMessage(viewer::Command{})));
+  write(folder / "state.bin", encode(example_state()));
+  const auto ask = [&](const std::string& name, const viewer::ClientMessage& message) {
+    write(folder / (name + ".bin"), encode(message));
+  };
+  ask("look_on", viewer::Hello{"", true});
+  ask("put_back", viewer::Command{});
+  ask("seek", viewer::Command{viewer::CommandKind::kSeek, 0, 1.25});
+  ask("show_recording", viewer::Command{viewer::CommandKind::kShowRecording, 3, 0.0});
+  ask("stylus", viewer::StylusRequest{true, kGrabButton, Vector3(0.1, -0.2, 0.3)});
+  ask("settings", viewer::SettingsRequest{example_state().settings, 2});
   std::ofstream json(folder / "expected.json");
   json << "{\"rest\":" << list(scene.objects[0].rest)
        << ",\"triangles\":" << list(scene.objects[1].triangles)

@@ -6,7 +6,7 @@ import { download } from "./download";
 import { ForceLog } from "./force_log";
 import { ForcePlot } from "./force_plot";
 import { element, HealthPanel, StylusList } from "./panel";
-import type { Frame, Scene, ServerMessage } from "./protocol";
+import { Command, encodeCommand, type Frame, type Scene, type ServerMessage } from "./protocol";
 import { scaleBar } from "./scale_bar";
 import type { Colouring } from "./soft_object";
 import { currentTheme, onThemeChange } from "./theme";
@@ -75,7 +75,7 @@ function take(message: ServerMessage, size: number): void {
   bytes.add(size, performance.now());
   if (message.kind === "scene") showScene(message);
   else if (message.kind === "frame") showFrame(message);
-  else health.show(message, performance.now());
+  else if (message.kind === "health") health.show(message, performance.now());
 }
 
 function showState(state: LinkState, detail: string): void {
@@ -89,7 +89,7 @@ const token = new URLSearchParams(location.hash.slice(1)).get("token") ?? "";
 const live = new URL("live", location.href);
 live.protocol = live.protocol.replace("http", "ws");
 live.hash = "";
-const connection = new Connection(live.href, token, { message: take, state: showState });
+const connection = new Connection(live.href, token, false, { message: take, state: showState });
 
 // Controls
 
@@ -128,7 +128,7 @@ function togglePause(): void {
 }
 
 for (const input of [exaggeration, rigid, follow, ...colours]) input.addEventListener("input", applyLook);
-element("put-back").onclick = () => connection.putBack();
+element("put-back").onclick = () => connection.send(encodeCommand(Command.PutBack));
 element("fit").onclick = () => world?.fit();
 element("pause").onclick = togglePause;
 element("csv").onclick = () => download("irdm-force.csv", new Blob([log.csv()], { type: "text/csv" }));
@@ -141,7 +141,7 @@ element("plot").addEventListener("mousedown", () => {
 });
 
 const KEYS: Record<string, () => void> = {
-  r: () => connection.putBack(),
+  r: () => connection.send(encodeCommand(Command.PutBack)),
   f: () => world?.fit(),
   w: () => {
     rigid.checked = !rigid.checked;

@@ -159,14 +159,14 @@ export interface FrameParts {
   objects: { position: Vec3; displacement: number[] }[];
 }
 
-/** With a trail of one step. */
-export function frameMessage(parts: FrameParts): ArrayBuffer {
-  const to = begin(2).u16(parts.objects.length, parts.styluses.length, 1).zeros(2).u64(parts.step).f64(parts.time);
+/** @param trail steps for which the force has been the same */
+export function frameMessage(parts: FrameParts, trail = 1): ArrayBuffer {
+  const to = begin(2).u16(parts.objects.length, parts.styluses.length, trail).zeros(2).u64(parts.step).f64(parts.time);
   for (const stylus of parts.styluses) {
     to.u8(stylus.present ? 1 : 0, stylus.contact).i16(stylus.object).u32(stylus.buttons);
     to.f64(...stylus.tip, ...stylus.proxy).f32(...stylus.force, ...stylus.middle).u8(stylus.slips ? 1 : 0).zeros(7);
   }
-  for (const stylus of parts.styluses) to.f32(...stylus.force);
+  for (let i = 0; i < trail; ++i) for (const stylus of parts.styluses) to.f32(...stylus.force);
   for (const object of parts.objects) {
     to.f64(...object.position).f32(1, 0, 0, 0).u8(2).zeros(3).f32(1e-6).i16(...object.displacement).align();
   }

@@ -76,6 +76,11 @@ export class Hand {
     return at.addScaledVector(this.ray.direction, -this.start * left * left * (3 - 2 * left));
   }
 
+  /** It is where it presses: only now may it take hold, else the object would be pushed on the way there. */
+  arrived(now: number): boolean {
+    return now - this.began >= APPROACH_MS;
+  }
+
   /** Comes from outside once more. */
   again(now: number): void {
     this.began = now;

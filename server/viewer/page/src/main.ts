@@ -32,16 +32,22 @@ function tryWorld(): World | null {
 }
 
 const send = (message: ArrayBuffer): void => connection.send(message);
+/** For what is answered by a notice when it cannot be done. */
+const ask = (message: ArrayBuffer): void => {
+  asked = true;
+  send(message);
+};
+let asked = false;
 const world = tryWorld();
 const view = new ViewControls(world);
 const forces = new ForcePanel();
 const health = new HealthPanel(element("health"), element("counts"));
 const status = new StatusLine();
 const notices = new Notices(element("notices"));
-const run = new RunControls(send);
-const playback = new PlaybackBar(send);
+const run = new RunControls(ask);
+const playback = new PlaybackBar(ask);
 const settings = new SettingsPanel(element("settings"), element("settings-reason"), (values) =>
-  send(encodeSettings(values)),
+  ask(encodeSettings(values)),
 );
 const hand = world === null ? null : makeHand(world);
 let scene: Scene | null = null;
@@ -88,7 +94,8 @@ function showScene(next: Scene): void {
 
 function showState(next: State): void {
   const first = state === null;
-  if (next.notice !== "" && next.notice !== state?.notice) notices.tell(next.notice);
+  if (next.notice !== "" && (asked || next.notice !== state?.notice)) notices.tell(next.notice);
+  asked = false;
   state = next;
   status.showState(scene!, next);
   run.showState(next);
@@ -132,8 +139,9 @@ function showLink(link: LinkState, detail: string): void {
 
 async function share(): Promise<void> {
   const link = onlookerLink(location.href);
-  if (await copy(link)) notices.hint("Copied: a link by which one looks on and touches nothing.");
-  else notices.tell(link);
+  if (!(await copy(link))) notices.tell(link);
+  else if (token === "") notices.hint("Copied: a link by which one looks on and touches nothing.");
+  else notices.tell("Copied. It has your token in it: whoever takes watch=1 out can touch, too. The scene can have a token for onlookers.");
 }
 element("share").onclick = () => void share();
 

@@ -24,7 +24,7 @@ const SLIDERS: Record<Exclude<NumberKey, "engine">, SliderKind> = {
   angularDamping: { label: "Damping of turning", unit: "/s", help: "How fast it stops turning", scale: (v) => fromZero(Math.max(20, v), 2) },
   tether: { label: "Tether", unit: "N/m", help: "Soft spring to where it was at the start", scale: (v) => fromZero(Math.max(200, v), 2) },
   angularTether: { label: "Tether of turning", unit: "N m/rad", help: "The same for its orientation", scale: (v) => fromZero(Math.max(1, v), 3) },
-  dampingFactor: { label: "Damping of the material", unit: "times", help: "Factor of its own damping: how long it wobbles", scale: () => byFactor(0.1, 10) },
+  dampingFactor: { label: "Damping of the material", unit: "×", help: "Factor of its own damping: how long it wobbles", scale: () => byFactor(0.1, 10) },
 };
 
 const FIXED: Record<keyof Changeable, string> = {
@@ -66,7 +66,8 @@ class Slider {
 
   private write(value: number): void {
     const figure = value === 0 ? "0" : String(Number(value.toPrecision(3)));
-    this.output.textContent = [figure, this.kind.unit].join(" ").trim();
+    const { unit } = this.kind;
+    this.output.textContent = unit === "×" ? `× ${figure}` : `${figure} ${unit}`.trim();
     this.input.setAttribute("aria-valuetext", this.output.textContent);
   }
 }

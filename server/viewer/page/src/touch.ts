@@ -70,13 +70,14 @@ export class Touch {
     this.release();
   }
 
-  /** @returns whether there is something to touch at this point of the canvas [CSS px] */
+  /** @returns whether there is something that can be touched at this point of the canvas [CSS px] */
   isOver(x: number, y: number): boolean {
-    return this.world.pick(this.world.rayThrough(x, y)) !== null;
+    return refusal(this.scene, this.state) === null && this.world.pick(this.world.rayThrough(x, y)) !== null;
   }
 
   /** @returns whether a press has begun at this point of the canvas [CSS px] */
   press(x: number, y: number): boolean {
+    if (this.active) return false;
     const ray = this.world.rayThrough(x, y);
     const place = this.world.pick(ray);
     if (place === null) return false;
@@ -132,6 +133,6 @@ export class Touch {
     this.lastSent = now;
     const tip = this.hand.tip(now);
     this.world.showHand(tip);
-    this.listener.send({ present: true, grab: this.grabs, tip: tip.toArray() });
+    this.listener.send({ present: true, grab: this.grabs && this.hand.arrived(now), tip: tip.toArray() });
   }
 }

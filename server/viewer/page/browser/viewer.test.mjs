@@ -1,87 +1,12 @@
 // The page in a real browser (Debian's chromium, without a screen), against real irdm-server and irdm-bridge.
 // Programs, model and browser are named by the environment: tests/system/CMakeLists.txt.
 import assert from "node:assert/strict";
-import { execFileSync, spawn } from "node:child_process";
-import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
-import { tmpdir } from "node:os";
-import path from "node:path";
-import { after, before, test } from "node:test";
-import { chromium } from "playwright-core";
+import { execFileSync } from "node:child_process";
+import { test } from "node:test";
+import { frames, newPage, open, until } from "./browser.mjs";
+import { Stage } from "./stage.mjs";
 
-const { IRDM_SERVER, IRDM_BRIDGE, IRDM_EXPECTED_SURFACE, IRDM_MODEL, CHROMIUM } = process.env;
-const DEADLINE_MS = 30_000;
-
-let browser;
-before(async () => {
-  browser = await chromium.launch({
-    executablePath: CHROMIUM,
-    args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
-  });
-});
-after(() => browser?.close());
-
-/** A folder with a scene and a script, and what was started on it; all of it ends with the test. */
-class Stage {
-  constructor(context, scene = "") {
-    this.folder = mkdtempSync(path.join(tmpdir(), "irdm-browser-"));
-    this.children = [];
-    this.write(
-      "scene.toml",
-      `${scene}\n[contact]\ncoupling_stiffness = 2000\n[[object]]\nname = "cube"\nmodel = "${IRDM_MODEL}"\n`,
-    );
-    context.after(() => {
-      for (const child of this.children) child.kill("SIGKILL");
-      rmSync(this.folder, { recursive: true, force: true });
-    });
-  }
-  path(name) {
-    return path.join(this.folder, name);
-  }
-  write(name, text) {
-    writeFileSync(this.path(name), text);
-  }
-  start(program, ...words) {
-    const child = spawn(program, words, { stdio: ["ignore", "pipe", "inherit"] });
-    child.output = "";
-    child.stdout.on("data", (data) => (child.output += data));
-    child.ended = new Promise((resolve) => child.on("exit", resolve));
-    this.children.push(child);
-    return child;
-  }
-  async server(...words) {
-    const child = this.start(IRDM_SERVER, this.path("scene.toml"), ...words);
-    await until(() => /on http\S+\n/.test(child.output), "the server listens");
-    child.url = /listening on (http\S+)/.exec(child.output)[1];
-    child.address = /listening on (\d\S+)/.exec(child.output)[1];
-    return child;
-  }
-  bridge(server) {
-    this.write("bridge.toml", '[[device]]\ntype = "virtual"\nscript = "script.csv"\n');
-    return this.start(IRDM_BRIDGE, this.path("bridge.toml"), "--server", server.address);
-  }
-}
-
-async function until(condition, what) {
-  const deadline = Date.now() + DEADLINE_MS;
-  while (!(await condition())) {
-    assert.ok(Date.now() < deadline, `in time: ${what}`);
-    await new Promise((resolve) => setTimeout(resolve, 20));
-  }
-}
-
-async function open(context, url, options = {}) {
-  const page = await browser.newPage({ viewport: { width: 1000, height: 700 }, ...options });
-  page.faults = [];
-  page.on("pageerror", (error) => page.faults.push(error.message));
-  page.on("console", (message) => {
-    if (message.type() === "error") page.faults.push(message.text());
-  });
-  context.after(() => page.close());
-  await page.goto(url);
-  return page;
-}
-
-const frames = (page) => page.waitForFunction(() => window.irdm?.frame() != null, null, { timeout: DEADLINE_MS });
+const { IRDM_EXPECTED_SURFACE, IRDM_MODEL } = process.env;
 
 /** Every fifth pixel of the canvas, as x, y, r, g, b, a, and where the object's nodes are on it, taken in one go. */
 function picture(page) {
@@ -294,8 +219,7 @@ test("keys and controls do what they say, in dark and on a phone", async (contex
 test("without WebGL the page says so and shows forces and health", async (context) => {
   const stage = new Stage(context);
   const server = await stage.server();
-  const page = await browser.newPage();
-  context.after(() => page.close());
+  const page = await newPage(context);
   await page.addInitScript(() => {
     HTMLCanvasElement.prototype.getContext = new Proxy(HTMLCanvasElement.prototype.getContext, {
       apply: (target, canvas, words) => (/webgl/.test(words[0]) ? null : Reflect.apply(target, canvas, words)),
@@ -310,8 +234,7 @@ test("without WebGL the page says so and shows forces and health", async (contex
 test("a page of another origin sees nothing", async (context) => {
   const stage = new Stage(context);
   const server = await stage.server();
-  const page = await browser.newPage();
-  context.after(() => page.close());
+  const page = await newPage(context);
   await page.goto("data:text/html,<p>elsewhere");
   const outcome = await page.evaluate(
     (url) =>

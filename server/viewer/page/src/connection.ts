@@ -1,4 +1,5 @@
-import { decode, encodeHello, encodePutBack, ProtocolError, type Scene, type ServerMessage } from "./protocol";
+import { ProtocolError } from "./byte_reader";
+import { decode, encodeHello, type Scene, type ServerMessage } from "./protocol";
 
 export type LinkState = "connecting" | "live" | "lost" | "refused";
 
@@ -18,10 +19,14 @@ export class Connection {
   private scene: Scene | null = null;
   private pauseMs = FIRST_PAUSE_MS;
 
-  /** @param token what the server asks for off the loopback address; stands behind # in the page's address */
+  /**
+   * @param token what the server asks for off the loopback address; stands behind # in the page's address
+   * @param onlyLooksOn nothing that this viewer asks for shall be done
+   */
   constructor(
     private readonly url: string,
     private readonly token: string,
+    private readonly onlyLooksOn: boolean,
     private readonly listener: LinkListener,
   ) {}
 
@@ -31,13 +36,14 @@ export class Connection {
     const socket = new WebSocket(this.url);
     this.socket = socket;
     socket.binaryType = "arraybuffer";
-    socket.onopen = () => socket.send(encodeHello(this.token));
+    socket.onopen = () => socket.send(encodeHello(this.token, this.onlyLooksOn));
     socket.onmessage = (event: MessageEvent<ArrayBuffer>) => this.take(event.data);
     socket.onclose = (event) => this.closed(event.code);
   }
 
-  putBack(): void {
-    if (this.scene !== null) this.socket?.send(encodePutBack());
+  /** Nothing is kept for later: without a connection it is lost. */
+  send(message: ArrayBuffer): void {
+    if (this.scene !== null) this.socket?.send(message);
   }
 
   private take(bytes: ArrayBuffer): void {

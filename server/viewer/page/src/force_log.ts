@@ -21,7 +21,7 @@ export class ForceLog {
 
   /** Takes the steps of a frame that are new. */
   follow(frame: Frame): void {
-    if (frame.step < this.newest) this.newest = -1; // the server has begun anew
+    if (frame.step < this.newest) this.clear(); // the server has begun anew, or a recorded run went back
     const styluses = this.columns.length;
     for (let i = 0; i < frame.trail; ++i) {
       const step = frame.step - (frame.trail - 1 - i);
@@ -32,6 +32,11 @@ export class ForceLog {
       this.newest = step;
     }
     this.forget();
+  }
+
+  clear(): void {
+    for (const list of [this.times, this.steps, ...this.columns.flat()]) list.length = 0;
+    this.newest = -1;
   }
 
   private push(step: number, forces: Float32Array | null): void {

@@ -23,6 +23,8 @@ export class ForcePlot {
     if (this.paused) return;
     this.data = log.since(now - WINDOW_SECONDS, stylus) as uPlot.AlignedData;
     this.plot?.setData(this.data, false);
+    // The legend says the newest, unless it is asked for another time.
+    if ((this.plot?.cursor.left ?? 0) < 0 && this.data[0].length > 0) this.plot?.setLegend({ idx: this.data[0].length - 1 }, false);
     this.plot?.setScale("x", { min: Math.max(now, WINDOW_SECONDS) - WINDOW_SECONDS, max: Math.max(now, WINDOW_SECONDS) });
   }
 

@@ -1,23 +1,24 @@
 import "uplot/dist/uPlot.min.css";
 import "./style.css";
-import { cssRamp } from "./colour_map";
-import { Connection, RateMeter, type LinkState } from "./connection";
-import { download } from "./download";
-import { ForceLog } from "./force_log";
-import { ForcePlot } from "./force_plot";
-import { element, HealthPanel, StylusList } from "./panel";
-import type { Frame, Scene, ServerMessage } from "./protocol";
-import { scaleBar } from "./scale_bar";
-import type { Colouring } from "./soft_object";
+import { Connection, type LinkState } from "./connection";
+import { element } from "./elements";
+import { FeltForce } from "./felt_force";
+import { ForcePanel } from "./force_panel";
+import { Notices } from "./notices";
+import { copy, isOnlooker, onlookerLink } from "./onlooker_link";
+import { HealthPanel } from "./panel";
+import { PlaybackBar } from "./playback_bar";
+import { encodeSettings, encodeStylus, type Frame, type Scene, type ServerMessage, type State } from "./protocol";
+import { RunControls } from "./run_controls";
+import { SettingsPanel } from "./settings_panel";
+import { listenForShortcuts } from "./shortcuts";
+import { StatusLine } from "./status_line";
 import { currentTheme, onThemeChange } from "./theme";
+import { Touch } from "./touch";
+import { TouchKeys } from "./touch_keys";
+import { TouchPointer } from "./touch_pointer";
+import { ViewControls } from "./view_controls";
 import { World } from "./world";
-
-const STATES: Record<LinkState, string> = {
-  connecting: "Connecting",
-  live: "Live",
-  lost: "Connection lost, trying again",
-  refused: "Refused",
-};
 
 function tryWorld(): World | null {
   try {
@@ -30,185 +31,161 @@ function tryWorld(): World | null {
   }
 }
 
+const send = (message: ArrayBuffer): void => connection.send(message);
+/** For what is answered by a notice when it cannot be done. */
+const ask = (message: ArrayBuffer): void => {
+  asked = true;
+  send(message);
+};
+let asked = false;
 const world = tryWorld();
-const plot = new ForcePlot(element("plot"), currentTheme());
-const styluses = new StylusList(element("styluses"));
+const view = new ViewControls(world);
+const forces = new ForcePanel();
 const health = new HealthPanel(element("health"), element("counts"));
-const bytes = new RateMeter();
-const pictures = new RateMeter();
+const status = new StatusLine();
+const notices = new Notices(element("notices"));
+const run = new RunControls(ask);
+const playback = new PlaybackBar(ask);
+const settings = new SettingsPanel(element("settings"), element("settings-reason"), (values) =>
+  ask(encodeSettings(values)),
+);
+const hand = world === null ? null : makeHand(world);
 let scene: Scene | null = null;
+let state: State | null = null;
 let newest: Frame | null = null;
-let log = new ForceLog(1, 0.002);
-let plotAsked = false;
+
+/** The viewers' stylus by mouse, finger or keys. */
+function makeHand(world: World): { touch: Touch; felt: FeltForce; keys: TouchKeys } {
+  const touch = new Touch(world, {
+    send: (message) => send(encodeStylus(message)),
+    say: (text) => notices.hint(text),
+    changed: (active) => {
+      if (active) {
+        forces.chooseLast();
+        element("hint").hidden = true;
+        return;
+      }
+      pointer.ended();
+      keys.ended();
+      felt.hide();
+    },
+  });
+  const grabs = (): boolean => document.querySelector<HTMLInputElement>("input[name=tool][value=grab]")!.checked;
+  const felt = new FeltForce(element("felt"), world, touch);
+  const pointer = new TouchPointer(world.canvas, touch, world.controls, grabs);
+  const keys = new TouchKeys(world.canvas, element("cross"), touch, element<HTMLButtonElement>("touch-keys"), grabs);
+  return { touch, felt, keys };
+}
 
 // What comes in
 
 function showScene(next: Scene): void {
   scene = next;
+  state = null;
   newest = null;
-  log = new ForceLog(next.styluses.length, next.dt);
-  styluses.show(next);
   world?.show(next);
+  view.show(next);
+  forces.show(next);
+  playback.show(next);
+  settings.show(next);
+  hand?.touch.show(next);
   document.title = `${next.objects.map((object) => object.name).join(", ")} – irdm`;
+}
+
+function showState(next: State): void {
+  const first = state === null;
+  if (next.notice !== "" && (asked || next.notice !== state?.notice)) notices.tell(next.notice);
+  asked = false;
+  state = next;
+  status.showState(scene!, next);
+  run.showState(next);
+  playback.showState(next);
+  settings.showState(next);
+  forces.showState(next);
+  hand?.touch.showState(next);
+  const touchable = hand !== null && scene!.viewersStylus && !next.onlyLooksOn && next.playback === null;
+  element("tools").hidden = !touchable;
+  if (!touchable) hand?.keys.set(false);
+  if (first || !touchable) element("hint").hidden = !touchable;
 }
 
 function showFrame(frame: Frame): void {
   newest = frame;
-  pictures.add(1, performance.now());
-  log.follow(frame);
-  styluses.follow(frame);
+  forces.follow(frame);
+  playback.follow(frame);
+  hand?.touch.follow(frame);
   world?.follow(frame);
-  askPlot();
+  hand?.felt.follow(frame, scene!);
   for (const listener of listeners) listener(frame);
 }
 
-function askPlot(): void {
-  if (plotAsked) return;
-  plotAsked = true;
-  requestAnimationFrame(() => {
-    plotAsked = false;
-    if (newest !== null) plot.show(log, styluses.chosen, newest.time);
-  });
-}
-
 function take(message: ServerMessage, size: number): void {
-  bytes.add(size, performance.now());
+  status.received(size, message.kind === "frame");
   if (message.kind === "scene") showScene(message);
   else if (message.kind === "frame") showFrame(message);
-  else health.show(message, performance.now());
+  else if (message.kind === "health") health.show(message, performance.now());
+  else showState(message);
 }
 
-function showState(state: LinkState, detail: string): void {
-  const link = element("link");
-  link.dataset["state"] = state;
-  link.querySelector("span")!.textContent = STATES[state] + (detail === "" ? "" : ": " + detail);
-  element<HTMLButtonElement>("put-back").disabled = state !== "live";
+function showLink(link: LinkState, detail: string): void {
+  status.link(link, detail);
+  if (link === "live") return;
+  run.lost();
+  settings.lost();
+  hand?.touch.lost();
 }
+
+// Controls
+
+async function share(): Promise<void> {
+  const link = onlookerLink(location.href);
+  if (!(await copy(link))) notices.tell(link);
+  else if (token === "") notices.hint("Copied: a link by which one looks on and touches nothing.");
+  else notices.tell("Copied. It has your token in it: whoever takes watch=1 out can touch, too. The scene can have a token for onlookers.");
+}
+element("share").onclick = () => void share();
+
+const TURN = 0.09; // [rad]
+const NEARER = 1.15;
+listenForShortcuts(
+  {
+    r: () => run.putBack(),
+    p: () => run.togglePause(),
+    ".": () => run.step(),
+    f: () => world?.fit(),
+    w: () => view.toggleRigid(),
+    c: () => view.nextColour(),
+    "[": () => view.exaggerate(false),
+    "]": () => view.exaggerate(true),
+    " ": () => forces.toggleHold(),
+    t: () => {
+      if (!element("tools").hidden) hand?.keys.set(!hand.keys.on);
+    },
+    "+": () => world?.move(0, 0, NEARER),
+    "=": () => world?.move(0, 0, NEARER),
+    "-": () => world?.move(0, 0, 1 / NEARER),
+  },
+  {
+    ArrowLeft: () => world?.move(-TURN, 0, 1),
+    ArrowRight: () => world?.move(TURN, 0, 1),
+    ArrowUp: () => world?.move(0, -TURN, 1),
+    ArrowDown: () => world?.move(0, TURN, 1),
+  },
+);
+onThemeChange(() => {
+  world?.applyTheme(currentTheme());
+  forces.applyTheme();
+});
+setInterval(() => {
+  status.show(newest);
+  view.showLegend();
+}, 250);
 
 const token = new URLSearchParams(location.hash.slice(1)).get("token") ?? "";
 const live = new URL("live", location.href);
 live.protocol = live.protocol.replace("http", "ws");
 live.hash = "";
-const connection = new Connection(live.href, token, { message: take, state: showState });
-
-// Controls
-
-const exaggeration = element<HTMLInputElement>("exaggeration");
-const rigid = element<HTMLInputElement>("rigid");
-const follow = element<HTMLInputElement>("follow");
-const colours = [...document.querySelectorAll<HTMLInputElement>("input[name=colour]")];
-
-function applyLook(): void {
-  const factor = Number(exaggeration.value);
-  element("exaggeration-value").textContent = `× ${factor}`;
-  const colouring = (colours.find((input) => input.checked)?.value ?? "none") as Colouring;
-  element("legend").hidden = colouring === "none" || world === null;
-  element("legend-title").textContent = colouring === "velocity" ? "Speed of the surface" : "Displacement";
-  if (world === null) return;
-  world.look = { exaggeration: factor, colouring, rigid: rigid.checked, follow: follow.checked };
-  world.applyLook();
-}
-
-function nextColour(): void {
-  const at = colours.findIndex((input) => input.checked);
-  colours[(at + 1) % colours.length]!.checked = true;
-  applyLook();
-}
-
-function stepExaggeration(up: boolean): void {
-  if (up) exaggeration.stepUp();
-  else exaggeration.stepDown();
-  applyLook();
-}
-
-function togglePause(): void {
-  plot.paused = !plot.paused;
-  element("pause").setAttribute("aria-pressed", String(plot.paused));
-  askPlot();
-}
-
-for (const input of [exaggeration, rigid, follow, ...colours]) input.addEventListener("input", applyLook);
-element("put-back").onclick = () => connection.putBack();
-element("fit").onclick = () => world?.fit();
-element("pause").onclick = togglePause;
-element("csv").onclick = () => download("irdm-force.csv", new Blob([log.csv()], { type: "text/csv" }));
-element("png").onclick = async () => {
-  const picture = await plot.picture();
-  if (picture !== null) download("irdm-force.png", picture);
-};
-element("plot").addEventListener("mousedown", () => {
-  if (!plot.paused) togglePause(); // a zoom into curves that run away is none
-});
-
-const KEYS: Record<string, () => void> = {
-  r: () => connection.putBack(),
-  f: () => world?.fit(),
-  w: () => {
-    rigid.checked = !rigid.checked;
-    applyLook();
-  },
-  c: nextColour,
-  "[": () => stepExaggeration(false),
-  "]": () => stepExaggeration(true),
-  " ": togglePause,
-  "+": () => world?.move(0, 0, 1.15),
-  "=": () => world?.move(0, 0, 1.15),
-  "-": () => world?.move(0, 0, 1 / 1.15),
-};
-const TURN = 0.09; // [rad]
-const CANVAS_KEYS: Record<string, () => void> = {
-  ArrowLeft: () => world?.move(-TURN, 0, 1),
-  ArrowRight: () => world?.move(TURN, 0, 1),
-  ArrowUp: () => world?.move(0, -TURN, 1),
-  ArrowDown: () => world?.move(0, TURN, 1),
-};
-
-addEventListener("keydown", (event) => {
-  if (event.ctrlKey || event.metaKey || event.altKey) return;
-  const target = event.target as HTMLElement;
-  const onCanvas = target === document.body || target.id === "scene";
-  // Space belongs to the control that has the focus.
-  if (event.key === " " && !onCanvas) return;
-  const action = KEYS[event.key.toLowerCase()] ?? (onCanvas ? CANVAS_KEYS[event.key] : undefined);
-  if (action === undefined) return;
-  event.preventDefault();
-  action();
-});
-
-// Small print
-
-function figure(value: number): string {
-  return value.toPrecision(3);
-}
-
-function showLegend(): void {
-  if (world === null) return;
-  const [factor, unit] = world.look.colouring === "velocity" ? [100, "cm/s"] : [1000, "mm"];
-  element("legend-max").textContent = `${figure(world.colourScale * factor)} ${unit}`;
-}
-
-function showScale(): void {
-  if (world === null) return;
-  const { centimetres, pixels } = scaleBar(world.metresPerPixel());
-  element("scale").querySelector("span")!.textContent = `${centimetres} cm`;
-  element("scale").querySelector("i")!.style.width = `${pixels.toFixed(1)}px`;
-}
-
-setInterval(() => {
-  const now = performance.now();
-  element("rate").textContent = `${pictures.perSecond(now)} frames/s`;
-  element("bandwidth").textContent = `${(bytes.perSecond(now) / 1000).toFixed(0)} kB/s`;
-  element("clock").textContent = newest === null ? "" : `t = ${newest.time.toFixed(2)} s`;
-  showLegend();
-}, 250);
-
-document.querySelector<HTMLElement>(".ramp")!.style.background = cssRamp();
-if (world !== null) world.onDraw = showScale;
-onThemeChange(() => {
-  world?.applyTheme(currentTheme());
-  plot.applyTheme(currentTheme());
-});
-applyLook();
+const connection = new Connection(live.href, token, isOnlooker(location.href), { message: take, state: showLink });
 connection.open();
 
 // For tests and for the curious at the browser's console: what is shown, as numbers.
@@ -218,6 +195,7 @@ Object.assign(window, {
     world,
     scene: () => scene,
     frame: () => newest,
+    state: () => state,
     onFrame: (listener: (frame: Frame) => void) => listeners.push(listener),
   },
 });

@@ -1,17 +1,5 @@
-import { Contact, type Frame, type Health, type Percentiles, type Scene } from "./protocol";
-
-export function element<T extends HTMLElement>(id: string): T {
-  const found = document.getElementById(id);
-  if (found === null) throw new Error(`the page has no #${id}`);
-  return found as T;
-}
-
-function make(tag: string, text: string, className = ""): HTMLElement {
-  const node = document.createElement(tag);
-  node.textContent = text;
-  node.className = className;
-  return node;
-}
+import { make } from "./elements";
+import { Contact, type BridgeHealth, type Frame, type Health, type Percentiles, type Scene } from "./protocol";
 
 const CONTACTS: Record<Contact, string> = {
   [Contact.Free]: "free",
@@ -32,12 +20,17 @@ export class StylusList {
       const button = document.createElement("button");
       button.type = "button";
       const [state, force] = [make("span", "absent", "state"), make("span", "", "force")];
-      button.append(make("span", `Stylus ${s + 1}`), state, force);
+      const isViewers = scene.viewersStylus && s === scene.styluses.length - 1;
+      button.append(make("span", isViewers ? "Viewers’ hand" : `Stylus ${s + 1}`), state, force);
       button.onclick = () => this.choose(s);
       return { button, state, force };
     });
     this.host.replaceChildren(...this.rows.map((row) => row.button));
     this.choose(this.chosen);
+  }
+
+  chooseLast(): void {
+    this.choose(this.rows.length - 1);
   }
 
   private choose(stylus: number): void {
@@ -48,7 +41,8 @@ export class StylusList {
   follow(frame: Frame): void {
     frame.styluses.forEach((stylus, s) => {
       const { state, force } = this.rows[s]!;
-      state.textContent = stylus.present ? CONTACTS[stylus.contact] : "absent";
+      const contact = stylus.contact === Contact.Touching && stylus.slips ? "slipping" : CONTACTS[stylus.contact];
+      state.textContent = stylus.present ? contact : "absent";
       force.textContent = stylus.present ? Math.hypot(...stylus.force).toFixed(3) + " N" : "";
     });
   }
@@ -58,6 +52,19 @@ function microseconds(value: number): string {
   if (Number.isNaN(value)) return "–";
   if (value < 1000) return value.toFixed(value < 100 ? 1 : 0) + " µs";
   return (value / 1000).toFixed(1) + " ms";
+}
+
+const UNKNOWN: Percentiles = { p50: Number.NaN, p99: Number.NaN, max: Number.NaN };
+
+/** What the bridges told. With several, their styluses are named. */
+function bridgeRows(bridges: BridgeHealth[]): HTMLElement[] {
+  return bridges.flatMap(({ reports, roundTrip, forceAge }, s) => {
+    const whose = bridges.length > 1 ? ` ${s + 1}` : "";
+    return [
+      percentileRow(`Round trip${whose}`, reports ? roundTrip : UNKNOWN),
+      percentileRow(`Age of force${whose}`, reports ? forceAge : UNKNOWN),
+    ];
+  });
 }
 
 function percentileRow(name: string, value: Percentiles): HTMLElement {
@@ -81,6 +88,7 @@ export class HealthPanel {
     this.table.querySelector("tbody")!.replaceChildren(
       percentileRow("Force step", health.stepTime),
       percentileRow("Wake-up", health.wakeupDelay),
+      ...bridgeRows(health.bridges),
     );
     const seconds = this.before === null ? Number.NaN : (now - this.before.at) / 1000;
     const rate = (key: "samples" | "forces"): string => {

@@ -1,10 +1,20 @@
 import * as THREE from "three";
 import { colourAt, linear } from "./colour_map";
+import { SurfaceMarks } from "./surface_marks";
 import { creaseMesh, vertexNormals, type CreasedMesh } from "./creases";
+import type { PressPoint } from "./hand";
 import type { ObjectState, SceneObject } from "./protocol";
 import type { Theme } from "./theme";
 
-export type Colouring = "none" | "displacement" | "velocity";
+export type Colouring = "none" | "displacement" | "velocity" | "compliance";
+
+/** Values at both ends of the colours' ramp: [m], [m/s] or [m/N]. */
+export interface ColourRange {
+  low: number;
+  high: number;
+}
+
+const UNKNOWN: readonly [number, number, number] = [0.5, 0.5, 0.5];
 
 /** One deforming object: its surface, and the rigid body alone as a wireframe (the paper's Figure 4). */
 export class SoftObject {
@@ -13,6 +23,9 @@ export class SoftObject {
   readonly displacement: Float32Array;
   /** of the coloured quantity in the last frame: [m] or [m/s] */
   largest = 0;
+  readonly marks: SurfaceMarks;
+  /** of its nodes [m/N]; null: not known */
+  readonly complianceRange: ColourRange | null;
 
   private readonly creased: CreasedMesh;
   private readonly geometry = new THREE.BufferGeometry();
@@ -33,7 +46,12 @@ export class SoftObject {
       const attribute = new THREE.BufferAttribute(new Float32Array(3 * vertices), 3);
       this.geometry.setAttribute(name, attribute.setUsage(THREE.DynamicDrawUsage));
     }
+    const restOfVertices = new Float32Array(3 * vertices);
+    this.creased.nodeOf.forEach((node, v) => restOfVertices.set(object.rest.subarray(3 * node, 3 * node + 3), 3 * v));
+    this.geometry.setAttribute("rest", new THREE.BufferAttribute(restOfVertices, 3));
     this.geometry.setIndex(new THREE.BufferAttribute(this.creased.index, 1));
+    this.marks = new SurfaceMarks(this.material);
+    this.complianceRange = rangeOf(object.compliance);
     const mesh = new THREE.Mesh(this.geometry, this.material);
     mesh.castShadow = true;
     mesh.receiveShadow = true;
@@ -48,7 +66,7 @@ export class SoftObject {
     );
     this.rigid.visible = false;
     this.group.add(mesh, this.rigid);
-    this.draw(1, "none", 0);
+    this.draw(1, "none", { low: 0, high: 0 });
   }
 
   get name(): string {
@@ -67,6 +85,7 @@ export class SoftObject {
     this.rigid.material.color.set(theme.wire);
     if (!this.material.vertexColors) this.material.color.set(theme.object);
     this.plain = theme.object;
+    this.marks.colour = theme.accent;
   }
   private plain = "#ffffff";
 
@@ -113,8 +132,7 @@ export class SoftObject {
     }
   }
 
-  /** @param scale value of the colour at the ramp's end [m or m/s] */
-  draw(exaggeration: number, colouring: Colouring, scale: number): void {
+  draw(exaggeration: number, colouring: Colouring, { low, high }: ColourRange): void {
     const positions = this.geometry.getAttribute("position") as THREE.BufferAttribute;
     const normals = this.geometry.getAttribute("normal") as THREE.BufferAttribute;
     const colours = this.geometry.getAttribute("color") as THREE.BufferAttribute;
@@ -122,24 +140,65 @@ export class SoftObject {
     const colour = colours.array as Float32Array;
     const { nodeOf, index } = this.creased;
     const coloured = colouring !== "none";
+    const values = colouring === "compliance" ? this.object.compliance : this.values;
     for (let v = 0; v < nodeOf.length; ++v) {
       const node = nodeOf[v]!;
       for (let c = 0; c < 3; ++c) {
         at[3 * v + c] = this.object.rest[3 * node + c]! + exaggeration * this.displacement[3 * node + c]!;
       }
       if (!coloured) continue;
-      colourAt(scale > 0 ? this.values[node]! / scale : 0, colour, 3 * v);
+      if (Number.isNaN(values[node]!)) colour.set(UNKNOWN, 3 * v);
+      else colourAt(high > low ? (values[node]! - low) / (high - low) : 0, colour, 3 * v);
       for (let c = 0; c < 3; ++c) colour[3 * v + c] = linear(colour[3 * v + c]!);
     }
     vertexNormals(at, index, normals.array as Float32Array);
     positions.needsUpdate = true;
     normals.needsUpdate = true;
     colours.needsUpdate = coloured;
+    this.marks.coloursAreValues = coloured;
     if (this.material.vertexColors !== coloured) {
       this.material.vertexColors = coloured;
       this.material.needsUpdate = true;
     }
     this.material.color.set(coloured ? "#ffffff" : this.plain);
+  }
+
+  /**
+   * Where a ray from the world meets the surface as it is drawn.
+   * @returns the true place of what is seen there [m], W; null: nowhere
+   */
+  pick(ray: THREE.Ray): (PressPoint & { distance: number }) | null {
+    this.group.updateMatrixWorld();
+    const local = ray.clone().applyMatrix4(this.group.matrixWorld.clone().invert());
+    const at = this.geometry.getAttribute("position") as THREE.BufferAttribute;
+    const { index, nodeOf } = this.creased;
+    const [a, b, c, point] = Array.from({ length: 4 }, () => new THREE.Vector3()) as [Vector, Vector, Vector, Vector];
+    let nearest = Number.POSITIVE_INFINITY;
+    let corners: [number, number, number] | null = null;
+    for (let t = 0; t < index.length; t += 3) {
+      const [i, j, k] = [index[t]!, index[t + 1]!, index[t + 2]!];
+      a.fromBufferAttribute(at, i);
+      b.fromBufferAttribute(at, j);
+      c.fromBufferAttribute(at, k);
+      if (local.intersectTriangle(a, b, c, true, point) === null) continue;
+      const distance = point.distanceTo(local.origin);
+      if (distance >= nearest) continue;
+      nearest = distance;
+      corners = [i, j, k];
+    }
+    if (corners === null) return null;
+    const triangle = new THREE.Triangle().setFromAttributeAndIndices(at, ...corners);
+    const normal = triangle.getNormal(new THREE.Vector3()).transformDirection(this.group.matrixWorld);
+    const shares = triangle.getBarycoord(local.at(nearest, point), new THREE.Vector3());
+    const place = new THREE.Vector3();
+    corners.forEach((vertex, corner) => place.addScaledVector(this.trueNode(nodeOf[vertex]!), shares!.getComponent(corner)));
+    return { point: place.applyMatrix4(this.group.matrixWorld), normal, distance: nearest };
+  }
+
+  /** [m], B */
+  private trueNode(node: number): THREE.Vector3 {
+    const u = new THREE.Vector3().fromArray(this.displacement, 3 * node);
+    return u.add(new THREE.Vector3().fromArray(this.object.rest, 3 * node));
   }
 
   dispose(): void {
@@ -148,4 +207,12 @@ export class SoftObject {
     this.rigid.geometry.dispose();
     this.rigid.material.dispose();
   }
+}
+
+type Vector = THREE.Vector3;
+
+function rangeOf(values: Float32Array): ColourRange | null {
+  const known = values.filter((value) => !Number.isNaN(value));
+  if (known.length === 0) return null;
+  return { low: known.reduce((a, b) => Math.min(a, b)), high: known.reduce((a, b) => Math.max(a, b)) };
 }

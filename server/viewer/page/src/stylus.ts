@@ -1,5 +1,6 @@
 import * as THREE from "three";
 import { Contact, type SceneStylus, type StylusState } from "./protocol";
+import { Spring } from "./spring";
 import type { Theme } from "./theme";
 
 const SMALLEST_TIP = 0.0022; // a point must be seen [m]
@@ -7,18 +8,19 @@ const METRES_PER_NEWTON = 0.04;
 const LEAST_FORCE = 0.005; // below it no arrow [N]
 const UP = new THREE.Vector3(0, 1, 0);
 
-/** Tip, proxy, and the force on the stylus as an arrow of 4 cm a newton. */
+/** Tip, proxy, the spring between them, and the force on the stylus as an arrow of 4 cm a newton. */
 export class Stylus {
   readonly group = new THREE.Group();
+  /** where this viewer's hand wants the tip [m], W; null: it is not this viewer's stylus */
+  asked: THREE.Vector3 | null = null;
   private readonly tipMaterial = new THREE.MeshStandardMaterial({ roughness: 0.35 });
   private readonly ghostMaterial = new THREE.MeshBasicMaterial({ depthTest: false, transparent: true, opacity: 0.28 });
   private readonly proxyMaterial = new THREE.MeshBasicMaterial({ depthTest: false, transparent: true, opacity: 0.9 });
   private readonly arrowMaterial = new THREE.MeshStandardMaterial({ roughness: 0.5 });
-  private readonly lineMaterial = new THREE.LineBasicMaterial({ depthTest: false, transparent: true, opacity: 0.8 });
   private readonly radius: number;
   private readonly tip: THREE.Mesh;
   private readonly proxy: THREE.Mesh;
-  private readonly link: THREE.Line;
+  private readonly spring = new Spring();
   private readonly arrow = new THREE.Group();
   private readonly shaft: THREE.Mesh;
   private readonly head: THREE.Mesh;
@@ -27,20 +29,19 @@ export class Stylus {
     this.radius = Math.max(stylus.radius, SMALLEST_TIP);
     this.tip = new THREE.Mesh(new THREE.SphereGeometry(this.radius, 32, 20), this.tipMaterial);
     this.tip.castShadow = true;
+    if (stylus.radius > SMALLEST_TIP) {
+      // A fingertip lets through what it touches.
+      Object.assign(this.tipMaterial, { transparent: true, opacity: 0.5, depthWrite: false });
+    }
     const ghost = new THREE.Mesh(this.tip.geometry, this.ghostMaterial); // the tip is seen through the objects
     ghost.renderOrder = 1;
     this.tip.add(ghost);
     this.proxy = new THREE.Mesh(new THREE.SphereGeometry(SMALLEST_TIP * 0.7, 20, 12), this.proxyMaterial);
     this.proxy.renderOrder = 2;
-    this.link = new THREE.Line(
-      new THREE.BufferGeometry().setFromPoints([new THREE.Vector3(), new THREE.Vector3()]),
-      this.lineMaterial,
-    );
-    this.link.frustumCulled = false;
     this.shaft = new THREE.Mesh(new THREE.CylinderGeometry(0.0009, 0.0009, 1, 16), this.arrowMaterial);
     this.head = new THREE.Mesh(new THREE.ConeGeometry(0.0026, 0.007, 20), this.arrowMaterial);
     this.arrow.add(this.shaft, this.head);
-    this.group.add(this.tip, this.proxy, this.link, this.arrow);
+    this.group.add(this.tip, this.proxy, this.spring.mesh, this.arrow);
     this.group.visible = false;
   }
 
@@ -50,12 +51,9 @@ export class Stylus {
     const touches = state.contact !== Contact.Free;
     this.tip.position.set(...state.tip);
     this.proxy.visible = touches;
-    this.link.visible = touches;
     this.proxy.position.set(...state.proxy);
-    const ends = this.link.geometry.getAttribute("position") as THREE.BufferAttribute;
-    ends.setXYZ(0, ...state.tip);
-    ends.setXYZ(1, ...state.proxy);
-    ends.needsUpdate = true;
+    this.spring.mesh.visible = touches;
+    if (touches) this.spring.span(this.asked ?? this.tip.position, this.proxy.position);
     this.point(new THREE.Vector3(...state.force), state.tip);
   }
 
@@ -77,13 +75,14 @@ export class Stylus {
     this.tipMaterial.color.set(theme.ink);
     this.ghostMaterial.color.set(theme.ink);
     this.proxyMaterial.color.set(theme.accent);
-    this.lineMaterial.color.set(theme.accent);
+    this.spring.mesh.material.color.set(theme.accent);
     this.arrowMaterial.color.set(theme.force);
   }
 
   dispose(): void {
-    for (const part of [this.tip, this.proxy, this.link, this.shaft, this.head]) part.geometry.dispose();
-    const { tipMaterial, ghostMaterial, proxyMaterial, arrowMaterial, lineMaterial } = this;
-    for (const one of [tipMaterial, ghostMaterial, proxyMaterial, arrowMaterial, lineMaterial]) one.dispose();
+    for (const part of [this.tip, this.proxy, this.shaft, this.head]) part.geometry.dispose();
+    this.spring.dispose();
+    const { tipMaterial, ghostMaterial, proxyMaterial, arrowMaterial } = this;
+    for (const one of [tipMaterial, ghostMaterial, proxyMaterial, arrowMaterial]) one.dispose();
   }
 }

@@ -1,8 +1,10 @@
 import * as THREE from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
-import type { Frame, Scene } from "./protocol";
-import { SoftObject, type Colouring } from "./soft_object";
+import type { PressPoint } from "./hand";
+import { Contact, type Frame, type Scene } from "./protocol";
+import { SoftObject, type ColourRange, type Colouring } from "./soft_object";
 import { Stylus } from "./stylus";
+import { Surroundings } from "./surroundings";
 import type { Theme } from "./theme";
 
 const FIELD_OF_VIEW = 32;
@@ -21,19 +23,15 @@ export class World {
   readonly camera = new THREE.PerspectiveCamera(FIELD_OF_VIEW, 1, 0.005, 50);
   objects: SoftObject[] = [];
   look: Look = { exaggeration: 1, colouring: "none", rigid: false, follow: true };
-  /** value at the end of the colours' ramp [m or m/s] */
-  colourScale = 0;
+  colours: ColourRange = { low: 0, high: 0 };
+  /** a hand is on the objects: the camera stays where it is */
+  held = false;
   onDraw: () => void = () => {};
 
   private readonly renderer: THREE.WebGLRenderer;
   private readonly three = new THREE.Scene();
-  private readonly controls: OrbitControls;
-  private readonly sun = new THREE.DirectionalLight(0xfff6ea, 2.3);
-  private readonly sky = new THREE.HemisphereLight(0xffffff, 0xa9b6be, 1.3);
-  /** Near by, so that flat faces get a gradient from it. */
-  private readonly lamp = new THREE.PointLight(0xf4f8ff, 1);
-  private readonly ground: THREE.Mesh<THREE.PlaneGeometry, THREE.ShadowMaterial>;
-  private grid: THREE.GridHelper | null = null;
+  readonly controls: OrbitControls;
+  private readonly surroundings = new Surroundings();
   private styluses: Stylus[] = [];
   private scene: Scene | null = null;
   private frame: Frame | null = null;
@@ -50,14 +48,7 @@ export class World {
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = THREE.PCFShadowMap;
     this.renderer.toneMapping = THREE.NeutralToneMapping;
-    this.sun.castShadow = true;
-    this.sun.shadow.mapSize.set(512, 512);
-    this.sun.shadow.radius = 4;
-    this.sun.shadow.normalBias = 0.002;
-    this.sun.shadow.bias = -0.0005;
-    this.ground = new THREE.Mesh(new THREE.PlaneGeometry(1, 1), new THREE.ShadowMaterial());
-    this.ground.receiveShadow = true;
-    this.three.add(this.sun, this.sun.target, this.sky, this.lamp, this.ground);
+    this.three.add(this.surroundings.group);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.addEventListener("change", () => this.invalidate());
     canvas.addEventListener("webglcontextrestored", () => this.invalidate());
@@ -74,7 +65,7 @@ export class World {
     }
     this.scene = scene;
     this.frame = null;
-    this.colourScale = 0;
+    this.colours = { low: 0, high: 0 };
     this.objects = scene.objects.map((object) => new SoftObject(object));
     this.styluses = scene.styluses.map((stylus) => new Stylus(stylus));
     for (const thing of [...this.objects, ...this.styluses]) this.three.add(thing.group);
@@ -88,12 +79,33 @@ export class World {
     this.frame = frame;
     frame.objects.forEach((state, i) => this.objects[i]!.follow(state, frame.time, this.look.colouring));
     frame.styluses.forEach((state, s) => this.styluses[s]!.follow(state));
-    // The ramp's end follows upwards at once and downwards slowly, so that colours can be compared.
-    const largest = Math.max(...this.objects.map((object) => object.largest));
-    this.colourScale = Math.max(largest, this.colourScale * 0.995);
+    this.showContacts(frame);
+    this.followColours();
     if (this.fitPending) this.fit();
-    else if (this.look.follow) this.goAlong(frame);
+    else if (this.look.follow && !this.held) this.goAlong(frame);
     this.invalidate();
+  }
+
+  private showContacts(frame: Frame): void {
+    this.objects.forEach((object, i) => {
+      const touching = frame.styluses.map((state, s) => ({ state, radius: this.scene!.styluses[s]!.radius }));
+      const here = touching.filter(({ state }) => state.present && state.contact !== Contact.Free && state.object === i);
+      object.marks.show(here.map(({ state, radius }) => ({ middle: state.middle, radius })));
+    });
+  }
+
+  /** The ramp's end follows upwards at once and downwards slowly, so that colours can be compared. */
+  private followColours(): void {
+    if (this.look.colouring === "compliance") {
+      const ranges = this.objects.flatMap((object) => object.complianceRange ?? []);
+      this.colours = {
+        low: Math.min(...ranges.map((range) => range.low)),
+        high: Math.max(...ranges.map((range) => range.high)),
+      };
+      return;
+    }
+    const largest = Math.max(...this.objects.map((object) => object.largest));
+    this.colours = { low: 0, high: Math.max(largest, this.colours.high * 0.995) };
   }
 
   /** Moves camera, light and shadow, gently, when the objects' middle is further off than they are large. */
@@ -107,18 +119,14 @@ export class World {
     way.multiplyScalar(Math.min(1, 0.12 * excess));
     this.controls.target.add(way);
     this.camera.position.add(way);
-    this.sun.position.add(way);
-    this.sun.target.position.add(way);
-    this.lamp.position.add(way);
-    this.sun.target.updateMatrixWorld();
-    if (this.scene?.floor === null) this.ground.position.add(way);
+    this.surroundings.moveBy(way);
     this.controls.update();
   }
   private radius = 0.1;
 
   applyLook(): void {
     for (const object of this.objects) object.showsRigid = this.look.rigid;
-    this.colourScale = 0;
+    this.colours = { low: 0, high: 0 };
     if (this.frame !== null) this.follow(this.frame);
     this.invalidate();
   }
@@ -127,10 +135,8 @@ export class World {
     this.theme = theme;
     for (const object of this.objects) object.applyTheme(theme);
     for (const stylus of this.styluses) stylus.applyTheme(theme);
-    this.ground.material.opacity = theme.dark ? 0.4 : 0.13;
-    this.sky.groundColor.set(theme.dark ? 0x2f3a41 : 0xa9b6be);
-    this.sky.intensity = theme.dark ? 0.75 : 1.3;
-    this.placeGround();
+    this.surroundings.applyTheme(theme);
+    if (this.scene !== null && !this.fitPending) this.surroundings.place(this.bounds(), this.scene.floor, theme);
     this.invalidate();
   }
 
@@ -150,8 +156,7 @@ export class World {
     this.controls.minDistance = radius * 0.3;
     this.controls.maxDistance = distance * 8;
     this.controls.update();
-    this.placeLight(center, radius);
-    this.placeGround();
+    this.surroundings.place(this.bounds(), this.scene.floor, this.theme);
     this.invalidate();
   }
 
@@ -173,6 +178,40 @@ export class World {
     return (2 * distance * Math.tan((FIELD_OF_VIEW * Math.PI) / 360)) / Math.max(1, this.canvas.clientHeight);
   }
 
+  /** From the eye through a point of the canvas [CSS px]; unit direction. W */
+  rayThrough(x: number, y: number): THREE.Ray {
+    const { clientWidth, clientHeight } = this.canvas;
+    const point = new THREE.Vector2((2 * x) / clientWidth - 1, 1 - (2 * y) / clientHeight);
+    this.camera.updateMatrixWorld();
+    const caster = new THREE.Raycaster();
+    caster.setFromCamera(point, this.camera);
+    return caster.ray;
+  }
+
+  /** Unit, W. */
+  forward(): THREE.Vector3 {
+    return this.camera.getWorldDirection(new THREE.Vector3());
+  }
+
+  /** What of the objects is seen on a ray first. */
+  pick(ray: THREE.Ray): PressPoint | null {
+    const hits = this.objects.flatMap((object) => object.pick(ray) ?? []);
+    return hits.sort((a, b) => a.distance - b.distance)[0] ?? null;
+  }
+
+  /** Where a point of the world is on the canvas [CSS px]. */
+  onCanvas(point: THREE.Vector3): { x: number; y: number } {
+    const { clientWidth, clientHeight } = this.canvas;
+    const { x, y } = point.clone().project(this.camera);
+    return { x: ((x + 1) / 2) * clientWidth, y: ((1 - y) / 2) * clientHeight };
+  }
+
+  /** Where this viewer's hand wants the tip of the viewers' stylus; null: nowhere. [m], W */
+  showHand(asked: THREE.Vector3 | null): void {
+    const stylus = this.styluses.at(-1);
+    if (stylus !== undefined) stylus.asked = asked;
+  }
+
   private bounds(): THREE.Sphere {
     const box = new THREE.Box3();
     this.objects.forEach((object, i) => {
@@ -184,44 +223,6 @@ export class World {
       }
     });
     return box.getBoundingSphere(new THREE.Sphere());
-  }
-
-  private placeLight(center: THREE.Vector3, radius: number): void {
-    const reach = 2.4 * radius;
-    this.sun.target.position.copy(center);
-    this.sun.position.copy(center).add(new THREE.Vector3(0.5, 1.5, 0.65).normalize().multiplyScalar(4 * radius));
-    this.lamp.position.copy(center).add(new THREE.Vector3(-1.1, 0.5, 1.6).multiplyScalar(radius));
-    this.lamp.intensity = 1.1 * (2 * radius) ** 2; // candela; it falls with the distance squared
-    const shadow = this.sun.shadow.camera;
-    shadow.left = shadow.bottom = -reach;
-    shadow.right = shadow.top = reach;
-    shadow.near = 0.5 * radius;
-    shadow.far = 9 * radius;
-    shadow.updateProjectionMatrix();
-  }
-
-  /** The floor where there is one, with lines every 2 cm; else only a shadow, far enough below to be none. */
-  private placeGround(): void {
-    if (this.scene === null || this.fitPending) return;
-    if (this.grid !== null) {
-      this.three.remove(this.grid);
-      this.grid.dispose();
-      this.grid = null;
-    }
-    const { center, radius } = this.bounds();
-    const floor = this.scene.floor;
-    const up = floor === null ? new THREE.Vector3(0, 1, 0) : new THREE.Vector3(...floor.normal);
-    const height = floor === null ? center.y - 1.35 * radius : floor.height;
-    const middle = center.clone().addScaledVector(up, height - center.dot(up));
-    this.ground.position.copy(middle);
-    this.ground.quaternion.setFromUnitVectors(new THREE.Vector3(0, 0, 1), up);
-    this.ground.scale.setScalar(40 * radius);
-    if (floor === null) return;
-    const size = Math.ceil((8 * radius) / 0.04) * 0.04;
-    this.grid = new THREE.GridHelper(size, Math.round(size / 0.02), this.theme.line, this.theme.line);
-    this.grid.position.copy(middle).addScaledVector(up, -1e-4);
-    this.grid.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), up);
-    this.three.add(this.grid);
   }
 
   private resize(): void {
@@ -245,7 +246,7 @@ export class World {
 
   drawNow(): void {
     const { exaggeration, colouring } = this.look;
-    for (const object of this.objects) object.draw(exaggeration, colouring, this.colourScale);
+    for (const object of this.objects) object.draw(exaggeration, colouring, this.colours);
     this.renderer.render(this.three, this.camera);
     this.onDraw();
   }

@@ -3,7 +3,8 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import path from "node:path";
 import { test } from "node:test";
-import { decode, encodeHello, encodePutBack, ProtocolError, type Frame, type Health, type Scene } from "../src/protocol.ts";
+import { ProtocolError } from "../src/byte_reader.ts";
+import { Command, decode, encodeCommand, encodeHello, type Frame, type Health, type Scene } from "../src/protocol.ts";
 
 const folder = process.env["SAMPLES"]!;
 const expected = JSON.parse(readFileSync(path.join(folder, "expected.json"), "utf8")) as Record<string, number[]>;
@@ -66,7 +67,7 @@ test("health is what the server made it", () => {
 
 test("the page's messages are those of the server's decoder", () => {
   assert.deepEqual(Buffer.from(encodeHello("token ü")), Buffer.from(bytes("hello.bin")));
-  assert.deepEqual(Buffer.from(encodePutBack()), Buffer.from(bytes("put_back.bin")));
+  assert.deepEqual(Buffer.from(encodeCommand(Command.PutBack)), Buffer.from(bytes("put_back.bin")));
 });
 
 test("a message that is cut, too long or of another kind is refused", () => {

@@ -44,11 +44,22 @@ void WebPeer::send(const std::string& text) {
   [[maybe_unused]] const ssize_t sent = ::send(descriptor_, text.data(), text.size(), MSG_NOSIGNAL);
 }
 
+void WebPeer::finish() {
+  ::shutdown(descriptor_, SHUT_WR);
+}
+
 bool WebPeer::fill() {
   std::array<char, 65536> bytes;
   const ssize_t count = ::recv(descriptor_, bytes.data(), bytes.size(), 0);
   if (count > 0) buffer_.append(bytes.data(), static_cast<std::size_t>(count));
   return count > 0;
+}
+
+bool WebPeer::read_byte() {
+  char byte = 0;
+  if (::recv(descriptor_, &byte, 1, 0) != 1) return false;
+  buffer_ += byte;
+  return true;
 }
 
 bool WebPeer::have(std::size_t count) {

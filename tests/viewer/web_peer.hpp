@@ -27,6 +27,8 @@ class WebPeer {
   ~WebPeer();
 
   void send(const std::string& text);
+  /// Says that nothing more is coming.
+  void finish();
   /// Everything until the server closes; nothing when it does not.
   std::optional<std::string> rest();
   /// One answer's header, up to and with the empty line.
@@ -40,6 +42,9 @@ class WebPeer {
   void send_message(std::span<const std::uint8_t> payload, int opcode = 2);
   /// The next message that is no ping; nothing at the end of the connection or at the deadline.
   std::optional<Message> receive();
+  /// Reads one byte of what is coming and no more; false at the end of the connection or at the
+  /// deadline.
+  bool read_byte();
   std::uint16_t port() const noexcept { return port_; }
 
  private:

@@ -1,0 +1,69 @@
+// The viewer's HTTP side: its rules alone, and whole connections to a server that runs.
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <string>
+
+#include "server/viewer/request_rules.hpp"
+#include "server/viewer/viewer_server.hpp"
+#include "tests/fuzz/harness.hpp"
+#include "tests/viewer/frames.hpp"
+#include "tests/viewer/web_peer.hpp"
+
+namespace irdm::fuzz {
+
+using namespace irdm::viewer;
+
+void request_rules(Input input) {
+  std::array<std::string_view, 5> line;
+  std::string_view rest = text_of(input);
+  for (std::string_view& each : line) {
+    each = rest.substr(0, rest.find('\n'));
+    rest.remove_prefix(std::min(each.size() + 1, rest.size()));
+  }
+  const auto& [origin, host, given, wanted, list] = line;
+  const bool open = origin_allowed(origin, host, false);
+  const bool with_token = origin_allowed(origin, host, true);
+  expect(with_token || !open, "what is allowed without a token is allowed with one");
+  const std::size_t scheme = origin.starts_with("https") ? 8 : 7;
+  expect(!with_token || origin.size() == scheme + host.size(),
+         "an origin that is allowed is a scheme and the host");
+  expect(same_token(given, wanted) == (given == wanted), "tokens are the same or not");
+  accepts_gzip(list);
+  names_etag(list, "\"0123456789abcdef\"");
+}
+
+namespace {
+
+/// A server that shows the example scene, for as long as the process lives.
+struct Site {
+  Site() {
+    spdlog::set_level(spdlog::level::off);
+    server.start();
+  }
+  static ViewerSettings settings() {
+    ViewerSettings settings;
+    settings.page.add("/index.html", {"text/html", "<!doctype html>", "packed", "\"abc\"", false});
+    settings.page.add("/assets/app.js", {"text/javascript", "script", "", "\"def\"", true});
+    return settings;
+  }
+
+  Scene scene = test::example_scene();
+  Mailbox<SurfaceFrame> surfaces{test::example_frame(scene, 0.001)};
+  Wakeup ready;
+  ViewerServer server{settings(), {scene, surfaces, ready, [] { return Health{}; }, [] {}}};
+};
+
+}  // namespace
+
+void http_connection(Input input) {
+  static Site site;
+  test::WebPeer peer(site.server.port());
+  peer.send(std::string(text_of(input)));
+  peer.finish();
+  const auto answer = peer.rest();
+  expect(answer.has_value(), "a connection ends when its peer has said all");
+  expect(answer->empty() || answer->starts_with("HTTP/1."), "an answer is HTTP");
+}
+
+}  // namespace irdm::fuzz

@@ -7,7 +7,7 @@
 #include "server/viewer/request_rules.hpp"
 #include "server/viewer/viewer_server.hpp"
 #include "tests/fuzz/harness.hpp"
-#include "tests/viewer/frames.hpp"
+#include "tests/viewer/example_run.hpp"
 #include "tests/viewer/web_peer.hpp"
 
 namespace irdm::fuzz {
@@ -48,10 +48,8 @@ struct Site {
     return settings;
   }
 
-  Scene scene = test::example_scene();
-  Mailbox<SurfaceFrame> surfaces{test::example_frame(scene, 0.001)};
-  Wakeup ready;
-  ViewerServer server{settings(), {scene, surfaces, ready, [] { return Health{}; }, [] {}}};
+  test::ExampleRun run;
+  ViewerServer server{settings(), run};
 };
 
 }  // namespace

@@ -93,8 +93,11 @@ ContactConfig read_contact(TomlTable table) {
   return config;
 }
 
+/// Of directions and quaternions of any length, whose square has to be a number.
+constexpr Range kComponent = between(-1e100, 1e100);
+
 Quaternion read_orientation(TomlTable& table) {
-  const auto wxyz = table.numbers("orientation", 4, kAnyNumber, {1.0, 0.0, 0.0, 0.0});
+  const auto wxyz = table.numbers("orientation", 4, kComponent, {1.0, 0.0, 0.0, 0.0});
   const Quaternion orientation(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
   constexpr double kSmallest = 1e-6;
   if (orientation.norm() < kSmallest) {
@@ -140,7 +143,7 @@ std::optional<FloorConfig> read_floor(TomlTable& file) {
   TomlTable table = file.table("floor");
   FloorConfig floor;
   floor.height = table.number("height", kAnyNumber, floor.height);
-  const auto normal = table.numbers("normal", 3, kAnyNumber, {0.0, 1.0, 0.0});
+  const auto normal = table.numbers("normal", 3, kComponent, {0.0, 1.0, 0.0});
   floor.normal = Vector3(normal.data());
   if (floor.normal.norm() < 1e-6) {
     table.fail("normal", "has no length", "give the direction that is up, for instance [0, 1, 0]");

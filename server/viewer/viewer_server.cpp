@@ -271,7 +271,8 @@ void ViewerServer::Impl::await_surface(std::size_t source) {
 }
 
 void ViewerServer::Impl::await_tick() {
-  timer_.expires_after(std::chrono::milliseconds(settings_.health_period_ms) / kTicks);
+  constexpr std::chrono::microseconds kMillisecond(1000);
+  timer_.expires_after(settings_.health_period_ms * kMillisecond / kTicks);
   timer_.async_wait([this](error_code error) {
     if (error || stopping_) return;
     const std::int64_t now_ns = monotonic_ns();

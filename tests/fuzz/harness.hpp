@@ -23,6 +23,7 @@ void viewer_scene(Input input);
 /// One byte: number of objects; as many bytes: their nodes; the message.
 void viewer_frame(Input input);
 void viewer_health(Input input);
+void viewer_state(Input input);
 
 /// Lines: Origin, Host, token given, token wanted, list of codings or entity tags.
 void request_rules(Input input);
@@ -43,17 +44,12 @@ struct Harness {
   void (*run)(Input input);
 };
 inline constexpr std::array kHarnesses = {
-    Harness{"viewer_client", viewer_client},
-    Harness{"viewer_scene", viewer_scene},
-    Harness{"viewer_frame", viewer_frame},
-    Harness{"viewer_health", viewer_health},
-    Harness{"request_rules", request_rules},
-    Harness{"http_connection", http_connection},
-    Harness{"wire_frames", wire_frames},
-    Harness{"scene_config", scene_config},
-    Harness{"precompute_config", precompute_config},
-    Harness{"bridge_config", bridge_config},
-    Harness{"stylus_script", stylus_script},
+    Harness{"viewer_client", viewer_client},     Harness{"viewer_scene", viewer_scene},
+    Harness{"viewer_frame", viewer_frame},       Harness{"viewer_health", viewer_health},
+    Harness{"viewer_state", viewer_state},       Harness{"request_rules", request_rules},
+    Harness{"http_connection", http_connection}, Harness{"wire_frames", wire_frames},
+    Harness{"scene_config", scene_config},       Harness{"precompute_config", precompute_config},
+    Harness{"bridge_config", bridge_config},     Harness{"stylus_script", stylus_script},
 };
 
 }  // namespace irdm::fuzz

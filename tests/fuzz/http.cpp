@@ -2,12 +2,13 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <stdexcept>
 #include <string>
 
 #include "server/viewer/request_rules.hpp"
 #include "server/viewer/viewer_server.hpp"
 #include "tests/fuzz/harness.hpp"
-#include "tests/viewer/frames.hpp"
+#include "tests/viewer/example_run.hpp"
 #include "tests/viewer/web_peer.hpp"
 
 namespace irdm::fuzz {
@@ -48,22 +49,45 @@ struct Site {
     return settings;
   }
 
-  Scene scene = test::example_scene();
-  Mailbox<SurfaceFrame> surfaces{test::example_frame(scene, 0.001)};
-  Wakeup ready;
-  ViewerServer server{settings(), {scene, surfaces, ready, [] { return Health{}; }, [] {}}};
+  test::ExampleRun run;
+  ViewerServer server{settings(), run};
 };
+
+}  // namespace
+
+namespace {
+
+/// The answer's header; empty when there is none.
+std::string header_of(test::WebPeer& peer) {
+  try {
+    return peer.header();
+  } catch (const std::runtime_error&) {
+    return {};
+  }
+}
 
 }  // namespace
 
 void http_connection(Input input) {
   static Site site;
+  const std::string_view text = text_of(input);
+  const std::size_t end = text.find("\r\n\r\n");
+  const std::size_t head = end == std::string_view::npos ? text.size() : end + 4;
   test::WebPeer peer(site.server.port());
-  peer.send(std::string(text_of(input)));
+  // Who opens a WebSocket has to wait for the answer.
+  std::string answer;
+  if (text.starts_with("GET /live ") && head < text.size()) {
+    peer.send(std::string(text.substr(0, head)));
+    answer = header_of(peer);
+    peer.send(std::string(text.substr(head)));
+  } else {
+    peer.send(std::string(text));
+  }
   peer.finish();
-  const auto answer = peer.rest();
-  expect(answer.has_value(), "a connection ends when its peer has said all");
-  expect(answer->empty() || answer->starts_with("HTTP/1."), "an answer is HTTP");
+  const auto rest = peer.rest();
+  expect(rest.has_value(), "a connection ends when its peer has said all");
+  if (answer.empty()) answer = *rest;
+  expect(answer.empty() || answer.starts_with("HTTP/1."), "an answer is HTTP");
 }
 
 }  // namespace irdm::fuzz

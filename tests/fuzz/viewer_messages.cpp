@@ -47,6 +47,15 @@ void viewer_health(Input input) {
   }
 }
 
+void viewer_state(Input input) {
+  const auto decode = [](Input bytes) { return decode_state(bytes, 2); };
+  try {
+    const State state = decode(input);
+    check_again(encode(state), decode, [](const auto& it) { return encode(it); });
+  } catch (const MessageError&) {
+  }
+}
+
 namespace {
 
 /// Whether all of it is within what 4-byte numbers hold.

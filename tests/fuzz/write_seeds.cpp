@@ -32,6 +32,13 @@ void write_client_messages(const Seeds& seeds) {
   seeds.write("viewer_client", "hello", hello);
   seeds.write("viewer_client", "no_token", encode(viewer::ClientMessage(viewer::Hello{})));
   seeds.write("viewer_client", "put_back", put_back);
+  seeds.write("viewer_client", "seek",
+              encode(viewer::ClientMessage(viewer::Command{viewer::CommandKind::kSeek, 0, 1.5})));
+  seeds.write("viewer_client", "stylus",
+              encode(viewer::ClientMessage(viewer::StylusRequest{true, 1, Vector3(1, 2, 3)})));
+  seeds.write(
+      "viewer_client", "settings",
+      encode(viewer::ClientMessage(viewer::SettingsRequest{test::example_state().settings, 2})));
   // A browser's whole connection, with a mask that changes nothing.
   std::string bytes =
       "GET /live HTTP/1.1\r\nHost: 127.0.0.1:1\r\nOrigin: http://127.0.0.1:1\r\n"
@@ -48,7 +55,8 @@ void write_client_messages(const Seeds& seeds) {
 void write_server_messages(const Seeds& seeds) {
   const viewer::Scene scene = test::example_scene();
   seeds.write("viewer_scene", "scene", encode(scene));
-  seeds.write("viewer_health", "health", encode(viewer::Health{}));
+  seeds.write("viewer_health", "health", encode(viewer::Health{.links = {{}, {true}}}));
+  seeds.write("viewer_state", "state", encode(test::example_state()));
   for (const double size : {0.01, 2.0}) {
     viewer::Bytes message;
     viewer::encode(test::example_frame(scene, size), message);

@@ -112,6 +112,16 @@ TEST_CASE("a scene needs only a model, the rest has defaults") {
   CHECK(read.styluses[0].reach == 0.0);
 }
 
+TEST_CASE("an orientation and a floor's normal may have any length whose square is a number") {
+  const auto turned = scene(kObject + "orientation = [0, 0, 0, -1e100]\n").objects.at(0);
+  CHECK(turned.orientation.isApprox(Quaternion(0, 0, 0, -1)));
+  CHECK(scene("[floor]\nnormal = [0, 0, 1e100]\n" + kObject).floor->normal == Vector3(0, 0, 1));
+  CHECK_THAT(rejection(kObject + "orientation = [0, 0, 0, 1e200]\n"),
+             StartsWith("s.toml:3: object[0].orientation is 1e+200; give a finite number"));
+  CHECK_THAT(rejection("[floor]\nnormal = [0, 0, 1e200]\n" + kObject),
+             StartsWith("s.toml:2: floor.normal is 1e+200; give a finite number"));
+}
+
 TEST_CASE("a floor needs no key, and one friction value goes a long way") {
   const SceneConfig read = scene("[floor]\n" + kObject);
   REQUIRE(read.floor);
@@ -311,7 +321,7 @@ TEST_CASE("each vector of a scene must have its numbers, all finite") {
         "s.toml:3: object[0].orientation has no length; give a quaternion w, x, y, z, for "
         "instance [1, 0, 0, 0]");
   CHECK(rejection(kObject + "orientation = [1, nan, 0, 0]\n") ==
-        "s.toml:3: object[0].orientation is nan; give a finite number");
+        "s.toml:3: object[0].orientation is nan; give a finite number >= -1e+100 and <= 1e+100");
 }
 
 TEST_CASE("a key that no table of a scene knows is an error") {

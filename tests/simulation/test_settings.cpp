@@ -88,14 +88,16 @@ TEST_CASE("settings: gravity, tether and damping act from the next step on") {
 
 TEST_CASE("settings: friction decides from the next step on whether a tip slips") {
   const auto slips = [](double friction) {
-    Simulation simulation(plain(synthetic_cube(3, 30, 10)));
+    SimulationConfig config = plain(synthetic_cube(3, 30, 10));
+    config.objects[0].damping = {200.0, 200.0};  // so that it does not run away
+    Simulation simulation(config);
     Settings settings = simulation.settings();
     settings.object[0].friction = {friction, friction};
     StepRecord record = run(simulation, 0, 40);
     simulation.set(settings);
     bool slipped = false;
     for (int k = 0; k < 20; ++k) {
-      const StylusCommand command{true, 0, Vector3(0.01 + 2e-5 * k, 0.057, 0.005), {}};
+      const StylusCommand command{true, 0, Vector3(0.01 + 2e-5 * k, 0.057 - 1e-4 * k, 0.005), {}};
       simulation.step({&command, 1}, record);
       REQUIRE(record.stylus[0].contact == ContactState::kTouching);
       slipped = slipped || record.object[0].contact[0].slipping;
@@ -168,7 +170,7 @@ TEST_CASE("settings: the deformation follows them") {
   deformation.compute(frame);
   simulation.object().engine().displacement(expected);
   CHECK(frame.objects[0].displacement == expected);
-  CHECK(expected.norm() > 1e-4);
+  CHECK(expected.norm() > 1e-6);  // there is something to compare
 }
 
 TEST_CASE("settings: what a step cannot bear or a model cannot do is refused with the reason") {

@@ -1,11 +1,10 @@
 // What a viewer that hardly reads costs the server: what the kernel holds for it, one message that
 // is being written, and one of each kind that waits.
-#include <atomic>
 #include <catch2/catch.hpp>
 
 #include "server/viewer/viewer_server.hpp"
 #include "tests/support/eventually.hpp"
-#include "tests/viewer/frames.hpp"
+#include "tests/viewer/example_run.hpp"
 #include "tests/viewer/web_peer.hpp"
 
 using namespace irdm;
@@ -21,7 +20,7 @@ constexpr std::uint64_t kLate = 1'000'000;
 
 class Show {
  public:
-  Show() : server_({.health_period_ms = 1}, feed()) { server_.start(); }
+  Show() : server_({.health_period_ms = 1}, run_) { server_.start(); }
 
   WebPeer watch(int receive_buffer = 0) const {
     WebPeer peer(server_.port(), receive_buffer);
@@ -30,15 +29,15 @@ class Show {
     return peer;
   }
   void publish(std::uint64_t step) {
-    surfaces_.back() = frame_;
-    surfaces_.back().force_step = step;
-    surfaces_.publish();
-    ready_.signal();
+    run_.surfaces.back() = frame_;
+    run_.surfaces.back().force_step = step;
+    run_.surfaces.publish();
+    run_.ready.signal();
   }
   /// Steps from here on are reported as made by Health.
-  void set_steps(std::uint64_t steps) { steps_ = steps; }
+  void set_steps(std::uint64_t steps) { run_.steps = steps; }
   SurfaceFrame decode(const WebPeer::Message& message) const {
-    return decode_frame(message.payload, node_counts(scene_));
+    return decode_frame(message.payload, node_counts(run_.scene_));
   }
   /// Until a viewer that reads everything has seen this step.
   void wait_for(WebPeer& alive, std::uint64_t step) const {
@@ -50,15 +49,8 @@ class Show {
   }
 
  private:
-  ViewerFeed feed() {
-    return {scene_, surfaces_, ready_, [this] { return Health{.steps = steps_}; }, [] {}};
-  }
-
-  Scene scene_ = example_scene();
-  SurfaceFrame frame_ = example_frame(scene_, 0.01);
-  Mailbox<SurfaceFrame> surfaces_{frame_};
-  Wakeup ready_;
-  std::atomic<std::uint64_t> steps_{0};
+  ExampleRun run_;
+  SurfaceFrame frame_ = example_frame(run_.scene_, 0.01);
   ViewerServer server_;
 };
 

@@ -11,7 +11,7 @@
 #include "server/viewer/viewer_server.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/temporary_folder.hpp"
-#include "tests/viewer/frames.hpp"
+#include "tests/viewer/example_run.hpp"
 #include "tests/viewer/web_peer.hpp"
 
 using Catch::Matchers::Contains;
@@ -37,36 +37,6 @@ PageFiles example_page() {
   write("secret.txt", "of no known type");
   return PageFiles::read(folder.path());
 }
-
-/// Shows the example scene and counts what it is asked for.
-struct ExampleRun final : ViewedRun {
-  const Scene& scene() const override { return scene_; }
-  std::vector<SurfaceSource> sources() override {
-    return {{surfaces, ready}, {other_surfaces, other_ready}};
-  }
-  std::size_t shown_source() const override { return shown; }
-  Health health() override { return {.steps = 77}; }
-  State state() override {
-    State state = example_state();
-    state.notice = shown == 0 ? "the first one" : "the other one";
-    return state;
-  }
-  void carry_out(const Command& command) override {
-    if (command.kind == CommandKind::kPutBack) ++put_backs;
-    if (command.kind == CommandKind::kShowRecording) shown = 1;
-  }
-  void carry_out(const SettingsRequest&) override { ++settings; }
-  void carry_out(const StylusRequest& request) override {
-    (request.present ? presses : releases)++;
-  }
-
-  Scene scene_ = example_scene();
-  Mailbox<SurfaceFrame> surfaces{example_frame(scene_, 0.001)};
-  Mailbox<SurfaceFrame> other_surfaces{example_frame(scene_, 0.001, 5)};
-  Wakeup ready, other_ready;
-  std::atomic<std::size_t> shown{0};
-  std::atomic<int> put_backs{0}, settings{0}, presses{0}, releases{0};
-};
 
 /// A server that shows it.
 struct Show {

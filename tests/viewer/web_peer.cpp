@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <cerrno>
 #include <stdexcept>
 #include <utility>
 
@@ -50,7 +51,10 @@ void WebPeer::finish() {
 
 bool WebPeer::fill() {
   std::array<char, 65536> bytes;
-  const ssize_t count = ::recv(descriptor_, bytes.data(), bytes.size(), 0);
+  ssize_t count = 0;
+  do {
+    count = ::recv(descriptor_, bytes.data(), bytes.size(), 0);
+  } while (count < 0 && errno == EINTR);  // a fuzzer has timers
   if (count > 0) buffer_.append(bytes.data(), static_cast<std::size_t>(count));
   return count > 0;
 }

@@ -42,7 +42,7 @@ function picture(page) {
 
 /** Convex hull, counter-clockwise. */
 function hull(points) {
-  const sorted = points.toSorted((a, b) => a[0] - b[0] || a[1] - b[1]);
+  const sorted = [...points].sort((a, b) => a[0] - b[0] || a[1] - b[1]);
   const turn = (a, b, c) => (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
   const half = (list) => {
     const chain = [];
@@ -52,7 +52,7 @@ function hull(points) {
     }
     return chain.slice(0, -1);
   };
-  return [...half(sorted), ...half(sorted.toReversed())];
+  return [...half(sorted), ...half([...sorted].reverse())];
 }
 
 /** Distance to the hull's nearest side; more than 0 inside. */

@@ -160,13 +160,12 @@ export class FakeServer {
     const { present, grab, tip } = this.stylus;
     const state = { ...ABSENT, present, tip, proxy: tip, buttons: grab ? 1 : 0 };
     const axis = tip.reduce((most, part, i) => (Math.abs(part) > Math.abs(tip[most]) ? i : most), 0);
-    const radius = this.scene.radii.at(-1);
-    const deep = EDGE / 2 + radius - Math.abs(tip[axis]);
+    const deep = EDGE / 2 - Math.abs(tip[axis]);
     if (!present || deep <= 0) return { state, dent: null };
     const side = Math.sign(tip[axis]);
     const size = Math.min(STIFFNESS * deep, BOUND);
     const vector = (value) => tip.map((_, i) => (i === axis ? value : 0));
-    const proxy = tip.map((part, i) => (i === axis ? side * (EDGE / 2 + radius - 0.5 * deep) : part));
+    const proxy = tip.map((part, i) => (i === axis ? side * (EDGE / 2 - 0.5 * deep) : part));
     const middle = tip.map((part, i) => (i === axis ? (side * EDGE) / 2 : part));
     const touched = { ...state, contact: grab ? 2 : 1, object: 0, proxy, middle, force: vector(side * size), slips: false };
     return { state: touched, dent: { middle, push: vector(-side * 0.5 * deep) } };

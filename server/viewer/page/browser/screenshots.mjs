@@ -36,7 +36,7 @@ const PICTURES = [
       const [stylus] = window.irdm.frame().styluses;
       return stylus.contact !== 0 && stylus.tip[0] > 0.04 && Math.hypot(...stylus.force) > 0.3;
     },
-    prepare: (page) => page.locator("input[value=displacement]").check(),
+    prepare: (page) => page.locator("#colour").selectOption("displacement"),
   },
 ];
 

@@ -9,17 +9,19 @@ const { IRDM_SERVER, IRDM_BRIDGE, IRDM_MODEL } = process.env;
 
 /** A folder with a scene and a script, and what was started on it; all of it ends with the test. */
 export class Stage {
-  constructor(context, scene = "") {
+  /** @param scene tables, @param object keys of the only object */
+  constructor(context, scene = "", object = "") {
     this.folder = mkdtempSync(path.join(tmpdir(), "irdm-browser-"));
     this.children = [];
-    this.write(
-      "scene.toml",
-      `${scene}\n[contact]\ncoupling_stiffness = 2000\n[[object]]\nname = "cube"\nmodel = "${IRDM_MODEL}"\n`,
-    );
+    this.scene(scene, object);
     context.after(() => {
       for (const child of this.children) child.kill("SIGKILL");
       rmSync(this.folder, { recursive: true, force: true });
     });
+  }
+  scene(tables, object) {
+    const model = `[[object]]\nname = "cube"\nmodel = "${IRDM_MODEL}"\n${object}`;
+    this.write("scene.toml", `${tables}\n[contact]\ncoupling_stiffness = 2000\n${model}`);
   }
   path(name) {
     return path.join(this.folder, name);

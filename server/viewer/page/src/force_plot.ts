@@ -40,7 +40,7 @@ export class ForcePlot {
   private build(): void {
     this.plot?.destroy();
     const { axes, ink, inkSoft, line } = this.theme;
-    const font = "11.5px system-ui, sans-serif";
+    const font = "12px system-ui, sans-serif"; // whole pixels: uPlot enlarges no others on fine screens
     const axis = { stroke: inkSoft, font, grid: { stroke: line, width: 1 }, ticks: { show: false } };
     const curve = (label: string, stroke: string, width: number): uPlot.Series => ({
       label,

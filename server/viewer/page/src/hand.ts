@@ -1,56 +1,52 @@
 import { Plane, Vector3, type Ray } from "three";
 
 const APPROACH_MS = 120;
-const CLEARANCE = 0.005; // between tip and surface at the beginning [m]
-const PUSH_DEPTH = 0.008; // how far it goes beyond first touch [m]
-const GRAB_DEPTH = 0.001;
+const CLEARANCE = 0.005; // between fingertip and surface at the beginning [m]
+const PUSH_DEPTH = 0.008; // below the surface as it was at the beginning [m]
+const GRAB_DEPTH = 0.001; // where only what is touched can be taken hold of
+const GRAB_DISTANCE = 0.002; // where there is a reach: the object is not pushed before it is held
 const MOST_DEPTH = 0.08;
-const LEAST_COSINE = 0.3; // of the view's angle to the surface; beyond, the way to first touch grows without end
 
-/** Where on an object a press began: true positions, however much exaggerated the object is drawn. [m], W */
-export interface PressPoint {
-  point: Vector3;
-  /** outward, unit */
-  normal: Vector3;
+export interface Fingertip {
+  /** [m] */
+  radius: number;
+  /** distance from which it can take hold [m] */
+  reach: number;
 }
 
 /**
  * A press by mouse or finger: the tip begins outside the surface, goes in along the view within a moment, and then
- * slides in the plane parallel to the screen at that depth. Pure; times in ms.
+ * slides in the plane parallel to the screen at that depth. It is a point that touches: the radius only spreads its
+ * pressure. Pure; times in ms.
  */
 export class Hand {
-  private readonly plane: Plane;
-  private readonly first: Vector3;
+  private readonly plane = new Plane();
+  private readonly way: number;
   private depth: number;
 
   /**
+   * @param place on the surface that is pressed, its true one however much exaggerated it is drawn [m], W
    * @param ray from the eye through the pointer, unit direction
    * @param forward from the eye through the middle of the screen, unit
-   * @param radius of the fingertip [m]
    * @param grabs to take hold, not to push
-   * @param now [ms]
+   * @param began now [ms]
    */
   constructor(
-    press: PressPoint,
+    private readonly place: Vector3,
     private ray: Ray,
     private readonly forward: Vector3,
-    radius: number,
+    { radius, reach }: Fingertip,
     grabs: boolean,
     private began: number,
   ) {
-    // A ball touches a plane before its middle is there.
-    const cosine = Math.max(LEAST_COSINE, -press.normal.dot(ray.direction));
-    this.first = press.point.clone().addScaledVector(ray.direction, -radius / cosine);
-    this.depth = grabs ? GRAB_DEPTH : PUSH_DEPTH;
-    this.start = this.depth + CLEARANCE;
-    this.plane = new Plane();
-    this.layPlane(this.first.clone().addScaledVector(ray.direction, this.depth));
+    const grabDepth = reach > 0 ? -Math.min(GRAB_DISTANCE, 0.4 * reach) : GRAB_DEPTH;
+    this.depth = grabs ? grabDepth : PUSH_DEPTH;
+    this.way = this.depth + radius + CLEARANCE;
+    const end = place.clone().addScaledVector(ray.direction, this.depth);
+    this.plane.setFromNormalAndCoplanarPoint(forward, end);
+    this.holdsFromAfar = reach > 0;
   }
-  private readonly start: number;
-
-  private layPlane(point: Vector3): void {
-    this.plane.setFromNormalAndCoplanarPoint(this.forward, point);
-  }
+  private readonly holdsFromAfar: boolean;
 
   /** The pointer has moved. */
   aim(ray: Ray): void {
@@ -60,7 +56,7 @@ export class Hand {
   /** Deeper, along the view. [m] */
   deepen(way: number): void {
     const depth = Math.min(Math.max(this.depth + way, -CLEARANCE), MOST_DEPTH);
-    this.plane.constant -= (depth - this.depth) * this.ray.direction.dot(this.forward);
+    this.carry(depth - this.depth);
     this.depth = depth;
   }
 
@@ -71,14 +67,14 @@ export class Hand {
 
   /** Where the tip ought to be [m], W. */
   tip(now: number): Vector3 {
-    const at = this.ray.intersectPlane(this.plane, new Vector3()) ?? this.first.clone();
+    const at = this.ray.intersectPlane(this.plane, new Vector3()) ?? this.place.clone();
     const left = 1 - Math.min(Math.max((now - this.began) / APPROACH_MS, 0), 1);
-    return at.addScaledVector(this.ray.direction, -this.start * left * left * (3 - 2 * left));
+    return at.addScaledVector(this.ray.direction, -this.way * left * left * (3 - 2 * left));
   }
 
-  /** It is where it presses: only now may it take hold, else the object would be pushed on the way there. */
-  arrived(now: number): boolean {
-    return now - this.began >= APPROACH_MS;
+  /** Not on the way there, where it would take hold from afar and then push. */
+  mayTakeHold(now: number): boolean {
+    return !this.holdsFromAfar || now - this.began >= APPROACH_MS;
   }
 
   /** Comes from outside once more. */

@@ -2,7 +2,6 @@ import * as THREE from "three";
 import { colourAt, linear } from "./colour_map";
 import { SurfaceMarks } from "./surface_marks";
 import { creaseMesh, vertexNormals, type CreasedMesh } from "./creases";
-import type { PressPoint } from "./hand";
 import type { ObjectState, SceneObject } from "./protocol";
 import type { Theme } from "./theme";
 
@@ -167,7 +166,7 @@ export class SoftObject {
    * Where a ray from the world meets the surface as it is drawn.
    * @returns the true place of what is seen there [m], W; null: nowhere
    */
-  pick(ray: THREE.Ray): (PressPoint & { distance: number }) | null {
+  pick(ray: THREE.Ray): { point: THREE.Vector3; distance: number } | null {
     this.group.updateMatrixWorld();
     const local = ray.clone().applyMatrix4(this.group.matrixWorld.clone().invert());
     const at = this.geometry.getAttribute("position") as THREE.BufferAttribute;
@@ -188,11 +187,10 @@ export class SoftObject {
     }
     if (corners === null) return null;
     const triangle = new THREE.Triangle().setFromAttributeAndIndices(at, ...corners);
-    const normal = triangle.getNormal(new THREE.Vector3()).transformDirection(this.group.matrixWorld);
     const shares = triangle.getBarycoord(local.at(nearest, point), new THREE.Vector3());
     const place = new THREE.Vector3();
     corners.forEach((vertex, corner) => place.addScaledVector(this.trueNode(nodeOf[vertex]!), shares!.getComponent(corner)));
-    return { point: place.applyMatrix4(this.group.matrixWorld), normal, distance: nearest };
+    return { point: place.applyMatrix4(this.group.matrixWorld), distance: nearest };
   }
 
   /** [m], B */

@@ -75,7 +75,7 @@ export class Stylus {
     this.tipMaterial.color.set(theme.ink);
     this.ghostMaterial.color.set(theme.ink);
     this.proxyMaterial.color.set(theme.accent);
-    this.spring.mesh.material.color.set(theme.accent);
+    this.spring.mesh.material.color.set(theme.force);
     this.arrowMaterial.color.set(theme.force);
   }
 

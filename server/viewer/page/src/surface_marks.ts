@@ -2,6 +2,7 @@ import * as THREE from "three";
 
 const MOST = 4; // contacts on one object, as many as there are styluses
 const POINT = 0.0013; // radius at which the contact of a point is drawn [m]
+const AMONG_COLOURS = "#ffffff"; // which the ramp does not have
 const OWN_LIGHT = 0.6; // share of a colour that stands for a value and must not go dark in the shade
 
 /**
@@ -31,13 +32,13 @@ export class SurfaceMarks {
     };
   }
 
-  set colour(colour: string) {
-    this.uniforms.markColour.value.set(colour);
-  }
+  /** On a plain surface. */
+  colour = "#ffffff";
 
   /** The surface's colours stand for values, and are to be read in the shade, too. */
   set coloursAreValues(are: boolean) {
     this.uniforms.ownLight.value = are ? OWN_LIGHT : 0;
+    this.uniforms.markColour.value.set(are ? AMONG_COLOURS : this.colour);
   }
 
   /** @param contacts middles on the surface at rest [m], B, and radii of the fingertips, 0: a point */

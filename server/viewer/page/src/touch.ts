@@ -1,9 +1,11 @@
-import type { Vector3 } from "three";
+import { Vector3, type Ray } from "three";
 import { Hand } from "./hand";
 import { Contact, type Frame, type HandMessage, type Scene, type State } from "./protocol";
 import type { World } from "./world";
 
 const LEAST_PAUSE_MS = 12; // between two messages: about 60 a second, also where the screen is quicker
+const MISSES_MS = 300; // inside the object without touching it, before it comes from outside again
+const BEHIND = 0.001; // [m]
 const KEEP_ALIVE_MS = 80; // the server lets go after 250 ms of silence
 
 export interface TouchListener {
@@ -32,7 +34,9 @@ export class Touch {
   private scene: Scene | null = null;
   private state: State | null = null;
   private hand: Hand | null = null;
+  private ray: Ray | null = null;
   private holds = false;
+  private missesSince = 0;
   private lastSent = 0;
   private timer = 0;
 
@@ -62,7 +66,27 @@ export class Touch {
   }
 
   follow(frame: Frame): void {
-    this.holds = frame.styluses.at(-1)!.contact === Contact.Held;
+    const { present, contact, tip } = frame.styluses.at(-1)!;
+    this.holds = contact === Contact.Held;
+    const misses = this.active && present && this.state?.stylusMine === true && contact === Contact.Free;
+    const now = performance.now();
+    if (!misses) this.missesSince = now;
+    else if (now - this.missesSince > MISSES_MS) {
+      this.missesSince = now;
+      this.comeAgain(new Vector3(...tip));
+    }
+  }
+
+  /** A tip that is inside, after everything was put back say, touches nothing until it has been outside. */
+  private comeAgain(tip: Vector3): void {
+    const place = this.world.pick(this.ray!);
+    if (place === null || tip.distanceTo(this.ray!.origin) < place.distanceTo(this.ray!.origin) + BEHIND) return;
+    this.hand = this.handAt(place, this.ray!);
+  }
+
+  private handAt(place: Vector3, ray: Ray): Hand {
+    const fingertip = this.scene!.styluses.at(-1)!;
+    return new Hand(place, ray, this.world.forward(), fingertip, this.grabs, performance.now());
   }
 
   lost(): void {
@@ -86,8 +110,9 @@ export class Touch {
       this.listener.say(reason);
       return false;
     }
-    const radius = this.scene!.styluses.at(-1)!.radius;
-    this.hand = new Hand(place, ray, this.world.forward(), radius, this.grabs, performance.now());
+    this.ray = ray;
+    this.hand = this.handAt(place, ray);
+    this.missesSince = performance.now();
     this.world.held = true;
     this.timer = window.setInterval(() => this.send(KEEP_ALIVE_MS), KEEP_ALIVE_MS);
     this.listener.changed(true);
@@ -96,7 +121,8 @@ export class Touch {
   }
 
   aim(x: number, y: number): void {
-    this.hand?.aim(this.world.rayThrough(x, y));
+    this.ray = this.world.rayThrough(x, y);
+    this.hand?.aim(this.ray);
   }
 
   /** Further from the eye. [m] */
@@ -133,6 +159,6 @@ export class Touch {
     this.lastSent = now;
     const tip = this.hand.tip(now);
     this.world.showHand(tip);
-    this.listener.send({ present: true, grab: this.grabs && this.hand.arrived(now), tip: tip.toArray() });
+    this.listener.send({ present: true, grab: this.grabs && this.hand.mayTakeHold(now), tip: tip.toArray() });
   }
 }

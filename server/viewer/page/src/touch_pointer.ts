@@ -26,6 +26,9 @@ export class TouchPointer {
     for (const end of ["pointerup", "pointercancel", "lostpointercapture"] as const) {
       canvas.addEventListener(end, (event) => this.up(event), before);
     }
+    // A press with Shift is not the keyboard's.
+    canvas.addEventListener("pointerdown", () => canvas.classList.add("by-pointer"));
+    canvas.addEventListener("blur", () => canvas.classList.remove("by-pointer"));
     canvas.addEventListener("wheel", (event) => this.wheel(event), { capture: true, passive: false });
     addEventListener("keydown", (event) => this.key(event, true));
     addEventListener("keyup", (event) => this.key(event, false));
@@ -94,6 +97,7 @@ export class TouchPointer {
 
   private key(event: KeyboardEvent, down: boolean): void {
     const name = event.key.toLowerCase();
+    if (/^(arrow|page| |t$)/.test(name)) this.canvas.classList.remove("by-pointer");
     if (name !== "shift" && name !== "g") return;
     if (down) this.keys.add(name);
     else this.keys.delete(name);

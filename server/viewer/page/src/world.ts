@@ -1,6 +1,5 @@
 import * as THREE from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
-import type { PressPoint } from "./hand";
 import { Contact, type Frame, type Scene } from "./protocol";
 import { SoftObject, type ColourRange, type Colouring } from "./soft_object";
 import { Stylus } from "./stylus";
@@ -193,15 +192,16 @@ export class World {
     return this.camera.getWorldDirection(new THREE.Vector3());
   }
 
-  /** What of the objects is seen on a ray first. */
-  pick(ray: THREE.Ray): PressPoint | null {
+  /** What of the objects is seen on a ray first: its true place [m], W. */
+  pick(ray: THREE.Ray): THREE.Vector3 | null {
     const hits = this.objects.flatMap((object) => object.pick(ray) ?? []);
-    return hits.sort((a, b) => a.distance - b.distance)[0] ?? null;
+    return hits.sort((a, b) => a.distance - b.distance)[0]?.point ?? null;
   }
 
   /** Where a point of the world is on the canvas [CSS px]. */
   onCanvas(point: THREE.Vector3): { x: number; y: number } {
     const { clientWidth, clientHeight } = this.canvas;
+    this.camera.updateMatrixWorld();
     const { x, y } = point.clone().project(this.camera);
     return { x: ((x + 1) / 2) * clientWidth, y: ((1 - y) / 2) * clientHeight };
   }

@@ -129,7 +129,8 @@ TEST_CASE("merge refuses slices that do not fit together, one by one") {
   run.good("merge a.part b.part -o m.h5");
 }
 
-TEST_CASE("compression keeps to its error, of the whole file and of joined slices alike") {
+TEST_CASE("compression keeps to its error, of the whole file and of joined slices alike",
+          "[slow]") {
   const std::string zfp = "compression = \"zfp\"\ncompression_error = 1e-4\n";
   for (const std::string& config : {kStepping, modal()}) {
     Run run(config + zfp);
@@ -175,7 +176,8 @@ TEST_CASE("option --columns takes A:B within R, of dense R only") {
   CHECK_FALSE(run.has("a.part"));
 }
 
-TEST_CASE("a work file goes on where its last whole column ends, however it was cut or damaged") {
+TEST_CASE("a work file goes on where its last whole column ends, however it was cut or damaged",
+          "[slow]") {
   Run run;
   run.good("c.toml -o whole.h5");
   run.good("c.toml -o a.part --columns 0:54");

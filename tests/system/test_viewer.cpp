@@ -128,3 +128,55 @@ TEST_CASE("viewer: an address that can be reached from elsewhere needs a token")
   CHECK(ended.status == 1);
   CHECK_THAT(ended.err, Contains("set viewer.token"));
 }
+
+TEST_CASE("viewer: --play shows a recorded run, at the time that is asked for") {
+  const Stage stage;
+  {
+    Server server = stage.start_server({"--lockstep", "--record", stage.path("trace.h5").string()});
+    ChildProcess bridge = stage.start_bridge(server);
+    REQUIRE(bridge.wait() == 0);
+    REQUIRE(server.process.wait() == 0);
+  }
+  const Trace trace = read_trace(stage.path("trace.h5"));
+  ChildProcess server({IRDM_SERVER, stage.path("scene.toml").string(), "--play",
+                       stage.path("trace.h5").string()});
+  WebPeer peer = watch(viewer_port(server));
+  const auto scene = next(peer, kScene);
+  CHECK(viewer::decode_scene(scene.payload).recorded);
+  CHECK_FALSE(viewer::decode_scene(scene.payload).viewer_stylus);
+  const std::size_t nodes = nodes_of(scene);
+  const auto ask = [&](viewer::CommandKind kind, double value = 0.0) {
+    peer.send_message(encode(viewer::ClientMessage(viewer::Command{kind, 0, value})));
+  };
+  ask(viewer::CommandKind::kStandStill);
+  for (const std::size_t k : {trace.rows() / 2, trace.rows() - 1, trace.rows() / 3}) {
+    ask(viewer::CommandKind::kSeek, trace.time[k]);
+    REQUIRE(eventually([&] {
+      const auto frame = viewer::decode_frame(next(peer, kFrame).payload, {&nodes, 1});
+      if (frame.force_step != k) return false;
+      CHECK(frame.objects.at(0).position == trace.vector("/step/body_position", k));
+      CHECK(frame.styluses.at(0).tip == trace.vector("/stylus/0/tip", k));
+      const Vector3 force = trace.vector("/stylus/0/force", k);
+      CHECK((frame.styluses.at(0).force - force).norm() <= 1e-6 * (1.0 + force.norm()));
+      return true;
+    }));
+  }
+  server.signal(SIGTERM);
+  CHECK(server.wait() == 0);
+}
+
+TEST_CASE("viewer: what --play cannot show is refused in one line") {
+  const Stage stage;
+  const auto refusal = [&](const std::string& file) {
+    const FinishedProgram ended = run_to_end({IRDM_SERVER, stage.path("scene.toml").string(),
+                                              "--play", stage.path(file).string()});
+    CHECK(ended.status == 1);
+    CHECK(ended.out.empty());
+    CHECK(std::count(ended.err.begin(), ended.err.end(), '\n') == 1);
+    return ended.err;
+  };
+  CHECK_THAT(refusal("missing.h5"), Contains("missing.h5"));
+  CHECK_THAT(refusal("scene.toml"), Contains("scene.toml"));
+  std::filesystem::copy_file(cube_model(), stage.path("model.h5"));
+  CHECK_THAT(refusal("model.h5"), Contains("is not a trace"));
+}

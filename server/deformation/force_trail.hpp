@@ -12,7 +12,7 @@ namespace irdm {
 /// than the force changes still sees all of it. Pure; no memory of its own is taken.
 class ForceTrail {
  public:
-  static constexpr int kLength = 32;
+  static constexpr int kLength = 128;
 
   /// Takes in a step. One that does not follow the last one begins anew.
   void follow(const StepRecord& record) noexcept {

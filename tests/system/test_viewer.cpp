@@ -138,8 +138,8 @@ TEST_CASE("viewer: --play shows a recorded run, at the time that is asked for") 
     REQUIRE(server.process.wait() == 0);
   }
   const Trace trace = read_trace(stage.path("trace.h5"));
-  ChildProcess server({IRDM_SERVER, stage.path("scene.toml").string(), "--play",
-                       stage.path("trace.h5").string()});
+  ChildProcess server(
+      {IRDM_SERVER, stage.path("scene.toml").string(), "--play", stage.path("trace.h5").string()});
   WebPeer peer = watch(viewer_port(server));
   const auto scene = next(peer, kScene);
   CHECK(viewer::decode_scene(scene.payload).recorded);
@@ -168,8 +168,8 @@ TEST_CASE("viewer: --play shows a recorded run, at the time that is asked for") 
 TEST_CASE("viewer: what --play cannot show is refused in one line") {
   const Stage stage;
   const auto refusal = [&](const std::string& file) {
-    const FinishedProgram ended = run_to_end({IRDM_SERVER, stage.path("scene.toml").string(),
-                                              "--play", stage.path(file).string()});
+    const FinishedProgram ended = run_to_end(
+        {IRDM_SERVER, stage.path("scene.toml").string(), "--play", stage.path(file).string()});
     CHECK(ended.status == 1);
     CHECK(ended.out.empty());
     CHECK(std::count(ended.err.begin(), ended.err.end(), '\n') == 1);

@@ -44,7 +44,7 @@ inline SurfaceFrame example_frame(const viewer::Scene& scene, double size, unsig
   const auto vector = [&] { return Vector3(uniform(random), uniform(random), uniform(random)); };
   SurfaceFrame frame;
   StepRecord record;
-  for (record.force_step = 1000; record.force_step < 1040; ++record.force_step) {
+  for (record.force_step = 900; record.force_step < 1040; ++record.force_step) {
     record.stylus[0].force = vector();
     record.stylus[1].force = vector();
     frame.trail.follow(record);

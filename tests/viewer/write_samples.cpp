@@ -66,7 +66,7 @@ int main(int argc, char** argv) {
        << ",\"large\":" << list(large.objects[1].displacement)
        << ",\"position\":" << list(small.objects[1].position)
        << ",\"tip\":" << list(small.styluses[1].tip)
-       << ",\"oldestForce\":" << list(small.trail.force(31, 0))
+       << ",\"oldestForce\":" << list(small.trail.force(127, 0))
        << ",\"newestForce\":" << list(small.trail.force(0, 1)) << "}\n";
   return json ? 0 : 1;
 }

@@ -65,7 +65,8 @@ export class ForcePlot {
         series: [
           { label: "t", value: (_, value) => (value === null ? "–" : value.toFixed(3) + " s") },
           ...axes.map((colour, i) => curve(NAMES[i]!, colour, 1.25)),
-          curve(NAMES[3]!, ink, 1.75),
+          // Dashed, so that a component that it equals is seen below it.
+          { ...curve(NAMES[3]!, ink, 1.5), dash: [6, 4] },
         ],
       },
       this.data,

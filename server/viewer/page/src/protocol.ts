@@ -20,7 +20,7 @@ const enum Type {
 }
 const MAX_OBJECTS = 4;
 const MAX_STYLUSES = 4;
-const MAX_TRAIL = 32;
+const MAX_TRAIL = 128;
 const MAX_NAME = 256;
 const MAX_TOKEN = 128;
 const MAX_RECORDINGS = 100;

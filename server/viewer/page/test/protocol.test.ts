@@ -36,7 +36,7 @@ test("a frame is what the server made it, to the quantisation", () => {
   const frame = decode(bytes("small.bin"), scene) as Frame;
   assert.equal(frame.step, 1039);
   assert.equal(frame.time, 2.08);
-  assert.equal(frame.trail, 32);
+  assert.equal(frame.trail, 128);
   assert.deepEqual(frame.styluses.map((stylus) => [stylus.present, stylus.contact, stylus.object]), [
     [true, 2, 1],
     [false, 0, -1],

@@ -13,18 +13,16 @@ constexpr int kPeriodMs = 50;
 
 RecorderThread::RecorderThread(const std::filesystem::path& path, const TraceHeader& header,
                                StepSink& sink, From from)
-    : writer_([&] {
-        const std::lock_guard lock(hdf5::library_mutex());
-        return TraceWriter(path, header);
-      }()),
-      sink_(sink),
-      lost_before_(sink.lost()),
-      begun_(from == From::kAny) {
+    : sink_(sink), lost_before_(sink.lost()), begun_(from == From::kAny) {
+  const std::lock_guard lock(hdf5::library_mutex());
+  writer_.emplace(path, header);
   batch_.reserve(kBatch);
 }
 
 RecorderThread::~RecorderThread() {
   finish();
+  const std::lock_guard lock(hdf5::library_mutex());
+  writer_.reset();
 }
 
 void RecorderThread::start() {
@@ -44,11 +42,11 @@ void RecorderThread::run() {
     while (!(stopped = stop_.wait(kPeriodMs))) {
       drain();
       const std::lock_guard lock(hdf5::library_mutex());
-      writer_.flush();
+      writer_->flush();
     }
     drain();
     const std::lock_guard lock(hdf5::library_mutex());
-    writer_.close();
+    writer_->close();
   } catch (const std::exception& error) {
     error_ = error.what();
     // Keep taking, so that the queue does not report what the disk did.
@@ -74,7 +72,7 @@ void RecorderThread::drain() {
       if (begun_) batch_.push_back(record);
     }
     const std::lock_guard lock(hdf5::library_mutex());
-    writer_.append(batch_);
+    writer_->append(batch_);
     rows_.fetch_add(batch_.size(), std::memory_order_relaxed);
   } while (batch_.size() == kBatch);
 }

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -42,7 +43,7 @@ class RecorderThread {
   void drain();
   void discard();
 
-  TraceWriter writer_;
+  std::optional<TraceWriter> writer_;  ///< always there, until the end
   StepSink& sink_;
   std::uint64_t lost_before_;
   bool begun_;

@@ -34,6 +34,9 @@ install_page_packages() {
     return
   fi
   echo "setup: installing the page's npm packages"
+  # Node trusts a list of its own; here also whom the machine trusts (a proxy that looks into TLS, say).
+  authorities=/etc/ssl/certs/ca-certificates.crt
+  if [ -r "$authorities" ]; then export NODE_EXTRA_CA_CERTS=${NODE_EXTRA_CA_CERTS:-$authorities}; fi
   npm ci --no-audit --no-fund --loglevel=error
 }
 

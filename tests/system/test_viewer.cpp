@@ -4,6 +4,7 @@
 #include <csignal>
 #include <cstring>
 
+#include "common/hdf5/file.hpp"
 #include "server/viewer/message.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/system/stage.hpp"
@@ -41,6 +42,7 @@ WebPeer::Message next(WebPeer& peer, int type) {
 constexpr int kScene = 1;
 constexpr int kFrame = 2;
 constexpr int kHealth = 3;
+constexpr int kState = 4;
 
 std::size_t nodes_of(const WebPeer::Message& scene) {
   return static_cast<std::size_t>(viewer::decode_scene(scene.payload).objects.at(0).rest.rows());
@@ -127,6 +129,53 @@ TEST_CASE("viewer: an address that can be reached from elsewhere needs a token")
   const FinishedProgram ended = run_to_end({IRDM_SERVER, stage.path("scene.toml").string()});
   CHECK(ended.status == 1);
   CHECK_THAT(ended.err, Contains("set viewer.token"));
+}
+
+TEST_CASE(
+    "viewer: its stylus, a switch of engines and gravity act on the run and are in its trace") {
+  const Stage stage;
+  stage.write("scene.toml", scene_text() + "switchable = true\n");
+  Server server = stage.start_server({"--record", stage.path("trace.h5").string()});
+  WebPeer peer = watch(viewer_port(server.process));
+  const std::size_t nodes = nodes_of(next(peer, kScene));
+  const auto state = [&] { return viewer::decode_state(next(peer, kState).payload, 1); };
+  const viewer::State first = state();
+  CHECK(first.stylus_free);
+  CHECK(first.choices.at(0).engine);
+  viewer::StylusRequest hand{true, 0, Vector3(0.0, 0.07, 0.0)};
+  const auto force = [&] {
+    hand.tip.y() = std::max(hand.tip.y() - 5e-4, 0.055);
+    peer.send_message(encode(viewer::ClientMessage(hand)));
+    return viewer::decode_frame(next(peer, kFrame).payload, {&nodes, 1})
+        .styluses.at(1)
+        .force.norm();
+  };
+  REQUIRE(eventually([&] { return force() > 0.05; }));
+  viewer::SettingsRequest settings{first.settings, 1};
+  settings.settings.object[0].engine = EngineKind::kDense;
+  settings.settings.gravity = Vector3(0, -1, 0);
+  peer.send_message(encode(viewer::ClientMessage(settings)));
+  CHECK(eventually([&] { return state().settings == settings.settings; }));
+  settings.settings.object[0].tether.stiffness = 1e8;
+  peer.send_message(encode(viewer::ClientMessage(settings)));
+  CHECK(eventually([&] { return state().notice.find("too stiff") != std::string::npos; }));
+  CHECK(eventually([&] {
+    return viewer::decode_frame(next(peer, kFrame).payload, {&nodes, 1}).objects[0].position.y() <
+           -0.1;
+  }));
+  server.process.signal(SIGTERM);
+  CHECK(server.process.wait() == 0);
+  const Trace trace = read_trace(stage.path("trace.h5"), 2);
+  double largest = 0.0;
+  for (std::size_t k = 0; k < trace.rows(); ++k) {
+    largest = std::max(largest, trace.vector("/stylus/1/force", k).norm());
+  }
+  CHECK(largest > 0.05);
+  CHECK(largest < 3.3 * 1.1);
+  const hdf5::File file = hdf5::File::open(stage.path("trace.h5"));
+  CHECK(file.read<std::uint8_t>("/settings/object/0/dense", {0}) ==
+        std::vector<std::uint8_t>{0, 1});
+  CHECK(file.read<double>("/settings/gravity", {2, 3}) == std::vector<double>{0, 0, 0, 0, -1, 0});
 }
 
 TEST_CASE("viewer: --play shows a recorded run, at the time that is asked for") {

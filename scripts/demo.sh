@@ -43,6 +43,9 @@ else
 fi
 cp "configs/scenes/$scene.toml" "$out/scene.toml"
 rm -f "$out/trace.h5" "$out/force.png"
+# What the last time left there names ports that are gone.
+true >"$out/server.log"
+true >"$out/live.log"
 
 "$bin/irdm-server" "$out/scene.toml" --record "$out/trace.h5" >"$out/server.log" 2>&1 &
 server=$!

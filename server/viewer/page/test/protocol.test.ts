@@ -44,7 +44,7 @@ test("a frame is what the server made it, to the quantisation", () => {
   near(frame.styluses[1]!.tip, "tip", 0);
   near(frame.objects[1]!.position, "position", 0);
   near(frame.forces.subarray(0, 3), "oldestForce", 1e-7);
-  near(frame.forces.subarray(3 * 63), "newestForce", 1e-7);
+  near(frame.forces.subarray(3 * (2 * 128 - 1)), "newestForce", 1e-7);
   const { displacement, unit } = frame.objects[0]!;
   assert.ok(displacement instanceof Int16Array);
   near(displacement, "small", 0.51 * unit, unit);

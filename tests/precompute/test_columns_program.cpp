@@ -210,7 +210,7 @@ TEST_CASE("a work file goes on where its last whole column ends, however it was 
   CHECK(resumed(whole + "and more") == 54);
 }
 
-TEST_CASE("a work file of another configuration is given up") {
+TEST_CASE("a work file of another configuration is given up", "[slow]") {
   Run run;
   run.write("other.toml", std::string(kStepping).replace(kStepping.find("2000"), 4, "2001"));
   run.good("other.toml -o other.h5");

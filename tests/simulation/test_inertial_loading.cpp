@@ -85,7 +85,8 @@ Points nothing(const Points& like) {
 
 }  // namespace
 
-TEST_CASE("inertial loading: the settled bulge is that of a static solve on the whole mesh") {
+TEST_CASE("inertial loading: the settled bulge is that of a static solve on the whole mesh",
+          "[slow]") {
   const Vector3 axis = GENERATE(Vector3(0, 0, 1), Vector3(0, 1, 1), Vector3(1, 2, -3));
   const ResponseKind kind = GENERATE(ResponseKind::kModal, ResponseKind::kDense);
   // Quadratic, with the paper's material; damped so that the ringing has died within T.

@@ -316,7 +316,10 @@ void NetworkClient::Impl::take(const wire::ForceMessage& message) {
   }
   Stylus& stylus = styluses_[static_cast<std::size_t>(index)];
   const StylusForce& force = message.force;
-  const bool newer = !stylus.force_step || force.force_step > *stylus.force_step;
+  // A run that is paused answers newer samples in the step where it stands.
+  const bool newer =
+      !stylus.force_step || force.force_step > *stylus.force_step ||
+      (force.force_step == *stylus.force_step && force.sample_sequence > stylus.answered);
   const bool ours = stylus.first_sample && force.sample_sequence >= *stylus.first_sample &&
                     force.sample_sequence <= stylus.newest_sample;
   if (!newer || !ours) {

@@ -79,9 +79,12 @@ void ForceThread::watch_health(std::int64_t begin_ns, std::int64_t end_ns) noexc
   window_begin_ns_ = end_ns;
 }
 
-// A hand feels nothing meanwhile.
+// A hand feels nothing meanwhile: what it felt fades.
 void ForceThread::stand_still() noexcept {
+  still_steps_ = stood_still_ ? still_steps_ + 1 : 1;
   stood_still_ = true;
+  const double left =
+      std::max(0.0, 1.0 - static_cast<double>(still_steps_) * simulation_.dt() / kPauseFade);
   clock_.rest();
   if (clock_.lockstep()) return;  // the bridges wait
   const std::size_t bridges = static_cast<std::size_t>(network_.styluses());
@@ -89,9 +92,13 @@ void ForceThread::stand_still() noexcept {
     StylusPort& port = network_.port(static_cast<int>(s));
     port.in.receive();
     if (!port.in.front().present) continue;
-    StylusRecord nothing;
-    nothing.proxy = port.in.front().sample.tip;
-    port.out.put(to_answer(record_, nothing, port.in.front().sample));
+    StylusRecord fading = record_.stylus[s];
+    fading.force *= left;
+    if (left == 0.0 || !fading.present) {
+      fading = StylusRecord{};
+      fading.proxy = port.in.front().sample.tip;
+    }
+    port.out.put(to_answer(record_, fading, port.in.front().sample));
   }
   network_.forces_ready().signal();
 }

@@ -58,6 +58,7 @@ class ForceThread {
   const ForceThreadReport& report() const noexcept { return report_; }
   /// While it runs, anew about every kHealthPeriodNs; for one reader.
   Mailbox<ForceHealth>& health() noexcept { return health_; }
+  static constexpr double kPauseFade = 0.03;  ///< in which a force fades when the run is paused [s]
   static constexpr std::int64_t kHealthPeriodNs = 1'000'000'000;
   /// How the thread is scheduled, for a report.
   const std::string& scheduling() const noexcept { return scheduling_; }
@@ -76,6 +77,7 @@ class ForceThread {
   std::vector<StepSink*> sinks_;
   std::uint64_t steps_;
   bool stood_still_ = false;
+  std::uint64_t still_steps_ = 0;  ///< since it stands still
   std::optional<ViewerStylus> viewer_stylus_;
   std::vector<StylusCommand> commands_;  ///< of the network's styluses, and perhaps the viewers'
   StepRecord record_;

@@ -11,3 +11,9 @@ build/release/bin/bench_contact_step
 echo
 echo "## Deformation"
 build/release/bin/bench_deformation
+echo
+echo "## Viewers"
+mkdir -p out/bench
+[ -f out/bench/paper-cube.h5 ] ||
+  build/release/bin/irdm-precompute configs/models/paper-cube.toml -o out/bench/paper-cube.h5 >out/bench/paper-cube.log
+build/release/bin/bench_viewer_load out/bench/paper-cube.h5

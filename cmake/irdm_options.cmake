@@ -17,6 +17,10 @@ if(IRDM_SANITIZE)
   target_compile_options(irdm_options INTERFACE
     -O1 -g1 -fsanitize=${IRDM_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   target_link_options(irdm_options INTERFACE -fsanitize=${IRDM_SANITIZE})
+  if(IRDM_SANITIZE MATCHES "undefined")
+    # These take half of the time to compile, and the address sanitizer finds what matters of them.
+    target_compile_options(irdm_options INTERFACE -fno-sanitize=null,object-size,vptr,alignment)
+  endif()
   target_compile_definitions(irdm_options INTERFACE IRDM_SANITIZED)
 endif()
 

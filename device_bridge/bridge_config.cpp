@@ -3,7 +3,6 @@
 #include <charconv>
 #include <set>
 
-#include "common/config/toml_reader.hpp"
 #include "common/error.hpp"
 #include "device_bridge/device_registry.hpp"
 
@@ -116,18 +115,22 @@ ServerAddress parse_server_address(const std::string& text, const std::string& w
 
 BridgeConfig load_bridge_config(const std::filesystem::path& path,
                                 const BridgeOverrides& overrides) {
-  TomlTable root = TomlTable::parse_file(path);
+  return read_bridge_config(TomlTable::parse_file(path), path.string(), overrides);
+}
+
+BridgeConfig read_bridge_config(TomlTable root, const std::string& name,
+                                const BridgeOverrides& overrides) {
   BridgeConfig config;
-  read_bridge(root.table("bridge"), path.string(), config);
+  read_bridge(root.table("bridge"), name, config);
   for (TomlTable& table : root.tables("device")) {
     config.devices.push_back(read_device(std::move(table), overrides));
   }
   root.finish();
   if (config.devices.empty()) {
-    throw Error(path.string(), "has no device", "add a [[device]] table");
+    throw Error(name, "has no device", "add a [[device]] table");
   }
   if (!overrides.script.empty() && config.devices.size() > 1) {
-    throw Error(path.string(), "has several devices and --script is one script",
+    throw Error(name, "has several devices and --script is one script",
                 "name each script in its [[device]] table");
   }
   if (!overrides.server.empty()) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "common/config/toml_reader.hpp"
 #include "common/realtime/scheduling.hpp"
 #include "device_bridge/servo_loop.hpp"
 #include "device_bridge/virtual_hand.hpp"
@@ -55,7 +56,10 @@ struct BridgeOverrides {
   std::string script = {};  ///< of the only device, whose table has none; empty: not given
 };
 
-/// Throws Error with file and line for anything that does not fit.
+/// Reads and checks a whole configuration. Throws Error with file and line.
+/// @param name of the file, for messages
+BridgeConfig read_bridge_config(TomlTable root, const std::string& name,
+                                const BridgeOverrides& overrides = {});
 BridgeConfig load_bridge_config(const std::filesystem::path& path,
                                 const BridgeOverrides& overrides = {});
 

@@ -27,6 +27,16 @@ constexpr std::int64_t kNanosecondsPerMillisecond = 1'000'000;
 constexpr int kFrameTimeoutMs = 1000;
 constexpr int kHangUpMs = 500;
 
+constexpr std::int64_t kReportPeriodNs = 1000 * kNanosecondsPerMillisecond;
+
+wire::Quantiles quantiles(const Histogram& histogram) {
+  const auto microseconds = [](std::int64_t ns) {
+    return static_cast<float>(std::max<std::int64_t>(ns, 0)) / 1000.0F;
+  };
+  return {microseconds(histogram.percentile(0.5)), microseconds(histogram.percentile(0.99)),
+          microseconds(histogram.maximum())};
+}
+
 bool passes(wire::RefuseReason reason) {
   return reason == wire::RefuseReason::kNoFreeStylus ||
          reason == wire::RefuseReason::kTooManyConnections ||
@@ -55,6 +65,8 @@ class NetworkClient::Impl {
     std::optional<std::uint64_t> answered;
     std::optional<std::uint64_t> force_step;
     ServoInput input;
+    Histogram round_trip;  ///< this and the next: since the last report [ns]
+    Histogram age;
   };
 
   void run() noexcept;
@@ -72,6 +84,7 @@ class NetworkClient::Impl {
   void give_up(const std::string& why);
   void leave(State next);
   void send_samples();
+  void send_reports(std::int64_t now_ns);
   void publish();
   void deadline_in(int milliseconds) {
     deadline_ns_ = monotonic_ns() + milliseconds * kNanosecondsPerMillisecond;
@@ -92,6 +105,8 @@ class NetworkClient::Impl {
   std::int64_t deadline_ns_ = 0;
   std::int64_t force_ns_ = 0;  ///< when the last force came, or the session began
   std::uint16_t first_stylus_ = 0;
+  bool reports_ = false;  ///< the server takes them
+  std::int64_t next_report_ns_ = 0;
   std::vector<Stylus> styluses_;
   bool complained_ = false;  ///< about this run of failed attempts
   bool stopping_ = false;
@@ -193,6 +208,7 @@ void NetworkClient::Impl::check_time(std::int64_t now_ns) {
       if (due) connection_->close("no answer to Hello");
       break;
     case State::kLinked:
+      send_reports(now_ns);
       if (!link_state_.lockstep && older(force_ns_, settings_.silence_timeout_ms)) {
         connection_->close("no force any more");
       }
@@ -227,7 +243,8 @@ void NetworkClient::Impl::greet(tcp::socket socket) {
       .violated = [this](const ProtocolError& error) { violated(error); },
       .closed = [this](const std::string& reason) { lost(reason); },
   });
-  connection_->send(wire::Hello{.styluses = static_cast<std::uint16_t>(styluses_.size()),
+  connection_->send(wire::Hello{.capabilities = wire::kCapabilityReport,
+                                .styluses = static_cast<std::uint16_t>(styluses_.size()),
                                 .lockstep = settings_.lockstep,
                                 .name = settings_.name});
 }
@@ -264,6 +281,8 @@ void NetworkClient::Impl::welcomed(const wire::Welcome& welcome) {
   complained_ = false;
   connection_->set_session(welcome.session);
   first_stylus_ = welcome.first_stylus;
+  reports_ = (welcome.capabilities & wire::kCapabilityReport) != 0;
+  next_report_ns_ = monotonic_ns() + kReportPeriodNs;
   force_ns_ = monotonic_ns();
   ++report_.sessions;
   link_state_ = {
@@ -297,7 +316,10 @@ void NetworkClient::Impl::take(const wire::ForceMessage& message) {
   }
   Stylus& stylus = styluses_[static_cast<std::size_t>(index)];
   const StylusForce& force = message.force;
-  const bool newer = !stylus.force_step || force.force_step > *stylus.force_step;
+  // A run that is paused answers newer samples in the step where it stands.
+  const bool newer =
+      !stylus.force_step || force.force_step > *stylus.force_step ||
+      (force.force_step == *stylus.force_step && force.sample_sequence > stylus.answered);
   const bool ours = stylus.first_sample && force.sample_sequence >= *stylus.first_sample &&
                     force.sample_sequence <= stylus.newest_sample;
   if (!newer || !ours) {
@@ -317,7 +339,9 @@ void NetworkClient::Impl::take(const wire::ForceMessage& message) {
   // Several steps may answer the same sample; only the first of them is its round trip.
   if (!link_state_.lockstep && (!stylus.answered || force.sample_sequence > *stylus.answered)) {
     report_.round_trip.add(now_ns - force.sample_time_ns);
+    stylus.round_trip.add(now_ns - force.sample_time_ns);
   }
+  if (stylus.input.any_force) stylus.age.add(now_ns - stylus.input.force.sample_time_ns);
   stylus.answered = force.sample_sequence;
   stylus.input.any_force = true;
   stylus.input.force = force;
@@ -335,6 +359,21 @@ void NetworkClient::Impl::send_samples() {
     const auto slot = static_cast<std::uint16_t>(first_stylus_ + i);
     connection_->send_newest(i, wire::SampleMessage{slot, sample});
     ++report_.samples;
+  }
+}
+
+// In lockstep there are no such times.
+void NetworkClient::Impl::send_reports(std::int64_t now_ns) {
+  if (!reports_ || link_state_.lockstep || now_ns < next_report_ns_) return;
+  next_report_ns_ = now_ns + kReportPeriodNs;
+  for (std::size_t i = 0; i < styluses_.size(); ++i) {
+    Stylus& stylus = styluses_[i];
+    if (stylus.round_trip.count() == 0) continue;
+    const auto slot = static_cast<std::uint16_t>(first_stylus_ + i);
+    connection_->send_newest(styluses_.size() + i, wire::Report{slot, quantiles(stylus.round_trip),
+                                                                quantiles(stylus.age)});
+    stylus.round_trip = Histogram{};
+    stylus.age = Histogram{};
   }
 }
 

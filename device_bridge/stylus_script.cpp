@@ -14,6 +14,8 @@ namespace {
 constexpr double kSmallestNorm = 0.5;
 constexpr double kLargestNorm = 2.0;
 constexpr double kLargestButtons = 4294967295.0;
+constexpr double kLargestCoordinate = 1000.0;  // what the protocol takes [m]
+constexpr double kLargestTime = 1e9;           // [s]
 
 std::string trimmed(std::string_view text) {
   const auto first = text.find_first_not_of(" \t\r");
@@ -79,7 +81,8 @@ class StylusScript::Parser {
   double number(const std::string& field) const {
     char* end = nullptr;
     const double value = std::strtod(field.c_str(), &end);
-    if (field.empty() || *end != '\0') fail("'" + field + "' is not a number", "correct it");
+    if (field.empty() || end != field.c_str() + field.size())
+      fail("'" + field + "' is not a number", "correct it");
     if (!std::isfinite(value)) fail("'" + field + "' is not finite", "give a finite number");
     return value;
   }
@@ -97,6 +100,10 @@ class StylusScript::Parser {
       fail("time " + fields[0] + " does not come after the row before", "sort the rows by time");
     }
     row.pose.tip = Vector3(values[1], values[2], values[3]);
+    if (std::abs(row.time) > kLargestTime ||
+        row.pose.tip.cwiseAbs().maxCoeff() > kLargestCoordinate) {
+      fail("is out of reach", "give a time within 1e9 s and a tip within 1000 m");
+    }
     if (has_orientation_) {
       const Quaternion given(values[4], values[5], values[6], values[7]);
       if (given.norm() < kSmallestNorm || given.norm() > kLargestNorm) {

@@ -1,16 +1,22 @@
 #!/usr/bin/env bash
 # The main job from nothing: sets up, builds, precomputes the paper's cube (kept for the next time), plays
 # ten scripted seconds in real time with server and bridge as two processes, and shows what came of it.
-#   scripts/demo.sh [--dense]    --dense: the paper's own engine on the cube's smaller sibling
+# Then it keeps the cube on a soft tether until Ctrl-C, to be pushed with the mouse in a browser.
+#   scripts/demo.sh [--dense] [--once]
+#     --dense: the paper's own engine on the cube's smaller sibling
+#     --once: ends after the ten seconds
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 model=paper-cube scene=paper-cube
-case "${1:-}" in
-  "") ;;
-  --dense) model=small-cube scene=small-cube-dense ;;
-  *) echo "usage: scripts/demo.sh [--dense]" >&2; exit 2 ;;
-esac
+once=no
+for option in "$@"; do
+  case "$option" in
+    --dense) model=small-cube scene=small-cube-dense ;;
+    --once) once=yes ;;
+    *) echo "usage: scripts/demo.sh [--dense] [--once]" >&2; exit 2 ;;
+  esac
+done
 bin=build/release/bin
 out=out/demo
 mkdir -p "$out"
@@ -37,14 +43,18 @@ else
 fi
 cp "configs/scenes/$scene.toml" "$out/scene.toml"
 rm -f "$out/trace.h5" "$out/force.png"
+# What the last time left there names ports that are gone.
+true >"$out/server.log"
+true >"$out/live.log"
 
 "$bin/irdm-server" "$out/scene.toml" --record "$out/trace.h5" >"$out/server.log" 2>&1 &
 server=$!
-until address=$(sed -n 's/^listening on //p' "$out/server.log") && [ -n "$address" ]; do
+until address=$(sed -n 's/^listening on \([^h]\)/\1/p' "$out/server.log") && [ -n "$address" ]; do
   kill -0 "$server" 2>/dev/null || fail "the server did not start" "$out/server.log"
   sleep 0.1
 done
-echo "demo: ten seconds in real time: press, tap, grab, swing, let go"
+page=$(sed -n 's/^listening on \(http\)/\1/p' "$out/server.log")
+echo "demo: ten seconds in real time: press, tap, grab, swing, let go${page:+; to be watched at $page}"
 "$bin/irdm-bridge" configs/bridges/demo.toml --server "$address" >"$out/bridge.log" 2>&1 ||
   fail "the bridge failed" "$out/bridge.log"
 kill -TERM "$server"
@@ -60,3 +70,20 @@ grep -v -E '^\[' "$out/bridge.log" | sed 's/^/  /'
 echo
 echo "trace    $out/trace.h5"
 echo "picture  $out/force.png"
+[ $once = no ] || exit 0
+
+# The object is the last table of the scene.
+{ cat "configs/scenes/$scene.toml"; echo 'tether = { stiffness = 4.0, angular_stiffness = 0.01 }';
+  echo 'damping = { linear = 1.0, angular = 1.0 }'; } >"$out/live.toml"
+echo
+"$bin/irdm-server" "$out/live.toml" --recordings "$out/recordings" >"$out/live.log" 2>&1 &
+server=$!
+trap 'kill -TERM "$server" 2>/dev/null || true' INT TERM
+until page=$(sed -n 's/^listening on \(http\)/\1/p' "$out/live.log") && [ -n "$page" ]; do
+  kill -0 "$server" 2>/dev/null || fail "the server did not start" "$out/live.log"
+  sleep 0.1
+done
+echo "demo: push the cube with the mouse at $page; Ctrl-C ends it"
+# A signal ends the first wait, the server the second one.
+wait "$server" || wait "$server" || fail "the server failed" "$out/live.log"
+server=

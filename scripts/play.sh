@@ -73,7 +73,7 @@ trap stop EXIT
 "$bin/irdm-server" "$out/scene.toml" --record "$out/trace.h5" $lockstep >"$out/server.log" 2>&1 &
 server=$!
 pids+=("$server")
-until address=$(sed -n 's/^listening on //p' "$out/server.log") && [ -n "$address" ]; do
+until address=$(sed -n 's/^listening on \([^h]\)/\1/p' "$out/server.log") && [ -n "$address" ]; do
   kill -0 "$server" 2>/dev/null || fail "the server did not start" "$out/server.log"
   sleep 0.1
 done

@@ -25,4 +25,4 @@ if [ $quick = no ]; then
   done
 fi
 echo "test: preset ci"
-ctest --preset ci
+ctest --preset ci --parallel 2

@@ -1,4 +1,5 @@
 #include "common/program/program.hpp"
+#include "server/run_playback.hpp"
 #include "server/run_server.hpp"
 
 int main(int argc, char** argv) {
@@ -15,5 +16,13 @@ int main(int argc, char** argv) {
       ->check(irdm::positive_number());
   app.add_flag("--lockstep", options.lockstep,
                "Simulated clock: step k uses exactly sample k of every stylus");
-  return irdm::run_program(app, argc, argv, [&] { return irdm::run_server(options); });
+  app.add_flag("--no-viewer", options.no_viewer, "Do not serve the view for browsers");
+  app.add_option("--recordings", options.recordings,
+                 "Folder for what is recorded from the browser (default: the scene's)");
+  app.add_option("--play", options.play,
+                 "Trace file to show in the browser in place of a live run of the scene")
+      ->excludes("--record", "--lockstep", "--no-viewer", "--duration");
+  return irdm::run_program(app, argc, argv, [&] {
+    return options.play ? irdm::run_playback(options) : irdm::run_server(options);
+  });
 }

@@ -50,7 +50,7 @@ int print_report(const FinishedRun& run, const ServerOptions& options) {
   }
   std::cout << "recorded: " << run.recorder->rows() << " steps in " << options.record->string()
             << std::endl;
-  if (const std::uint64_t lost = run.recorder->sink().lost()) {
+  if (const std::uint64_t lost = run.recorder->lost()) {
     std::cerr << "irdm-server: error: " << lost << " steps are missing in the trace: "
               << "the disk was too slow; record to a faster one\n";
     return 1;

@@ -9,39 +9,19 @@
 
 #include "common/checksum.hpp"
 #include "common/error.hpp"
-#include "common/model/model_file.hpp"
 #include "common/program/stop_signal.hpp"
 #include "server/config/scene.hpp"
 #include "server/report.hpp"
-#include "server/step/inertial_loading.hpp"
+#include "server/scene_simulation.hpp"
 #include "server/threads/deformation_thread.hpp"
 #include "server/threads/force_thread.hpp"
 #include "server/threads/recorder_thread.hpp"
 #include "server/threads/step_clock.hpp"
+#include "server/viewed_run/live_run.hpp"
+#include "server/viewed_run/viewer_scene.hpp"
 
 namespace irdm {
 namespace {
-
-std::shared_ptr<const Model> load_model(const ObjectConfig& object) {
-  const bool dense = object.engine == EngineKind::kDense;
-  Model model = read_model(object.model, dense ? ResponseKind::kDense : ResponseKind::kModal);
-  check_inertial_loading(model, object.inertial_loading, object.model.string());
-  return std::make_shared<const Model>(std::move(model));
-}
-
-SimulationConfig simulation_config(const SceneConfig& scene) {
-  SimulationConfig config;
-  config.gravity = scene.world.gravity;
-  for (const ObjectConfig& object : scene.objects) {
-    config.objects.push_back({load_model(object), object.position, object.orientation,
-                              object.velocity, object.angular_velocity, object.friction,
-                              object.damping, object.tether, object.inertial_loading});
-  }
-  config.styluses = scene.styluses;
-  config.floor = scene.floor;
-  config.release_time = scene.contact.release_time;
-  return config;
-}
 
 // Where a fixed object is clamped its surface does not yield at all: without a spring between tip
 // and surface no force takes the one to the other.
@@ -78,19 +58,18 @@ NetworkSettings network_settings(const SceneConfig& scene, const ServerOptions& 
   return settings;
 }
 
-std::unique_ptr<RecorderThread> make_recorder(const SceneConfig& scene,
-                                              const ServerOptions& options, double dt) {
-  if (!options.record) return nullptr;
+TraceHeader trace_header(const SceneConfig& scene, const ServerOptions& options,
+                         const SimulationConfig& config) {
   TraceHeader header;
   for (const ObjectConfig& object : scene.objects) {
     header.objects.push_back(
         {object.name, object.model.filename().string(), sha256_of_file(object.model)});
   }
   header.scene = read_text(options.scene);
-  header.dt = dt;
+  header.dt = config.objects.front().model->dt;
   header.floor = scene.floor.has_value();
-  header.stylus_count = static_cast<int>(scene.styluses.size());
-  return std::make_unique<RecorderThread>(*options.record, header);
+  header.stylus_count = static_cast<int>(config.styluses.size());
+  return header;
 }
 
 std::unique_ptr<StepClock> make_clock(bool lockstep, NetworkServer& network,
@@ -99,35 +78,106 @@ std::unique_ptr<StepClock> make_clock(bool lockstep, NetworkServer& network,
   return std::make_unique<RealTimeClock>(dt);
 }
 
+std::vector<std::string> names_of(const SceneConfig& scene) {
+  std::vector<std::string> names;
+  for (const ObjectConfig& object : scene.objects) names.push_back(object.name);
+  return names;
+}
+
 int deformation_threads(const ServerConfig& config) {
   if (config.deformation_threads > 0) return config.deformation_threads;
   return std::max(1, omp_get_num_procs() - 1);
+}
+
+// In one piece, so that no other thread's line comes between.
+void say_where(const std::string& where) {
+  std::cout << "listening on " + where + "\n" << std::flush;
+}
+
+/// The viewers of a live run, and what they need besides its threads.
+class Viewers {
+ public:
+  Viewers(const SceneConfig& scene, const SimulationConfig& config, bool viewer_stylus,
+          bool lockstep, Recordings& recordings, DeformationThread& deformation, ForceThread& force,
+          RunControl& control, NetworkServer& network)
+      : player_(config, names_of(scene), scene.server.deformation_rate,
+                deformation_threads(scene.server)),
+        run_(live_scene(viewer_scene(scene, config, viewer_stylus), lockstep), config,
+             {deformation, force, control, network, recordings, player_}),
+        server_(viewer_settings(scene.viewer), run_) {}
+
+  void start() {
+    player_.start();
+    server_.start();
+    say_where(server_.url());
+  }
+  void stop() {
+    server_.stop();
+    player_.finish();
+  }
+
+ private:
+  static viewer::Scene live_scene(viewer::Scene scene, bool lockstep) {
+    scene.lockstep = lockstep;
+    return scene;
+  }
+
+  Player player_;
+  LiveRun run_;
+  viewer::ViewerServer server_;
+};
+
+// What a viewer records ends with the run.
+void end_recording(Recordings& recordings) {
+  try {
+    recordings.end();
+  } catch (const Error& error) {
+    std::cerr << "irdm-server: warning: " << error.what() << '\n';
+  }
 }
 
 }  // namespace
 
 int run_server(const ServerOptions& options) {
   StopSignal stop;
-  const SceneConfig scene = read_scene(TomlTable::parse_file(options.scene));
-  const SimulationConfig config = simulation_config(scene);
+  SceneConfig scene = read_scene(TomlTable::parse_file(options.scene));
+  if (options.no_viewer) scene.viewer.enabled = false;
+  if (options.recordings) scene.viewer.recordings = options.recordings;
+  const bool viewer_stylus = has_viewer_stylus(scene, options.lockstep);
+  const SimulationConfig config = simulation_config(scene, viewer_stylus);
   check_coupling(scene, config, options.scene.string());
   Simulation simulation(config);
   const double dt = simulation.dt();
   NetworkServer network(network_settings(scene, options, dt));
+  RunControl control(simulation.settings());
   DeformationThread deformation(config, scene.server.deformation_rate,
                                 deformation_threads(scene.server));
-  const std::unique_ptr<RecorderThread> recorder = make_recorder(scene, options, dt);
+  const bool records = options.record.has_value();
+  const bool lets_record = scene.viewer.enabled && scene.viewer.recordings.has_value();
+  const TraceHeader header =
+      records || lets_record ? trace_header(scene, options, config) : TraceHeader{};
+  StepSink recorder_sink(records ? RecorderThread::kQueueCapacity : 1);
+  const auto recorder =
+      records ? std::make_unique<RecorderThread>(*options.record, header, recorder_sink) : nullptr;
+  Recordings recordings(lets_record ? scene.viewer.recordings : std::nullopt, header);
 
-  std::vector<StepSink*> sinks{&deformation.sink()};
-  if (recorder) sinks.push_back(&recorder->sink());
+  std::vector<StepSink*> sinks{&deformation.sink(), &recordings.sink()};
+  if (recorder) sinks.push_back(&recorder_sink);
   const std::unique_ptr<StepClock> clock = make_clock(options.lockstep, network, sinks, dt);
   const auto steps = static_cast<std::uint64_t>(
       std::llround(std::ceil(options.duration.value_or(0.0) / dt - 1e-9)));
-  ForceThread force(simulation, network, *clock, sinks, steps);
+  ForceThread force(simulation, network, control, *clock, sinks, steps);
+  if (viewer_stylus) {
+    force.add_viewer_stylus({dt, scene.viewer.stylus.coupling_stiffness, scene.viewer.max_force});
+  }
+  const auto viewers = scene.viewer.enabled ? std::make_unique<Viewers>(
+                                                  scene, config, viewer_stylus, options.lockstep,
+                                                  recordings, deformation, force, control, network)
+                                            : nullptr;
 
   network.start();
-  // In one piece, so that no other thread's line comes between.
-  std::cout << "listening on " + network.endpoint() + "\n" << std::flush;
+  say_where(network.endpoint());
+  if (viewers) viewers->start();
   if (recorder) recorder->start();
   deformation.start();
   force.start(scheduling(scene, options));
@@ -136,6 +186,8 @@ int run_server(const ServerOptions& options) {
   force.finish();
   network.stop();
   deformation.finish();
+  if (viewers) viewers->stop();
+  end_recording(recordings);
   if (recorder) recorder->finish();
   return print_report(
       {force, network, deformation, recorder.get(), dynamic_cast<RealTimeClock*>(clock.get())},

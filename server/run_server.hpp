@@ -12,6 +12,9 @@ struct ServerOptions {
   std::optional<std::filesystem::path> record;  ///< trace file
   std::optional<double> duration;               ///< [s], > 0
   bool lockstep = false;
+  bool no_viewer = false;                           ///< whatever the scene says
+  std::optional<std::filesystem::path> recordings;  ///< folder; overrides the scene's
+  std::optional<std::filesystem::path> play;        ///< trace to show in place of a live run
 };
 
 /// Runs a server until its duration is over or a signal asks it to stop. Returns the exit status.

@@ -27,7 +27,7 @@ inline Range at_least(double lowest) {
 inline Range above(double lowest) {
   return {.lowest = lowest, .lowest_included = false};
 }
-inline Range between(double lowest, double highest) {
+constexpr Range between(double lowest, double highest) {
   return {.lowest = lowest, .highest = highest};
 }
 

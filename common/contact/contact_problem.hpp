@@ -30,6 +30,8 @@ enum class ContactLaw {
 struct Friction {
   double static_ = std::numeric_limits<double>::infinity();
   double kinetic = std::numeric_limits<double>::infinity();
+
+  bool operator==(const Friction&) const = default;
 };
 
 /// What a contact does in the solution.

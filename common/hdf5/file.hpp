@@ -14,7 +14,7 @@
 
 /// Thin RAII over HDF5's C interface: what the model and the trace file need, nothing more. Every
 /// failure is an irdm::Error that names the file and the object. The library is not thread safe:
-/// each process calls it from one thread at a time.
+/// each process calls it from one thread at a time (library_lock.hpp).
 namespace irdm::hdf5 {
 
 /// HDF5's name for a C++ number type: double, float, std::int32_t, std::uint8_t or std::uint64_t.

@@ -9,12 +9,16 @@ namespace irdm {
 struct RigidDamping {
   double linear = 0.0;   ///< velocity decays with this rate [1/s]; times dt at most 0.5
   double angular = 0.0;  ///< angular momentum decays with this rate [1/s]; times dt at most 0.5
+
+  bool operator==(const RigidDamping&) const = default;
 };
 
 /// A soft spring from the object to its pose at the start. 0: none.
 struct Tether {
   double stiffness = 0.0;          ///< [N/m]; times dt^2 at most the mass
   double angular_stiffness = 0.0;  ///< [N m/rad]; times dt^2 at most the least moment of inertia
+
+  bool operator==(const Tether&) const = default;
 };
 
 /// All that acts on an object but contacts.

@@ -27,6 +27,7 @@ class ByteWriter {
     }
   }
   void put(std::int64_t value) { put(static_cast<std::uint64_t>(value)); }
+  void put(float value) { put(std::bit_cast<std::uint32_t>(value)); }
   void put(double value) { put(std::bit_cast<std::uint64_t>(value)); }
   void put(const Vector3& v) {
     for (int axis = 0; axis < 3; ++axis) put(v[axis]);
@@ -70,6 +71,7 @@ class ByteReader {
     return value;
   }
   std::int64_t get_signed() { return static_cast<std::int64_t>(get<std::uint64_t>()); }
+  float get_single() { return std::bit_cast<float>(get<std::uint32_t>()); }
   double get_number() { return std::bit_cast<double>(get<std::uint64_t>()); }
   Vector3 get_vector() {
     Vector3 v;

@@ -37,12 +37,14 @@ enum class MessageType : std::uint16_t {
   kGoodbye = 4,
   kSample = 5,
   kForce = 6,
+  kReport = 7,
 };
 
-/// Bits of Hello::capabilities and Welcome::capabilities; none is in use in version 1.
+/// Bits of Hello::capabilities and Welcome::capabilities.
 inline constexpr std::uint32_t kCapabilityContactModel = 1u << 0;  ///< reserved: types 16 and 17
 inline constexpr std::uint32_t kCapabilityStatus = 1u << 1;        ///< reserved: type 18
 inline constexpr std::uint32_t kCapabilityCommand = 1u << 2;       ///< reserved: type 19
+inline constexpr std::uint32_t kCapabilityReport = 1u << 3;        ///< type 7
 
 /// What goes before every payload. The CRC32C that ends it is the codec's business.
 struct Header {
@@ -115,7 +117,22 @@ struct ForceMessage {
   StylusForce force = {};
 };
 
-using Message = std::variant<Hello, Welcome, Refuse, Goodbye, SampleMessage, ForceMessage>;
+/// Median, 99th percentile and maximum [us], none below 0.
+struct Quantiles {
+  float median = 0;
+  float p99 = 0;
+  float maximum = 0;
+};
+
+/// Bridge to server, about once a second, where both sides are capable of it: what the bridge has
+/// measured since the last one.
+struct Report {
+  std::uint16_t stylus = 0;   ///< server's slot
+  Quantiles round_trip = {};  ///< sample taken to its first force received
+  Quantiles age = {};         ///< of forces at the moment when a newer one took their place
+};
+
+using Message = std::variant<Hello, Welcome, Refuse, Goodbye, SampleMessage, ForceMessage, Report>;
 
 struct Frame {
   Header header;

@@ -168,6 +168,36 @@ ForceMessage decode_force(ByteReader& in) {
   return message;
 }
 
+void encode(const Quantiles& quantiles, ByteWriter& out) {
+  for (const float value : {quantiles.median, quantiles.p99, quantiles.maximum}) out.put(value);
+}
+
+Quantiles decode_quantiles(ByteReader& in, const char* name) {
+  Quantiles quantiles;
+  for (float* value : {&quantiles.median, &quantiles.p99, &quantiles.maximum}) {
+    *value = in.get_single();
+    check_finite(std::isfinite(*value), name);
+    if (*value < 0.0F) bad_value(std::string(name) + " is below 0");
+  }
+  return quantiles;
+}
+
+void encode(const Report& report, ByteWriter& out) {
+  out.put(report.stylus);
+  out.put_zeros(6);
+  encode(report.round_trip, out);
+  encode(report.age, out);
+}
+
+Report decode_report(ByteReader& in) {
+  Report report;
+  report.stylus = in.get<std::uint16_t>();
+  in.skip(6);
+  report.round_trip = decode_quantiles(in, "a round trip");
+  report.age = decode_quantiles(in, "an age");
+  return report;
+}
+
 }  // namespace
 
 MessageType type_of(const Message& message) noexcept {
@@ -189,6 +219,8 @@ std::optional<std::size_t> payload_size(MessageType type) noexcept {
       return 80;
     case MessageType::kForce:
       return 80;
+    case MessageType::kReport:
+      return 32;
   }
   return std::nullopt;
 }
@@ -213,6 +245,8 @@ Message decode_payload(MessageType type, std::span<const std::uint8_t> payload) 
       return decode_sample(in);
     case MessageType::kForce:
       return decode_force(in);
+    case MessageType::kReport:
+      return decode_report(in);
   }
   throw ProtocolError(ProtocolFault::kUnknownType,
                       "unknown message type " + std::to_string(static_cast<int>(type)));

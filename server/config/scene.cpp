@@ -32,6 +32,51 @@ ServerConfig read_server(TomlTable table, int styluses) {
   return config;
 }
 
+std::string read_token(TomlTable& table, const std::string& key) {
+  constexpr std::size_t kShortest = 16;
+  constexpr std::size_t kLongest = 128;
+  const std::string token = table.text(key, "");
+  const bool printable = std::all_of(token.begin(), token.end(),
+                                     [](char letter) { return letter > 0x20 && letter < 0x7F; });
+  const std::size_t length = token.size();
+  if (!printable || (length > 0 && length < kShortest) || length > kLongest) {
+    table.fail(key, "is not 16 to 128 printable ASCII characters without blanks",
+               "give such a one, for instance from: openssl rand -hex 16");
+  }
+  return token;
+}
+
+void read_viewer_stylus(TomlTable table, double radius, ViewerConfig& config) {
+  SimulationStylus& stylus = config.stylus;
+  stylus.radius = table.number("radius", between(0.0, 1.0), radius);
+  stylus.coupling_stiffness =
+      table.number("coupling_stiffness", between(1.0, 1e5), stylus.coupling_stiffness);
+  stylus.reach = table.number("reach", between(0.0, 1.0), stylus.reach);
+  config.max_force = table.number("max_force", between(0.1, 100.0), config.max_force);
+  table.finish();
+}
+
+// Needs the styluses of the scene.
+ViewerConfig read_viewer(TomlTable table, const std::vector<SimulationStylus>& styluses) {
+  ViewerConfig config;
+  config.enabled = table.boolean("enabled", config.enabled);
+  config.address = table.text("address", config.address);
+  config.port = table.integer("port", 0, 65535, config.port);
+  config.token = read_token(table, "token");
+  config.onlooker_token = read_token(table, "onlooker_token");
+  if (!config.onlooker_token.empty() && config.token.empty()) {
+    table.fail("onlooker_token", "is set without a token", "set viewer.token too");
+  }
+  if (!config.onlooker_token.empty() && config.onlooker_token == config.token) {
+    table.fail("onlooker_token", "is the token itself", "give another one");
+  }
+  if (table.has("recordings")) config.recordings = table.path("recordings");
+  config.mouse = table.boolean("mouse", config.mouse);
+  read_viewer_stylus(table.table("stylus"), styluses.front().radius, config);
+  table.finish();
+  return config;
+}
+
 WorldConfig read_world(TomlTable table) {
   WorldConfig config;
   config.gravity = read_vector(table, "gravity");
@@ -48,8 +93,11 @@ ContactConfig read_contact(TomlTable table) {
   return config;
 }
 
+/// Of directions and quaternions of any length, whose square has to be a number.
+constexpr Range kComponent = between(-1e100, 1e100);
+
 Quaternion read_orientation(TomlTable& table) {
-  const auto wxyz = table.numbers("orientation", 4, kAnyNumber, {1.0, 0.0, 0.0, 0.0});
+  const auto wxyz = table.numbers("orientation", 4, kComponent, {1.0, 0.0, 0.0, 0.0});
   const Quaternion orientation(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
   constexpr double kSmallest = 1e-6;
   if (orientation.norm() < kSmallest) {
@@ -95,7 +143,7 @@ std::optional<FloorConfig> read_floor(TomlTable& file) {
   TomlTable table = file.table("floor");
   FloorConfig floor;
   floor.height = table.number("height", kAnyNumber, floor.height);
-  const auto normal = table.numbers("normal", 3, kAnyNumber, {0.0, 1.0, 0.0});
+  const auto normal = table.numbers("normal", 3, kComponent, {0.0, 1.0, 0.0});
   floor.normal = Vector3(normal.data());
   if (floor.normal.norm() < 1e-6) {
     table.fail("normal", "has no length", "give the direction that is up, for instance [0, 1, 0]");
@@ -144,6 +192,7 @@ ObjectConfig read_object(TomlTable table) {
   config.damping = read_damping(table.table("damping"));
   config.tether = read_tether(table.table("tether"));
   config.inertial_loading = table.boolean("inertial_loading", config.inertial_loading);
+  config.switchable = table.boolean("switchable", config.switchable);
   table.finish();
   return config;
 }
@@ -169,6 +218,7 @@ SceneConfig read_scene(TomlTable file) {
   }
   scene.styluses.resize(static_cast<std::size_t>(scene.server.styluses),
                         {0.0, scene.contact.coupling_stiffness, 0.0});
+  scene.viewer = read_viewer(file.table("viewer"), scene.styluses);
   std::set<std::string> names;
   for (TomlTable& object : file.tables("object")) {
     scene.objects.push_back(read_object(object));

@@ -24,6 +24,22 @@ struct ServerConfig {
   int deformation_threads = 0;  ///< OpenMP threads for them, 0..64; 0: all cores but one
 };
 
+/// [viewer]
+struct ViewerConfig {
+  bool enabled = true;                ///< whether irdm-server shows its objects to browsers
+  std::string address = "127.0.0.1";  ///< to listen on
+  int port = 0;                       ///< 0..65535; 0: any free one
+  std::string token;           ///< what a viewer has to know, 0 or 16..128 printable characters
+  std::string onlooker_token;  ///< the same for viewers that may only look on
+  std::optional<std::filesystem::path>
+      recordings;     ///< folder for what viewers record; none: they cannot
+  bool mouse = true;  ///< whether viewers have a stylus of their own; never in lockstep
+  /// stylus = { radius, coupling_stiffness, reach }: that one; radius by default that of the first
+  /// [[stylus]]
+  SimulationStylus stylus{0.0, 300.0, 0.01};
+  double max_force = 3.3;  ///< stylus = { max_force }: it pushes with at most this [N], 0.1..100
+};
+
 /// [world]
 struct WorldConfig {
   Vector3 gravity = Vector3::Zero();  ///< [m/s^2], W
@@ -50,12 +66,14 @@ struct ObjectConfig {
   RigidDamping damping;           ///< damping = { linear, angular }
   Tether tether;                  ///< tether = { stiffness, angular_stiffness }
   bool inertial_loading = false;  ///< centrifugal loading by its own spin
+  bool switchable = false;        ///< keeps both engines, so that viewers can switch
 };
 
 /// What irdm-server is to run.
 struct SceneConfig {
   std::optional<FloorConfig> floor;  ///< [floor] height [m], normal, friction = { static, kinetic }
   ServerConfig server;
+  ViewerConfig viewer;
   WorldConfig world;
   ContactConfig contact;
   std::vector<SimulationStylus> styluses;  ///< [[stylus]], one for every slot

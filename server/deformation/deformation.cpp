@@ -1,5 +1,7 @@
 #include "server/deformation/deformation.hpp"
 
+#include <algorithm>
+
 #include "server/step/inertial_loading.hpp"
 
 namespace irdm {
@@ -10,6 +12,8 @@ SurfaceFrame rest_frame(const SimulationConfig& config) {
     frame.objects.push_back({object.position, object.orientation,
                              Points::Zero(object.model->mesh.surface_node_count(), 3)});
   }
+  frame.styluses.resize(config.styluses.size());
+  frame.contacts.resize(config.styluses.size());
   return frame;
 }
 
@@ -17,7 +21,7 @@ Deformation::Deformation(const SimulationConfig& config) {
   std::vector<double> radii;
   for (const SimulationStylus& stylus : config.styluses) radii.push_back(stylus.radius);
   for (const SimulationObject& object : config.objects) {
-    Follower follower{object.model, make_engine(object.model), nullptr, nullptr,
+    Follower follower{object.model, make_engine(object.model, object.other_model), nullptr, nullptr,
                       feels_spin(*object.model, object.inertial_loading)};
     follower.surface = std::make_unique<RestSurface>(object.model->mesh);
     follower.forces = std::make_unique<RecordedForces>(*follower.surface, radii);
@@ -32,19 +36,43 @@ void Deformation::advance(const StepRecord& record) {
   }
 }
 
+void Deformation::follow_settings(const StepRecord& record) {
+  for (std::size_t i = 0; i < objects_.size(); ++i) {
+    const ObjectSettings& settings = record.settings.object[i];
+    Follower& follower = objects_[i];
+    follower.feels_spin = feels_spin(*follower.model, settings.inertial_loading);
+    irdm::follow_settings(*follower.engine, settings, follower.material_damping);
+  }
+}
+
 void Deformation::follow(const StepRecord& record) {
   std::uint64_t next = started_ ? last_.force_step + 1 : 0;
   lost_steps_ += record.force_step - next;
   if (record.reset_step >= next) {
     // What was before it does not count any more, and of lost steps after it nothing is known.
     for (Follower& follower : objects_) follower.engine->reset();
+    const std::uint32_t settings_change = last_.settings_change;
     last_ = StepRecord{};
+    last_.settings_change = settings_change;
     next = record.reset_step;
   }
   for (; next < record.force_step; ++next) advance(last_);
+  if (record.settings_change != last_.settings_change) follow_settings(record);
   advance(record);
   last_ = record;
+  trail_.follow(record);
   started_ = true;
+}
+
+StylusContact Deformation::contact(std::size_t s) const {
+  const int object = last_.stylus[s].object;
+  if (object < 0) return {};
+  const auto i = static_cast<std::size_t>(object);
+  const ContactRecord& contact = last_.object[i].contact[s];
+  if (contact.state == ContactState::kFree) return {};
+  const RestSurface& surface = *objects_[i].surface;
+  return {interpolate(contact.point, [&](int node) -> Vector3 { return surface.node(node); }),
+          contact.slipping};
 }
 
 void Deformation::compute(SurfaceFrame& frame) const {
@@ -55,6 +83,9 @@ void Deformation::compute(SurfaceFrame& frame) const {
     frame.objects[i].orientation = last_.object[i].orientation;
     objects_[i].engine->displacement(frame.objects[i].displacement);
   }
+  std::copy_n(last_.stylus.begin(), frame.styluses.size(), frame.styluses.begin());
+  for (std::size_t s = 0; s < frame.contacts.size(); ++s) frame.contacts[s] = contact(s);
+  frame.trail = trail_;
 }
 
 }  // namespace irdm

@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "server/deformation/force_trail.hpp"
 #include "server/engine/response_engine.hpp"
 #include "server/step/recorded_forces.hpp"
 #include "server/step/simulation_config.hpp"
@@ -23,14 +24,23 @@ struct ObjectSurface {
   }
 };
 
-/// All deformed objects at the end of a step.
+/// Where a stylus touches the object that it touches.
+struct StylusContact {
+  Vector3 place = Vector3::Zero();  ///< on the surface at rest [m], B; means nothing when free
+  bool slipping = false;
+};
+
+/// All deformed objects at the end of a step, and the styluses among them.
 struct SurfaceFrame {
   std::uint64_t force_step = 0;
   double time = 0.0;  ///< [s]
   std::vector<ObjectSurface> objects;
+  std::vector<StylusRecord> styluses;
+  std::vector<StylusContact> contacts;  ///< of each of them, with the object that it touches
+  ForceTrail trail;                     ///< up to this step
 };
 
-/// A frame of the objects at rest.
+/// A frame of the objects at rest, no stylus present.
 SurfaceFrame rest_frame(const SimulationConfig& config);
 
 /// Follows the force thread's steps with engines of its own. Because an engine's state depends on
@@ -45,8 +55,8 @@ class Deformation {
   /// how many, is counted.
   void follow(const StepRecord& record);
 
-  /// Displacements of all nodes after the last step taken in (OpenMP). The frame has the objects'
-  /// number and sizes.
+  /// Displacements of all nodes after the last step taken in (OpenMP). The frame has the numbers
+  /// and sizes of rest_frame().
   void compute(SurfaceFrame& frame) const;
 
   std::uint64_t lost_steps() const noexcept { return lost_steps_; }
@@ -58,11 +68,15 @@ class Deformation {
     std::unique_ptr<RestSurface> surface;
     std::unique_ptr<RecordedForces> forces;
     bool feels_spin;
+    double material_damping = 1.0;
   };
+  void follow_settings(const StepRecord& record);
+  StylusContact contact(std::size_t s) const;
   void advance(const StepRecord& record);
 
   std::vector<Follower> objects_;
   StepRecord last_;
+  ForceTrail trail_;
   bool started_ = false;
   std::uint64_t lost_steps_ = 0;
 };

@@ -16,6 +16,7 @@ class DenseEngine final : public ResponseEngine {
   explicit DenseEngine(std::shared_ptr<const Model> model);
 
   bool takes_spin() const noexcept override { return centrifugal_ != nullptr; }
+  EngineKind kind() const noexcept override { return EngineKind::kDense; }
   void hold_spin(const Vector3& w) noexcept override;
   Vector3 free_displacement(int node) const noexcept override;
   void predict(std::span<const ContactPatch> patches, std::span<Vector3> h,

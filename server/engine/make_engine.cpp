@@ -1,4 +1,5 @@
 #include "common/error.hpp"
+#include "server/engine/both_engines.hpp"
 #include "server/engine/dense_engine.hpp"
 #include "server/engine/modal_engine.hpp"
 
@@ -20,6 +21,13 @@ std::unique_ptr<ResponseEngine> make_engine(std::shared_ptr<const Model> model) 
         dense->values);
   }
   throw Error("model", "holds no response", "make it again with irdm-precompute");
+}
+
+std::unique_ptr<ResponseEngine> make_engine(std::shared_ptr<const Model> model,
+                                            std::shared_ptr<const Model> other) {
+  std::unique_ptr<ResponseEngine> first = make_engine(std::move(model));
+  if (!other) return first;
+  return std::make_unique<BothEngines>(std::move(first), make_engine(std::move(other)));
 }
 
 }  // namespace irdm

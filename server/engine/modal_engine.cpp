@@ -21,10 +21,16 @@ ModalEngine<Scalar>::ModalEngine(std::shared_ptr<const Model> model) : model_(st
     values->assign(modes_, 0.0);
   }
   contact_shapes_.assign(3 * kMaxContacts * modes_, 0.0);
+  set_transitions(1.0);
+}
+
+template <typename Scalar>
+void ModalEngine<Scalar>::set_transitions(double damping) noexcept {
+  const auto& response = *std::get_if<ModalResponse>(&model_->response);
   for (std::size_t i = 0; i < modes_; ++i) {
     const auto index = static_cast<Eigen::Index>(i);
-    const HeldForceOscillator step = held_force_oscillator(response.angular_frequency(index),
-                                                           response.decay_rate(index), model_->dt);
+    const HeldForceOscillator step = held_force_oscillator(
+        response.angular_frequency(index), damping * response.decay_rate(index), model_->dt);
     a11_[i] = step.a11;
     a12_[i] = step.a12;
     a21_[i] = step.a21;
@@ -42,6 +48,19 @@ ModalEngine<Scalar>::ModalEngine(std::shared_ptr<const Model> model) : model_(st
             velocity_after_.data() + from, coordinate_after_.data() + to,
             velocity_after_.data() + to, modes_);
   }
+}
+
+// Where a mode is and how fast it moves stays as it is; only how it goes on changes.
+template <typename Scalar>
+void ModalEngine<Scalar>::scale_damping(double factor) noexcept {
+  set_transitions(factor);
+  move_on();
+}
+
+template <typename Scalar>
+void ModalEngine<Scalar>::move_on() noexcept {
+  transit({a11_.data(), a12_.data(), a21_.data(), a22_.data()}, coordinate_.data(),
+          velocity_.data(), free_coordinate_.data(), free_velocity_.data(), modes_);
 }
 
 template <typename Scalar>
@@ -170,7 +189,7 @@ void ModalEngine<Scalar>::add_past(std::span<const NodalForce> forces, int age) 
     coordinate_[i] += coordinate[i] * modal_force_[i];
     velocity_[i] += velocity[i] * modal_force_[i];
   }
-  move_freely();
+  move_on();
 }
 
 template <typename Scalar>
@@ -184,14 +203,7 @@ void ModalEngine<Scalar>::advance(std::span<const NodalForce> forces) noexcept {
       velocity_[i] += b2_[i] * modal_force_[i];
     }
   }
-  move_freely();
-}
-
-// Where the coming step leads without force.
-template <typename Scalar>
-void ModalEngine<Scalar>::move_freely() noexcept {
-  transit({a11_.data(), a12_.data(), a21_.data(), a22_.data()}, coordinate_.data(),
-          velocity_.data(), free_coordinate_.data(), free_velocity_.data(), modes_);
+  move_on();
 }
 
 template <typename Scalar>

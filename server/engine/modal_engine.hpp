@@ -15,6 +15,9 @@ class ModalEngine final : public ResponseEngine {
   explicit ModalEngine(std::shared_ptr<const Model> model);
 
   bool takes_spin() const noexcept override { return centrifugal_ != nullptr; }
+  bool takes_damping() const noexcept override { return true; }
+  void scale_damping(double factor) noexcept override;
+  EngineKind kind() const noexcept override { return EngineKind::kModal; }
   void hold_spin(const Vector3& w) noexcept override;
   Vector3 free_displacement(int node) const noexcept override;
   void predict(std::span<const ContactPatch> patches, std::span<Vector3> h,
@@ -28,9 +31,10 @@ class ModalEngine final : public ResponseEngine {
   void reset() noexcept override;
 
  private:
+  void set_transitions(double damping) noexcept;
+  void move_on() noexcept;
   void mean_shape(const ContactPatch& patch, int axis, double* shape) const noexcept;
   void collect_modal_forces(std::span<const NodalForce> forces) noexcept;
-  void move_freely() noexcept;
   const Scalar* shape_row(int dof) const noexcept {
     return shapes_->data() + static_cast<std::size_t>(dof) * modes_;
   }

@@ -10,6 +10,8 @@
 
 namespace irdm {
 
+enum class EngineKind { kModal, kDense };
+
 /// Force on one surface node during one step [N], B.
 struct NodalForce {
   int node = 0;
@@ -31,6 +33,21 @@ class ResponseEngine {
   /// besides the forces. Before all else that is asked about the step, at most once a step; without
   /// it there is no such load. Only where takes_spin().
   virtual void hold_spin(const Vector3& w) noexcept = 0;
+
+  /// Whether the damping of its material can be changed while it runs.
+  virtual bool takes_damping() const noexcept { return false; }
+
+  /// From the coming step on the material's damping is `factor` > 0 times that of the model; before
+  /// all else that is asked about the step. Only where takes_damping().
+  virtual void scale_damping(double /*factor*/) noexcept {}
+
+  /// Which form of the response it answers from, and whether there is another one.
+  virtual EngineKind kind() const noexcept = 0;
+  virtual bool has_both_kinds() const noexcept { return false; }
+
+  /// From the coming step on it answers from this form; before all else that is asked about the
+  /// step. Only where has_both_kinds().
+  virtual void use(EngineKind /*kind*/) noexcept {}
 
   /// Displacement of a node at the end of the coming step if no force acts during it [m].
   virtual Vector3 free_displacement(int node) const noexcept = 0;
@@ -67,10 +84,12 @@ class ResponseEngine {
   virtual void reset() noexcept = 0;
 };
 
-enum class EngineKind { kModal, kDense };
-
 /// Makes an engine on a model that holds the response it needs. Throws Error when it does not.
 std::unique_ptr<ResponseEngine> make_engine(std::shared_ptr<const Model> model);
+/// The same with two forms of one model's response, among which use() chooses; first that of
+/// `model`. @param other null: no choice
+std::unique_ptr<ResponseEngine> make_engine(std::shared_ptr<const Model> model,
+                                            std::shared_ptr<const Model> other);
 
 /// The point's value of a quantity that is known at nodes: sum_i w_i value(node_i); nodes of no
 /// weight are not asked for.

@@ -49,6 +49,8 @@ void Session::receive(const wire::Frame& frame) {
     unexpected("a message before Hello");
   } else if (const auto* sample = std::get_if<wire::SampleMessage>(&frame.message)) {
     take(*sample);
+  } else if (const auto* report = std::get_if<wire::Report>(&frame.message)) {
+    take(*report);
   } else if (std::holds_alternative<wire::Goodbye>(frame.message)) {
     spdlog::info("bridge {}: goodbye", connection_->peer());
     // Counted before the styluses go, so that whoever sees them absent knows why.
@@ -84,6 +86,7 @@ void Session::greet(const wire::Hello& hello) {
   connection_->set_session(id_);
   connection_->send(wire::Welcome{.version = std::min(hello.version_max, wire::kProtocolVersion),
                                   .first_stylus = static_cast<std::uint16_t>(first_),
+                                  .capabilities = hello.capabilities & wire::kCapabilityReport,
                                   .session = id_,
                                   .lockstep = settings.lockstep,
                                   .dt = settings.dt});
@@ -97,6 +100,13 @@ void Session::take(const wire::SampleMessage& message) {
   }
   const bool newer = shared_.slots.put(message.stylus, message.sample, monotonic_ns());
   (newer ? shared_.stats.samples : shared_.stats.samples_old).fetch_add(1);
+}
+
+void Session::take(const wire::Report& report) {
+  if (report.stylus < first_ || report.stylus >= first_ + count_) {
+    unexpected("a report of a stylus that is not its own");
+  }
+  shared_.slots.port(report.stylus).link.put({true, report});
 }
 
 void Session::violated(const ProtocolError& error) {

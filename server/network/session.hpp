@@ -44,6 +44,7 @@ class Session {
   void receive(const wire::Frame& frame);
   void greet(const wire::Hello& hello);
   void take(const wire::SampleMessage& message);
+  void take(const wire::Report& report);
   void violated(const wire::ProtocolError& error);
   void release();
 

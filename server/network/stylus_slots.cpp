@@ -21,6 +21,7 @@ std::optional<int> StylusSlots::claim(int count) {
 void StylusSlots::release(int first, int count) {
   for (int slot = first; slot < first + count; ++slot) {
     make_absent(slot);
+    port(slot).link.put({});
     owners_[static_cast<std::size_t>(slot)] = Owner{};
   }
 }

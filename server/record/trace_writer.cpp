@@ -1,22 +1,20 @@
 #include "server/record/trace_writer.hpp"
 
+#include <array>
 #include <vector>
 
 #include "common/error.hpp"
+#include "server/record/trace_paths.hpp"
 
 namespace irdm {
+
+using trace::floor_path;
+using trace::settings_path;
+using trace::stylus_path;
+
 namespace {
 
 constexpr hsize_t kChunkRows = 512;
-
-std::string stylus_path(std::size_t stylus) {
-  return "/stylus/" + std::to_string(stylus);
-}
-
-// Beside the body's sets of one object, within the group of one of several.
-std::string floor_path(const std::string& object) {
-  return object == "/step" ? "/floor" : object + "/floor";
-}
 
 void put(double* row, const Vector3& v) {
   Eigen::Map<Vector3>(row, 3) = v;
@@ -54,6 +52,7 @@ void TraceWriter::create_datasets() {
   file_.create_growing<double>("/step/time", {}, kChunkRows);
   file_.create_growing<std::uint64_t>("/step/force_step", {}, kChunkRows);
   file_.create_growing<std::uint8_t>("/step/reset", {}, kChunkRows);
+  create_settings();
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     const std::string group = object_path(i);
     create_object(group);
@@ -78,9 +77,49 @@ void TraceWriter::create_datasets() {
   }
 }
 
-// One object's sets are those of the step; several have a group each.
+// One row for the first step and one for every change.
+void TraceWriter::create_settings() {
+  file_.create_growing<std::uint64_t>("/settings/force_step", {}, kChunkRows);
+  file_.create_growing<double>("/settings/gravity", {3}, kChunkRows);
+  for (std::size_t i = 0; i < objects_.size(); ++i) {
+    const std::string group = settings_path(i);
+    for (const char* name : {"/friction", "/damping", "/tether"}) {
+      file_.create_growing<double>(group + name, {2}, kChunkRows);
+    }
+    file_.create_growing<double>(group + "/material_damping", {}, kChunkRows);
+    file_.create_growing<std::uint8_t>(group + "/dense", {}, kChunkRows);
+    file_.create_growing<std::uint8_t>(group + "/inertial_loading", {}, kChunkRows);
+  }
+}
+
+void TraceWriter::append_settings(std::span<const StepRecord> records) {
+  for (const StepRecord& record : records) {
+    if (settings_change_ == record.settings_change) continue;
+    settings_change_ = record.settings_change;
+    const Settings& settings = record.settings;
+    file_.append<std::uint64_t>("/settings/force_step", 1, &record.force_step);
+    file_.append<double>("/settings/gravity", 1, settings.gravity.data());
+    for (std::size_t i = 0; i < objects_.size(); ++i) {
+      const std::string group = settings_path(i);
+      const ObjectSettings& object = settings.object[i];
+      const auto pair = [&](const char* name, double first, double second) {
+        const std::array<double, 2> values{first, second};
+        file_.append<double>(group + name, 1, values.data());
+      };
+      pair("/friction", object.friction.static_, object.friction.kinetic);
+      pair("/damping", object.damping.linear, object.damping.angular);
+      pair("/tether", object.tether.stiffness, object.tether.angular_stiffness);
+      file_.append<double>(group + "/material_damping", 1, &object.material_damping);
+      const std::uint8_t dense = object.engine == EngineKind::kDense ? 1 : 0;
+      file_.append<std::uint8_t>(group + "/dense", 1, &dense);
+      const std::uint8_t loading = object.inertial_loading ? 1 : 0;
+      file_.append<std::uint8_t>(group + "/inertial_loading", 1, &loading);
+    }
+  }
+}
+
 std::string TraceWriter::object_path(std::size_t object) const {
-  return several() ? "/object/" + objects_[object].name : "/step";
+  return trace::object_path(several(), objects_[object].name);
 }
 
 void TraceWriter::create_object(const std::string& group) {
@@ -121,6 +160,7 @@ void TraceWriter::append(std::span<const StepRecord> records) {
                             [](const StepRecord& r, std::uint8_t* row) { *row = r.reset ? 1 : 0; });
   append_rows<double>("/step/time", 1, records,
                       [](const StepRecord& r, double* row) { *row = r.time; });
+  append_settings(records);
   for (std::size_t i = 0; i < objects_.size(); ++i) append_object(records, i);
   for (std::size_t s = 0; s < static_cast<std::size_t>(stylus_count_); ++s) {
     append_stylus(records, s);

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -48,6 +50,8 @@ class TraceWriter {
   void create_contact(const std::string& group);
   void append_object(std::span<const StepRecord> records, std::size_t object);
   void append_floor(std::span<const StepRecord> records, std::size_t object);
+  void create_settings();
+  void append_settings(std::span<const StepRecord> records);
   void append_stylus(std::span<const StepRecord> records, std::size_t stylus);
   template <typename Contact>
   void append_contact(std::span<const StepRecord> records, const std::string& group,
@@ -61,6 +65,7 @@ class TraceWriter {
   std::vector<TraceObject> objects_;
   int stylus_count_;
   bool floor_;
+  std::optional<std::uint32_t> settings_change_;  ///< that was written last
 };
 
 }  // namespace irdm

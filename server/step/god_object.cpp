@@ -27,8 +27,8 @@ void GodObject::find(const Input& input, DeformedSurface& surface) noexcept {
     grabbed_before_ = input.grab;
     return;
   }
-  // What is touched goes on from where it is, and only what pushes is taken hold of (hence not in the
-  // step in which it begins): so a grab makes no jump.
+  // What is touched goes on from where it is, and only what pushes is taken hold of (hence not in
+  // the step in which it begins): so a grab makes no jump.
   if (input.grab && !fresh_) {
     state_ = ContactState::kHeld;
     releasing_ = false;

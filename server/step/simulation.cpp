@@ -7,35 +7,8 @@
 #include "common/error.hpp"
 
 namespace irdm {
-namespace {
-
-// Damping and tether act as they were at the start of a step: stable as long as a step is short for
-// them.
-void check_restraints(const SimulationObject& object, std::size_t number) {
-  if (object.model->body.support == Support::kFixed) return;  // it does not move at all
-  const std::string name = "object " + std::to_string(number + 1);
-  const double dt = object.model->dt;
-  const RigidDamping& damping = object.damping;
-  if (std::max(damping.linear, damping.angular) * dt > 0.5) {
-    throw Error(
-        name, "has a damping that is too strong for its model's dt of " + std::to_string(dt) + " s",
-        "use at most " + std::to_string(0.5 / dt) + " 1/s");
-  }
-  const BodyProperties& body = object.model->body;
-  const double inertia =
-      Eigen::SelfAdjointEigenSolver<Matrix3>(body.inertia, Eigen::EigenvaluesOnly).eigenvalues()[0];
-  const double stiffest = body.mass / (dt * dt);
-  const double stiffest_angular = inertia / (dt * dt);
-  if (object.tether.stiffness > stiffest || object.tether.angular_stiffness > stiffest_angular) {
-    throw Error(name, "has a tether that is too stiff for its mass and its model's dt",
-                "use at most " + std::to_string(stiffest) + " N/m and " +
-                    std::to_string(stiffest_angular) + " N m/rad");
-  }
-}
-
-}  // namespace
-
-Simulation::Simulation(const SimulationConfig& config) : stylus_count_(config.styluses.size()) {
+Simulation::Simulation(const SimulationConfig& config)
+    : settings_(initial_settings(config)), stylus_count_(config.styluses.size()) {
   if (config.objects.empty() || config.objects.size() > kMaxObjects) {
     throw Error("scene", "has " + std::to_string(config.objects.size()) + " objects",
                 "use 1 to " + std::to_string(kMaxObjects));
@@ -50,9 +23,17 @@ Simulation::Simulation(const SimulationConfig& config) : stylus_count_(config.st
     if (object.model->dt != dt_) {
       throw Error("scene", "has models of different dt", "compute them with the same response.dt");
     }
-    check_restraints(object, objects_.size());
     objects_.push_back(
         std::make_unique<SoftObject>(object, config, static_cast<int>(objects_.size())));
+  }
+  check_settings(config, settings_);
+}
+
+void Simulation::set(const Settings& settings) noexcept {
+  settings_ = settings;
+  ++settings_change_;
+  for (std::size_t i = 0; i < objects_.size(); ++i) {
+    objects_[i]->set(settings.gravity, settings.object[i]);
   }
 }
 
@@ -80,6 +61,8 @@ void Simulation::step(std::span<const StylusCommand> commands, StepRecord& recor
   record.reset_step = reset_step_;
   record.force_step = next_step_++;
   record.time = static_cast<double>(next_step_) * dt_;
+  record.settings = settings_;
+  record.settings_change = settings_change_;
   record.object_count = object_count();
   record.stylus_count = static_cast<int>(stylus_count_);
   std::array<Quaternion, kMaxObjects> orientations;  // that turned the forces

@@ -42,6 +42,10 @@ class Simulation {
   /// step `age` steps before the last one. False: that is too long ago, or it touched nothing.
   bool enter_late(std::size_t s, const Vector3& force, int age) noexcept;
 
+  /// From the next step on. They must have passed check_settings(). Real-time safe.
+  void set(const Settings& settings) noexcept;
+  const Settings& settings() const noexcept { return settings_; }
+
   double dt() const noexcept { return dt_; }
   int object_count() const noexcept { return static_cast<int>(objects_.size()); }
   const SoftObject& object(int i = 0) const noexcept {
@@ -55,6 +59,8 @@ class Simulation {
                     std::span<const Quaternion> orientations, StepRecord& record) const noexcept;
 
   double dt_ = 0.0;
+  Settings settings_;
+  std::uint32_t settings_change_ = 0;
   std::uint64_t next_step_ = 0;
   std::uint64_t reset_step_ = 0;
   bool was_reset_ = false;  ///< since the last step

@@ -43,7 +43,7 @@ SoftObject::SoftObject(const SimulationObject& object, const SimulationConfig& c
       object_(object),
       config_(config),
       number_(number),
-      engine_(make_engine(model_)),
+      engine_(make_engine(model_, object.other_model)),
       rest_(model_->mesh),
       surface_(rest_),
       body_(model_->body, model_->dt),
@@ -86,6 +86,15 @@ void SoftObject::reset() noexcept {
     last.average.setZero();
   }
   if (floor_) floor_->reset();
+}
+
+void SoftObject::set(const Vector3& gravity, const ObjectSettings& settings) noexcept {
+  object_.friction = settings.friction;
+  free_forces_.gravity = gravity;
+  free_forces_.damping = settings.damping;
+  free_forces_.tether = settings.tether;
+  feels_spin_ = irdm::feels_spin(*model_, settings.inertial_loading);
+  follow_settings(*engine_, settings, material_damping_);
 }
 
 void SoftObject::step(std::span<const StylusCommand> commands, ObjectRecord& record) noexcept {

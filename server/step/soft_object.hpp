@@ -34,6 +34,8 @@ class SoftObject {
   /// One step of dt. `commands`: one a stylus.
   void step(std::span<const StylusCommand> commands, ObjectRecord& record) noexcept;
   void reset() noexcept;
+  /// From the next step on.
+  void set(const Vector3& gravity, const ObjectSettings& settings) noexcept;
 
   /// What a bridge needs to solve the contact of stylus s by itself in the coming steps. The forces
   /// of the floor are taken to stay as they were in the last step, those of other styluses as they
@@ -93,6 +95,7 @@ class SoftObject {
   RestSurface rest_;
   DeformedSurface surface_;
   RigidBody body_;
+  double material_damping_ = 1.0;
   bool feels_spin_;
   FreeForces free_forces_;
   RigidState start_;

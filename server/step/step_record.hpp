@@ -7,11 +7,11 @@
 #include "common/contact/contact_problem.hpp"
 #include "common/geometry.hpp"
 #include "common/stylus.hpp"
+#include "server/step/settings.hpp"
 
 namespace irdm {
 
 inline constexpr int kMaxStyluses = 4;
-inline constexpr int kMaxObjects = 4;
 
 /// A force that was decided elsewhere (by a bridge that solved the contact itself); the step
 /// applies it.
@@ -90,6 +90,8 @@ struct StepRecord {
   double time = 0.0;             ///< (k + 1) dt, the end of the step [s]
   bool reset = false;            ///< everything was put back to the start before this step
   std::uint64_t reset_step = 0;  ///< the last step that this was so in, this one included; 0: none
+  Settings settings;             ///< that the step was made with
+  std::uint32_t settings_change = 0;  ///< how often they were changed so far
   int object_count = 0;
   int stylus_count = 0;
   std::array<ObjectRecord, kMaxObjects> object;

@@ -36,26 +36,31 @@ void DeformationThread::finish() {
 void DeformationThread::run() {
   omp_set_num_threads(threads_);
   PeriodicSchedule schedule(monotonic_ns(), period_ns_);
-  StepRecord record;
-  for (;;) {
+  for (bool stopped = false; !stopped;) {
     const std::int64_t now = monotonic_ns();
     const std::int64_t wait_ns = schedule.next(now) - now;
-    if (stop_.wait(
-            static_cast<int>(std::max<std::int64_t>(0, wait_ns) / kNanosecondsPerMillisecond))) {
-      return;
-    }
-    bool moved = false;
-    while (sink_.take(record)) {
-      deformation_.follow(record);
-      moved = true;
-    }
-    if (!moved) continue;
-    const std::int64_t begin = monotonic_ns();
-    deformation_.compute(surfaces_.back());
-    surfaces_.publish();
-    compute_time_.add(monotonic_ns() - begin);
-    frames_.fetch_add(1, std::memory_order_relaxed);
+    // Stopped, it makes one round more: the last surface is that of the last step.
+    stopped = stop_.wait(
+        static_cast<int>(std::max<std::int64_t>(0, wait_ns) / kNanosecondsPerMillisecond));
+    follow_and_compute();
   }
+}
+
+void DeformationThread::follow_and_compute() {
+  StepRecord record;
+  bool moved = false;
+  while (sink_.take(record)) {
+    deformation_.follow(record);
+    moved = true;
+  }
+  if (!moved) return;
+  const std::int64_t begin = monotonic_ns();
+  deformation_.compute(surfaces_.back());
+  surfaces_.publish();
+  surface_ready_.signal();
+  lost_steps_.store(deformation_.lost_steps(), std::memory_order_relaxed);
+  compute_time_.add(monotonic_ns() - begin);
+  frames_.fetch_add(1, std::memory_order_relaxed);
 }
 
 }  // namespace irdm

@@ -26,18 +26,22 @@ class DeformationThread {
   StepSink& sink() noexcept { return sink_; }
   /// The newest surface; for one reader.
   Mailbox<SurfaceFrame>& surfaces() noexcept { return surfaces_; }
+  /// Signalled whenever there is a new one.
+  Wakeup& surface_ready() noexcept { return surface_ready_; }
 
   void start();
+  /// After a last surface, of the last step.
   void finish();
 
-  /// Steps that did not fit into its queue; after the thread has ended.
-  std::uint64_t lost_steps() const noexcept { return deformation_.lost_steps(); }
+  /// Steps that did not fit into its queue; any thread.
+  std::uint64_t lost_steps() const noexcept { return lost_steps_.load(std::memory_order_relaxed); }
   std::uint64_t frames() const noexcept { return frames_.load(std::memory_order_relaxed); }
   /// Time to compute one surface; after finish().
   const Histogram& compute_time() const noexcept { return compute_time_; }
 
  private:
   void run();
+  void follow_and_compute();
 
   Deformation deformation_;
   std::int64_t period_ns_;
@@ -46,6 +50,8 @@ class DeformationThread {
   Mailbox<SurfaceFrame> surfaces_;
   Histogram compute_time_;
   std::atomic<std::uint64_t> frames_{0};
+  std::atomic<std::uint64_t> lost_steps_{0};
+  Wakeup surface_ready_;
   Wakeup stop_;
   std::thread thread_;
 };

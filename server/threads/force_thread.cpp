@@ -19,14 +19,20 @@ StylusForce to_answer(const StepRecord& record, const StylusRecord& stylus,
 
 }  // namespace
 
-ForceThread::ForceThread(Simulation& simulation, NetworkServer& network, StepClock& clock,
-                         std::vector<StepSink*> sinks, std::uint64_t steps)
+ForceThread::ForceThread(Simulation& simulation, NetworkServer& network, RunControl& control,
+                         StepClock& clock, std::vector<StepSink*> sinks, std::uint64_t steps)
     : simulation_(simulation),
       network_(network),
+      control_(control),
       clock_(clock),
       sinks_(std::move(sinks)),
       steps_(steps),
       commands_(static_cast<std::size_t>(network.styluses())) {}
+
+void ForceThread::add_viewer_stylus(const ViewerStylus& stylus) {
+  viewer_stylus_ = stylus;
+  commands_.resize(static_cast<std::size_t>(network_.styluses()) + 1);
+}
 
 ForceThread::~ForceThread() {
   finish();
@@ -45,29 +51,86 @@ void ForceThread::finish() {
 
 void ForceThread::run() noexcept {
   while ((steps_ == 0 || report_.steps < steps_) && clock_.wait(report_.steps)) {
+    if (!control_.take_step()) {
+      stand_still();
+      continue;
+    }
     const std::int64_t begin = monotonic_ns();
     step();
-    report_.step_time.add(monotonic_ns() - begin);
+    const std::int64_t end = monotonic_ns();
+    report_.step_time.add(end - begin);
     ++report_.steps;
+    watch_health(begin, end);
   }
   finished_.signal();
 }
 
-void ForceThread::step() noexcept {
-  for (std::size_t s = 0; s < commands_.size(); ++s) {
+void ForceThread::watch_health(std::int64_t begin_ns, std::int64_t end_ns) noexcept {
+  if (report_.steps == 1) window_begin_ns_ = begin_ns;
+  window_.step_time.add(end_ns - begin_ns);
+  if (clock_.last_delay() >= 0) window_.wakeup_delay.add(clock_.last_delay());
+  if (end_ns - window_begin_ns_ < kHealthPeriodNs) return;
+  window_.steps = report_.steps;
+  window_.resets = report_.resets;
+  window_.unsolved = report_.unsolved;
+  window_.missed = clock_.missed();
+  health_.put(window_);  // some 10 kB, once a second
+  window_ = ForceHealth{};
+  window_begin_ns_ = end_ns;
+}
+
+// A hand feels nothing meanwhile: what it felt fades.
+void ForceThread::stand_still() noexcept {
+  still_steps_ = stood_still_ ? still_steps_ + 1 : 1;
+  stood_still_ = true;
+  const double left =
+      std::max(0.0, 1.0 - static_cast<double>(still_steps_) * simulation_.dt() / kPauseFade);
+  clock_.rest();
+  if (clock_.lockstep()) return;  // the bridges wait
+  const std::size_t bridges = static_cast<std::size_t>(network_.styluses());
+  for (std::size_t s = 0; s < bridges; ++s) {
+    StylusPort& port = network_.port(static_cast<int>(s));
+    port.in.receive();
+    if (!port.in.front().present) continue;
+    StylusRecord fading = record_.stylus[s];
+    fading.force *= left;
+    if (left == 0.0 || !fading.present) {
+      fading = StylusRecord{};
+      fading.proxy = port.in.front().sample.tip;
+    }
+    port.out.put(to_answer(record_, fading, port.in.front().sample));
+  }
+  network_.forces_ready().signal();
+}
+
+void ForceThread::take_commands() noexcept {
+  const std::size_t bridges = static_cast<std::size_t>(network_.styluses());
+  for (std::size_t s = 0; s < bridges; ++s) {
     StylusPort& port = network_.port(static_cast<int>(s));
     port.in.receive();
     commands_[s] = to_command(port.in.front());
+    // Who feels nothing has to come from outside again; a step without it makes it so.
+    if (stood_still_ && !clock_.lockstep()) commands_[s].present = false;
   }
-  const bool put_back = reset_requested_.load(std::memory_order_relaxed) &&
-                        reset_requested_.exchange(false, std::memory_order_relaxed);
-  simulation_.step(commands_, record_, put_back);
+  if (!control_.paused()) stood_still_ = false;
+  if (!viewer_stylus_) return;
+  control_.stylus().receive();
+  commands_[bridges] =
+      viewer_stylus_->next(to_command(control_.stylus().front()), record_.stylus[bridges]);
+}
+
+void ForceThread::step() noexcept {
+  take_commands();
+  if (const Settings* settings = control_.take_settings()) simulation_.set(*settings);
+  simulation_.step(commands_, record_, control_.take_reset());
   if (record_.reset) ++report_.resets;
+  const std::size_t bridges = static_cast<std::size_t>(network_.styluses());
   for (std::size_t s = 0; s < commands_.size(); ++s) {
     if (!commands_[s].present) continue;
+    report_.peak_force = std::max(report_.peak_force, record_.stylus[s].force.norm());
+    if (s >= bridges) continue;
     StylusPort& port = network_.port(static_cast<int>(s));
     port.out.put(to_answer(record_, record_.stylus[s], port.in.front().sample));
-    report_.peak_force = std::max(report_.peak_force, record_.stylus[s].force.norm());
   }
   network_.forces_ready().signal();
   for (int i = 0; i < record_.object_count; ++i) {

@@ -1,18 +1,21 @@
 #pragma once
 
-#include <atomic>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "common/realtime/histogram.hpp"
+#include "common/realtime/mailbox.hpp"
 #include "common/realtime/scheduling.hpp"
 #include "common/realtime/wakeup.hpp"
 #include "server/network/network_server.hpp"
 #include "server/step/simulation.hpp"
+#include "server/threads/run_control.hpp"
 #include "server/threads/step_clock.hpp"
 #include "server/threads/step_sink.hpp"
+#include "server/threads/viewer_stylus.hpp"
 
 namespace irdm {
 
@@ -25,40 +28,63 @@ struct ForceThreadReport {
   Histogram step_time;         ///< from the clock's go to the forces' hand-over [ns]
 };
 
+/// How the force thread fares while it runs.
+struct ForceHealth {
+  std::uint64_t steps = 0;  ///< this count and the next three: since the start
+  std::uint64_t resets = 0;
+  std::uint64_t unsolved = 0;
+  std::uint64_t missed = 0;  ///< deadlines
+  Histogram step_time;       ///< of the last kHealthPeriodNs [ns]
+  Histogram wakeup_delay;    ///< of the last kHealthPeriodNs [ns]; empty in lockstep
+};
+
 /// Takes the newest stylus samples, makes the force step and hands on what came of it, once for
 /// every go of the clock. Neither allocates, locks, throws, logs nor touches files while it runs.
 class ForceThread {
  public:
   /// All of these must outlive the thread. @param steps how many to make; 0: until the clock stops
-  ForceThread(Simulation& simulation, NetworkServer& network, StepClock& clock,
+  ForceThread(Simulation& simulation, NetworkServer& network, RunControl& control, StepClock& clock,
               std::vector<StepSink*> sinks, std::uint64_t steps);
   ~ForceThread();
 
   /// Throws Error when real-time scheduling is required and not permitted.
   void start(RealTimeScheduling scheduling);
   void finish();
-  /// Puts everything back to the start before the next step; requests until then are one. Any
-  /// thread; never waits.
-  void request_reset() noexcept { reset_requested_.store(true, std::memory_order_relaxed); }
+  /// The simulation's last stylus, beyond those of the network, is that of the viewers. Before
+  /// start().
+  void add_viewer_stylus(const ViewerStylus& stylus);
   /// Becomes readable when the thread has made its last step.
   Wakeup& finished() noexcept { return finished_; }
   const ForceThreadReport& report() const noexcept { return report_; }
+  /// While it runs, anew about every kHealthPeriodNs; for one reader.
+  Mailbox<ForceHealth>& health() noexcept { return health_; }
+  static constexpr double kPauseFade = 0.03;  ///< in which a force fades when the run is paused [s]
+  static constexpr std::int64_t kHealthPeriodNs = 1'000'000'000;
   /// How the thread is scheduled, for a report.
   const std::string& scheduling() const noexcept { return scheduling_; }
 
  private:
   void run() noexcept;
   void step() noexcept;
+  void stand_still() noexcept;
+  void take_commands() noexcept;
+  void watch_health(std::int64_t begin_ns, std::int64_t end_ns) noexcept;
 
   Simulation& simulation_;
   NetworkServer& network_;
+  RunControl& control_;
   StepClock& clock_;
   std::vector<StepSink*> sinks_;
   std::uint64_t steps_;
-  std::vector<StylusCommand> commands_;
+  bool stood_still_ = false;
+  std::uint64_t still_steps_ = 0;  ///< since it stands still
+  std::optional<ViewerStylus> viewer_stylus_;
+  std::vector<StylusCommand> commands_;  ///< of the network's styluses, and perhaps the viewers'
   StepRecord record_;
   ForceThreadReport report_;
-  std::atomic<bool> reset_requested_{false};
+  ForceHealth window_;  ///< what is being gathered for health_
+  std::int64_t window_begin_ns_ = 0;
+  Mailbox<ForceHealth> health_;
   std::string scheduling_;
   Wakeup finished_;
   std::thread thread_;

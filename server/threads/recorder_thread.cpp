@@ -1,21 +1,28 @@
 #include "server/threads/recorder_thread.hpp"
 
 #include <exception>
+#include <mutex>
+
+#include "common/hdf5/library_lock.hpp"
 
 namespace irdm {
 namespace {
-constexpr std::size_t kQueueCapacity = 4096;  // 4 s at 1 kHz
 constexpr std::size_t kBatch = 512;
 constexpr int kPeriodMs = 50;
 }  // namespace
 
-RecorderThread::RecorderThread(const std::filesystem::path& path, const TraceHeader& header)
-    : writer_(path, header), sink_(kQueueCapacity) {
+RecorderThread::RecorderThread(const std::filesystem::path& path, const TraceHeader& header,
+                               StepSink& sink, From from)
+    : sink_(sink), lost_before_(sink.lost()), begun_(from == From::kAny) {
+  const std::lock_guard lock(hdf5::library_mutex());
+  writer_.emplace(path, header);
   batch_.reserve(kBatch);
 }
 
 RecorderThread::~RecorderThread() {
   finish();
+  const std::lock_guard lock(hdf5::library_mutex());
+  writer_.reset();
 }
 
 void RecorderThread::start() {
@@ -34,10 +41,12 @@ void RecorderThread::run() {
   try {
     while (!(stopped = stop_.wait(kPeriodMs))) {
       drain();
-      writer_.flush();
+      const std::lock_guard lock(hdf5::library_mutex());
+      writer_->flush();
     }
     drain();
-    writer_.close();
+    const std::lock_guard lock(hdf5::library_mutex());
+    writer_->close();
   } catch (const std::exception& error) {
     error_ = error.what();
     // Keep taking, so that the queue does not report what the disk did.
@@ -58,8 +67,12 @@ void RecorderThread::drain() {
   StepRecord record;
   do {
     batch_.clear();
-    while (batch_.size() < kBatch && sink_.take(record)) batch_.push_back(record);
-    writer_.append(batch_);
+    while (batch_.size() < kBatch && sink_.take(record)) {
+      begun_ = begun_ || record.reset;
+      if (begun_) batch_.push_back(record);
+    }
+    const std::lock_guard lock(hdf5::library_mutex());
+    writer_->append(batch_);
     rows_.fetch_add(batch_.size(), std::memory_order_relaxed);
   } while (batch_.size() == kBatch);
 }

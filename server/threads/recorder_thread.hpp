@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -17,18 +18,22 @@ namespace irdm {
 /// an error for the end of the run, and disturbs nobody.
 class RecorderThread {
  public:
-  /// Makes the file. Throws Error.
-  RecorderThread(const std::filesystem::path& path, const TraceHeader& header);
-  ~RecorderThread();
+  /// The first step that is written.
+  enum class From { kAny, kReset };
+  static constexpr std::size_t kQueueCapacity = 4096;  ///< for a sink: 4 s at 1 kHz
 
-  /// Where the force thread puts its steps.
-  StepSink& sink() noexcept { return sink_; }
-  const StepSink& sink() const noexcept { return sink_; }
+  /// Makes the file. Throws Error. @param sink where the force thread puts its steps; must outlive
+  /// the recorder
+  RecorderThread(const std::filesystem::path& path, const TraceHeader& header, StepSink& sink,
+                 From from = From::kAny);
+  ~RecorderThread();
 
   void start();
   /// Writes what is left, completes the file and ends the thread.
   void finish();
 
+  /// Steps that are missing because the disk was too slow.
+  std::uint64_t lost() const noexcept { return sink_.lost() - lost_before_; }
   std::uint64_t rows() const noexcept { return rows_.load(std::memory_order_relaxed); }
   /// Why the recording ended early; empty when it did not. After finish().
   const std::string& error() const noexcept { return error_; }
@@ -38,8 +43,10 @@ class RecorderThread {
   void drain();
   void discard();
 
-  TraceWriter writer_;
-  StepSink sink_;
+  std::optional<TraceWriter> writer_;  ///< always there, until the end
+  StepSink& sink_;
+  std::uint64_t lost_before_;
+  bool begun_;
   std::vector<StepRecord> batch_;
   Wakeup stop_;
   std::atomic<std::uint64_t> rows_{0};

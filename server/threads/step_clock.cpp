@@ -20,7 +20,8 @@ bool RealTimeClock::wait(std::uint64_t step) noexcept {
   }
   const std::int64_t deadline = schedule_.next(monotonic_ns());
   sleep_until(deadline);
-  wakeup_delay_.add(monotonic_ns() - deadline);
+  last_delay_ = monotonic_ns() - deadline;
+  wakeup_delay_.add(last_delay_);
   return !stopped();
 }
 
@@ -42,6 +43,11 @@ LockstepClock::Samples LockstepClock::samples(std::uint64_t step) noexcept {
 bool LockstepClock::room() const noexcept {
   return std::all_of(sinks_.begin(), sinks_.end(),
                      [](const StepSink* sink) { return sink->has_room(); });
+}
+
+// The step that wait() has let through would come at once again.
+void LockstepClock::rest() noexcept {
+  sleep_until(monotonic_ns() + kRoomPauseNs);
 }
 
 bool LockstepClock::wait(std::uint64_t step) noexcept {

@@ -17,6 +17,15 @@ class StepClock {
   virtual ~StepClock() = default;
   /// Returns when step k may run; false when there is to be no further step. Force thread.
   virtual bool wait(std::uint64_t step) noexcept = 0;
+  /// In place of a step: returns after a moment. Force thread.
+  virtual void rest() noexcept {}
+  /// Whether time is simulated.
+  virtual bool lockstep() const noexcept { return false; }
+  /// How late the last wait() ended [ns]; -1: no such thing. Force thread.
+  virtual std::int64_t last_delay() const noexcept { return -1; }
+  /// Steps that were left out so far because an earlier one was late. Force thread, or after the
+  /// run.
+  virtual std::uint64_t missed() const noexcept { return 0; }
   /// Ends the wait; any thread.
   void stop() noexcept { stopped_.store(true, std::memory_order_relaxed); }
 
@@ -35,13 +44,14 @@ class RealTimeClock final : public StepClock {
   bool wait(std::uint64_t step) noexcept override;
   /// How late the thread woke [ns]; after the run.
   const Histogram& wakeup_delay() const noexcept { return wakeup_delay_; }
-  /// Steps that were left out because an earlier one was late; after the run.
-  std::uint64_t missed() const noexcept { return schedule_.missed(); }
+  std::int64_t last_delay() const noexcept override { return last_delay_; }
+  std::uint64_t missed() const noexcept override { return schedule_.missed(); }
 
  private:
   std::int64_t period_ns_;
   PeriodicSchedule schedule_;
   Histogram wakeup_delay_;
+  std::int64_t last_delay_ = -1;
 };
 
 /// Step k runs when sample k of every stylus is there; the run is over when a stylus leaves. Waits
@@ -51,6 +61,8 @@ class LockstepClock final : public StepClock {
   /// The force thread's side of `network` and of the sinks; they must outlive the clock.
   LockstepClock(NetworkServer& network, std::vector<StepSink*> sinks);
   bool wait(std::uint64_t step) noexcept override;
+  void rest() noexcept override;
+  bool lockstep() const noexcept override { return true; }
 
  private:
   enum class Samples { kComplete, kAwaited, kEnded };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 
 #include "common/realtime/bounded_queue.hpp"
@@ -15,16 +16,23 @@ class StepSink {
   explicit StepSink(std::size_t capacity) : queue_(capacity) {}
 
   /// Force thread.
-  void put(const StepRecord& record) noexcept { queue_.push(record); }
+  void put(const StepRecord& record) noexcept {
+    if (open_.load(std::memory_order_acquire)) queue_.push(record);
+  }
   /// Force thread, lockstep only: false as long as the next record would be lost.
-  bool has_room() const noexcept { return queue_.room() > 0; }
+  bool has_room() const noexcept {
+    return !open_.load(std::memory_order_acquire) || queue_.room() > 0;
+  }
   /// The other thread: the next step, if there is one.
   bool take(StepRecord& record) noexcept { return queue_.pop(record); }
+  /// Whether steps are taken in, true at first. A step under way when it is closed may still come.
+  void set_open(bool open) noexcept { open_.store(open, std::memory_order_release); }
   /// Steps lost because the other thread was too slow; any thread.
   std::uint64_t lost() const noexcept { return queue_.overflows(); }
 
  private:
   BoundedQueue<StepRecord> queue_;
+  std::atomic<bool> open_{true};
 };
 
 }  // namespace irdm

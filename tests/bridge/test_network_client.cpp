@@ -86,6 +86,21 @@ TEST_CASE("client says hello, sends samples of its slot and takes their forces")
   CHECK(server.input().force.force == Vector3(1, 0, 0));
 }
 
+TEST_CASE("client takes answers to newer samples from a run that stands still") {
+  ScriptedServer server;
+  RawPeer peer = server.welcome();
+  for (const std::uint64_t sequence : {4, 5}) {
+    server.give({.sequence = sequence});
+    REQUIRE(peer.receive_as<SampleMessage>());
+    peer.send(ForceMessage{.stylus = 2, .force = {.force_step = 10, .sample_sequence = sequence}});
+    REQUIRE(server.wait_for([&] { return server.input().force.sample_sequence == sequence; }));
+  }
+  const ClientReport& report = server.end();
+  CHECK(report.forces == 2);
+  CHECK(report.forces_old == 0);
+  CHECK(report.gaps == 0);
+}
+
 TEST_CASE("client drops forces that are old or answer nothing it said, and counts gaps") {
   ScriptedServer server;
   RawPeer peer = server.welcome();

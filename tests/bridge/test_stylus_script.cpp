@@ -81,6 +81,10 @@ TEST_CASE("script refuses what does not fit, with file and line") {
   check_refused(kHeader + "0,0,nan,0\n", "'nan' is not finite");
   check_refused(kHeader + "0,0,inf,0\n", "'inf' is not finite");
   check_refused(kHeader + "0,0,1e999,0\n", "is not finite");
+  check_refused(kHeader + "0,1001,0,0\n", "motion.csv:2: is out of reach");
+  check_refused(kHeader + "0,0,0,-1e308\n", "is out of reach");
+  check_refused(kHeader + "-1e308,0,0,0\n", "is out of reach");
+  check_refused(kHeader + std::string("0,0,1\0x,0\n", 11), "is not a number");
   check_refused(kHeader + "0,0,0,0\n\n0,0,0,0\n", "motion.csv:4: time 0 does not come after");
   check_refused(kHeader + "1,0,0,0\n0.5,0,0,0\n", "does not come after");
   check_refused("time,x,y,z,qw,qx,qy,qz\n0,0,0,0,0,0,0,0\n", "not of norm 1");

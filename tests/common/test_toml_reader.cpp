@@ -50,6 +50,14 @@ TEST_CASE("configuration reader rejects keys that nobody reads, in nested tables
   CHECK_THROWS_WITH(nested.finish(), Contains("test.toml:4: b.typo is not a known key"));
 }
 
+TEST_CASE("what a message quotes of a file has no control characters") {
+  const std::string word = "b\\u001B[31m\\nc";
+  CHECK_THROWS_WITH(parse("a = \"" + word + "\"").choice("a", {"x"}, "x"),
+                    Contains("a is 'b?[31m?c'"));
+  CHECK_THROWS_WITH(parse("\"" + word + "\" = 1").finish(),
+                    Contains("b?[31m?c is not a known key"));
+}
+
 TEST_CASE("configuration reader says when the file is missing") {
   CHECK_THROWS_AS(TomlTable::parse_file("no-such-file.toml"), Error);
 }

@@ -76,7 +76,8 @@ TEST_CASE("damped corotational free flight conserves both momenta and gains no e
 }
 
 // To the tolerance that each step is solved to (1e-12 of the velocity), added up over the steps.
-TEST_CASE("undamped corotational flight conserves both momenta and the energy, at any step") {
+TEST_CASE("undamped corotational flight conserves both momenta and the energy, at any step",
+          "[slow]") {
   const SoftBody b = body(Elasticity::kCorotational, 0.0, 0.0);
   for (const double h : {0.004, 0.002, 0.001, 0.0005}) {
     CAPTURE(h);

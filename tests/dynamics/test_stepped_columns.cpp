@@ -50,7 +50,8 @@ TimeSteppingConfig read(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("linear time stepping comes to the modal closed form with the square of the step") {
+TEST_CASE("linear time stepping comes to the modal closed form with the square of the step",
+          "[slow]") {
   const Cube cube;
   DenseColumns<double> modal = cube.modal();
   const std::vector<int> columns{0, 1, 2, 50, 76, 99, 121};

@@ -129,7 +129,8 @@ TEST_CASE("merge refuses slices that do not fit together, one by one") {
   run.good("merge a.part b.part -o m.h5");
 }
 
-TEST_CASE("compression keeps to its error, of the whole file and of joined slices alike") {
+TEST_CASE("compression keeps to its error, of the whole file and of joined slices alike",
+          "[slow]") {
   const std::string zfp = "compression = \"zfp\"\ncompression_error = 1e-4\n";
   for (const std::string& config : {kStepping, modal()}) {
     Run run(config + zfp);
@@ -175,7 +176,8 @@ TEST_CASE("option --columns takes A:B within R, of dense R only") {
   CHECK_FALSE(run.has("a.part"));
 }
 
-TEST_CASE("a work file goes on where its last whole column ends, however it was cut or damaged") {
+TEST_CASE("a work file goes on where its last whole column ends, however it was cut or damaged",
+          "[slow]") {
   Run run;
   run.good("c.toml -o whole.h5");
   run.good("c.toml -o a.part --columns 0:54");
@@ -208,7 +210,7 @@ TEST_CASE("a work file goes on where its last whole column ends, however it was 
   CHECK(resumed(whole + "and more") == 54);
 }
 
-TEST_CASE("a work file of another configuration is given up") {
+TEST_CASE("a work file of another configuration is given up", "[slow]") {
   Run run;
   run.write("other.toml", std::string(kStepping).replace(kStepping.find("2000"), 4, "2001"));
   run.good("other.toml -o other.h5");

@@ -315,7 +315,8 @@ TEST_CASE("a surface in millimetres is filled, its edge length is in metres") {
   run.check_refused("s.obj: the surface is open at 3 edges, for instance from (");
 }
 
-TEST_CASE("time stepping gives the dense R of the modes, the same for any number of threads") {
+TEST_CASE("time stepping gives the dense R of the modes, the same for any number of threads",
+          "[slow]") {
   Run run;
   const std::string box = replaced(kBox, "[3, 2, 2]", "[2, 1, 1]");
   run.write("c.toml", box + kMaterial +

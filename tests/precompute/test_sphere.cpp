@@ -60,7 +60,7 @@ TEST_CASE("Lamb's equation has the tabulated root") {
   CHECK(lowest_spheroidal(0.25) == Approx(2.640).epsilon(1e-3));
 }
 
-TEST_CASE("the lowest spheroidal modes of a free sphere are Lamb's within 2 %") {
+TEST_CASE("the lowest spheroidal modes of a free sphere are Lamb's within 2 %", "[slow]") {
   for (const double poisson_ratio : {0.3, 0.45}) {
     const Material material{3000.0, poisson_ratio, 1000.0, 0.0, 0.0};
     const Discrete body(quadratic_mesh(ball(0.05, 0.018)), material);

@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 
+#include "common/realtime/clock.hpp"
 #include "server/threads/force_thread.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/synthetic_model.hpp"
@@ -31,9 +32,10 @@ TEST_CASE("a reset that is asked for comes before the next step, once") {
   NetworkServer network({});
   NoClock clock;
   StepSink sink(8);
-  ForceThread force(simulation, network, clock, {&sink}, 5);
-  force.request_reset();
-  force.request_reset();  // until it is done, it is one
+  RunControl control(simulation.settings());
+  ForceThread force(simulation, network, control, clock, {&sink}, 5);
+  control.request_reset();
+  control.request_reset();  // until it is done, it is one
   force.start(RealTimeScheduling::kIgnore);
   REQUIRE(force.finished().wait(kDeadlineMs));
   force.finish();
@@ -46,4 +48,148 @@ TEST_CASE("a reset that is asked for comes before the next step, once") {
     CHECK(record.reset_step == 10);
     if (k == 10) CHECK(record.object[0].position.norm() < 0.1 * fallen.norm());
   }
+}
+
+TEST_CASE("the force thread tells how it fares while it runs, about once a second") {
+  SimulationConfig config;
+  config.objects.resize(1);
+  config.objects[0].model = std::make_shared<const Model>(synthetic_cube(2, 5, 10));
+  Simulation simulation(config);
+  NetworkServer network({});
+  RealTimeClock clock(0.002);
+  RunControl control(simulation.settings());
+  ForceThread force(simulation, network, control, clock, {}, 0);
+  control.request_reset();
+  force.start(RealTimeScheduling::kIgnore);
+  REQUIRE(eventually([&] { return force.health().receive(); }));
+  const ForceHealth first = force.health().front();
+  CHECK(first.steps > 0);
+  CHECK(first.resets == 1);
+  CHECK(first.step_time.count() == first.steps);
+  CHECK(first.wakeup_delay.count() == first.steps - 1);  // the first one waits for nothing
+  REQUIRE(eventually([&] { return force.health().receive(); }));
+  const ForceHealth& second = force.health().front();
+  CHECK(second.step_time.count() == second.steps - first.steps);  // of the last second alone
+  force.finish();
+}
+
+namespace {
+
+/// A falling cube whose force thread runs without a clock, slowly enough to be watched.
+struct Fall {
+  class Clock final : public StepClock {
+   public:
+    bool wait(std::uint64_t) noexcept override {
+      sleep_until(monotonic_ns() + 100'000);
+      return !stopped();
+    }
+  };
+  Fall() {
+    config.gravity = Vector3(0, -1, 0);
+    config.objects.resize(1);
+    config.objects[0].model = std::make_shared<const Model>(synthetic_cube(2, 5, 10));
+    config.styluses.resize(2);
+    simulation = std::make_unique<Simulation>(config);
+    control = std::make_unique<RunControl>(simulation->settings());
+    force = std::make_unique<ForceThread>(*simulation, network, *control, clock,
+                                          std::vector<StepSink*>{&sink}, 0);
+    force->add_viewer_stylus({0.002, 300.0, 3.3});
+  }
+  /// Takes steps until one is as wanted.
+  template <typename Wanted>
+  bool comes(const Wanted& wanted) {
+    return eventually([&] {
+      while (sink.take(record)) {
+        if (wanted(record)) return true;
+      }
+      return false;
+    });
+  }
+
+  SimulationConfig config;
+  std::unique_ptr<Simulation> simulation;
+  NetworkServer network{{.styluses = 1}};
+  std::unique_ptr<RunControl> control;
+  Clock clock;
+  StepSink sink{1 << 10};
+  StepRecord record;
+  std::unique_ptr<ForceThread> force;
+};
+
+}  // namespace
+
+TEST_CASE("a paused run stands still, makes the steps that are asked for, and goes on") {
+  Fall fall;
+  fall.control->pause();
+  fall.force->start(RealTimeScheduling::kIgnore);
+  fall.control->request_steps(3);
+  REQUIRE(fall.comes([](const StepRecord& record) { return record.force_step == 2; }));
+  CHECK_FALSE(Wakeup().wait(30));  // a moment in which nothing comes
+  CHECK_FALSE(fall.sink.take(fall.record));
+  fall.control->request_steps(1);
+  REQUIRE(fall.comes([](const StepRecord& record) { return record.force_step == 3; }));
+  fall.control->resume();
+  CHECK(fall.comes([](const StepRecord& record) { return record.force_step == 100; }));
+  fall.force->finish();
+}
+
+TEST_CASE("a bridge's stylus feels nothing while the run is paused, and comes anew afterwards") {
+  Fall fall;
+  StylusPort& port = fall.network.port(0);
+  const double top = 0.06;
+  std::uint64_t sequence = 0;
+  const auto at = [&](double y) {
+    StylusInput input;
+    input.present = true;
+    input.sample.sequence = ++sequence;
+    input.sample.tip = Vector3(0, y, 0);
+    port.in.put(input);
+  };
+  Settings still = fall.simulation->settings();
+  still.gravity.setZero();
+  fall.control->set(still);
+  at(top + 0.001);
+  fall.force->start(RealTimeScheduling::kIgnore);
+  REQUIRE(fall.comes([](const StepRecord& record) { return record.stylus[0].present; }));
+  at(top - 0.001);
+  REQUIRE(fall.comes([](const StepRecord& record) { return record.stylus[0].force.norm() > 0; }));
+  fall.control->pause();
+  REQUIRE(eventually([&] {
+    port.out.receive();
+    return port.out.front().force.norm() == 0 && port.out.front().contact == ContactState::kFree;
+  }));
+  at(top - 0.001);
+  REQUIRE(eventually([&] {
+    port.out.receive();
+    return port.out.front().sample_sequence == sequence;
+  }));
+  CHECK(port.out.front().force == Vector3::Zero());
+  while (fall.sink.take(fall.record)) {
+  }
+  fall.control->resume();
+  REQUIRE(fall.comes([](const StepRecord& record) { return !record.stylus[0].present; }));
+  REQUIRE(fall.comes([](const StepRecord& record) { return record.stylus[0].present; }));
+  CHECK(fall.record.stylus[0].force == Vector3::Zero());  // it is inside, where it cannot have come
+  fall.force->finish();
+}
+
+TEST_CASE("the viewers' stylus and their settings reach the step") {
+  Fall fall;
+  fall.force->start(RealTimeScheduling::kIgnore);
+  StylusInput input;
+  input.present = true;
+  input.sample.buttons = kGrabButton;
+  input.sample.tip = Vector3(1, 2, 3);
+  fall.control->stylus().put(input);
+  REQUIRE(fall.comes([](const StepRecord& record) { return record.stylus[1].present; }));
+  CHECK(fall.record.stylus[1].tip == Vector3(1, 2, 3));
+  CHECK(fall.record.stylus[1].buttons == kGrabButton);
+  CHECK_FALSE(fall.record.stylus[0].present);
+  Settings settings = fall.simulation->settings();
+  settings.gravity = Vector3(0, 5, 0);
+  fall.control->set(settings);
+  CHECK(fall.comes([](const StepRecord& record) { return record.settings.gravity.y() == 5.0; }));
+  fall.control->stylus().put({});
+  CHECK(fall.comes([](const StepRecord& record) { return !record.stylus[1].present; }));
+  fall.force->finish();
 }

@@ -41,15 +41,16 @@ TEST_CASE("after finish() a recording has every row, in order") {
   const auto path = folder.path() / "trace.h5";
   constexpr std::size_t kRows = 20'000;  // more than its queue holds
   {
-    RecorderThread recorder(path, header(1));
+    StepSink sink(RecorderThread::kQueueCapacity);
+    RecorderThread recorder(path, header(1), sink);
     recorder.start();
     for (std::size_t k = 0; k < kRows; ++k) {
-      REQUIRE(eventually([&] { return recorder.sink().has_room(); }));
-      recorder.sink().put(record(k));
+      REQUIRE(eventually([&] { return sink.has_room(); }));
+      sink.put(record(k));
     }
     recorder.finish();
     CHECK(recorder.rows() == kRows);
-    CHECK(recorder.sink().lost() == 0);
+    CHECK(recorder.lost() == 0);
     CHECK(recorder.error().empty());
   }
   const hdf5::File file = hdf5::File::open(path);
@@ -60,11 +61,12 @@ TEST_CASE("after finish() a recording has every row, in order") {
 TEST_CASE("a recorder that is not drained counts what does not fit") {
   const TemporaryFolder folder;
   const auto path = folder.path() / "trace.h5";
-  RecorderThread recorder(path, header(1));
+  StepSink sink(RecorderThread::kQueueCapacity);
+  RecorderThread recorder(path, header(1), sink);
   std::size_t taken = 0;
-  for (; recorder.sink().has_room(); ++taken) recorder.sink().put(record(taken));
-  for (std::size_t k = 0; k < 10; ++k) recorder.sink().put(record(taken + k));
-  CHECK(recorder.sink().lost() == 10);
+  for (; sink.has_room(); ++taken) sink.put(record(taken));
+  for (std::size_t k = 0; k < 10; ++k) sink.put(record(taken + k));
+  CHECK(recorder.lost() == 10);
   recorder.start();
   recorder.finish();
   CHECK(recorder.rows() == taken);
@@ -73,22 +75,23 @@ TEST_CASE("a recorder that is not drained counts what does not fit") {
 TEST_CASE("a full disk ends the recording with an error, and disturbs nobody") {
   const TemporaryFolder folder;
   const auto path = folder.path() / "trace.h5";
-  RecorderThread recorder(path, header(1));
+  StepSink sink(RecorderThread::kQueueCapacity);
+  RecorderThread recorder(path, header(1), sink);
   constexpr rlim_t kRoom = 200'000;
   const FullDisk full(kRoom);
   SECTION("while it runs") {
     recorder.start();
     for (std::size_t k = 0; k < 20'000; ++k) {
       // What comes after the error is taken and dropped: the queue never stays full.
-      REQUIRE(eventually([&] { return recorder.sink().has_room(); }));
-      recorder.sink().put(record(k));
+      REQUIRE(eventually([&] { return sink.has_room(); }));
+      sink.put(record(k));
     }
   }
   SECTION("with its last rows") {
-    for (std::size_t k = 0; k < 4000; ++k) recorder.sink().put(record(k));
+    for (std::size_t k = 0; k < 4000; ++k) sink.put(record(k));
     recorder.start();
   }
   recorder.finish();
   CHECK_THAT(recorder.error(), Contains("trace.h5") && Contains("check free space"));
-  CHECK(recorder.sink().lost() == 0);
+  CHECK(recorder.lost() == 0);
 }

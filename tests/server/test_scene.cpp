@@ -112,6 +112,16 @@ TEST_CASE("a scene needs only a model, the rest has defaults") {
   CHECK(read.styluses[0].reach == 0.0);
 }
 
+TEST_CASE("an orientation and a floor's normal may have any length whose square is a number") {
+  const auto turned = scene(kObject + "orientation = [0, 0, 0, -1e100]\n").objects.at(0);
+  CHECK(turned.orientation.isApprox(Quaternion(0, 0, 0, -1)));
+  CHECK(scene("[floor]\nnormal = [0, 0, 1e100]\n" + kObject).floor->normal == Vector3(0, 0, 1));
+  CHECK_THAT(rejection(kObject + "orientation = [0, 0, 0, 1e200]\n"),
+             StartsWith("s.toml:3: object[0].orientation is 1e+200; give a finite number"));
+  CHECK_THAT(rejection("[floor]\nnormal = [0, 0, 1e200]\n" + kObject),
+             StartsWith("s.toml:2: floor.normal is 1e+200; give a finite number"));
+}
+
 TEST_CASE("a floor needs no key, and one friction value goes a long way") {
   const SceneConfig read = scene("[floor]\n" + kObject);
   REQUIRE(read.floor);
@@ -138,6 +148,33 @@ TEST_CASE("a scene has up to four objects and four styluses") {
   CHECK_THAT(rejection("[server]\nstyluses = 3\n" + styluses + kObject),
              Equals("s.toml:1: server has fewer styluses than there are [[stylus]] tables; raise "
                     "server.styluses or leave it out"));
+}
+
+TEST_CASE("the viewer of a scene: defaults, keys, and what is no token") {
+  const ViewerConfig usual = scene(kObject).viewer;
+  CHECK(usual.enabled);
+  CHECK(usual.address == "127.0.0.1");
+  CHECK(usual.port == 0);
+  CHECK(usual.token.empty());
+  const ViewerConfig viewer = scene(
+                                  "[viewer]\nenabled = false\naddress = \"0.0.0.0\"\nport = 8080\n"
+                                  "token = \"0123456789abcdef\"\n" +
+                                  kObject)
+                                  .viewer;
+  CHECK_FALSE(viewer.enabled);
+  CHECK(viewer.address == "0.0.0.0");
+  CHECK(viewer.port == 8080);
+  CHECK(viewer.token == "0123456789abcdef");
+  const auto with_token = [](const std::string& token) {
+    return rejection("[viewer]\ntoken = \"" + token + "\"\n" + kObject);
+  };
+  CHECK(with_token(std::string(128, 'x')) == "no error");
+  for (const std::string& bad :
+       {std::string(15, 'x'), std::string(129, 'x'), std::string("sixteen or more x")}) {
+    CHECK_THAT(with_token(bad), StartsWith("s.toml:2: viewer.token is not 16 to 128 printable"));
+  }
+  CHECK_THAT(rejection("[viewer]\nport = 65536\n" + kObject), StartsWith("s.toml:2: viewer.port"));
+  CHECK_THAT(rejection("[viewer]\nsize = 1\n" + kObject), StartsWith("s.toml:2: viewer.size"));
 }
 
 TEST_CASE("an object's name must do for a group of the trace file") {
@@ -284,7 +321,7 @@ TEST_CASE("each vector of a scene must have its numbers, all finite") {
         "s.toml:3: object[0].orientation has no length; give a quaternion w, x, y, z, for "
         "instance [1, 0, 0, 0]");
   CHECK(rejection(kObject + "orientation = [1, nan, 0, 0]\n") ==
-        "s.toml:3: object[0].orientation is nan; give a finite number");
+        "s.toml:3: object[0].orientation is nan; give a finite number >= -1e+100 and <= 1e+100");
 }
 
 TEST_CASE("a key that no table of a scene knows is an error") {

@@ -46,6 +46,23 @@ TEST_CASE("a sample reaches the force thread and its force comes back with its n
   CHECK(force->force.force == Vector3(0, 1, 0));
 }
 
+TEST_CASE("a bridge's report is there for who watches, until the bridge goes") {
+  RunningServer running;
+  RawPeer peer = running.connect();
+  peer.send(Hello{.capabilities = 0xFF, .lockstep = true, .name = "test"});
+  const auto welcome = peer.receive_as<Welcome>();
+  REQUIRE(welcome);
+  CHECK(welcome->capabilities == wire::kCapabilityReport);
+  peer.send(wire::Report{.round_trip = {1.0F, 2.0F, 3.0F}});
+  Mailbox<LinkReport>& link = running.server.port(0).link;
+  REQUIRE(eventually([&] { return link.receive(); }));
+  CHECK(link.front().reported);
+  CHECK(link.front().report.round_trip.maximum == 3.0F);
+  peer.send(Goodbye{});
+  REQUIRE(eventually([&] { return link.receive(); }));
+  CHECK_FALSE(link.front().reported);
+}
+
 TEST_CASE("a force that is not finite goes out as zero") {
   RunningServer running;
   RawPeer peer = running.join();

@@ -97,10 +97,12 @@ void check_cycles(ResponseKind kind, int cycles, unsigned seed) {
 
 }  // namespace
 
-TEST_CASE("energy: over closed cycles a stylus never gets out more than it put in, modal") {
+TEST_CASE("energy: over closed cycles a stylus never gets out more than it put in, modal",
+          "[slow]") {
   check_cycles(ResponseKind::kModal, 140, 5);
 }
 
-TEST_CASE("energy: over closed cycles a stylus never gets out more than it put in, dense") {
+TEST_CASE("energy: over closed cycles a stylus never gets out more than it put in, dense",
+          "[slow]") {
   check_cycles(ResponseKind::kDense, 60, 6);
 }

@@ -85,7 +85,8 @@ Points nothing(const Points& like) {
 
 }  // namespace
 
-TEST_CASE("inertial loading: the settled bulge is that of a static solve on the whole mesh") {
+TEST_CASE("inertial loading: the settled bulge is that of a static solve on the whole mesh",
+          "[slow]") {
   const Vector3 axis = GENERATE(Vector3(0, 0, 1), Vector3(0, 1, 1), Vector3(1, 2, -3));
   const ResponseKind kind = GENERATE(ResponseKind::kModal, ResponseKind::kDense);
   // Quadratic, with the paper's material; damped so that the ringing has died within T.
@@ -110,7 +111,8 @@ TEST_CASE("inertial loading: the settled bulge is that of a static solve on the 
   CHECK(without == Approx(1.0));
 }
 
-TEST_CASE("inertial loading: the settled bulge is that of a free spinning corotational body") {
+TEST_CASE("inertial loading: the settled bulge is that of a free spinning corotational body",
+          "[slow]") {
   const double poisson = GENERATE(0.49, 0.3);
   const Vector3 axis = GENERATE(Vector3(0, 0, 1), Vector3(1, 2, -3));
   const auto model = fem_cube({6, 2000.0, 60.0, 0.002, 300, poisson});
@@ -129,7 +131,8 @@ TEST_CASE("inertial loading: the settled bulge is that of a free spinning corota
   CHECK(alike < 0.05);
 }
 
-TEST_CASE("inertial loading: what is left out while the cube rings is of the order of the spin") {
+TEST_CASE("inertial loading: what is left out while the cube rings is of the order of the spin",
+          "[slow]") {
   const Vector3 axis = Vector3(1, 2, -3).normalized();
   const auto model = fem_cube({4, 2000.0, 8.0, 0.002, 300, 0.3});
   std::vector<double> errors;

@@ -82,7 +82,8 @@ TEST_CASE("pinch: two fingers lift a cube and hold its weight") {
   CHECK(std::abs(pinch.height() - held) < 1e-5);
 }
 
-TEST_CASE("pinch: the cube slips when friction carries less than its weight, and not before") {
+TEST_CASE("pinch: the cube slips when friction carries less than its weight, and not before",
+          "[slow]") {
   const double radius = GENERATE(0.0, 0.01);
   Pinch pinch(radius);
   pinch.lift(0.02);

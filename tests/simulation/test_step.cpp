@@ -316,7 +316,8 @@ TEST_CASE("step: reset puts everything back") {
   }
 }
 
-TEST_CASE("step: dense and modal engines give the same forces and motion over 3 T steps") {
+TEST_CASE("step: dense and modal engines give the same forces and motion over 3 T steps",
+          "[slow]") {
   // Damped so that less than 1e-5 of R is left at T: the engines then differ by rounding alone.
   // What the cut at T does is accounted for exactly in the test of the engines.
   FemCube cube;

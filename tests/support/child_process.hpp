@@ -39,6 +39,8 @@ class ChildProcess {
   /// there at the deadline is killed, and this throws.
   int wait();
   bool running();
+  /// Of the process while it runs; less than 0: none.
+  pid_t pid() const noexcept { return pid_; }
 
   std::string out() const;
   std::string err() const;

@@ -168,6 +168,17 @@ TEST_CASE("force has its documented bytes") {
   CHECK(back.force.proxy == message.force.proxy);
 }
 
+TEST_CASE("report has its documented bytes") {
+  const Report report{.stylus = 3, .round_trip = {1.0F, 2.0F, 4.0F}, .age = {0.5F, 0.25F, 8.0F}};
+  CHECK(encoded(report) == golden("07 00 20 00 00 00", "b3 51 d7 4d ",
+                                  "03 00 00 00 00 00 00 00  00 00 80 3f 00 00 00 40 00 00 80 40 "
+                                  "00 00 00 3f 00 00 80 3e 00 00 00 41"));
+  const Report back = round_trip(report);
+  CHECK(back.stylus == 3);
+  CHECK(back.round_trip.p99 == 2.0F);
+  CHECK(back.age.maximum == 8.0F);
+}
+
 TEST_CASE("text is cut to its field and cleaned of what a log should not see") {
   CHECK(round_trip(Hello{.name = std::string(100, 'x')}).name == std::string(kNameSize, 'x'));
   CHECK(round_trip(Hello{.name = "a\nb\x1b"}).name == "a?b?");

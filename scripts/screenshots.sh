@@ -1,0 +1,36 @@
+#!/usr/bin/env bash
+# Makes the README's pictures in docs/images: irdm-server and irdm-bridge with a scripted stylus, the page in headless
+# Chromium, light and dark. Best on a machine that has nothing else to do: it draws in software.
+#   scripts/screenshots.sh [PRESET]    release unless given
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+preset=${1:-release}
+bin=build/$preset/bin
+models=out/models
+kilobytes=150 # that a picture may have
+mkdir -p "$models" docs/images
+scripts/setup.sh
+scripts/build.sh "$preset" irdm-precompute irdm-server irdm-bridge
+for name in paper-cube liver; do
+  config=configs/models/$name.toml
+  [ "$models/$name.h5" -nt "$config" ] || "$bin/irdm-precompute" "$config" -o "$models/$name.h5" >"$models/$name.log"
+done
+pictures=$(mktemp -d)
+trap 'rm -rf "$pictures"' EXIT
+IRDM_SERVER=$bin/irdm-server IRDM_BRIDGE=$bin/irdm-bridge CHROMIUM=$(command -v chromium) \
+  node server/viewer/page/browser/screenshots.mjs configs "$models" "$pictures"
+# Seven bits a colour look the same and take a third less room.
+/usr/bin/python3 - "$pictures" docs/images $kilobytes <<'END'
+import pathlib, sys
+from PIL import Image
+
+source, target, kilobytes = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), int(sys.argv[3])
+for path in sorted(source.glob("*.png")):
+    picture = Image.open(path).convert("RGB").point(lambda value: value | 1)
+    picture.save(target / path.name, optimize=True)
+    size = (target / path.name).stat().st_size
+    print(f"picture  {target / path.name}, {size / 1000:.0f} kB")
+    if size > 1000 * kilobytes:
+        sys.exit(f"screenshots: {path.name} is too large")
+END

@@ -1,0 +1,57 @@
+#include "server/engine/static_compliance.hpp"
+
+#include <limits>
+#include <numeric>
+
+namespace irdm {
+namespace {
+
+// sum_i (phi_i . d)^2 / omega_i^2
+template <typename Scalar>
+double of_modes(const ModalResponse& response, const RowMatrix<Scalar>& shapes, std::size_t node,
+                const Vector3& d) {
+  const auto row = static_cast<Eigen::Index>(3 * node);
+  const Eigen::RowVectorXd along =
+      d.transpose() * shapes.middleRows(row, 3).template cast<double>();
+  return (along.array() / response.angular_frequency.transpose().array()).square().sum();
+}
+
+template <typename Scalar>
+double of_history(const DenseResponse& response, const std::vector<Scalar>& values,
+                  std::size_t node, const Vector3& d) {
+  const auto dof = static_cast<std::size_t>(response.degrees_of_freedom);
+  const auto steps = static_cast<std::size_t>(response.steps);
+  double sum = 0.0;
+  for (std::size_t b = 0; b < 3; ++b) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      const Scalar* entry = values.data() + ((3 * node + b) * dof + 3 * node + a) * steps;
+      const double total = std::accumulate(entry, entry + steps, 0.0);
+      sum += total * d[static_cast<Eigen::Index>(a)] * d[static_cast<Eigen::Index>(b)];
+    }
+  }
+  return sum;
+}
+
+double compliance(const Model& model, std::size_t node, const Vector3& d) {
+  if (const auto* modal = std::get_if<ModalResponse>(&model.response)) {
+    return std::visit([&](const auto& shapes) { return of_modes(*modal, shapes, node, d); },
+                      modal->shapes);
+  }
+  if (const auto* dense = std::get_if<DenseResponse>(&model.response)) {
+    return std::visit([&](const auto& values) { return of_history(*dense, values, node, d); },
+                      dense->values);
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace
+
+std::vector<float> static_compliance(const Model& model, const std::vector<Vector3>& directions) {
+  std::vector<float> values;
+  for (std::size_t node = 0; node < directions.size(); ++node) {
+    values.push_back(static_cast<float>(compliance(model, node, directions[node])));
+  }
+  return values;
+}
+
+}  // namespace irdm

@@ -1,0 +1,364 @@
+#include "server/record/recording.hpp"
+
+#include <array>
+#include <mutex>
+#include <string>
+
+#include "common/error.hpp"
+#include "common/hdf5/library_lock.hpp"
+#include "common/motion/rigid_body.hpp"
+#include "server/record/trace_paths.hpp"
+
+namespace irdm {
+namespace {
+
+std::size_t at(std::size_t row, std::size_t width) {
+  return row * width;
+}
+
+Vector3 vector_of(const std::vector<double>& values, std::size_t row) {
+  return Eigen::Map<const Vector3>(values.data() + at(row, 3));
+}
+
+/// Reads sets of as many rows as the trace has steps.
+class RowReader {
+ public:
+  explicit RowReader(const hdf5::File& file) : file_(file), rows_(file.shape("/step/time").at(0)) {}
+
+  hsize_t rows() const { return rows_; }
+  template <typename T>
+  std::vector<T> read(const std::string& set, hsize_t width = 1) const {
+    return width == 1 ? file_.read<T>(set, {rows_}) : file_.read<T>(set, {rows_, width});
+  }
+
+ private:
+  const hdf5::File& file_;
+  hsize_t rows_;
+};
+
+/// What a stylus did to an object.
+struct ContactRows {
+  std::vector<std::uint8_t> state;
+  std::vector<std::uint8_t> slipping;
+  std::vector<std::int32_t> nodes;
+  std::vector<double> weights;
+  std::vector<double> force;  ///< on the object, B; or on the stylus, W, when the object is alone
+  std::vector<double> proxy;
+
+  ContactRows() = default;
+  ContactRows(const RowReader& reader, const std::string& path)
+      : state(reader.read<std::uint8_t>(path + "/contact")),
+        slipping(reader.read<std::uint8_t>(path + "/slipping")),
+        nodes(reader.read<std::int32_t>(path + "/contact_nodes", 3)),
+        weights(reader.read<double>(path + "/contact_weights", 3)),
+        force(reader.read<double>(path + "/force", 3)),
+        proxy(reader.read<double>(path + "/proxy", 3)) {}
+
+  void check(int node_count, const std::string& path, const std::string& file) const {
+    for (std::size_t k = 0; k < state.size(); ++k) {
+      if (state[k] == 0) continue;
+      for (std::size_t i = 0; i < 3; ++i) {
+        if (state[k] <= 2 && nodes[at(k, 3) + i] >= 0 && nodes[at(k, 3) + i] < node_count) continue;
+        throw Error(file, path + " touches a node that the model does not have",
+                    "use the model that it was recorded with");
+      }
+    }
+  }
+};
+
+struct StylusRows {
+  std::vector<double> tip, proxy, force;
+  std::vector<std::uint8_t> present;
+  std::vector<std::int32_t> buttons, object;
+};
+
+struct FloorRows {
+  std::vector<std::int32_t> node;
+  std::vector<float> force;
+  std::vector<std::size_t> first;  ///< of each step, and one more
+};
+
+struct ObjectRows {
+  std::vector<double> position, orientation, velocity, angular_velocity;
+  std::vector<ContactRows> contacts;  ///< per stylus
+  FloorRows floor;
+};
+
+struct SettingsRows {
+  std::vector<std::uint64_t> force_step;
+  std::vector<Settings> settings;
+};
+
+FloorRows read_floor(const hdf5::File& file, const RowReader& reader, const std::string& path,
+                     int node_count) {
+  FloorRows rows;
+  rows.first.assign(1, 0);
+  if (!file.exists(path + "/count")) {
+    rows.first.resize(reader.rows() + 1, 0);
+    return rows;
+  }
+  rows.node = file.read<std::int32_t>(path + "/node", {0});
+  rows.force = file.read<float>(path + "/force", {rows.node.size(), 3});
+  for (const std::int32_t count : reader.read<std::int32_t>(path + "/count")) {
+    const std::size_t next = rows.first.back() + static_cast<std::size_t>(std::max(count, 0));
+    if (count < 0 || count > kMaxFloorContacts || next > rows.node.size()) {
+      throw Error(file.name(), path + "/count does not fit the rows that are there",
+                  "record it again");
+    }
+    rows.first.push_back(next);
+  }
+  for (const std::int32_t node : rows.node) {
+    if (node >= 0 && node < node_count) continue;
+    throw Error(file.name(), path + " touches a node that the model does not have",
+                "use the model that it was recorded with");
+  }
+  return rows;
+}
+
+SettingsRows read_settings(const hdf5::File& file, const SimulationConfig& config) {
+  SettingsRows rows;
+  if (!file.exists("/settings/force_step")) {  // an older trace
+    rows.force_step = {0};
+    rows.settings = {initial_settings(config)};
+    return rows;
+  }
+  rows.force_step = file.read<std::uint64_t>("/settings/force_step", {0});
+  const hsize_t count = rows.force_step.size();
+  rows.settings.resize(count);
+  const auto gravity = file.read<double>("/settings/gravity", {count, 3});
+  for (std::size_t e = 0; e < count; ++e) rows.settings[e].gravity = vector_of(gravity, e);
+  for (std::size_t i = 0; i < config.objects.size(); ++i) {
+    const std::string group = trace::settings_path(i);
+    const auto friction = file.read<double>(group + "/friction", {count, 2});
+    const auto damping = file.read<double>(group + "/damping", {count, 2});
+    const auto tether = file.read<double>(group + "/tether", {count, 2});
+    const auto material = file.read<double>(group + "/material_damping", {count});
+    const auto dense = file.read<std::uint8_t>(group + "/dense", {count});
+    const auto loading = file.read<std::uint8_t>(group + "/inertial_loading", {count});
+    for (std::size_t e = 0; e < count; ++e) {
+      rows.settings[e].object[i] = {{friction[2 * e], friction[2 * e + 1]},
+                                    {damping[2 * e], damping[2 * e + 1]},
+                                    {tether[2 * e], tether[2 * e + 1]},
+                                    material[e],
+                                    dense[e] != 0 ? EngineKind::kDense : EngineKind::kModal,
+                                    loading[e] != 0};
+    }
+  }
+  return rows;
+}
+
+}  // namespace
+
+struct Recording::Data {
+  SimulationConfig config;
+  std::vector<RigidBody> bodies;
+  double dt = 0.0;
+  std::vector<std::uint64_t> force_step;
+  std::vector<std::uint8_t> reset;
+  std::vector<std::size_t> settings_of;  ///< row in `settings`, of each step
+  SettingsRows settings;
+  std::vector<std::size_t> last_reset;  ///< step of the recording, of each step
+  std::vector<StylusRows> styluses;
+  std::vector<ObjectRows> objects;
+
+  void read(const hdf5::File& file, const std::vector<std::string>& names);
+  void read_objects(const hdf5::File& file, const RowReader& reader,
+                    const std::vector<std::string>& names);
+  void read_styluses(const hdf5::File& file, const RowReader& reader);
+  void number_settings_and_resets();
+  RigidState before(std::size_t object, std::size_t k) const;
+  void object_step(std::size_t object, std::size_t k, ObjectRecord& out, bool feels_spin) const;
+  ContactRecord contact(const ContactRows& rows, std::size_t k, const RigidState& before) const;
+};
+
+TraceHeader read_trace_header(const std::filesystem::path& path) {
+  const hdf5::File file = hdf5::File::open(path);
+  if (file.read_string_attribute("/", "format") != "irdm-trace") {
+    throw Error(path.string(), "is not a trace", "give a file that irdm-server --record has made");
+  }
+  if (file.read_integer_attribute("/", "version") != 1) {
+    throw Error(path.string(), "is a trace of another version", "record it again");
+  }
+  TraceHeader header;
+  header.scene = file.read_string_attribute("/", "scene");
+  header.dt = file.read_double_attribute("/", "dt");
+  header.stylus_count = 0;
+  while (file.exists("/stylus/" + std::to_string(header.stylus_count))) ++header.stylus_count;
+  header.objects.push_back({"", file.read_string_attribute("/", "model_file"),
+                            file.read_string_attribute("/", "model_checksum")});
+  return header;
+}
+
+void Recording::Data::read(const hdf5::File& file, const std::vector<std::string>& names) {
+  const RowReader reader(file);
+  dt = file.read_double_attribute("/", "dt");
+  force_step = reader.read<std::uint64_t>("/step/force_step");
+  reset = reader.read<std::uint8_t>("/step/reset");
+  if (force_step.empty()) throw Error(file.name(), "holds no step", "record something");
+  settings = read_settings(file, config);
+  read_styluses(file, reader);
+  read_objects(file, reader, names);
+  number_settings_and_resets();
+}
+
+void Recording::Data::read_styluses(const hdf5::File& file, const RowReader& reader) {
+  for (std::size_t s = 0; s < config.styluses.size(); ++s) {
+    const std::string path = trace::stylus_path(s);
+    StylusRows rows{
+        reader.read<double>(path + "/tip", 3),        reader.read<double>(path + "/proxy", 3),
+        reader.read<double>(path + "/force", 3),      reader.read<std::uint8_t>(path + "/present"),
+        reader.read<std::int32_t>(path + "/buttons"), {}};
+    if (config.objects.size() > 1) rows.object = reader.read<std::int32_t>(path + "/object");
+    for (const std::int32_t object : rows.object) {
+      if (object < static_cast<std::int32_t>(config.objects.size())) continue;
+      throw Error(file.name(), path + "/object is out of range", "record it again");
+    }
+    styluses.push_back(std::move(rows));
+  }
+}
+
+void Recording::Data::read_objects(const hdf5::File& file, const RowReader& reader,
+                                   const std::vector<std::string>& names) {
+  const bool several = names.size() > 1;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const int node_count = config.objects[i].model->mesh.surface_node_count();
+    const std::string group = trace::object_path(several, names[i]);
+    ObjectRows rows{reader.read<double>(group + "/body_position", 3),
+                    reader.read<double>(group + "/body_orientation", 4),
+                    reader.read<double>(group + "/body_velocity", 3),
+                    reader.read<double>(group + "/body_angular_velocity", 3),
+                    {},
+                    read_floor(file, reader, trace::floor_path(group), node_count)};
+    for (std::size_t s = 0; s < config.styluses.size(); ++s) {
+      const std::string path = (several ? group : "") + trace::stylus_path(s);
+      rows.contacts.emplace_back(reader, path);
+      rows.contacts.back().check(node_count, path, file.name());
+    }
+    objects.push_back(std::move(rows));
+    bodies.emplace_back(config.objects[i].model->body, dt);
+  }
+}
+
+void Recording::Data::number_settings_and_resets() {
+  std::size_t row = 0;
+  std::size_t last = 0;
+  for (std::size_t k = 0; k < force_step.size(); ++k) {
+    while (row + 1 < settings.force_step.size() && settings.force_step[row + 1] <= force_step[k]) {
+      ++row;
+    }
+    settings_of.push_back(row);
+    if (reset[k] != 0) last = k;
+    last_reset.push_back(last);
+  }
+}
+
+RigidState Recording::Data::before(std::size_t i, std::size_t k) const {
+  const ObjectRows& rows = objects[i];
+  RigidState state;
+  Vector3 angular_velocity;
+  if (k == 0 || reset[k] != 0) {
+    const SimulationObject& start = config.objects[i];
+    state.position = start.position;
+    state.orientation = start.orientation.normalized();
+    state.velocity = start.velocity;
+    angular_velocity = start.angular_velocity;
+  } else {
+    const double* q = rows.orientation.data() + at(k - 1, 4);
+    state.position = vector_of(rows.position, k - 1);
+    state.orientation = Quaternion(q[0], q[1], q[2], q[3]);
+    state.velocity = vector_of(rows.velocity, k - 1);
+    angular_velocity = vector_of(rows.angular_velocity, k - 1);
+  }
+  state.angular_momentum = bodies[i].angular_momentum(state.orientation, angular_velocity);
+  return state;
+}
+
+ContactRecord Recording::Data::contact(const ContactRows& rows, std::size_t k,
+                                       const RigidState& before) const {
+  ContactRecord contact;
+  contact.state = static_cast<ContactState>(rows.state[k]);
+  if (contact.state == ContactState::kFree) return contact;
+  contact.slipping = rows.slipping[k] != 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    contact.point.nodes[i] = rows.nodes[at(k, 3) + i];
+    contact.point.weights[i] = rows.weights[at(k, 3) + i];
+  }
+  contact.force = vector_of(rows.force, k);
+  if (objects.size() == 1) contact.force = -(before.orientation.conjugate() * contact.force);
+  contact.proxy = vector_of(rows.proxy, k);
+  return contact;
+}
+
+void Recording::Data::object_step(std::size_t i, std::size_t k, ObjectRecord& out,
+                                  bool feels_spin) const {
+  const ObjectRows& rows = objects[i];
+  const RigidState start = before(i, k);
+  const double* q = rows.orientation.data() + at(k, 4);
+  out.position = vector_of(rows.position, k);
+  out.orientation = Quaternion(q[0], q[1], q[2], q[3]);
+  out.velocity = vector_of(rows.velocity, k);
+  out.angular_velocity = vector_of(rows.angular_velocity, k);
+  out.spin = feels_spin ? bodies[i].mid_step_spin(start) : Vector3::Zero();
+  out.contact.fill(ContactRecord{});
+  for (std::size_t s = 0; s < rows.contacts.size(); ++s) {
+    out.contact[s] = contact(rows.contacts[s], k, start);
+  }
+  out.floor_count = 0;
+  out.floor_force.setZero();
+  for (std::size_t r = rows.floor.first[k]; r < rows.floor.first[k + 1]; ++r) {
+    FloorForce& force = out.floor[static_cast<std::size_t>(out.floor_count++)];
+    force = {rows.floor.node[r],
+             Eigen::Map<const Eigen::Vector3f>(rows.floor.force.data() + 3 * r)};
+    out.floor_force += start.orientation * force.force.cast<double>();
+  }
+}
+
+Recording::Recording(const std::filesystem::path& path, const SimulationConfig& config,
+                     const std::vector<std::string>& names)
+    : data_(std::make_unique<Data>()) {
+  const std::lock_guard lock(hdf5::library_mutex());
+  const hdf5::File file = hdf5::File::open(path);
+  data_->config = config;
+  data_->read(file, names);
+}
+
+Recording::Recording(Recording&&) noexcept = default;
+Recording& Recording::operator=(Recording&&) noexcept = default;
+Recording::~Recording() = default;
+
+std::size_t Recording::steps() const noexcept {
+  return data_->force_step.size();
+}
+
+void Recording::step(std::size_t k, StepRecord& record) const {
+  const Data& data = *data_;
+  record.force_step = k;
+  record.time = static_cast<double>(k + 1) * data.dt;
+  record.reset = data.reset[k] != 0;
+  record.reset_step = data.last_reset[k];
+  record.settings_change = static_cast<std::uint32_t>(data.settings_of[k] + 1);
+  record.settings = data.settings.settings[data.settings_of[k]];
+  record.object_count = static_cast<int>(data.objects.size());
+  record.stylus_count = static_cast<int>(data.styluses.size());
+  for (std::size_t i = 0; i < data.objects.size(); ++i) {
+    data.object_step(i, k, record.object[i], record.settings.object[i].inertial_loading);
+  }
+  for (std::size_t s = 0; s < data.styluses.size(); ++s) {
+    const StylusRows& rows = data.styluses[s];
+    StylusRecord& stylus = record.stylus[s];
+    stylus.present = rows.present[k] != 0;
+    stylus.buttons = static_cast<std::uint32_t>(rows.buttons[k]);
+    stylus.tip = vector_of(rows.tip, k);
+    stylus.proxy = vector_of(rows.proxy, k);
+    stylus.force = vector_of(rows.force, k);
+    const bool free = data.objects.size() == 1 && data.objects[0].contacts[s].state[k] == 0;
+    stylus.object = rows.object.empty() ? (free ? -1 : 0) : rows.object[k];
+    stylus.contact = ContactState::kFree;
+    if (stylus.object >= 0) {
+      const auto i = static_cast<std::size_t>(stylus.object);
+      stylus.contact = record.object[i].contact[s].state;
+    }
+  }
+}
+
+}  // namespace irdm

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "server/record/trace_writer.hpp"
+#include "server/step/simulation_config.hpp"
+
+namespace irdm {
+
+/// The head of a trace file. Throws Error when it is none, or one that cannot be understood.
+TraceHeader read_trace_header(const std::filesystem::path& path);
+
+/// A recorded run, read back whole: what each step did to the objects. Takes some 500 bytes a step.
+class Recording {
+ public:
+  /// Reads a trace of these objects and styluses. Throws Error. Holds hdf5::library_mutex().
+  /// @param names of the objects
+  Recording(const std::filesystem::path& path, const SimulationConfig& config,
+            const std::vector<std::string>& names);
+  Recording(Recording&&) noexcept;
+  Recording& operator=(Recording&&) noexcept;
+  ~Recording();
+
+  std::size_t steps() const noexcept;
+  /// Step i of the recording, 0 <= i < steps(). It is numbered i, whatever its number in the run
+  /// was.
+  void step(std::size_t i, StepRecord& record) const;
+
+ private:
+  struct Data;
+  std::unique_ptr<Data> data_;
+};
+
+}  // namespace irdm

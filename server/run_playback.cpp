@@ -1,0 +1,64 @@
+#include "server/run_playback.hpp"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <iostream>
+
+#include "common/checksum.hpp"
+#include "common/error.hpp"
+#include "common/program/stop_signal.hpp"
+#include "common/realtime/wakeup.hpp"
+#include "server/record/recording.hpp"
+#include "server/scene_simulation.hpp"
+#include "server/viewed_run/recorded_run.hpp"
+#include "server/viewed_run/viewer_scene.hpp"
+
+namespace irdm {
+namespace {
+
+// A trace of one more stylus than the scene has was made with that of the viewers.
+bool recorded_viewer_stylus(const SceneConfig& scene, const TraceHeader& header,
+                            const std::string& trace) {
+  const int more = header.stylus_count - static_cast<int>(scene.styluses.size());
+  if (more == 0 || more == 1) return more == 1;
+  throw Error(trace,
+              "has " + std::to_string(header.stylus_count) + " styluses, the scene " +
+                  std::to_string(scene.styluses.size()),
+              "give the scene that it was recorded with");
+}
+
+void check_model(const SceneConfig& scene, const TraceHeader& header, const std::string& trace) {
+  const std::filesystem::path& model = scene.objects.front().model;
+  if (sha256_of_file(model) == header.objects.front().model_checksum) return;
+  throw Error(trace, "was recorded with another " + model.filename().string(),
+              "give the scene and the model that it was recorded with");
+}
+
+}  // namespace
+
+int run_playback(const ServerOptions& options) {
+  StopSignal stop;
+  const SceneConfig scene = read_scene(TomlTable::parse_file(options.scene));
+  const std::string trace = options.play->string();
+  const TraceHeader header = read_trace_header(*options.play);
+  check_model(scene, header, trace);
+  const bool viewer_stylus = recorded_viewer_stylus(scene, header, trace);
+  const SimulationConfig config = simulation_config(scene, viewer_stylus);
+  std::vector<std::string> names;
+  for (const ObjectConfig& object : scene.objects) names.push_back(object.name);
+  Recording(*options.play, config, names);  // so that what is wrong with it is said here
+  Player player(config, names, scene.server.deformation_rate, std::max(1, omp_get_num_procs()));
+  RecordedRun run(viewer_scene(scene, config, false), config, player, *options.play);
+  viewer::ViewerServer viewers(viewer_settings(scene.viewer), run);
+  player.start();
+  viewers.start();
+  std::cout << "listening on " + viewers.url() + "\n" << std::flush;
+  const Wakeup never;
+  stop.wait(never.descriptor());
+  viewers.stop();
+  player.finish();
+  return 0;
+}
+
+}  // namespace irdm

@@ -1,0 +1,48 @@
+#include "server/scene_simulation.hpp"
+
+#include <memory>
+
+#include "common/model/model_file.hpp"
+#include "server/step/inertial_loading.hpp"
+
+namespace irdm {
+namespace {
+
+std::shared_ptr<const Model> load_model(const ObjectConfig& object, EngineKind kind) {
+  const bool dense = kind == EngineKind::kDense;
+  Model model = read_model(object.model, dense ? ResponseKind::kDense : ResponseKind::kModal);
+  check_inertial_loading(model, object.inertial_loading, object.model.string());
+  return std::make_shared<const Model>(std::move(model));
+}
+
+EngineKind other(EngineKind kind) {
+  return kind == EngineKind::kDense ? EngineKind::kModal : EngineKind::kDense;
+}
+
+}  // namespace
+
+bool has_viewer_stylus(const SceneConfig& scene, bool lockstep) {
+  return scene.viewer.enabled && scene.viewer.mouse && !lockstep &&
+         scene.styluses.size() < kMaxStyluses;
+}
+
+SimulationConfig simulation_config(const SceneConfig& scene, bool viewer_stylus) {
+  SimulationConfig config;
+  config.gravity = scene.world.gravity;
+  for (const ObjectConfig& object : scene.objects) {
+    config.objects.push_back({load_model(object, object.engine), object.position,
+                              object.orientation, object.velocity, object.angular_velocity,
+                              object.friction, object.damping, object.tether,
+                              object.inertial_loading});
+    if (object.switchable) {
+      config.objects.back().other_model = load_model(object, other(object.engine));
+    }
+  }
+  config.styluses = scene.styluses;
+  if (viewer_stylus) config.styluses.push_back(scene.viewer.stylus);
+  config.floor = scene.floor;
+  config.release_time = scene.contact.release_time;
+  return config;
+}
+
+}  // namespace irdm

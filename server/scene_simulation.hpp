@@ -1,0 +1,14 @@
+#pragma once
+
+#include "server/config/scene.hpp"
+#include "server/step/simulation_config.hpp"
+
+namespace irdm {
+
+/// Whether viewers get a stylus of their own, which comes after those of the scene.
+bool has_viewer_stylus(const SceneConfig& scene, bool lockstep);
+
+/// What a scene asks to simulate, with its models read. Throws Error.
+SimulationConfig simulation_config(const SceneConfig& scene, bool viewer_stylus);
+
+}  // namespace irdm

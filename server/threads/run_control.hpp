@@ -1,0 +1,61 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+#include "common/realtime/mailbox.hpp"
+#include "server/network/stylus_port.hpp"
+#include "server/step/settings.hpp"
+
+namespace irdm {
+
+/// What someone beside the run (a viewer) asks of the force thread. One such thread, one force
+/// thread; neither ever waits for the other.
+class RunControl {
+ public:
+  explicit RunControl(const Settings& settings) : settings_(settings) {}
+
+  /// Puts everything back to the start before the next step; requests until then are one.
+  void request_reset() noexcept { reset_.store(true, std::memory_order_relaxed); }
+  /// No step is made until resume(), but those that are asked for.
+  void pause() noexcept {
+    steps_.store(0, std::memory_order_relaxed);
+    paused_.store(true, std::memory_order_relaxed);
+  }
+  void resume() noexcept { paused_.store(false, std::memory_order_relaxed); }
+  bool paused() const noexcept { return paused_.load(std::memory_order_relaxed); }
+  /// So many more steps while paused.
+  void request_steps(std::uint32_t count) noexcept {
+    steps_.fetch_add(count, std::memory_order_relaxed);
+  }
+  /// From the next step on; they must have passed check_settings().
+  void set(const Settings& settings) noexcept { settings_.put(settings); }
+  /// Where the viewers' stylus is; not present: nobody has it.
+  Mailbox<StylusInput>& stylus() noexcept { return stylus_; }
+
+  // Force thread.
+  bool take_reset() noexcept {
+    return reset_.load(std::memory_order_relaxed) &&
+           reset_.exchange(false, std::memory_order_relaxed);
+  }
+  /// False: no step now.
+  bool take_step() noexcept {
+    if (!paused()) return true;
+    if (steps_.load(std::memory_order_relaxed) == 0) return false;
+    steps_.fetch_sub(1, std::memory_order_relaxed);
+    return true;
+  }
+  /// The newest settings if there are new ones, else null.
+  const Settings* take_settings() noexcept {
+    return settings_.receive() ? &settings_.front() : nullptr;
+  }
+
+ private:
+  std::atomic<bool> reset_{false};
+  std::atomic<bool> paused_{false};
+  std::atomic<std::uint32_t> steps_{0};
+  Mailbox<Settings> settings_;
+  Mailbox<StylusInput> stylus_;
+};
+
+}  // namespace irdm

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "server/config/scene.hpp"
+#include "server/viewer/message.hpp"
+#include "server/viewer/viewer_server.hpp"
+
+namespace irdm {
+
+/// What viewers are told of a scene at first.
+viewer::Scene viewer_scene(const SceneConfig& scene, const SimulationConfig& config,
+                           bool viewer_stylus);
+
+/// Where and for whom the viewer listens, with the page that was built with this program.
+viewer::ViewerSettings viewer_settings(const ViewerConfig& config);
+
+/// The choices that viewers have for each object.
+std::vector<SettingsChoice> settings_choices(const SimulationConfig& config);
+
+}  // namespace irdm

@@ -1,0 +1,244 @@
+// The page alone in a real browser, against a server of a few lines (fake_server.mjs): what it shows and what it says.
+// PAGE names the folder of the built page, CHROMIUM the browser.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { frames, newContext, onScreen, until, visit } from "./browser.mjs";
+import { FakeServer } from "./fake_server.mjs";
+
+const SMALL = { viewport: { width: 720, height: 420 }, deviceScaleFactor: 0.5 };
+const TOP = [0, 0.05, 0]; // of the cube, B
+
+async function stage(test, { options = SMALL, query = "", ...changes } = {}) {
+  const context = await newContext(test, options);
+  const server = await FakeServer.start(context, process.env.PAGE, changes);
+  test.after(() => server.stop());
+  const page = await context.newPage();
+  await visit(page, server.address + query);
+  await frames(page);
+  await page.waitForFunction(() => window.irdm.state() !== null);
+  return { page, server };
+}
+
+const said = (server, type) => server.received.filter((message) => message.type === type);
+const asked = (server, what) => said(server, "command").filter((message) => message.what === what);
+
+async function press(page, point = TOP) {
+  const { x, y } = await onScreen(page, point);
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  return { x, y };
+}
+
+test("a press on the object pushes it along the view, and goes on until it ends", async (context) => {
+  const { page, server } = await stage(context);
+  assert.equal(await page.locator("#hint").isVisible(), true);
+  const camera = () => page.evaluate(() => window.irdm.world.camera.position.toArray());
+  const before = await camera();
+  const { x, y } = await press(page);
+  await until(() => said(server, "stylus").length > 5, "the stylus is there");
+  const messages = said(server, "stylus");
+  assert.ok(messages[0].tip[1] > 0.05 + 0.002, "it begins outside");
+  assert.ok(messages.every(({ present, grab }) => present && !grab));
+  await until(() => server.stylus.tip[1] < 0.05 - 0.001, "it goes in");
+  const count = said(server, "stylus").length;
+  await until(() => said(server, "stylus").length > count + 5, "it goes on while nothing moves");
+  await until(async () => /N/.test(await page.locator("#felt").innerText()), "the force is shown");
+  assert.match(await page.locator("#felt").innerText(), /^[0-9.]+ N\s+sticks$/);
+  assert.equal(await page.locator("#hint").isVisible(), false);
+
+  // Dragging slides it parallel to the screen; the wheel goes deeper.
+  const held = server.stylus.tip;
+  await page.mouse.move(x + 30, y);
+  await until(() => server.stylus.tip[0] > held[0] + 0.003, "it slides");
+  const slid = server.stylus.tip;
+  await page.mouse.wheel(0, -300);
+  await until(() => server.stylus.tip[1] < slid[1] - 0.0005, "it goes deeper");
+  await page.mouse.up();
+  await until(() => !server.stylus.present, "it is gone");
+  assert.equal(await page.locator("#felt").isVisible(), false);
+  assert.deepEqual(await camera(), before, "the camera has stayed where it was");
+
+  // Beside the object the view is turned as ever.
+  await page.mouse.move(20, 240);
+  await page.mouse.down();
+  await page.mouse.move(60, 250);
+  await page.mouse.up();
+  assert.equal(server.stylus.present, false);
+  assert.notDeepEqual(await camera(), before);
+  assert.deepEqual(page.faults, []);
+});
+
+test("Shift, G and the tool take hold", async (context) => {
+  const { page, server } = await stage(context);
+  for (const key of ["Shift", "g"]) {
+    await page.keyboard.down(key);
+    await press(page);
+    await until(() => server.stylus.present && server.stylus.grab, `${key} takes hold`);
+    await page.keyboard.up(key);
+    await until(() => !server.stylus.grab, "it pushes");
+    await page.mouse.up();
+    await until(() => !server.stylus.present, "it is gone");
+  }
+  await page.locator("input[name=tool][value=grab]").check();
+  await press(page);
+  await until(() => server.stylus.grab, "the tool takes hold");
+  await until(async () => /held/.test(await page.locator("#felt").innerText()), "it is said");
+  await page.mouse.up();
+});
+
+test("a finger pushes, a second one takes hold", async (context) => {
+  const { page, server } = await stage(context, { options: { ...SMALL, hasTouch: true } });
+  const { x, y } = await onScreen(page, TOP);
+  const session = await page.context().newCDPSession(page);
+  const touch = (type, ...points) =>
+    session.send("Input.dispatchTouchEvent", { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });
+  await touch("touchStart", [x, y]);
+  await until(() => server.stylus.present && !server.stylus.grab, "it pushes");
+  await touch("touchStart", [x, y], [x + 60, y + 60]);
+  await until(() => server.stylus.grab, "it takes hold");
+  await touch("touchEnd", [x, y]);
+  await until(() => !server.stylus.grab, "it pushes again");
+  await touch("touchEnd");
+  await until(() => !server.stylus.present, "it is gone");
+});
+
+test("everything can be touched by keys", async (context) => {
+  const { page, server } = await stage(context);
+  await page.keyboard.press("t");
+  assert.equal(await page.locator("#cross").isVisible(), true);
+  await page.keyboard.press("Space");
+  await until(() => server.stylus.present, "it presses");
+  const { tip } = server.stylus;
+  await page.keyboard.down("ArrowRight");
+  await until(() => server.stylus.tip[0] > tip[0] + 0.002, "it slides");
+  await page.keyboard.up("ArrowRight");
+  await page.keyboard.press("g");
+  await until(() => server.stylus.grab, "it takes hold");
+  await page.keyboard.press("Space");
+  await until(() => !server.stylus.present, "it lets go");
+  await page.keyboard.press("Escape");
+  assert.equal(await page.locator("#cross").isVisible(), false);
+});
+
+test("whoever cannot touch is told why, and sends nothing", async (context) => {
+  const { page, server } = await stage(context, { query: "?watch=1" });
+  assert.deepEqual(said(server, "hello"), [{ type: "hello", looksOn: 1 }]);
+  assert.match(await page.locator("#modes").innerText(), /only looking on/);
+  for (const button of ["#put-back", "#pause", "#step", "#record"]) {
+    assert.equal(await page.locator(button).isDisabled(), true, button);
+  }
+  await press(page);
+  await until(async () => /only look on/.test(await page.locator("#notices").innerText()), "it says so");
+  await page.mouse.up();
+  await page.keyboard.press("r");
+  server.flag("looksOn", false);
+  server.flag("free", false);
+  await until(() => page.evaluate(() => !window.irdm.state().stylusFree), "another has the stylus");
+  await press(page);
+  await until(async () => /Another viewer/.test(await page.locator("#notices").innerText()), "it says so");
+  await page.mouse.up();
+  assert.equal(said(server, "stylus").length + said(server, "command").length, 0);
+});
+
+test("a stylus that is lost to another ends the press", async (context) => {
+  const { page, server } = await stage(context);
+  await press(page);
+  await until(() => server.stylus.present, "it is there");
+  const none = 0;
+  server.tell({ flags: none });
+  await until(async () => /Another viewer/.test(await page.locator("#notices").innerText()), "it says so");
+  assert.equal(await page.locator("#felt").isVisible(), false);
+});
+
+test("the run is paused, stepped, put back and recorded by buttons and keys", async (context) => {
+  const { page, server } = await stage(context);
+  await page.keyboard.press("p");
+  await until(async () => /paused/.test(await page.locator("#modes").innerText()), "it is paused");
+  assert.match(await page.locator("#pause").innerText(), /^Go on/);
+  await page.locator("#step").click();
+  await page.keyboard.press(".");
+  await until(() => asked(server, 4).length === 2, "two steps");
+  assert.equal(asked(server, 4)[0].number, 1);
+  await page.locator("#pause").click();
+  await until(() => page.locator("#step").isDisabled(), "it goes on");
+  await page.keyboard.press("r");
+  await until(() => asked(server, 1).length === 1, "it is put back");
+  await page.locator("#record").click();
+  await until(async () => /recording/.test(await page.locator("#modes").innerText()), "it is recorded");
+  await page.locator("#record").click();
+  await until(async () => (await page.locator("#recordings li").count()) === 1, "the recording is listed");
+  assert.deepEqual(page.faults, []);
+});
+
+test("a recorded run is shown, sought in, and left", async (context) => {
+  const { page, server } = await stage(context, { state: { recordings: [{ number: 3, name: "a run" }] } });
+  await page.getByLabel("Show the recording a run").click();
+  await until(() => page.locator("#playback").isVisible(), "the bar is there");
+  assert.equal(asked(server, 7)[0].number, 3);
+  assert.equal(await page.locator("#tools").isVisible(), false);
+  await page.locator("#play").click();
+  await until(async () => (await page.locator("#play").innerText()) === "Stand still", "it plays");
+  await page.locator("#speed").selectOption("0.25");
+  await until(() => asked(server, 12)[0]?.value === 0.25, "it is slower");
+  await page.locator("#seek").fill("5");
+  await until(() => asked(server, 11).at(-1)?.value === 5, "it is sought");
+  await until(async () => /^5\.\d\d \/ 8\.00 s$/.test(await page.locator("#seek-value").innerText()), "it goes on from there");
+  await page.locator("#back-to-live").click();
+  await until(async () => !(await page.locator("#playback").isVisible()), "it is left");
+  assert.deepEqual(page.faults, []);
+});
+
+test("settings go out whole, and come back without a fight", async (context) => {
+  const { page, server } = await stage(context);
+  await page.locator("#settings-section summary").click();
+  const slider = (name) => page.getByLabel(name, { exact: true });
+  await slider("Friction").fill("100"); // 0.2 of 2, below what it is while slipping
+  await until(() => said(server, "settings").length > 0, "they are sent");
+  await until(() => said(server, "settings").at(-1).kineticFriction === 0.2, "friction takes the other along");
+  assert.equal(said(server, "settings").at(-1).staticFriction, 0.2);
+  assert.equal(await slider("Friction while slipping").inputValue(), "100");
+  // What the server says meanwhile does not move what is under the hand.
+  await slider("Friction").fill("700");
+  server.state.objects[0].staticFriction = 0.1;
+  server.tell({});
+  assert.equal(await slider("Friction").inputValue(), "700");
+  // A change by somebody else is shown.
+  await until(async () => (await slider("Gravity").inputValue()) === "0", "there is no gravity");
+  await page.waitForTimeout(1200);
+  server.tell({ gravity: [0, -10, 0] });
+  await until(async () => (await slider("Gravity").inputValue()) === "500", "there is gravity");
+  assert.equal(await slider("Engine").isDisabled(), true);
+  assert.match(await page.locator("#settings").innerText(), /holds one engine only/);
+  assert.deepEqual(page.faults, []);
+});
+
+test("notices are shown until they are sent away", async (context) => {
+  const { page, server } = await stage(context);
+  server.tell({ notice: "The disk is full." });
+  await until(async () => /disk is full/.test(await page.locator("#notices").innerText()), "it is shown");
+  assert.equal(await page.locator("#notices").getAttribute("aria-live"), "polite");
+  await page.getByLabel("Dismiss").click();
+  assert.equal(await page.locator("#notices").innerText(), "");
+});
+
+test("health shows the bridges' times, the view its compliance", async (context) => {
+  const { page } = await stage(context, { scene: { radii: [0, 0, 0.006] } });
+  const rows = await page.locator("#health").innerText();
+  assert.match(rows, /Round trip 1\s+310 µs\s+496 µs\s+930 µs/);
+  assert.match(rows, /Age of force 2\s+1\.9 ms/);
+  await page.locator("#colour").selectOption("compliance");
+  assert.match(await page.locator("#legend").innerText(), /mm\/N/);
+});
+
+test("at 360 pixels nothing sticks out", async (context) => {
+  const options = { viewport: { width: 360, height: 740 }, hasTouch: true };
+  const recordings = [{ number: 0, name: "a recording with a name that is as long as names can be, or so" }];
+  const { page, server } = await stage(context, { options, state: { recordings } });
+  const width = () => page.evaluate(() => document.documentElement.scrollWidth);
+  await page.evaluate(() => document.querySelectorAll("details").forEach((details) => (details.open = true)));
+  assert.ok((await width()) <= 360);
+  await page.getByLabel("Show the recording").click();
+  server.tell({ notice: "Something_long_without_a_blank_".repeat(8) });
+  await until(() => page.locator("#playback").isVisible(), "the bar is there");
+  assert.ok((await width()) <= 360);
+});

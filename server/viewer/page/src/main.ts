@@ -1,0 +1,201 @@
+import "uplot/dist/uPlot.min.css";
+import "./style.css";
+import { Connection, type LinkState } from "./connection";
+import { element } from "./elements";
+import { FeltForce } from "./felt_force";
+import { ForcePanel } from "./force_panel";
+import { Notices } from "./notices";
+import { copy, isOnlooker, onlookerLink } from "./onlooker_link";
+import { HealthPanel } from "./panel";
+import { PlaybackBar } from "./playback_bar";
+import { encodeSettings, encodeStylus, type Frame, type Scene, type ServerMessage, type State } from "./protocol";
+import { RunControls } from "./run_controls";
+import { SettingsPanel } from "./settings_panel";
+import { listenForShortcuts } from "./shortcuts";
+import { StatusLine } from "./status_line";
+import { currentTheme, onThemeChange } from "./theme";
+import { Touch } from "./touch";
+import { TouchKeys } from "./touch_keys";
+import { TouchPointer } from "./touch_pointer";
+import { ViewControls } from "./view_controls";
+import { World } from "./world";
+
+function tryWorld(): World | null {
+  try {
+    return new World(element<HTMLCanvasElement>("scene"), currentTheme());
+  } catch {
+    element("no-webgl").hidden = false;
+    element("scene").hidden = true;
+    element("scale").hidden = true;
+    return null;
+  }
+}
+
+const send = (message: ArrayBuffer): void => connection.send(message);
+/** For what is answered by a notice when it cannot be done. */
+const ask = (message: ArrayBuffer): void => {
+  asked = true;
+  send(message);
+};
+let asked = false;
+const world = tryWorld();
+const view = new ViewControls(world);
+const forces = new ForcePanel();
+const health = new HealthPanel(element("health"), element("counts"));
+const status = new StatusLine();
+const notices = new Notices(element("notices"));
+const run = new RunControls(ask);
+const playback = new PlaybackBar(ask);
+const settings = new SettingsPanel(element("settings"), element("settings-reason"), (values) =>
+  ask(encodeSettings(values)),
+);
+const hand = world === null ? null : makeHand(world);
+let scene: Scene | null = null;
+let state: State | null = null;
+let newest: Frame | null = null;
+
+/** The viewers' stylus by mouse, finger or keys. */
+function makeHand(world: World): { touch: Touch; felt: FeltForce; keys: TouchKeys } {
+  const touch = new Touch(world, {
+    send: (message) => send(encodeStylus(message)),
+    say: (text) => notices.hint(text),
+    changed: (active) => {
+      if (active) {
+        forces.chooseLast();
+        element("hint").hidden = true;
+        return;
+      }
+      pointer.ended();
+      keys.ended();
+      felt.hide();
+    },
+  });
+  const grabs = (): boolean => document.querySelector<HTMLInputElement>("input[name=tool][value=grab]")!.checked;
+  const felt = new FeltForce(element("felt"), world, touch);
+  const pointer = new TouchPointer(world.canvas, touch, world.controls, grabs);
+  const keys = new TouchKeys(world.canvas, element("cross"), touch, element<HTMLButtonElement>("touch-keys"), grabs);
+  return { touch, felt, keys };
+}
+
+// What comes in
+
+function showScene(next: Scene): void {
+  scene = next;
+  state = null;
+  newest = null;
+  world?.show(next);
+  view.show(next);
+  forces.show(next);
+  playback.show(next);
+  settings.show(next);
+  hand?.touch.show(next);
+  document.title = `${next.objects.map((object) => object.name).join(", ")} – irdm`;
+}
+
+function showState(next: State): void {
+  const first = state === null;
+  if (next.notice !== "" && (asked || next.notice !== state?.notice)) notices.tell(next.notice);
+  asked = false;
+  state = next;
+  status.showState(scene!, next);
+  run.showState(next);
+  playback.showState(next);
+  settings.showState(next);
+  forces.showState(next);
+  hand?.touch.showState(next);
+  const touchable = hand !== null && scene!.viewersStylus && !next.onlyLooksOn && next.playback === null;
+  element("tools").hidden = !touchable;
+  if (!touchable) hand?.keys.set(false);
+  if (first || !touchable) element("hint").hidden = !touchable;
+}
+
+function showFrame(frame: Frame): void {
+  newest = frame;
+  forces.follow(frame);
+  playback.follow(frame);
+  hand?.touch.follow(frame);
+  world?.follow(frame);
+  hand?.felt.follow(frame, scene!);
+  for (const listener of listeners) listener(frame);
+}
+
+function take(message: ServerMessage, size: number): void {
+  status.received(size, message.kind === "frame");
+  if (message.kind === "scene") showScene(message);
+  else if (message.kind === "frame") showFrame(message);
+  else if (message.kind === "health") health.show(message, performance.now());
+  else showState(message);
+}
+
+function showLink(link: LinkState, detail: string): void {
+  status.link(link, detail);
+  if (link === "live") return;
+  run.lost();
+  settings.lost();
+  hand?.touch.lost();
+}
+
+// Controls
+
+async function share(): Promise<void> {
+  const link = onlookerLink(location.href);
+  if (!(await copy(link))) notices.tell(link);
+  else if (token === "") notices.hint("Copied: a link by which one looks on and touches nothing.");
+  else notices.tell("Copied. It has your token in it: whoever takes watch=1 out can touch, too. The scene can have a token for onlookers.");
+}
+element("share").onclick = () => void share();
+
+const TURN = 0.09; // [rad]
+const NEARER = 1.15;
+listenForShortcuts(
+  {
+    r: () => run.putBack(),
+    p: () => run.togglePause(),
+    ".": () => run.step(),
+    f: () => world?.fit(),
+    w: () => view.toggleRigid(),
+    c: () => view.nextColour(),
+    "[": () => view.exaggerate(false),
+    "]": () => view.exaggerate(true),
+    " ": () => forces.toggleHold(),
+    t: () => {
+      if (!element("tools").hidden) hand?.keys.set(!hand.keys.on);
+    },
+    "+": () => world?.move(0, 0, NEARER),
+    "=": () => world?.move(0, 0, NEARER),
+    "-": () => world?.move(0, 0, 1 / NEARER),
+  },
+  {
+    ArrowLeft: () => world?.move(-TURN, 0, 1),
+    ArrowRight: () => world?.move(TURN, 0, 1),
+    ArrowUp: () => world?.move(0, -TURN, 1),
+    ArrowDown: () => world?.move(0, TURN, 1),
+  },
+);
+onThemeChange(() => {
+  world?.applyTheme(currentTheme());
+  forces.applyTheme();
+});
+setInterval(() => {
+  status.show(newest);
+  view.showLegend();
+}, 250);
+
+const token = new URLSearchParams(location.hash.slice(1)).get("token") ?? "";
+const live = new URL("live", location.href);
+live.protocol = live.protocol.replace("http", "ws");
+live.hash = "";
+const connection = new Connection(live.href, token, isOnlooker(location.href), { message: take, state: showLink });
+connection.open();
+
+// For tests and for the curious at the browser's console: what is shown, as numbers.
+const listeners: ((frame: Frame) => void)[] = [];
+Object.assign(window, {
+  irdm: {
+    world,
+    scene: () => scene,
+    frame: () => newest,
+    state: () => state,
+    onFrame: (listener: (frame: Frame) => void) => listeners.push(listener),
+  },
+});

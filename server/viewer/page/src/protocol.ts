@@ -1,0 +1,544 @@
+/**
+ * The messages of docs/viewer-protocol.md as the page needs them. Pure: no DOM, no socket.
+ *
+ * Every length is checked before it is used; bytes that break a rule end in a ProtocolError.
+ */
+
+import { ProtocolError, Reader } from "./byte_reader";
+
+export const MAGIC = "IRVW";
+export const VERSION = 1;
+const enum Type {
+  Scene = 1,
+  Frame = 2,
+  Health = 3,
+  State = 4,
+  Hello = 16,
+  Command = 17,
+  Stylus = 18,
+  Settings = 19,
+}
+const MAX_OBJECTS = 4;
+const MAX_STYLUSES = 4;
+const MAX_TRAIL = 128;
+const MAX_NAME = 256;
+const MAX_TOKEN = 128;
+const MAX_RECORDINGS = 100;
+const RECORDING_NAME = 64;
+const MAX_NOTICE = 512;
+const NO_RECORDING = 65535;
+const MAX_COORDINATE = 1000; // of a tip [m]
+
+export type Vec3 = readonly [number, number, number];
+export type Quat = readonly [number, number, number, number];
+
+export interface SceneStylus {
+  /** of the fingertip [m]; 0: a point */
+  radius: number;
+  /** [N/m]; 0: none */
+  couplingStiffness: number;
+  /** [m] */
+  reach: number;
+  /** that it can be pushed with [N]; 0: no bound of its own */
+  largestForce: number;
+}
+
+export interface SceneObject {
+  name: string;
+  /** [kg] */
+  mass: number;
+  /** Young's modulus [Pa] */
+  stiffness: number;
+  /** X, three numbers a node [m], B */
+  rest: Float32Array;
+  /** three node numbers a triangle, outward */
+  triangles: Uint32Array;
+  /** a node: displacement along the normal for a force along it [m/N]; NaN: not known */
+  compliance: Float32Array;
+}
+
+export interface Scene {
+  kind: "scene";
+  /** force step [s] */
+  dt: number;
+  lockstep: boolean;
+  /** the last stylus is that of the viewers */
+  viewersStylus: boolean;
+  /** there is no live run, only a recorded one */
+  recordedOnly: boolean;
+  floor: { normal: Vec3; height: number } | null;
+  styluses: SceneStylus[];
+  objects: SceneObject[];
+}
+
+export const enum Contact {
+  Free = 0,
+  Touching = 1,
+  Held = 2,
+}
+
+export interface StylusState {
+  present: boolean;
+  contact: Contact;
+  /** number of the object that it touches; -1: none */
+  object: number;
+  buttons: number;
+  /** [m], W */
+  tip: Vec3;
+  proxy: Vec3;
+  /** on the stylus [N], W */
+  force: Vec3;
+  /** of the contact, on the surface at rest [m], B of the object; NaN when free */
+  middle: Vec3;
+  slips: boolean;
+}
+
+export interface ObjectState {
+  /** of the centre of mass [m], W */
+  position: Vec3;
+  /** w, x, y, z; B to W */
+  orientation: Quat;
+  /** of a number in `displacement` [m] */
+  unit: number;
+  /** u, three numbers a node, in units; B */
+  displacement: Int16Array | Int32Array;
+}
+
+export interface Frame {
+  kind: "frame";
+  /** force step k */
+  step: number;
+  /** [s] */
+  time: number;
+  styluses: StylusState[];
+  /** steps in `forces`: step - trail + 1 .. step */
+  trail: number;
+  /** for each of these steps, for each stylus: three numbers [N], W */
+  forces: Float32Array;
+  objects: ObjectState[];
+}
+
+/** Median, 99th percentile, maximum [us]; NaN: not measured. */
+export interface Percentiles {
+  p50: number;
+  p99: number;
+  max: number;
+}
+
+export interface Health {
+  kind: "health";
+  steps: number;
+  stepTime: Percentiles;
+  wakeupDelay: Percentiles;
+  missed: number;
+  unsolved: number;
+  resets: number;
+  lostSteps: number;
+  surfaceRate: number;
+  viewers: number;
+  sessions: number;
+  samples: number;
+  forces: number;
+  forcesReplaced: number;
+  protocolErrors: number;
+  bridges: BridgeHealth[];
+}
+
+/** What the bridge of a stylus told of its last second. */
+export interface BridgeHealth {
+  /** else the times mean nothing */
+  reports: boolean;
+  roundTrip: Percentiles;
+  /** of the force that the hand feels */
+  forceAge: Percentiles;
+}
+
+export const enum Engine {
+  Modal = 0,
+  Dense = 1,
+}
+
+export interface ObjectSettings {
+  /** 0 <= kinetic <= static <= 10 */
+  staticFriction: number;
+  kineticFriction: number;
+  /** [1/s] */
+  damping: number;
+  angularDamping: number;
+  /** [N/m] */
+  tether: number;
+  /** [N m/rad] */
+  angularTether: number;
+  /** of the material's damping, 0.1 to 10 */
+  dampingFactor: number;
+  engine: Engine;
+  /** the object's own spin loads its elastic part */
+  inertia: boolean;
+}
+
+export interface Settings {
+  /** [m/s^2], W */
+  gravity: Vec3;
+  objects: ObjectSettings[];
+}
+
+/** Which of an object's settings can be changed; the others always can. */
+export interface Changeable {
+  dampingFactor: boolean;
+  engine: boolean;
+  inertia: boolean;
+}
+
+export interface Recording {
+  number: number;
+  name: string;
+}
+
+/** What can change while the server runs, and what this viewer may do about it. */
+export interface State {
+  kind: "state";
+  onlyLooksOn: boolean;
+  stylusFree: boolean;
+  stylusMine: boolean;
+  paused: boolean;
+  recording: boolean;
+  canRecord: boolean;
+  /** number of changes of settings so far */
+  changes: number;
+  /** of the recorded run that is shown; null: the live run is */
+  playback: Playback | null;
+  recordings: Recording[];
+  settings: Settings;
+  /** for each object */
+  changeable: Changeable[];
+  /** what the last thing asked for led to, for a person; empty: nothing to say */
+  notice: string;
+}
+
+export interface Playback {
+  /** [s] */
+  length: number;
+  speed: number;
+  playing: boolean;
+  /** null: the one that the server was started with */
+  recording: number | null;
+}
+
+export type ServerMessage = Scene | Frame | Health | State;
+
+function upTo(largest: number, value: number): number {
+  if (value > largest) throw new ProtocolError("a number is out of range");
+  return value;
+}
+
+function count(reader: Reader, largest: number): number {
+  const value = upTo(largest, reader.u16());
+  if (value < 1) throw new ProtocolError("nothing where there has to be something");
+  return value;
+}
+
+function repeat<T>(times: number, make: () => T): T[] {
+  return Array.from({ length: times }, make);
+}
+
+function readObject(reader: Reader): SceneObject {
+  const nodes = reader.u32();
+  const triangleCount = reader.u32();
+  const length = reader.u32();
+  if (length > MAX_NAME) throw new ProtocolError("a name is too long");
+  const mass = reader.f32();
+  const stiffness = reader.f32();
+  reader.skip(4);
+  const name = reader.text(length);
+  reader.align();
+  const rest = reader.singles(3 * nodes);
+  const triangles = reader.words(3 * triangleCount);
+  if (triangles.some((node) => node >= nodes)) throw new ProtocolError("a triangle has a node that is not there");
+  return { name, mass, stiffness, rest, triangles, compliance: reader.singles(nodes) };
+}
+
+function readScene(reader: Reader): Scene {
+  const objects = count(reader, MAX_OBJECTS);
+  const styluses = count(reader, MAX_STYLUSES);
+  const flags = reader.u32();
+  const dt = reader.f64();
+  const normal = reader.vector();
+  const height = reader.f64();
+  return {
+    kind: "scene",
+    dt,
+    lockstep: (flags & 1) !== 0,
+    viewersStylus: (flags & 4) !== 0,
+    recordedOnly: (flags & 8) !== 0,
+    floor: (flags & 2) !== 0 ? { normal, height } : null,
+    styluses: repeat(styluses, () => ({
+      radius: reader.f32(),
+      couplingStiffness: reader.f32(),
+      reach: reader.f32(),
+      largestForce: reader.f32(),
+    })),
+    objects: repeat(objects, () => readObject(reader)),
+  };
+}
+
+function readStylus(reader: Reader): StylusState {
+  const present = upTo(1, reader.u8());
+  const contact = upTo(Contact.Held, reader.u8());
+  const stylus = {
+    present: present === 1,
+    contact: contact as Contact,
+    object: reader.i16(),
+    buttons: reader.u32(),
+    tip: reader.vector(),
+    proxy: reader.vector(),
+    force: reader.singleVector(),
+    middle: reader.singleVector(),
+    slips: upTo(1, reader.u8()) === 1,
+  };
+  reader.skip(7);
+  return stylus;
+}
+
+function readSurface(reader: Reader, nodes: number): ObjectState {
+  const position = reader.vector();
+  const orientation: Quat = [reader.f32(), reader.f32(), reader.f32(), reader.f32()];
+  const width = reader.u8();
+  if (width !== 2 && width !== 4) throw new ProtocolError("numbers of an unknown size");
+  reader.skip(3);
+  const unit = reader.f32();
+  const displacement = width === 2 ? reader.shorts(3 * nodes) : reader.longs(3 * nodes);
+  reader.align();
+  return { position, orientation, unit, displacement };
+}
+
+function readFrame(reader: Reader, scene: Scene | null): Frame {
+  if (scene === null) throw new ProtocolError("a frame comes before its scene");
+  const objects = count(reader, MAX_OBJECTS);
+  const styluses = count(reader, MAX_STYLUSES);
+  if (objects !== scene.objects.length || styluses !== scene.styluses.length) {
+    throw new ProtocolError("a frame does not fit the scene");
+  }
+  const trail = reader.u16();
+  if (trail > MAX_TRAIL) throw new ProtocolError("a trail of forces is too long");
+  reader.skip(2);
+  const step = reader.u64();
+  const time = reader.f64();
+  return {
+    kind: "frame",
+    step,
+    time,
+    styluses: repeat(styluses, () => readStylus(reader)),
+    trail,
+    forces: reader.singles(3 * trail * styluses),
+    objects: scene.objects.map((object) => readSurface(reader, object.rest.length / 3)),
+  };
+}
+
+function readPercentiles(reader: Reader): Percentiles {
+  return { p50: reader.f32(), p99: reader.f32(), max: reader.f32() };
+}
+
+function readBridge(reader: Reader): BridgeHealth {
+  const reports = upTo(1, reader.u32()) === 1;
+  const bridge = { reports, roundTrip: readPercentiles(reader), forceAge: readPercentiles(reader) };
+  reader.skip(4);
+  return bridge;
+}
+
+function readBridges(reader: Reader): BridgeHealth[] {
+  const bridges = upTo(MAX_STYLUSES, reader.u16());
+  reader.skip(6);
+  return repeat(bridges, () => readBridge(reader));
+}
+
+function readHealth(reader: Reader): Health {
+  return {
+    kind: "health",
+    steps: reader.u64(),
+    stepTime: readPercentiles(reader),
+    wakeupDelay: readPercentiles(reader),
+    missed: reader.u64(),
+    unsolved: reader.u64(),
+    resets: reader.u64(),
+    lostSteps: reader.u64(),
+    surfaceRate: reader.f32(),
+    viewers: reader.u32(),
+    sessions: reader.u64(),
+    samples: reader.u64(),
+    forces: reader.u64(),
+    forcesReplaced: reader.u64(),
+    protocolErrors: reader.u64(),
+    bridges: readBridges(reader),
+  };
+}
+
+function readObjectSettings(reader: Reader): [ObjectSettings, Changeable] {
+  const settings = {
+    staticFriction: reader.f64(),
+    kineticFriction: reader.f64(),
+    damping: reader.f64(),
+    angularDamping: reader.f64(),
+    tether: reader.f64(),
+    angularTether: reader.f64(),
+    dampingFactor: reader.f64(),
+    engine: upTo(Engine.Dense, reader.u8()) as Engine,
+    inertia: upTo(1, reader.u8()) === 1,
+  };
+  const bits = reader.u8();
+  reader.skip(21);
+  return [settings, { dampingFactor: (bits & 1) !== 0, engine: (bits & 2) !== 0, inertia: (bits & 4) !== 0 }];
+}
+
+function readRecording(reader: Reader): Recording {
+  const number = reader.u16();
+  const length = reader.u16();
+  return { number, name: reader.field(length, RECORDING_NAME) };
+}
+
+function readState(reader: Reader, scene: Scene | null): State {
+  if (scene === null) throw new ProtocolError("a state comes before its scene");
+  const flags = reader.u32();
+  const flag = (bit: number): boolean => ((flags >> bit) & 1) !== 0;
+  const changes = reader.u32();
+  const length = reader.f64();
+  const speed = reader.f64();
+  const shown = reader.u16();
+  const recordings = upTo(MAX_RECORDINGS, reader.u16());
+  const noticeLength = upTo(MAX_NOTICE, reader.u16());
+  reader.skip(2);
+  const gravity = reader.vector();
+  const objects = scene.objects.map(() => readObjectSettings(reader));
+  const list = repeat(recordings, () => readRecording(reader));
+  const notice = reader.text(noticeLength);
+  reader.align();
+  return {
+    kind: "state",
+    onlyLooksOn: flag(0),
+    stylusFree: flag(1),
+    stylusMine: flag(2),
+    paused: flag(3),
+    recording: flag(4),
+    canRecord: flag(7),
+    changes,
+    playback: flag(5)
+      ? { length, speed, playing: flag(6), recording: shown === NO_RECORDING ? null : shown }
+      : null,
+    recordings: list,
+    settings: { gravity, objects: objects.map(([settings]) => settings) },
+    changeable: objects.map(([, changeable]) => changeable),
+    notice,
+  };
+}
+
+/** @param scene the session's, once it has come: a frame cannot be read without it */
+export function decode(bytes: ArrayBuffer, scene: Scene | null): ServerMessage {
+  const reader = new Reader(bytes);
+  if (reader.text(4) !== MAGIC) throw new ProtocolError("a message does not begin with " + MAGIC);
+  if (reader.u16() !== VERSION) throw new ProtocolError("the server speaks another version; reload the page");
+  const read = (): ServerMessage => {
+    const type = reader.u16();
+    switch (type) {
+      case Type.Scene:
+        return readScene(reader);
+      case Type.Frame:
+        return readFrame(reader, scene);
+      case Type.Health:
+        return readHealth(reader);
+      case Type.State:
+        return readState(reader, scene);
+      default:
+        throw new ProtocolError("a message of unknown type " + type);
+    }
+  };
+  const message = read();
+  reader.finish();
+  return message;
+}
+
+/** A message of `size` bytes, header and all, zero but for the header. */
+function begin(type: Type, size: number): DataView {
+  const view = new DataView(new ArrayBuffer(size));
+  for (let i = 0; i < 4; ++i) view.setUint8(i, MAGIC.charCodeAt(i));
+  view.setUint16(4, VERSION, true);
+  view.setUint16(6, type, true);
+  return view;
+}
+
+function putNumbers(view: DataView, offset: number, values: readonly number[]): void {
+  values.forEach((value, i) => view.setFloat64(offset + 8 * i, value, true));
+}
+
+function bytesOf(view: DataView): ArrayBuffer {
+  return view.buffer as ArrayBuffer;
+}
+
+export function encodeHello(token: string, onlyLooksOn = false): ArrayBuffer {
+  const text = new TextEncoder().encode(token).slice(0, MAX_TOKEN);
+  const view = begin(Type.Hello, 12 + text.length);
+  view.setUint16(8, text.length, true);
+  view.setUint16(10, onlyLooksOn ? 1 : 0, true);
+  new Uint8Array(view.buffer).set(text, 12);
+  return bytesOf(view);
+}
+
+export const enum Command {
+  PutBack = 1,
+  Pause = 2,
+  GoOn = 3,
+  Step = 4,
+  BeginRecording = 5,
+  EndRecording = 6,
+  ShowRecording = 7,
+  BackToLive = 8,
+  Play = 9,
+  StandStill = 10,
+  Seek = 11,
+  Speed = 12,
+}
+
+/**
+ * @param number of steps to make, or of the recording to show
+ * @param value time [s] to go to, or speed
+ */
+export function encodeCommand(what: Command, number = 0, value = 0): ArrayBuffer {
+  const view = begin(Type.Command, 24);
+  view.setUint16(8, what, true);
+  view.setUint16(10, number, true);
+  view.setFloat64(16, value, true);
+  return bytesOf(view);
+}
+
+/** The viewers' stylus: where this viewer's hand is. */
+export interface HandMessage {
+  present: boolean;
+  grab: boolean;
+  /** [m], W */
+  tip: Vec3;
+}
+
+export function encodeStylus(hand: HandMessage): ArrayBuffer {
+  const view = begin(Type.Stylus, 40);
+  view.setUint8(8, hand.present ? 1 : 0);
+  view.setUint32(12, hand.grab ? 1 : 0, true);
+  putNumbers(view, 16, hand.tip.map((part) => clamp(part, -MAX_COORDINATE, MAX_COORDINATE)));
+  return bytesOf(view);
+}
+
+export function encodeSettings(settings: Settings): ArrayBuffer {
+  const view = begin(Type.Settings, 40 + 80 * settings.objects.length);
+  view.setUint16(8, settings.objects.length, true);
+  putNumbers(view, 16, settings.gravity);
+  settings.objects.forEach((object, i) => {
+    const at = 40 + 80 * i;
+    const { staticFriction, kineticFriction, damping, angularDamping, tether, angularTether } = object;
+    const numbers = [staticFriction, kineticFriction, damping, angularDamping, tether, angularTether];
+    putNumbers(view, at, [...numbers, object.dampingFactor]);
+    view.setUint8(at + 56, object.engine);
+    view.setUint8(at + 57, object.inertia ? 1 : 0);
+  });
+  return bytesOf(view);
+}
+
+function clamp(value: number, low: number, high: number): number {
+  return Math.min(Math.max(value, low), high);
+}

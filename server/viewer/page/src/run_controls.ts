@@ -1,0 +1,104 @@
+import { element, make } from "./elements";
+import { Command, encodeCommand, type State } from "./protocol";
+
+/** Put back, pause, step, record, and the list of recordings. */
+export class RunControls {
+  private state: State | null = null;
+  private readonly putBackButton = element<HTMLButtonElement>("put-back");
+  private readonly pauseButton = element<HTMLButtonElement>("pause");
+  private readonly stepButton = element<HTMLButtonElement>("step");
+  private readonly recordButton = element<HTMLButtonElement>("record");
+  private readonly reason = element("run-reason");
+  private readonly list = element("recordings");
+  private listed = "";
+
+  constructor(private readonly send: (message: ArrayBuffer) => void) {
+    this.putBackButton.onclick = () => this.putBack();
+    this.pauseButton.onclick = () => this.togglePause();
+    this.stepButton.onclick = () => this.step();
+    this.recordButton.onclick = () => this.toggleRecording();
+  }
+
+  putBack(): void {
+    if (!this.putBackButton.disabled) this.ask(Command.PutBack);
+  }
+
+  togglePause(): void {
+    if (this.state?.playback) this.ask(this.state.playback.playing ? Command.StandStill : Command.Play);
+    else if (!this.pauseButton.disabled) this.ask(this.state!.paused ? Command.GoOn : Command.Pause);
+  }
+
+  step(): void {
+    if (!this.stepButton.disabled) this.ask(Command.Step, 1);
+  }
+
+  lost(): void {
+    this.state = null;
+    this.render();
+  }
+
+  showState(state: State): void {
+    this.state = state;
+    this.render();
+  }
+
+  private toggleRecording(): void {
+    this.ask(this.state!.recording ? Command.EndRecording : Command.BeginRecording);
+  }
+
+  private ask(what: Command, number = 0): void {
+    this.send(encodeCommand(what, number));
+  }
+
+  private render(): void {
+    const { state } = this;
+    const may = state !== null && !state.onlyLooksOn;
+    const live = may && state.playback === null;
+    this.putBackButton.disabled = !may;
+    this.putBackButton.firstChild!.textContent = state?.playback ? "To the start " : "Put back ";
+    this.pauseButton.disabled = !live;
+    this.pauseButton.firstChild!.textContent = state?.paused ? "Go on " : "Pause ";
+    this.pauseButton.setAttribute("aria-pressed", String(live && state.paused));
+    this.stepButton.disabled = !(live && state.paused);
+    const recording = state?.recording === true;
+    this.recordButton.disabled = !live || !(state.canRecord || recording);
+    this.recordButton.setAttribute("aria-pressed", String(recording));
+    this.recordButton.querySelector("span")!.textContent = recording ? "End recording" : "Record";
+    this.recordButton.title = recording ? "" : "Puts everything back, then keeps the run in a file beside the server";
+    const why = this.whyNot();
+    this.reason.textContent = why;
+    this.reason.hidden = why === "";
+    this.renderList();
+  }
+
+  private whyNot(): string {
+    const { state } = this;
+    if (state === null) return "";
+    if (state.onlyLooksOn) return "This viewer only looks on.";
+    if (state.playback !== null) return "A recorded run is shown; the live run stands still.";
+    return state.canRecord || state.recording ? "" : "This server keeps no recordings.";
+  }
+
+  private renderList(): void {
+    const { state } = this;
+    const recordings = state?.recordings ?? [];
+    this.list.hidden = recordings.length === 0;
+    const shown = state?.playback?.recording ?? null;
+    const may = state !== null && !state.onlyLooksOn && !state.recording;
+    const key = JSON.stringify([recordings, shown, may]);
+    if (key === this.listed) return; // the focus stays where it is
+    this.listed = key;
+    this.list.replaceChildren(
+      ...recordings.map(({ number, name }) => {
+        const row = make("li", "");
+        const play = make("button", number === shown ? "Shown" : "Show") as HTMLButtonElement;
+        play.type = "button";
+        play.disabled = !may || number === shown;
+        play.setAttribute("aria-label", `Show the recording ${name}`);
+        play.onclick = () => this.ask(Command.ShowRecording, number);
+        row.append(make("span", name), play);
+        return row;
+      }),
+    );
+  }
+}

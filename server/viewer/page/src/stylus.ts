@@ -1,0 +1,88 @@
+import * as THREE from "three";
+import { Contact, type SceneStylus, type StylusState } from "./protocol";
+import { Spring } from "./spring";
+import type { Theme } from "./theme";
+
+const SMALLEST_TIP = 0.0022; // a point must be seen [m]
+const METRES_PER_NEWTON = 0.04;
+const LEAST_FORCE = 0.005; // below it no arrow [N]
+const UP = new THREE.Vector3(0, 1, 0);
+
+/** Tip, proxy, the spring between them, and the force on the stylus as an arrow of 4 cm a newton. */
+export class Stylus {
+  readonly group = new THREE.Group();
+  /** where this viewer's hand wants the tip [m], W; null: it is not this viewer's stylus */
+  asked: THREE.Vector3 | null = null;
+  private readonly tipMaterial = new THREE.MeshStandardMaterial({ roughness: 0.35 });
+  private readonly ghostMaterial = new THREE.MeshBasicMaterial({ depthTest: false, transparent: true, opacity: 0.28 });
+  private readonly proxyMaterial = new THREE.MeshBasicMaterial({ depthTest: false, transparent: true, opacity: 0.9 });
+  private readonly arrowMaterial = new THREE.MeshStandardMaterial({ roughness: 0.5 });
+  private readonly radius: number;
+  private readonly tip: THREE.Mesh;
+  private readonly proxy: THREE.Mesh;
+  private readonly spring = new Spring();
+  private readonly arrow = new THREE.Group();
+  private readonly shaft: THREE.Mesh;
+  private readonly head: THREE.Mesh;
+
+  constructor(stylus: SceneStylus) {
+    this.radius = Math.max(stylus.radius, SMALLEST_TIP);
+    this.tip = new THREE.Mesh(new THREE.SphereGeometry(this.radius, 32, 20), this.tipMaterial);
+    this.tip.castShadow = true;
+    if (stylus.radius > SMALLEST_TIP) {
+      // A fingertip lets through what it touches.
+      Object.assign(this.tipMaterial, { transparent: true, opacity: 0.5, depthWrite: false });
+    }
+    const ghost = new THREE.Mesh(this.tip.geometry, this.ghostMaterial); // the tip is seen through the objects
+    ghost.renderOrder = 1;
+    this.tip.add(ghost);
+    this.proxy = new THREE.Mesh(new THREE.SphereGeometry(SMALLEST_TIP * 0.7, 20, 12), this.proxyMaterial);
+    this.proxy.renderOrder = 2;
+    this.shaft = new THREE.Mesh(new THREE.CylinderGeometry(0.0009, 0.0009, 1, 16), this.arrowMaterial);
+    this.head = new THREE.Mesh(new THREE.ConeGeometry(0.0026, 0.007, 20), this.arrowMaterial);
+    this.arrow.add(this.shaft, this.head);
+    this.group.add(this.tip, this.proxy, this.spring.mesh, this.arrow);
+    this.group.visible = false;
+  }
+
+  follow(state: StylusState): void {
+    this.group.visible = state.present;
+    if (!state.present) return;
+    const touches = state.contact !== Contact.Free;
+    this.tip.position.set(...state.tip);
+    this.proxy.visible = touches;
+    this.proxy.position.set(...state.proxy);
+    this.spring.mesh.visible = touches;
+    if (touches) this.spring.span(this.asked ?? this.tip.position, this.proxy.position);
+    this.point(new THREE.Vector3(...state.force), state.tip);
+  }
+
+  /** From where the arrow leaves the tip. */
+  private point(force: THREE.Vector3, tip: readonly [number, number, number]): void {
+    const size = force.length();
+    this.arrow.visible = size > LEAST_FORCE;
+    if (!this.arrow.visible) return;
+    const length = size * METRES_PER_NEWTON;
+    force.divideScalar(size);
+    this.arrow.position.set(...tip).addScaledVector(force, this.radius);
+    this.arrow.quaternion.setFromUnitVectors(UP, force);
+    this.shaft.scale.y = length;
+    this.shaft.position.y = length / 2;
+    this.head.position.y = length;
+  }
+
+  applyTheme(theme: Theme): void {
+    this.tipMaterial.color.set(theme.ink);
+    this.ghostMaterial.color.set(theme.ink);
+    this.proxyMaterial.color.set(theme.accent);
+    this.spring.mesh.material.color.set(theme.force);
+    this.arrowMaterial.color.set(theme.force);
+  }
+
+  dispose(): void {
+    for (const part of [this.tip, this.proxy, this.shaft, this.head]) part.geometry.dispose();
+    this.spring.dispose();
+    const { tipMaterial, ghostMaterial, proxyMaterial, arrowMaterial } = this;
+    for (const one of [tipMaterial, ghostMaterial, proxyMaterial, arrowMaterial]) one.dispose();
+  }
+}

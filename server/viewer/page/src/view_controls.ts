@@ -1,0 +1,81 @@
+import { cssRamp } from "./colour_map";
+import { element } from "./elements";
+import type { Scene } from "./protocol";
+import { scaleBar } from "./scale_bar";
+import type { Colouring } from "./soft_object";
+import type { World } from "./world";
+
+const LEGENDS: Record<Exclude<Colouring, "none">, { title: string; factor: number; unit: string }> = {
+  displacement: { title: "Displacement", factor: 1000, unit: "mm" },
+  velocity: { title: "Speed of the surface", factor: 100, unit: "cm/s" },
+  compliance: { title: "Compliance: give per push", factor: 1000, unit: "mm/N" },
+};
+
+/** How the picture is drawn: exaggeration, colours with their legend, wireframe, camera; and the scale. */
+export class ViewControls {
+  private readonly exaggeration = element<HTMLInputElement>("exaggeration");
+  private readonly colour = element<HTMLSelectElement>("colour");
+  private readonly rigid = element<HTMLInputElement>("rigid");
+  private readonly follow = element<HTMLInputElement>("follow");
+
+  constructor(private readonly world: World | null) {
+    for (const input of [this.exaggeration, this.colour, this.rigid, this.follow]) input.oninput = () => this.apply();
+    element("fit").onclick = () => world?.fit();
+    document.querySelector<HTMLElement>(".ramp")!.style.background = cssRamp();
+    if (world !== null) world.onDraw = () => this.showScale();
+    this.apply();
+  }
+
+  show(scene: Scene): void {
+    const known = scene.objects.some((object) => object.compliance.some((value) => !Number.isNaN(value)));
+    const option = this.colour.querySelector<HTMLOptionElement>("option[value=compliance]")!;
+    option.disabled = !known;
+    if (!known && this.colour.value === "compliance") this.colour.value = "none";
+    this.apply();
+  }
+
+  nextColour(): void {
+    const { options } = this.colour;
+    do this.colour.selectedIndex = (this.colour.selectedIndex + 1) % options.length;
+    while (options[this.colour.selectedIndex]!.disabled);
+    this.apply();
+  }
+
+  toggleRigid(): void {
+    this.rigid.checked = !this.rigid.checked;
+    this.apply();
+  }
+
+  exaggerate(up: boolean): void {
+    if (up) this.exaggeration.stepUp();
+    else this.exaggeration.stepDown();
+    this.apply();
+  }
+
+  /** Now and then: the ramp's end moves. */
+  showLegend(): void {
+    if (this.world === null || this.world.look.colouring === "none") return;
+    const { factor, unit } = LEGENDS[this.world.look.colouring];
+    const { low, high } = this.world.colours;
+    element("legend-min").textContent = low === 0 ? "0" : (low * factor).toPrecision(3);
+    element("legend-max").textContent = `${(high * factor).toPrecision(3)} ${unit}`;
+  }
+
+  private apply(): void {
+    const factor = Number(this.exaggeration.value);
+    element("exaggeration-value").textContent = `× ${factor}`;
+    const colouring = this.colour.value as Colouring;
+    element("legend").hidden = colouring === "none" || this.world === null;
+    if (colouring !== "none") element("legend-title").textContent = LEGENDS[colouring].title;
+    if (this.world === null) return;
+    this.world.look = { exaggeration: factor, colouring, rigid: this.rigid.checked, follow: this.follow.checked };
+    this.world.applyLook();
+    this.showLegend();
+  }
+
+  private showScale(): void {
+    const { centimetres, pixels } = scaleBar(this.world!.metresPerPixel());
+    element("scale").querySelector("span")!.textContent = `${centimetres} cm`;
+    element("scale").querySelector("i")!.style.width = `${pixels.toFixed(1)}px`;
+  }
+}

@@ -1,0 +1,253 @@
+import * as THREE from "three";
+import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import { Contact, type Frame, type Scene } from "./protocol";
+import { SoftObject, type ColourRange, type Colouring } from "./soft_object";
+import { Stylus } from "./stylus";
+import { Surroundings } from "./surroundings";
+import type { Theme } from "./theme";
+
+const FIELD_OF_VIEW = 32;
+const VIEW_FROM = new THREE.Vector3(0.55, 0.42, 1).normalize();
+
+export interface Look {
+  exaggeration: number;
+  colouring: Colouring;
+  rigid: boolean;
+  /** the camera goes along with objects that leave the middle of the picture */
+  follow: boolean;
+}
+
+/** The three-dimensional picture. It is drawn when something has changed, and not otherwise. */
+export class World {
+  readonly camera = new THREE.PerspectiveCamera(FIELD_OF_VIEW, 1, 0.005, 50);
+  objects: SoftObject[] = [];
+  look: Look = { exaggeration: 1, colouring: "none", rigid: false, follow: true };
+  colours: ColourRange = { low: 0, high: 0 };
+  /** a hand is on the objects: the camera stays where it is */
+  held = false;
+  onDraw: () => void = () => {};
+
+  private readonly renderer: THREE.WebGLRenderer;
+  private readonly three = new THREE.Scene();
+  readonly controls: OrbitControls;
+  private readonly surroundings = new Surroundings();
+  private styluses: Stylus[] = [];
+  private scene: Scene | null = null;
+  private frame: Frame | null = null;
+  private theme: Theme;
+  private asked = false;
+
+  /** Throws when there is no WebGL. */
+  constructor(
+    readonly canvas: HTMLCanvasElement,
+    theme: Theme,
+  ) {
+    this.theme = theme;
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true, powerPreference: "high-performance" });
+    this.renderer.shadowMap.enabled = true;
+    this.renderer.shadowMap.type = THREE.PCFShadowMap;
+    this.renderer.toneMapping = THREE.NeutralToneMapping;
+    this.three.add(this.surroundings.group);
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.addEventListener("change", () => this.invalidate());
+    canvas.addEventListener("webglcontextrestored", () => this.invalidate());
+    new ResizeObserver(() => this.resize()).observe(canvas);
+    this.resize();
+  }
+
+  /** Replaces everything that is shown. The camera stays where it is when the scene is one of before. */
+  show(scene: Scene): void {
+    const first = this.scene === null;
+    for (const thing of [...this.objects, ...this.styluses]) {
+      this.three.remove(thing.group);
+      thing.dispose();
+    }
+    this.scene = scene;
+    this.frame = null;
+    this.colours = { low: 0, high: 0 };
+    this.objects = scene.objects.map((object) => new SoftObject(object));
+    this.styluses = scene.styluses.map((stylus) => new Stylus(stylus));
+    for (const thing of [...this.objects, ...this.styluses]) this.three.add(thing.group);
+    this.applyTheme(this.theme);
+    this.applyLook();
+    if (first) this.fitPending = true;
+  }
+  private fitPending = false;
+
+  follow(frame: Frame): void {
+    this.frame = frame;
+    frame.objects.forEach((state, i) => this.objects[i]!.follow(state, frame.time, this.look.colouring));
+    frame.styluses.forEach((state, s) => this.styluses[s]!.follow(state));
+    this.showContacts(frame);
+    this.followColours();
+    if (this.fitPending) this.fit();
+    else if (this.look.follow && !this.held) this.goAlong(frame);
+    this.invalidate();
+  }
+
+  private showContacts(frame: Frame): void {
+    this.objects.forEach((object, i) => {
+      const touching = frame.styluses.map((state, s) => ({ state, radius: this.scene!.styluses[s]!.radius }));
+      const here = touching.filter(({ state }) => state.present && state.contact !== Contact.Free && state.object === i);
+      object.marks.show(here.map(({ state, radius }) => ({ middle: state.middle, radius })));
+    });
+  }
+
+  /** The ramp's end follows upwards at once and downwards slowly, so that colours can be compared. */
+  private followColours(): void {
+    if (this.look.colouring === "compliance") {
+      const ranges = this.objects.flatMap((object) => object.complianceRange ?? []);
+      this.colours = {
+        low: Math.min(...ranges.map((range) => range.low)),
+        high: Math.max(...ranges.map((range) => range.high)),
+      };
+      return;
+    }
+    const largest = Math.max(...this.objects.map((object) => object.largest));
+    this.colours = { low: 0, high: Math.max(largest, this.colours.high * 0.995) };
+  }
+
+  /** Moves camera, light and shadow, gently, when the objects' middle is further off than they are large. */
+  private goAlong(frame: Frame): void {
+    const middle = new THREE.Vector3();
+    for (const object of frame.objects) middle.add(new THREE.Vector3(...object.position));
+    middle.divideScalar(frame.objects.length);
+    const way = middle.sub(this.controls.target);
+    const excess = 1 - (0.6 * this.radius) / way.length();
+    if (!(excess > 0)) return;
+    way.multiplyScalar(Math.min(1, 0.12 * excess));
+    this.controls.target.add(way);
+    this.camera.position.add(way);
+    this.surroundings.moveBy(way);
+    this.controls.update();
+  }
+  private radius = 0.1;
+
+  applyLook(): void {
+    for (const object of this.objects) object.showsRigid = this.look.rigid;
+    this.colours = { low: 0, high: 0 };
+    if (this.frame !== null) this.follow(this.frame);
+    this.invalidate();
+  }
+
+  applyTheme(theme: Theme): void {
+    this.theme = theme;
+    for (const object of this.objects) object.applyTheme(theme);
+    for (const stylus of this.styluses) stylus.applyTheme(theme);
+    this.surroundings.applyTheme(theme);
+    if (this.scene !== null && !this.fitPending) this.surroundings.place(this.bounds(), this.scene.floor, theme);
+    this.invalidate();
+  }
+
+  /** Everything in the picture with room to move, seen from the front, right and above. */
+  fit(): void {
+    if (this.scene === null) return;
+    this.fitPending = false;
+    const { center, radius } = this.bounds();
+    this.radius = radius;
+    const narrow = Math.min(1, this.camera.aspect);
+    const distance = (1.6 * radius) / Math.sin((FIELD_OF_VIEW * Math.PI) / 360) / narrow;
+    this.controls.target.copy(center);
+    this.camera.position.copy(center).addScaledVector(VIEW_FROM, distance);
+    this.camera.near = distance / 100;
+    this.camera.far = distance * 20;
+    this.camera.updateProjectionMatrix();
+    this.controls.minDistance = radius * 0.3;
+    this.controls.maxDistance = distance * 8;
+    this.controls.update();
+    this.surroundings.place(this.bounds(), this.scene.floor, this.theme);
+    this.invalidate();
+  }
+
+  /** Turns the camera [rad], or brings it nearer (zoom > 1). */
+  move(around: number, up: number, zoom: number): void {
+    const arm = this.camera.position.clone().sub(this.controls.target);
+    const way = new THREE.Spherical().setFromVector3(arm);
+    way.theta += around;
+    way.phi += up;
+    way.radius = Math.min(Math.max(way.radius / zoom, this.controls.minDistance), this.controls.maxDistance);
+    this.camera.position.copy(this.controls.target).add(arm.setFromSpherical(way.makeSafe()));
+    this.controls.update();
+    this.invalidate();
+  }
+
+  /** Length of a CSS pixel at the distance of what the camera looks at [m]. */
+  metresPerPixel(): number {
+    const distance = this.camera.position.distanceTo(this.controls.target);
+    return (2 * distance * Math.tan((FIELD_OF_VIEW * Math.PI) / 360)) / Math.max(1, this.canvas.clientHeight);
+  }
+
+  /** From the eye through a point of the canvas [CSS px]; unit direction. W */
+  rayThrough(x: number, y: number): THREE.Ray {
+    const { clientWidth, clientHeight } = this.canvas;
+    const point = new THREE.Vector2((2 * x) / clientWidth - 1, 1 - (2 * y) / clientHeight);
+    this.camera.updateMatrixWorld();
+    const caster = new THREE.Raycaster();
+    caster.setFromCamera(point, this.camera);
+    return caster.ray;
+  }
+
+  /** Unit, W. */
+  forward(): THREE.Vector3 {
+    return this.camera.getWorldDirection(new THREE.Vector3());
+  }
+
+  /** What of the objects is seen on a ray first: its true place [m], W. */
+  pick(ray: THREE.Ray): THREE.Vector3 | null {
+    const hits = this.objects.flatMap((object) => object.pick(ray) ?? []);
+    return hits.sort((a, b) => a.distance - b.distance)[0]?.point ?? null;
+  }
+
+  /** Where a point of the world is on the canvas [CSS px]. */
+  onCanvas(point: THREE.Vector3): { x: number; y: number } {
+    const { clientWidth, clientHeight } = this.canvas;
+    this.camera.updateMatrixWorld();
+    const { x, y } = point.clone().project(this.camera);
+    return { x: ((x + 1) / 2) * clientWidth, y: ((1 - y) / 2) * clientHeight };
+  }
+
+  /** Where this viewer's hand wants the tip of the viewers' stylus; null: nowhere. [m], W */
+  showHand(asked: THREE.Vector3 | null): void {
+    const stylus = this.styluses.at(-1);
+    if (stylus !== undefined) stylus.asked = asked;
+  }
+
+  private bounds(): THREE.Sphere {
+    const box = new THREE.Box3();
+    this.objects.forEach((object, i) => {
+      const rest = this.scene!.objects[i]!.rest;
+      object.group.updateMatrix();
+      const point = new THREE.Vector3();
+      for (let n = 0; n < rest.length; n += 3) {
+        box.expandByPoint(point.fromArray(rest, n).applyMatrix4(object.group.matrix));
+      }
+    });
+    return box.getBoundingSphere(new THREE.Sphere());
+  }
+
+  private resize(): void {
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    if (width === 0 || height === 0) return;
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.renderer.setSize(width, height, false);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    this.invalidate();
+  }
+
+  private invalidate(): void {
+    if (this.asked) return;
+    this.asked = true;
+    requestAnimationFrame(() => {
+      this.asked = false;
+      this.drawNow();
+    });
+  }
+
+  drawNow(): void {
+    const { exaggeration, colouring } = this.look;
+    for (const object of this.objects) object.draw(exaggeration, colouring, this.colours);
+    this.renderer.render(this.three, this.camera);
+    this.onDraw();
+  }
+}

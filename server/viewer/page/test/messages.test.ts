@@ -1,0 +1,164 @@
+// The protocol on bytes that these tests make themselves; protocol.test.ts takes those of the server.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { ProtocolError } from "../src/byte_reader.ts";
+import {
+  Command,
+  decode,
+  encodeCommand,
+  encodeHello,
+  encodeSettings,
+  encodeStylus,
+  type Frame,
+  type Health,
+  type Scene,
+  type State,
+} from "../src/protocol.ts";
+import {
+  ABSENT,
+  cube,
+  frameMessage,
+  healthMessage,
+  sceneMessage,
+  SETTINGS,
+  stateMessage,
+  Writer,
+  type StateParts,
+} from "./server_messages.ts";
+
+const parts = { objects: [cube(0.1, 2)], radii: [0, 0.008], dt: 0.002, flags: 4, floorHeight: 0, largestForce: 3 };
+const sceneBytes = sceneMessage(parts);
+const scene = decode(sceneBytes, null) as Scene;
+const nodes = scene.objects[0]!.rest.length;
+
+const frameBytes = frameMessage({
+  step: 7,
+  time: 0.016,
+  styluses: [
+    ABSENT,
+    { ...ABSENT, present: true, contact: 1, object: 0, tip: [1, 2, 3], middle: [0.01, 0.02, 0.03], slips: true },
+  ],
+  objects: [{ position: [0, 0, 0], displacement: Array.from({ length: nodes }, (_, i) => i) }],
+});
+
+const times = (p50: number): { p50: number; p99: number; max: number } => ({ p50, p99: p50 + 1, max: p50 + 2 });
+const healthBytes = healthMessage(9, [{ reports: true, roundTrip: times(100), forceAge: times(200) }]);
+
+const STATE: StateParts = {
+  flags: 1 + 2 + 8 + 32 + 64 + 128,
+  changes: 3,
+  length: 12.5,
+  speed: 0.5,
+  shown: 2,
+  recordings: [
+    { number: 0, name: "first" },
+    { number: 2, name: "zweite Übung" },
+  ],
+  notice: "done",
+  gravity: [0, -9.81, 0],
+  objects: [{ ...SETTINGS, engine: 1, inertia: true, changeable: 6 }],
+};
+
+test("a scene says whose the last stylus is, how hard it may push, and how soft the object is", () => {
+  assert.equal(scene.viewersStylus, true);
+  assert.equal(scene.recordedOnly, false);
+  assert.equal(scene.styluses[1]!.largestForce, 3);
+  assert.equal(scene.objects[0]!.compliance.length, nodes / 3);
+  assert.ok(Math.abs(scene.objects[0]!.compliance[0]! - parts.objects[0]!.compliance[0]!) < 1e-8);
+});
+
+test("a frame says where a stylus touches the surface at rest and whether it slips", () => {
+  const [first, second] = (decode(frameBytes, scene) as Frame).styluses;
+  assert.ok(first!.middle.every(Number.isNaN));
+  assert.equal(first!.slips, false);
+  assert.deepEqual(second!.middle.map((part) => Math.round(1000 * part)), [10, 20, 30]);
+  assert.equal(second!.slips, true);
+});
+
+test("health has round trip and age of force of each bridge", () => {
+  const { bridges } = decode(healthBytes, scene) as Health;
+  assert.deepEqual(bridges, [{ reports: true, roundTrip: times(100), forceAge: times(200) }]);
+});
+
+test("a state is what was written", () => {
+  const state = decode(stateMessage(STATE), scene) as State;
+  const { changeable: _, ...settings } = STATE.objects[0]!;
+  assert.deepEqual(state, {
+    kind: "state",
+    onlyLooksOn: true,
+    stylusFree: true,
+    stylusMine: false,
+    paused: true,
+    recording: false,
+    canRecord: true,
+    changes: 3,
+    playback: { length: 12.5, speed: 0.5, playing: true, recording: 2 },
+    recordings: STATE.recordings,
+    settings: { gravity: [0, -9.81, 0], objects: [settings] },
+    changeable: [{ dampingFactor: false, engine: true, inertia: true }],
+    notice: "done",
+  });
+});
+
+test("the live run is no playback, and the server's own recorded run has no number", () => {
+  const live = decode(stateMessage({ ...STATE, flags: 0 }), scene) as State;
+  assert.equal(live.playback, null);
+  const own = decode(stateMessage({ ...STATE, shown: 65535 }), scene) as State;
+  assert.equal(own.playback!.recording, null);
+});
+
+test("what is cut, too long or comes before the scene is refused", () => {
+  const state = stateMessage(STATE);
+  for (const good of [sceneBytes, frameBytes, healthBytes, state]) {
+    const step = good.byteLength > 2000 ? 97 : 1;
+    for (let size = 0; size < good.byteLength; size += step) {
+      assert.throws(() => decode(good.slice(0, size), scene), ProtocolError);
+    }
+    const long = new Uint8Array(good.byteLength + 4);
+    long.set(new Uint8Array(good));
+    assert.throws(() => decode(long.buffer, scene), ProtocolError);
+  }
+  assert.throws(() => decode(state, null), ProtocolError);
+  assert.throws(() => decode(frameBytes, null), ProtocolError);
+});
+
+test("a number out of its range is refused", () => {
+  const state = stateMessage(STATE);
+  const changed = (bytes: ArrayBuffer, offset: number, value: number): ArrayBuffer => {
+    const copy = bytes.slice(0);
+    new DataView(copy).setUint8(offset, value);
+    return copy;
+  };
+  const object = 64;
+  const recording = object + 80;
+  const stylus = 32 + 88;
+  for (const [bytes, offset, value] of [
+    [state, 34, 101], // recordings
+    [state, 37, 3], // length of the notice, high byte
+    [state, object + 56, 2], // engine
+    [state, object + 57, 2], // coupling to inertia
+    [state, recording + 2, 65], // length of a name
+    [frameBytes, stylus, 2], // present
+    [frameBytes, stylus + 1, 3], // contact
+    [frameBytes, stylus + 80, 2], // slips
+    [healthBytes, 120, 5], // bridges
+    [healthBytes, 128, 2], // reports
+  ] as const) {
+    assert.throws(() => decode(changed(bytes, offset, value), scene), ProtocolError, `${offset}: ${value}`);
+  }
+});
+
+const header = (type: number): Writer => new Writer().raw(new TextEncoder().encode("IRVW")).u16(1, type);
+
+test("what the page says is what the protocol has", () => {
+  const hello = header(16).u16(2, 1).raw(new TextEncoder().encode("ab"));
+  assert.deepEqual(encodeHello("ab", true), hello.done());
+  assert.deepEqual(encodeHello(""), header(16).u16(0, 0).done());
+  assert.deepEqual(encodeCommand(Command.Seek, 0, 2.5), header(17).u16(11, 0).zeros(4).f64(2.5).done());
+  assert.deepEqual(encodeCommand(Command.Step, 5), header(17).u16(4, 5).zeros(4).f64(0).done());
+  const stylus = header(18).u8(1).zeros(3).u32(1).f64(0.1, -1000, 1000);
+  assert.deepEqual(encodeStylus({ present: true, grab: true, tip: [0.1, -1e9, 1e9] }), stylus.done());
+  const settings = header(19).u16(1).zeros(6).f64(0, -9.81, 0, 0.6, 0.5, 1, 2, 30, 0.01, 1).u8(1, 1).zeros(22);
+  const { changeable: _, ...object } = STATE.objects[0]!;
+  assert.deepEqual(encodeSettings({ gravity: [0, -9.81, 0], objects: [object] }), settings.done());
+});

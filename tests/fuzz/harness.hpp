@@ -1,0 +1,55 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+/// What the fuzzer does with bytes of any origin, one function for every parser (docs/fuzzing.md).
+/// Each returns, whatever the bytes are; what must never be ends the process.
+namespace irdm::fuzz {
+
+using Input = std::span<const std::uint8_t>;
+
+/// Ends the process, and says why, when something that always holds does not.
+void expect(bool holds, const char* what);
+
+/// The bytes as text.
+std::string_view text_of(Input input);
+
+// Messages between server and viewer: what can be decoded, can be encoded and decoded again.
+void viewer_client(Input input);
+void viewer_scene(Input input);
+/// One byte: number of objects; as many bytes: their nodes; the message.
+void viewer_frame(Input input);
+void viewer_health(Input input);
+void viewer_state(Input input);
+
+/// Lines: Origin, Host, token given, token wanted, list of codings or entity tags.
+void request_rules(Input input);
+/// All that a peer sends to the viewer's server on one connection.
+void http_connection(Input input);
+
+/// One byte: 0 puts the right checksums into the frames first, and how many bytes come at a time;
+/// then the stream.
+void wire_frames(Input input);
+
+void scene_config(Input input);
+void precompute_config(Input input);
+void bridge_config(Input input);
+void stylus_script(Input input);
+
+struct Harness {
+  std::string_view name;
+  void (*run)(Input input);
+};
+inline constexpr std::array kHarnesses = {
+    Harness{"viewer_client", viewer_client},     Harness{"viewer_scene", viewer_scene},
+    Harness{"viewer_frame", viewer_frame},       Harness{"viewer_health", viewer_health},
+    Harness{"viewer_state", viewer_state},       Harness{"request_rules", request_rules},
+    Harness{"http_connection", http_connection}, Harness{"wire_frames", wire_frames},
+    Harness{"scene_config", scene_config},       Harness{"precompute_config", precompute_config},
+    Harness{"bridge_config", bridge_config},     Harness{"stylus_script", stylus_script},
+};
+
+}  // namespace irdm::fuzz

@@ -1,0 +1,93 @@
+// The viewer's HTTP side: its rules alone, and whole connections to a server that runs.
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include "server/viewer/request_rules.hpp"
+#include "server/viewer/viewer_server.hpp"
+#include "tests/fuzz/harness.hpp"
+#include "tests/viewer/example_run.hpp"
+#include "tests/viewer/web_peer.hpp"
+
+namespace irdm::fuzz {
+
+using namespace irdm::viewer;
+
+void request_rules(Input input) {
+  std::array<std::string_view, 5> line;
+  std::string_view rest = text_of(input);
+  for (std::string_view& each : line) {
+    each = rest.substr(0, rest.find('\n'));
+    rest.remove_prefix(std::min(each.size() + 1, rest.size()));
+  }
+  const auto& [origin, host, given, wanted, list] = line;
+  const bool open = origin_allowed(origin, host, false);
+  const bool with_token = origin_allowed(origin, host, true);
+  expect(with_token || !open, "what is allowed without a token is allowed with one");
+  const std::size_t scheme = origin.starts_with("https") ? 8 : 7;
+  expect(!with_token || origin.size() == scheme + host.size(),
+         "an origin that is allowed is a scheme and the host");
+  expect(same_token(given, wanted) == (given == wanted), "tokens are the same or not");
+  accepts_gzip(list);
+  names_etag(list, "\"0123456789abcdef\"");
+}
+
+namespace {
+
+/// A server that shows the example scene, for as long as the process lives.
+struct Site {
+  Site() {
+    spdlog::set_level(spdlog::level::off);
+    server.start();
+  }
+  static ViewerSettings settings() {
+    ViewerSettings settings;
+    settings.page.add("/index.html", {"text/html", "<!doctype html>", "packed", "\"abc\"", false});
+    settings.page.add("/assets/app.js", {"text/javascript", "script", "", "\"def\"", true});
+    return settings;
+  }
+
+  test::ExampleRun run;
+  ViewerServer server{settings(), run};
+};
+
+}  // namespace
+
+namespace {
+
+/// The answer's header; empty when there is none.
+std::string header_of(test::WebPeer& peer) {
+  try {
+    return peer.header();
+  } catch (const std::runtime_error&) {
+    return {};
+  }
+}
+
+}  // namespace
+
+void http_connection(Input input) {
+  static Site site;
+  const std::string_view text = text_of(input);
+  const std::size_t end = text.find("\r\n\r\n");
+  const std::size_t head = end == std::string_view::npos ? text.size() : end + 4;
+  test::WebPeer peer(site.server.port());
+  // Who opens a WebSocket has to wait for the answer.
+  std::string answer;
+  if (text.starts_with("GET /live ") && head < text.size()) {
+    peer.send(std::string(text.substr(0, head)));
+    answer = header_of(peer);
+    peer.send(std::string(text.substr(head)));
+  } else {
+    peer.send(std::string(text));
+  }
+  peer.finish();
+  const auto rest = peer.rest();
+  expect(rest.has_value(), "a connection ends when its peer has said all");
+  if (answer.empty()) answer = *rest;
+  expect(answer.empty() || answer.starts_with("HTTP/1."), "an answer is HTTP");
+}
+
+}  // namespace irdm::fuzz

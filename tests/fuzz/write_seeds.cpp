@@ -1,0 +1,101 @@
+// Writes valid messages, where fuzzing begins: write_fuzz_seeds FOLDER. Text seeds are files.
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "common/wire/frame.hpp"
+#include "server/viewer/message.hpp"
+#include "tests/viewer/frames.hpp"
+
+using namespace irdm;
+
+namespace {
+
+class Seeds {
+ public:
+  explicit Seeds(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+  template <typename Bytes>
+  void write(const std::string& harness, const std::string& name, const Bytes& bytes) const {
+    std::filesystem::create_directories(folder_ / harness);
+    std::ofstream file(folder_ / harness / name, std::ios::binary);
+    for (const auto byte : bytes) file.put(static_cast<char>(byte));
+  }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+void write_client_messages(const Seeds& seeds) {
+  const auto hello = encode(viewer::ClientMessage(viewer::Hello{"0123456789abcdef"}));
+  const auto put_back = encode(viewer::ClientMessage(viewer::Command{}));
+  seeds.write("viewer_client", "hello", hello);
+  seeds.write("viewer_client", "no_token", encode(viewer::ClientMessage(viewer::Hello{})));
+  seeds.write("viewer_client", "put_back", put_back);
+  seeds.write("viewer_client", "seek",
+              encode(viewer::ClientMessage(viewer::Command{viewer::CommandKind::kSeek, 0, 1.5})));
+  seeds.write("viewer_client", "stylus",
+              encode(viewer::ClientMessage(viewer::StylusRequest{true, 1, Vector3(1, 2, 3)})));
+  seeds.write(
+      "viewer_client", "settings",
+      encode(viewer::ClientMessage(viewer::SettingsRequest{test::example_state().settings, 2})));
+  // A browser's whole connection, with a mask that changes nothing.
+  std::string bytes =
+      "GET /live HTTP/1.1\r\nHost: 127.0.0.1:1\r\nOrigin: http://127.0.0.1:1\r\n"
+      "Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
+      "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n";
+  for (const viewer::Bytes& message :
+       {encode(viewer::ClientMessage(viewer::Hello{})), put_back, put_back}) {
+    bytes += {'\x82', static_cast<char>(0x80 | message.size()), 0, 0, 0, 0};
+    bytes.append(message.begin(), message.end());
+  }
+  seeds.write("http_connection", "viewer", bytes);
+}
+
+void write_server_messages(const Seeds& seeds) {
+  const viewer::Scene scene = test::example_scene();
+  seeds.write("viewer_scene", "scene", encode(scene));
+  seeds.write("viewer_health", "health", encode(viewer::Health{.links = {{}, {true}}}));
+  seeds.write("viewer_state", "state", encode(test::example_state()));
+  for (const double size : {0.01, 2.0}) {
+    viewer::Bytes message;
+    viewer::encode(test::example_frame(scene, size), message);
+    viewer::Bytes bytes = {static_cast<std::uint8_t>(scene.objects.size())};
+    for (const std::size_t count : test::node_counts(scene)) {
+      bytes.push_back(static_cast<std::uint8_t>(count));
+    }
+    bytes.insert(bytes.end(), message.begin(), message.end());
+    seeds.write("viewer_frame", size < 1.0 ? "small" : "large", bytes);
+  }
+}
+
+void write_wire_frames(const Seeds& seeds) {
+  const wire::Message messages[] = {
+      wire::Hello{.name = "bridge"},
+      wire::Welcome{.session = 7, .dt = 0.002},
+      wire::Refuse{.reason = wire::RefuseReason::kNoFreeStylus, .text = "all in use"},
+      wire::Goodbye{},
+      wire::SampleMessage{.sample = {.sequence = 3, .tip = Vector3(0.01, 0.02, 0.03)}},
+      wire::ForceMessage{.force = {.force_step = 5, .force = Vector3(0.5, 0, -1)}},
+  };
+  viewer::Bytes stream = {0};
+  for (const wire::Message& message : messages) {
+    const wire::FrameBytes frame = wire::encode_frame(message, 7, 1, 1000);
+    viewer::Bytes single = {5};
+    single.insert(single.end(), frame.view().begin(), frame.view().end());
+    stream.insert(stream.end(), frame.view().begin(), frame.view().end());
+    seeds.write("wire_frames", "type_" + std::to_string(message.index() + 1), single);
+  }
+  seeds.write("wire_frames", "all", stream);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 2) return 2;
+  const Seeds seeds(argv[1]);
+  write_client_messages(seeds);
+  write_server_messages(seeds);
+  write_wire_frames(seeds);
+  return 0;
+}

@@ -1,0 +1,231 @@
+// The viewer of a real irdm-server.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <cstring>
+
+#include "common/hdf5/file.hpp"
+#include "server/viewer/message.hpp"
+#include "tests/support/eventually.hpp"
+#include "tests/system/stage.hpp"
+#include "tests/system/trace.hpp"
+#include "tests/viewer/web_peer.hpp"
+
+using Catch::Matchers::Contains;
+using namespace irdm;
+using namespace irdm::test;
+
+namespace {
+
+const std::string kUrl = "listening on http://127.0.0.1:";
+
+std::uint16_t viewer_port(ChildProcess& server) {
+  return static_cast<std::uint16_t>(std::stoi(server.line_with(kUrl).substr(kUrl.size())));
+}
+
+WebPeer watch(std::uint16_t port, int receive_buffer = 0) {
+  WebPeer peer(port, receive_buffer);
+  peer.open();
+  peer.send_message(encode(viewer::ClientMessage(viewer::Hello{})));
+  return peer;
+}
+
+/// The next message of a type, whatever else comes before it.
+WebPeer::Message next(WebPeer& peer, int type) {
+  for (;;) {
+    auto message = peer.receive();
+    REQUIRE(message);
+    REQUIRE(message->opcode == 2);
+    if (message->payload.at(6) == type) return *message;
+  }
+}
+constexpr int kScene = 1;
+constexpr int kFrame = 2;
+constexpr int kHealth = 3;
+constexpr int kState = 4;
+
+std::size_t nodes_of(const WebPeer::Message& scene) {
+  return static_cast<std::size_t>(viewer::decode_scene(scene.payload).objects.at(0).rest.rows());
+}
+
+}  // namespace
+
+TEST_CASE("viewer: put back over the WebSocket shows up in the trace and in health") {
+  const Stage stage;
+  stage.write("scene.toml", scene_text("[world]\ngravity = [0, -1, 0]\n"));
+  Server server = stage.start_server({"--record", stage.path("trace.h5").string()});
+  WebPeer peer = watch(viewer_port(server.process));
+  const std::size_t nodes = nodes_of(next(peer, kScene));
+  const auto height = [&] {
+    const auto frame = viewer::decode_frame(next(peer, kFrame).payload, {&nodes, 1});
+    return frame.objects.at(0).position.y();
+  };
+  REQUIRE(eventually([&] { return height() < -0.1; }));  // it falls
+  peer.send_message(encode(viewer::ClientMessage(viewer::Command{})));
+  CHECK(eventually([&] { return height() > -0.05; }));
+  CHECK(eventually([&] { return viewer::decode_health(next(peer, kHealth).payload).resets == 1; }));
+  server.process.signal(SIGTERM);
+  CHECK(server.process.wait() == 0);
+  const Trace trace = read_trace(stage.path("trace.h5"));
+  CHECK(std::count(trace.reset.begin(), trace.reset.end(), 1) == 1);
+  while (const auto message = peer.receive()) {
+    if (message->opcode == 8) CHECK(message->close_code() == 1001);
+  }
+}
+
+TEST_CASE("viewer: in lockstep, viewers change no bit of the run, and see its last step") {
+  const auto play = [](bool watched) {
+    const Stage stage;
+    Server server = stage.start_server({"--lockstep", "--record", stage.path("trace.h5").string()});
+    const std::uint16_t port = viewer_port(server.process);
+    std::vector<WebPeer> viewers;
+    if (watched) {
+      viewers.push_back(watch(port));
+      viewers.push_back(watch(port, 4096));  // never reads
+    }
+    ChildProcess bridge = stage.start_bridge(server);
+    REQUIRE(bridge.wait() == 0);
+    REQUIRE(server.process.wait() == 0);
+    const Trace trace = read_trace(stage.path("trace.h5"));
+    if (watched) {
+      const std::size_t nodes = nodes_of(next(viewers[0], kScene));
+      std::uint64_t newest = 0;
+      while (const auto message = viewers[0].receive()) {
+        if (message->opcode != 2 || message->payload.at(6) != kFrame) continue;
+        const auto frame = viewer::decode_frame(message->payload, {&nodes, 1});
+        newest = frame.force_step;
+        REQUIRE(newest < trace.rows());
+        if (!frame.styluses.at(0).present) continue;
+        CHECK(frame.styluses.at(0).tip == trace.vector("/stylus/0/tip", newest));
+      }
+      CHECK(newest == trace.rows() - 1);
+    }
+    return trace;
+  };
+  const Trace alone = play(false);
+  const Trace watched = play(true);
+  REQUIRE(alone.rows() == watched.rows());
+  for (const auto& [name, values] : alone.numbers) {
+    CAPTURE(name);
+    CHECK(std::memcmp(values.data(), watched.numbers.at(name).data(),
+                      values.size() * sizeof(double)) == 0);
+  }
+}
+
+TEST_CASE("viewer: it can be left out, by the scene and by --no-viewer") {
+  const Stage stage;
+  const bool by_option = GENERATE(true, false);
+  if (!by_option) stage.write("scene.toml", "[viewer]\nenabled = false\n" + scene_text());
+  Server server = stage.start_server(by_option ? std::vector<std::string>{"--no-viewer"}
+                                               : std::vector<std::string>{});
+  server.process.signal(SIGTERM);
+  CHECK(server.process.wait() == 0);
+  CHECK_THAT(server.process.out(), !Contains("http"));
+}
+
+TEST_CASE("viewer: an address that can be reached from elsewhere needs a token") {
+  const Stage stage;
+  stage.write("scene.toml", "[viewer]\naddress = \"0.0.0.0\"\n" + scene_text());
+  const FinishedProgram ended = run_to_end({IRDM_SERVER, stage.path("scene.toml").string()});
+  CHECK(ended.status == 1);
+  CHECK_THAT(ended.err, Contains("set viewer.token"));
+}
+
+TEST_CASE(
+    "viewer: its stylus, a switch of engines and gravity act on the run and are in its trace") {
+  const Stage stage;
+  stage.write("scene.toml", scene_text() + "switchable = true\n");
+  Server server = stage.start_server({"--record", stage.path("trace.h5").string()});
+  WebPeer peer = watch(viewer_port(server.process));
+  const std::size_t nodes = nodes_of(next(peer, kScene));
+  const auto state = [&] { return viewer::decode_state(next(peer, kState).payload, 1); };
+  const viewer::State first = state();
+  CHECK(first.stylus_free);
+  CHECK(first.choices.at(0).engine);
+  viewer::StylusRequest hand{true, 0, Vector3(0.0, 0.07, 0.0)};
+  const auto force = [&] {
+    hand.tip.y() = std::max(hand.tip.y() - 5e-4, 0.055);
+    peer.send_message(encode(viewer::ClientMessage(hand)));
+    return viewer::decode_frame(next(peer, kFrame).payload, {&nodes, 1})
+        .styluses.at(1)
+        .force.norm();
+  };
+  REQUIRE(eventually([&] { return force() > 0.05; }));
+  viewer::SettingsRequest settings{first.settings, 1};
+  settings.settings.object[0].engine = EngineKind::kDense;
+  settings.settings.gravity = Vector3(0, -1, 0);
+  peer.send_message(encode(viewer::ClientMessage(settings)));
+  CHECK(eventually([&] { return state().settings == settings.settings; }));
+  settings.settings.object[0].tether.stiffness = 1e8;
+  peer.send_message(encode(viewer::ClientMessage(settings)));
+  CHECK(eventually([&] { return state().notice.find("too stiff") != std::string::npos; }));
+  CHECK(eventually([&] {
+    return viewer::decode_frame(next(peer, kFrame).payload, {&nodes, 1}).objects[0].position.y() <
+           -0.1;
+  }));
+  server.process.signal(SIGTERM);
+  CHECK(server.process.wait() == 0);
+  const Trace trace = read_trace(stage.path("trace.h5"), 2);
+  double largest = 0.0;
+  for (std::size_t k = 0; k < trace.rows(); ++k) {
+    largest = std::max(largest, trace.vector("/stylus/1/force", k).norm());
+  }
+  CHECK(largest > 0.05);
+  CHECK(largest < 3.3 * 1.1);
+  const hdf5::File file = hdf5::File::open(stage.path("trace.h5"));
+  CHECK(file.read<std::uint8_t>("/settings/object/0/dense", {0}) ==
+        std::vector<std::uint8_t>{0, 1});
+  CHECK(file.read<double>("/settings/gravity", {2, 3}) == std::vector<double>{0, 0, 0, 0, -1, 0});
+}
+
+TEST_CASE("viewer: --play shows a recorded run, at the time that is asked for") {
+  const Stage stage;
+  {
+    Server server = stage.start_server({"--lockstep", "--record", stage.path("trace.h5").string()});
+    ChildProcess bridge = stage.start_bridge(server);
+    REQUIRE(bridge.wait() == 0);
+    REQUIRE(server.process.wait() == 0);
+  }
+  const Trace trace = read_trace(stage.path("trace.h5"));
+  ChildProcess server(
+      {IRDM_SERVER, stage.path("scene.toml").string(), "--play", stage.path("trace.h5").string()});
+  WebPeer peer = watch(viewer_port(server));
+  const auto scene = next(peer, kScene);
+  CHECK(viewer::decode_scene(scene.payload).recorded);
+  CHECK_FALSE(viewer::decode_scene(scene.payload).viewer_stylus);
+  const std::size_t nodes = nodes_of(scene);
+  const auto ask = [&](viewer::CommandKind kind, double value = 0.0) {
+    peer.send_message(encode(viewer::ClientMessage(viewer::Command{kind, 0, value})));
+  };
+  ask(viewer::CommandKind::kStandStill);
+  for (const std::size_t k : {trace.rows() / 2, trace.rows() - 1, trace.rows() / 3}) {
+    ask(viewer::CommandKind::kSeek, trace.time[k]);
+    REQUIRE(eventually([&] {
+      const auto frame = viewer::decode_frame(next(peer, kFrame).payload, {&nodes, 1});
+      if (frame.force_step != k) return false;
+      CHECK(frame.objects.at(0).position == trace.vector("/step/body_position", k));
+      CHECK(frame.styluses.at(0).tip == trace.vector("/stylus/0/tip", k));
+      const Vector3 force = trace.vector("/stylus/0/force", k);
+      CHECK((frame.styluses.at(0).force - force).norm() <= 1e-6 * (1.0 + force.norm()));
+      return true;
+    }));
+  }
+  server.signal(SIGTERM);
+  CHECK(server.wait() == 0);
+}
+
+TEST_CASE("viewer: what --play cannot show is refused in one line") {
+  const Stage stage;
+  const auto refusal = [&](const std::string& file) {
+    const FinishedProgram ended = run_to_end(
+        {IRDM_SERVER, stage.path("scene.toml").string(), "--play", stage.path(file).string()});
+    CHECK(ended.status == 1);
+    CHECK(ended.out.empty());
+    CHECK(std::count(ended.err.begin(), ended.err.end(), '\n') == 1);
+    return ended.err;
+  };
+  CHECK_THAT(refusal("missing.h5"), Contains("missing.h5"));
+  CHECK_THAT(refusal("scene.toml"), Contains("scene.toml"));
+  std::filesystem::copy_file(cube_model(), stage.path("model.h5"));
+  CHECK_THAT(refusal("model.h5"), Contains("is not a trace"));
+}

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+
+#include "server/viewer/viewed_run.hpp"
+#include "tests/viewer/frames.hpp"
+
+namespace irdm::test {
+
+/// Shows the example scene and counts what it is asked for.
+struct ExampleRun final : viewer::ViewedRun {
+  const viewer::Scene& scene() const override { return scene_; }
+  std::vector<viewer::SurfaceSource> sources() override {
+    return {{surfaces, ready}, {other_surfaces, other_ready}};
+  }
+  std::size_t shown_source() const override { return shown; }
+  viewer::Health health() override { return {.steps = steps}; }
+  viewer::State state() override {
+    viewer::State state = example_state();
+    state.notice = shown == 0 ? "the first one" : "the other one";
+    return state;
+  }
+  void carry_out(const viewer::Command& command) override {
+    if (command.kind == viewer::CommandKind::kPutBack) ++put_backs;
+    if (command.kind == viewer::CommandKind::kShowRecording) shown = 1;
+  }
+  void carry_out(const viewer::SettingsRequest&) override { ++settings; }
+  void carry_out(const viewer::StylusRequest& request) override {
+    (request.present ? presses : releases)++;
+  }
+
+  viewer::Scene scene_ = example_scene();
+  Mailbox<SurfaceFrame> surfaces{example_frame(scene_, 0.001)};
+  Mailbox<SurfaceFrame> other_surfaces{example_frame(scene_, 0.001, 5)};
+  Wakeup ready, other_ready;
+  std::atomic<std::size_t> shown{0};
+  std::atomic<std::uint64_t> steps{77};
+  std::atomic<int> put_backs{0}, settings{0}, presses{0}, releases{0};
+};
+
+}  // namespace irdm::test

@@ -1,0 +1,97 @@
+#pragma once
+
+#include <random>
+
+#include "server/viewer/message.hpp"
+#include "tests/support/synthetic_model.hpp"
+
+namespace irdm::test {
+
+/// A scene of a synthetic cube and a single tetrahedron, with two styluses and a floor.
+inline viewer::Scene example_scene() {
+  viewer::Scene scene;
+  scene.dt = 0.002;
+  scene.lockstep = true;
+  scene.floor = FloorConfig{Vector3(0, 1, 0), -0.06, {}};
+  scene.styluses = {{0.01, 400.0, 0.0}, {0.0, 0.0, 0.02}};
+  const Model cube = synthetic_cube(3, 1, 1);
+  viewer::SceneObject first{"w\xC3\xBCrfel", {}, cube.mesh.triangles, 0.19F, 2000.0F};
+  first.rest = cube.mesh.nodes.cast<float>().cast<double>();
+  viewer::SceneObject second{"tet", Points::Zero(4, 3), Triangles(4, 3), 0.5F, 1e5F};
+  second.rest.bottomRows(3).setIdentity();
+  second.triangles << 0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3;
+  for (int i = 0; i < first.rest.rows(); ++i) {
+    first.compliance.push_back(0.001F * static_cast<float>(i));
+  }
+  scene.viewer_stylus = true;
+  scene.max_force = 3.3F;
+  scene.objects = {first, second};
+  return scene;
+}
+
+inline std::vector<std::size_t> node_counts(const viewer::Scene& scene) {
+  std::vector<std::size_t> counts;
+  for (const auto& object : scene.objects) {
+    counts.push_back(static_cast<std::size_t>(object.rest.rows()));
+  }
+  return counts;
+}
+
+/// A frame of that scene; every number another. @param size of displacements [m]
+inline SurfaceFrame example_frame(const viewer::Scene& scene, double size, unsigned seed = 1) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  const auto vector = [&] { return Vector3(uniform(random), uniform(random), uniform(random)); };
+  SurfaceFrame frame;
+  StepRecord record;
+  for (record.force_step = 900; record.force_step < 1040; ++record.force_step) {
+    record.stylus[0].force = vector();
+    record.stylus[1].force = vector();
+    frame.trail.follow(record);
+  }
+  frame.force_step = 1039;
+  frame.time = 2.08;
+  for (std::size_t s = 0; s < scene.styluses.size(); ++s) {
+    StylusRecord stylus = record.stylus[s];
+    stylus.present = s == 0;
+    stylus.contact = s == 0 ? ContactState::kHeld : ContactState::kFree;
+    stylus.object = s == 0 ? 1 : -1;
+    stylus.buttons = 5;
+    stylus.tip = vector();
+    stylus.proxy = vector();
+    frame.styluses.push_back(stylus);
+    frame.contacts.push_back({vector().cast<float>().cast<double>(), s == 0});
+  }
+  for (const auto& object : scene.objects) {
+    ObjectSurface surface;
+    surface.position = vector();
+    surface.orientation = Quaternion(uniform(random), uniform(random), uniform(random), 1.0);
+    surface.orientation.normalize();
+    surface.displacement =
+        Points::NullaryExpr(object.rest.rows(), 3, [&] { return size * uniform(random); });
+    frame.objects.push_back(surface);
+  }
+  return frame;
+}
+
+/// A state of that scene.
+inline viewer::State example_state() {
+  viewer::State state;
+  state.stylus_free = true;
+  state.paused = true;
+  state.playback = true;
+  state.can_record = true;
+  state.settings_changes = 3;
+  state.length = 12.5;
+  state.speed = 0.5;
+  state.shown = 1;
+  state.recordings = {{0, "run-1.h5"}, {1, "l\xC3\xA4ufe.h5"}};
+  state.notice = "a notice for a person";
+  state.settings.gravity = Vector3(0, -9.81, 0);
+  state.settings.object[0] = {{0.6, 0.5}, {0.1, 0.2}, {3.0, 0.01}, 2.0, EngineKind::kModal, true};
+  state.settings.object[1] = {{0.3, 0.3}, {0, 0}, {0, 0}, 1.0, EngineKind::kDense, false};
+  state.choices = {{true, false, true}, {false, true, false}};
+  return state;
+}
+
+}  // namespace irdm::test

@@ -1,0 +1,308 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+
+#include "tests/viewer/frames.hpp"
+
+using namespace irdm;
+using namespace irdm::test;
+using namespace irdm::viewer;
+
+namespace {
+
+/// "49 52 .." as bytes; '|' and blanks are for the reader.
+Bytes from_hex(const std::string& text) {
+  Bytes bytes;
+  std::string digits;
+  for (const char c : text) {
+    if (std::isxdigit(static_cast<unsigned char>(c)) != 0) digits += c;
+    if (digits.size() == 2) {
+      bytes.push_back(static_cast<std::uint8_t>(std::stoi(digits, nullptr, 16)));
+      digits.clear();
+    }
+  }
+  return bytes;
+}
+
+Bytes frame_bytes(const SurfaceFrame& frame) {
+  Bytes bytes(7, 0xAA);  // what was there before goes
+  encode(frame, bytes);
+  return bytes;
+}
+
+SettingsRequest example_settings() {
+  SettingsRequest request;
+  request.objects = 1;
+  request.settings.gravity = Vector3(0, -1, 0);
+  request.settings.object[0] = {{1.0, 0.5}, {2.0, 4.0}, {8.0, 0.25}, 0.5, EngineKind::kDense, true};
+  return request;
+}
+
+const char* const kSettingsHex =
+    "0000000000000000 000000000000f0bf 0000000000000000 | 000000000000f03f 000000000000e03f"
+    "0000000000000040 0000000000001040 0000000000002040 000000000000d03f 000000000000e03f"
+    "01 01 00 000000000000000000000000000000000000000000";
+
+Scene one_point_scene() {
+  Scene scene;
+  scene.dt = 0.002;
+  scene.styluses = {{0.5, 2000.0, 0.25}};
+  SceneObject object{"ab", Points(1, 3), Triangles(1, 3), 0.5F, 2000.0F};
+  object.rest << 0.5, -1.0, 2.0;
+  object.triangles << 0, 0, 0;
+  object.compliance = {0.25F};
+  scene.objects = {object};
+  return scene;
+}
+
+SurfaceFrame one_point_frame(const Vector3& displacement) {
+  SurfaceFrame frame;
+  frame.force_step = 2;
+  frame.time = 0.5;
+  StylusRecord stylus;
+  stylus.present = true;
+  stylus.contact = ContactState::kTouching;
+  stylus.object = 0;
+  stylus.buttons = 1;
+  stylus.tip = Vector3(1, 2, -1);
+  stylus.proxy = Vector3(0, 0.5, 0);
+  stylus.force = Vector3(0, 2, -0.5);
+  frame.styluses = {stylus};
+  frame.contacts = {{Vector3(0.25, 0, 1), true}};
+  StepRecord record;
+  record.force_step = 2;
+  record.stylus[0] = stylus;
+  frame.trail.follow(record);
+  ObjectSurface surface;
+  surface.position = Vector3(1, 0, 0);
+  surface.displacement = displacement.transpose();
+  frame.objects = {surface};
+  return frame;
+}
+
+double quantisation_error(double size) {
+  const Scene scene = example_scene();
+  const SurfaceFrame frame = example_frame(scene, size);
+  const SurfaceFrame back = decode_frame(frame_bytes(frame), node_counts(scene));
+  double error = 0.0;
+  for (std::size_t i = 0; i < frame.objects.size(); ++i) {
+    const Points difference = back.objects[i].displacement - frame.objects[i].displacement;
+    error = std::max(error, difference.cwiseAbs().maxCoeff());
+  }
+  return error;
+}
+
+/// Each way to spoil these bytes ends in an answer or in MessageError, never otherwise.
+void check_survives(const Bytes& good, const std::function<void(const Bytes&)>& decode) {
+  std::mt19937 random(7);
+  const auto any = [&random](std::size_t below) {
+    return std::uniform_int_distribution<std::size_t>(0, below - 1)(random);
+  };
+  for (int round = 0; round < 20'000; ++round) {
+    Bytes bytes = good;
+    for (std::size_t i = any(4); i > 0; --i) {
+      bytes[any(std::min<std::size_t>(bytes.size(), 200))] = static_cast<std::uint8_t>(any(256));
+    }
+    if (any(4) == 0) bytes.resize(any(bytes.size() + 8));
+    try {
+      decode(bytes);
+    } catch (const MessageError&) {
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a scene's bytes are those of the document") {
+  CHECK(encode(one_point_scene()) ==
+        from_hex("49525657 0100 0100 | 0100 0100 00000000 | fca9f1d24d62603f"
+                 "0000000000000000 0000000000000000 0000000000000000 | 0000000000000000"
+                 "0000003f 0000fa44 0000803e 00000000 |"
+                 "01000000 01000000 02000000 0000003f 0000fa44 00000000 61620000"
+                 "0000003f 000080bf 00000040 | 00000000 00000000 00000000 | 0000803e"));
+}
+
+TEST_CASE("a frame's bytes are those of the document") {
+  const Bytes bytes = frame_bytes(one_point_frame(Vector3(0, 0, 0)));
+  CHECK(bytes ==
+        from_hex("49525657 0100 0200 | 0100 0100 0100 0000 0200000000000000 000000000000e03f |"
+                 "01 01 0000 01000000 000000000000f03f 0000000000000040 000000000000f0bf"
+                 "0000000000000000 000000000000e03f 0000000000000000"
+                 "00000000 00000040 000000bf 0000803e 00000000 0000803f 01 00000000000000 |"
+                 "00000000 00000040 000000bf |"
+                 "000000000000f03f 0000000000000000 0000000000000000"
+                 "0000803f 00000000 00000000 00000000 02 000000 ccbc8c2b"
+                 "0000 0000 0000 0000"));
+}
+
+TEST_CASE("displacements beyond 32.8 cm take four bytes, in units of 0.01 mm") {
+  const Bytes bytes = frame_bytes(one_point_frame(Vector3(1.0, -2.0, 0.0)));
+  REQUIRE(bytes.size() == 32 + 88 + 12 + 48 + 12);
+  CHECK(Bytes(bytes.begin() + 172, bytes.end()) ==
+        from_hex("04 000000 abc52737 | a0860100 c0f2fcff 00000000"));
+}
+
+TEST_CASE("health's bytes are those of the document") {
+  Health health;
+  health.steps = 1;
+  health.step_time = {1.0F, 2.0F, 4.0F};
+  health.missed = 2;
+  health.unsolved = 3;
+  health.resets = 4;
+  health.lost_steps = 5;
+  health.surface_rate = 0.5F;
+  health.viewers = 6;
+  health.sessions = 7;
+  health.samples = 8;
+  health.forces = 9;
+  health.forces_replaced = 10;
+  health.protocol_errors = 11;
+  health.links = {{true, {1.0F, 2.0F, 4.0F}, {0.5F, 1.0F, 2.0F}}, {}};
+  const Bytes bytes = encode(health);
+  CHECK(bytes ==
+        from_hex("49525657 0100 0300 0100000000000000 0000803f 00000040 00008040"
+                 "0000c07f 0000c07f 0000c07f 0200000000000000 0300000000000000"
+                 "0400000000000000 0500000000000000 0000003f 06000000"
+                 "0700000000000000 0800000000000000 0900000000000000"
+                 "0a00000000000000 0b00000000000000 0200 000000000000"
+                 "01000000 0000803f 00000040 00008040 0000003f 0000803f 00000040 00000000"
+                 "00000000 0000c07f 0000c07f 0000c07f 0000c07f 0000c07f 0000c07f 00000000"));
+  CHECK(encode(decode_health(bytes)) == bytes);
+}
+
+TEST_CASE("state's bytes are those of the document") {
+  State state;
+  state.looks_on = true;
+  state.playing = true;
+  state.settings_changes = 2;
+  state.length = 2.0;
+  state.speed = 0.5;
+  state.shown = 1;
+  state.recordings = {{1, "a.h5"}};
+  state.notice = "hm";
+  state.settings = example_settings().settings;
+  state.choices = {{false, false, false}};
+  const std::string zeros(2 * 60, '0');
+  CHECK(encode(state) ==
+        from_hex("49525657 0100 0400 41000000 02000000 0000000000000040 000000000000e03f"
+                 "0100 0100 0200 0000" +
+                 std::string(kSettingsHex) + "0100 0400 612e6835" + zeros + "686d 0000"));
+  CHECK(decode_state(encode(state), 1) == state);
+  const State all = example_state();
+  CHECK(decode_state(encode(all), 2) == all);
+}
+
+TEST_CASE("a viewer's messages are those of the document") {
+  const auto same = [](const ClientMessage& message, const std::string& hex) {
+    CHECK(encode(message) == from_hex(hex));
+    CHECK(encode(decode_client(from_hex(hex))) == from_hex(hex));
+  };
+  same(Hello{"key"}, "49525657 0100 1000 0300 0000 6b6579");
+  same(Hello{"key", true}, "49525657 0100 1000 0300 0100 6b6579");
+  same(Command{}, "49525657 0100 1100 0100 0000 00000000 0000000000000000");
+  same(Command{CommandKind::kSeek, 7, 0.5},
+       "49525657 0100 1100 0b00 0700 00000000 000000000000e03f");
+  same(StylusRequest{true, 1, Vector3(1, 0, -1)},
+       "49525657 0100 1200 01 000000 01000000 000000000000f03f 0000000000000000 000000000000f0bf");
+  same(example_settings(), std::string("49525657 0100 1300 0100 000000000000") + kSettingsHex);
+}
+
+TEST_CASE("a viewer's message that breaks the rules is refused") {
+  const char* spoilt =
+      GENERATE("", "49", "49525658 0100 1100 0100 0000 00000000 0000000000000000",  // magic
+               "49525657 0200 1100 0100 0000 00000000 0000000000000000",            // version
+               "49525657 0100 0200 0100 0000 00000000 0000000000000000",            // direction
+               "49525657 0100 1400 0100 0000 00000000 0000000000000000",            // type
+               "49525657 0100 1100 0000 0000 00000000 0000000000000000",            // command
+               "49525657 0100 1100 0d00 0000 00000000 0000000000000000",            // command
+               "49525657 0100 1100 0400 0000 00000000 0000000000000000",     // no step at all
+               "49525657 0100 1100 0b00 0000 00000000 000000000000f0bf",     // before the start
+               "49525657 0100 1100 0c00 0000 00000000 0000000000000000",     // speed
+               "49525657 0100 1100 0c00 0000 00000000 000000000000f87f",     // NaN
+               "49525657 0100 1100 0100 0000 00000000 00000000000000",       // too short
+               "49525657 0100 1100 0100 0000 00000000 0000000000000000 00",  // too long
+               "49525657 0100 1000 0400 0000 6b6579",                        // token cut
+               "49525657 0100 1000 0000 0200",                               // what else
+               "49525657 0100 1000 8100 0000",                               // token's length
+               "49525657 0100 1200 02 000000 00000000 000000000000f03f 000000000000f03f "
+               "000000000000f03f",  // present
+               "49525657 0100 1200 01 000000 00000000 000000000000f87f 000000000000f03f "
+               "000000000000f03f",                     // NaN
+               "49525657 0100 1300 0500 000000000000"  // objects
+      );
+  CHECK_THROWS_AS(decode_client(from_hex(spoilt)), MessageError);
+}
+
+TEST_CASE("scenes and frames come back as they went") {
+  const Scene scene = example_scene();
+  const Scene scene_back = decode_scene(encode(scene));
+  CHECK(encode(scene_back) == encode(scene));
+  CHECK(scene_back.objects[0].rest == scene.objects[0].rest);
+  CHECK(scene_back.objects[1].triangles == scene.objects[1].triangles);
+  CHECK(scene_back.floor->height == scene.floor->height);
+
+  const SurfaceFrame frame = example_frame(scene, 0.01);
+  const SurfaceFrame back = decode_frame(frame_bytes(frame), node_counts(scene));
+  CHECK(back.force_step == 1039);
+  CHECK(back.styluses[0].tip == frame.styluses[0].tip);
+  CHECK(back.styluses[1].object == -1);
+  CHECK(back.trail.count() == ForceTrail::kLength);
+  CHECK(back.trail.force(31, 1) == frame.trail.force(31, 1));
+  CHECK(back.objects[1].position == frame.objects[1].position);
+  CHECK(back.objects[1].orientation.isApprox(frame.objects[1].orientation, 1e-6));
+}
+
+TEST_CASE("a displacement is off by at most half of 0.01 mm, whatever its size") {
+  for (const double size : {0.0, 1e-15, 1e-6, 1e-3, 0.05, 0.3276, 0.328, 1.0, 50.0}) {
+    CAPTURE(size);
+    CHECK(quantisation_error(size) <= 0.5000001 * kCoarsestUnit);
+  }
+  CHECK(quantisation_error(0.01) <= 0.51 * 0.01 / 32767);
+}
+
+TEST_CASE("a displacement that is not finite goes as zero and spoils no other") {
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  const std::size_t one = 1;
+  const SurfaceFrame back =
+      decode_frame(frame_bytes(one_point_frame(Vector3(kInfinite, 0.01, std::nan("")))), {&one, 1});
+  const Vector3 u = back.objects[0].displacement.row(0).transpose();
+  CHECK(u.x() == 0.0);
+  CHECK(u.y() == Approx(0.01));
+  CHECK(u.z() == 0.0);
+}
+
+TEST_CASE("whatever the bytes are, decoding ends in an answer or in MessageError") {
+  const Scene scene = example_scene();
+  const auto nodes = node_counts(scene);
+  check_survives(encode(scene), [](const Bytes& bytes) { decode_scene(bytes); });
+  check_survives(frame_bytes(example_frame(scene, 0.01)),
+                 [&](const Bytes& bytes) { decode_frame(bytes, nodes); });
+  check_survives(encode(Health{}), [](const Bytes& bytes) { decode_health(bytes); });
+  check_survives(encode(ClientMessage(Hello{"token"})),
+                 [](const Bytes& bytes) { decode_client(bytes); });
+  check_survives(encode(ClientMessage(Command{})),
+                 [](const Bytes& bytes) { decode_client(bytes); });
+  check_survives(encode(ClientMessage(StylusRequest{})),
+                 [](const Bytes& bytes) { decode_client(bytes); });
+  check_survives(encode(ClientMessage(example_settings())),
+                 [](const Bytes& bytes) { decode_client(bytes); });
+  check_survives(encode(example_state()), [](const Bytes& bytes) { decode_state(bytes, 2); });
+}
+
+TEST_CASE("a trail of forces begins anew after a gap") {
+  ForceTrail trail;
+  StepRecord record;
+  for (const std::uint64_t step : {5, 6, 7}) {
+    record.force_step = step;
+    record.stylus[0].force = Vector3(static_cast<double>(step), 0, 0);
+    trail.follow(record);
+  }
+  CHECK(trail.count() == 3);
+  CHECK(trail.force(2, 0).x() == 5.0F);
+  record.force_step = 9;
+  trail.follow(record);
+  CHECK(trail.count() == 1);
+  CHECK(trail.newest() == 9);
+}

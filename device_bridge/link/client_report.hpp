@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "common/realtime/histogram.hpp"
+
+namespace irdm {
+
+/// What a bridge's network thread has done, over all sessions.
+struct ClientReport {
+  std::uint64_t sessions = 0;
+  std::uint64_t forces = 0;        ///< received and taken
+  std::uint64_t forces_old = 0;    ///< dropped: not newer than the last, or of no sample of ours
+  std::uint64_t gaps = 0;          ///< times that force steps are missing between two forces
+  std::uint64_t steps_missed = 0;  ///< force steps missing in all gaps
+  std::uint64_t longest_gap = 0;   ///< [steps]
+  std::uint64_t samples = 0;       ///< given to a connection
+  std::uint64_t protocol_errors = 0;
+  Histogram round_trip;  ///< sample taken to its first force received [ns]; real time only
+  std::string failure;   ///< why it gave up, one line; empty: it did not
+};
+
+}  // namespace irdm

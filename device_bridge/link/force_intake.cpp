@@ -1,0 +1,69 @@
+#include "device_bridge/link/force_intake.hpp"
+
+#include <algorithm>
+
+namespace irdm {
+namespace {
+
+wire::Quantiles quantiles(const Histogram& histogram) {
+  const auto microseconds = [](std::int64_t ns) {
+    return static_cast<float>(std::max<std::int64_t>(ns, 0)) / 1000.0F;
+  };
+  return {microseconds(histogram.percentile(0.5)), microseconds(histogram.percentile(0.99)),
+          microseconds(histogram.maximum())};
+}
+
+}  // namespace
+
+void ForceIntake::sent(const StylusSample& sample) noexcept {
+  if (!first_sample_) first_sample_ = sample.sequence;
+  newest_sample_ = sample.sequence;
+}
+
+bool ForceIntake::take(const StylusForce& force, std::int64_t now_ns,
+                       ClientReport& report) noexcept {
+  if (!news(force)) {
+    ++report.forces_old;
+    return false;
+  }
+  ++report.forces;
+  count_gap(force.force_step, report);
+  force_step_ = force.force_step;
+  // Several steps may answer the same sample; only the first of them is its round trip.
+  if (!lockstep_ && (!answered_ || force.sample_sequence > *answered_)) {
+    report.round_trip.add(now_ns - force.sample_time_ns);
+    round_trip_.add(now_ns - force.sample_time_ns);
+  }
+  if (input_.any_force) age_.add(now_ns - input_.force.sample_time_ns);
+  answered_ = force.sample_sequence;
+  input_.any_force = true;
+  input_.force = force;
+  return true;
+}
+
+bool ForceIntake::news(const StylusForce& force) const noexcept {
+  // A run that is paused answers newer samples in the step where it stands.
+  const bool newer = !force_step_ || force.force_step > *force_step_ ||
+                     (force.force_step == *force_step_ && force.sample_sequence > answered_);
+  const bool ours = first_sample_ && force.sample_sequence >= *first_sample_ &&
+                    force.sample_sequence <= newest_sample_;
+  return newer && ours;
+}
+
+void ForceIntake::count_gap(std::uint64_t step, ClientReport& report) noexcept {
+  if (!force_step_ || step <= *force_step_ + 1) return;
+  const std::uint64_t gap = step - *force_step_ - 1;
+  ++report.gaps;
+  report.steps_missed += gap;
+  report.longest_gap = std::max(report.longest_gap, gap);
+}
+
+std::optional<wire::Report> ForceIntake::report(std::uint16_t slot) noexcept {
+  if (round_trip_.count() == 0) return std::nullopt;
+  const wire::Report report{slot, quantiles(round_trip_), quantiles(age_)};
+  round_trip_ = Histogram{};
+  age_ = Histogram{};
+  return report;
+}
+
+}  // namespace irdm

@@ -1,0 +1,221 @@
+#include "device_bridge/link/server_session.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <utility>
+
+#include "common/realtime/clock.hpp"
+
+namespace irdm {
+namespace {
+
+using wire::ProtocolError;
+using wire::ProtocolFault;
+
+constexpr std::int64_t kNanosecondsPerMillisecond = 1'000'000;
+constexpr std::int64_t kReportPeriodNs = 1000 * kNanosecondsPerMillisecond;
+constexpr int kFrameTimeoutMs = 1000;
+constexpr int kHangUpMs = 500;
+
+[[noreturn]] void unexpected(const char* what) {
+  throw ProtocolError(ProtocolFault::kUnexpected, what);
+}
+
+bool passes(wire::RefuseReason reason) {
+  return reason == wire::RefuseReason::kNoFreeStylus ||
+         reason == wire::RefuseReason::kTooManyConnections ||
+         reason == wire::RefuseReason::kStopping;
+}
+
+}  // namespace
+
+ServerSession::ServerSession(std::shared_ptr<wire::Connection> connection, const Shared& shared)
+    : connection_(std::move(connection)), shared_(shared) {}
+
+void ServerSession::start(std::function<void(const SessionEnd&)> ended) {
+  ended_ = std::move(ended);
+  deadline_in(shared_.settings.answer_timeout_ms);
+  connection_->start({
+      .received = [this](const wire::Frame& frame) { receive(frame); },
+      .violated = [this](const ProtocolError& error) { violated(error); },
+      .closed = [this](const std::string& reason) { closed(reason); },
+  });
+  connection_->send(
+      wire::Hello{.capabilities = wire::kCapabilityReport,
+                  .styluses = static_cast<std::uint16_t>(shared_.link.styluses.size()),
+                  .lockstep = shared_.settings.lockstep,
+                  .name = shared_.settings.name});
+}
+
+void ServerSession::receive(const wire::Frame& frame) {
+  const bool linked = state_ == State::kLinked;
+  if (const auto* welcome = std::get_if<wire::Welcome>(&frame.message)) {
+    if (linked) unexpected("a second Welcome");
+    welcomed(*welcome);
+  } else if (const auto* refuse = std::get_if<wire::Refuse>(&frame.message)) {
+    if (linked) unexpected("a refusal within a session");
+    refused(*refuse);
+  } else if (std::holds_alternative<wire::Goodbye>(frame.message)) {
+    link_state_.server_ended = end_.server_ended = linked;
+    spdlog::info("server {}: goodbye", shared_.server);
+    leave();
+  } else if (const auto* force = std::get_if<wire::ForceMessage>(&frame.message)) {
+    if (!linked) unexpected("a force before Welcome");
+    if (frame.header.session != connection_->session()) unexpected("a force of another session");
+    take(*force);
+  } else {
+    unexpected("a message that only a bridge sends");
+  }
+}
+
+void ServerSession::welcomed(const wire::Welcome& welcome) {
+  if (welcome.lockstep && !shared_.settings.lockstep) {
+    unexpected("lockstep, which was not offered");
+  }
+  state_ = State::kLinked;
+  end_.welcomed = true;
+  end_.lockstep = welcome.lockstep;
+  connection_->set_session(welcome.session);
+  first_stylus_ = welcome.first_stylus;
+  reports_ = (welcome.capabilities & wire::kCapabilityReport) != 0;
+  force_ns_ = monotonic_ns();
+  next_report_ns_ = force_ns_ + kReportPeriodNs;
+  link_state_ = {.linked = true,
+                 .sessions = ++shared_.report.sessions,
+                 .lockstep = welcome.lockstep,
+                 .dt = welcome.dt};
+  for (ServoLink::Stylus& stylus : shared_.link.styluses) {
+    intakes_.emplace_back(welcome.lockstep);
+    stylus.sample.receive();  // what was taken before the session is no part of it
+  }
+  spdlog::info("server {}: session {}, dt {} s{}", shared_.server, welcome.session, welcome.dt,
+               welcome.lockstep ? ", lockstep" : "");
+  publish();
+}
+
+void ServerSession::refused(const wire::Refuse& refuse) {
+  if (passes(refuse.reason)) return connection_->close("refused: " + refuse.text);
+  if (refuse.reason == wire::RefuseReason::kVersion) {
+    const wire::VersionMismatch mismatch(refuse.version_min, refuse.version_max,
+                                         wire::kOldestProtocolVersion, wire::kProtocolVersion);
+    end_.failure =
+        shared_.server + ": " + mismatch.what() + "; install matching versions of both programs";
+  } else {
+    end_.failure =
+        shared_.server + ": the server refuses: " + refuse.text + "; change the bridge's devices";
+  }
+  leave();
+}
+
+void ServerSession::take(const wire::ForceMessage& message) {
+  const int index = message.stylus - first_stylus_;
+  if (index < 0 || index >= static_cast<int>(intakes_.size())) {
+    unexpected("a force for a stylus that is not ours");
+  }
+  const auto stylus = static_cast<std::size_t>(index);
+  const std::int64_t now_ns = monotonic_ns();
+  if (!intakes_[stylus].take(message.force, now_ns, shared_.report)) return;
+  force_ns_ = now_ns;
+  shared_.link.styluses[stylus].input.put(intakes_[stylus].input());
+  shared_.link.news.signal();
+}
+
+void ServerSession::send_samples() {
+  for (std::size_t i = 0; i < intakes_.size(); ++i) {
+    Mailbox<StylusSample>& box = shared_.link.styluses[i].sample;
+    if (!box.receive() || state_ != State::kLinked) continue;
+    intakes_[i].sent(box.front());
+    connection_->send_newest(i, wire::SampleMessage{slot(i), box.front()});
+    ++shared_.report.samples;
+  }
+}
+
+// In lockstep there are no such times.
+void ServerSession::send_reports(std::int64_t now_ns) {
+  if (!reports_ || link_state_.lockstep || now_ns < next_report_ns_) return;
+  next_report_ns_ = now_ns + kReportPeriodNs;
+  for (std::size_t i = 0; i < intakes_.size(); ++i) {
+    const std::optional<wire::Report> report = intakes_[i].report(slot(i));
+    if (report) connection_->send_newest(intakes_.size() + i, *report);
+  }
+}
+
+void ServerSession::check_time(std::int64_t now_ns) {
+  const auto older = [now_ns](std::optional<std::int64_t> since, int limit_ms) {
+    return since && now_ns - *since > limit_ms * kNanosecondsPerMillisecond;
+  };
+  if (older(connection_->partial_since_ns(), kFrameTimeoutMs)) {
+    violated(ProtocolError(ProtocolFault::kTruncated, "a message is not complete in time"));
+  }
+  const bool due = now_ns > deadline_ns_;
+  switch (state_) {
+    case State::kGreeting:
+      if (due) connection_->close("no answer to Hello");
+      break;
+    case State::kLinked:
+      send_reports(now_ns);
+      if (!link_state_.lockstep && older(force_ns_, shared_.settings.silence_timeout_ms)) {
+        connection_->close("no force any more");
+      }
+      break;
+    case State::kEnding:
+      if (due) connection_->close("the server does not hang up");
+      break;
+  }
+}
+
+void ServerSession::stop(wire::GoodbyeReason reason) {
+  if (state_ == State::kEnding) return;
+  if (state_ == State::kGreeting) return connection_->close("stopped");
+  connection_->send(wire::Goodbye{reason});
+  leave();
+}
+
+void ServerSession::violated(const ProtocolError& error) {
+  if (state_ == State::kEnding) return;
+  if (error.fault() == ProtocolFault::kWrongVersion) {
+    end_.failure =
+        shared_.server + ": " + error.what() + "; install matching versions of both programs";
+    return leave();
+  }
+  ++shared_.report.protocol_errors;
+  spdlog::error("server {}: {}; connection closed", shared_.server, error.what());
+  connection_->send(wire::Goodbye{wire::GoodbyeReason::kProtocolError});
+  leave();
+}
+
+/// Ends the session in order; the connection closes when the server hangs up.
+void ServerSession::leave() {
+  state_ = State::kEnding;
+  deadline_in(kHangUpMs);
+  connection_->finish();
+  publish();
+}
+
+void ServerSession::closed(const std::string& reason) {
+  state_ = State::kEnding;
+  publish();
+  end_.reason = reason;
+  ended_(end_);
+}
+
+void ServerSession::publish() {
+  if (!end_.welcomed) return;
+  link_state_.linked = state_ == State::kLinked;
+  for (std::size_t i = 0; i < intakes_.size(); ++i) {
+    if (!link_state_.linked) intakes_[i].end();
+    shared_.link.styluses[i].input.put(intakes_[i].input());
+  }
+  shared_.link.state.put(link_state_);
+  shared_.link.news.signal();
+}
+
+void ServerSession::deadline_in(int milliseconds) {
+  deadline_ns_ = monotonic_ns() + milliseconds * kNanosecondsPerMillisecond;
+}
+
+std::uint16_t ServerSession::slot(std::size_t stylus) const noexcept {
+  return static_cast<std::uint16_t>(first_stylus_ + stylus);
+}
+
+}  // namespace irdm

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/wire/connection.hpp"
+#include "device_bridge/link/client_report.hpp"
+#include "device_bridge/link/client_settings.hpp"
+#include "device_bridge/link/force_intake.hpp"
+#include "device_bridge/servo_link.hpp"
+
+namespace irdm {
+
+/// How a session with the server ended.
+struct SessionEnd {
+  std::string reason = {};    ///< for the log
+  bool welcomed = false;      ///< there was one
+  bool lockstep = false;      ///< it was in lockstep
+  bool server_ended = false;  ///< the server said goodbye to it
+  std::string failure = {};   ///< why another attempt makes no sense; empty: it does
+};
+
+/// One connection to the server, from Hello to close: samples out, forces in, time limits. Network
+/// thread only.
+class ServerSession {
+ public:
+  /// What all sessions share; outlives them.
+  struct Shared {
+    ServoLink& link;
+    const ClientSettings& settings;
+    const std::string& server;  ///< for messages
+    ClientReport& report;
+  };
+
+  ServerSession(std::shared_ptr<wire::Connection> connection, const Shared& shared);
+  ServerSession(const ServerSession&) = delete;
+  ServerSession& operator=(const ServerSession&) = delete;
+
+  /// Says hello.
+  /// @param ended called once, when the connection is closed; do not destroy the session in it
+  void start(std::function<void(const SessionEnd&)> ended);
+  /// Sends the samples that are ready.
+  void send_samples();
+  /// Applies the time limits.
+  void check_time(std::int64_t now_ns);
+  /// Says goodbye and waits a while for the server to hang up; closes at once before Welcome.
+  void stop(wire::GoodbyeReason reason);
+
+ private:
+  enum class State { kGreeting, kLinked, kEnding };
+
+  void receive(const wire::Frame& frame);
+  void welcomed(const wire::Welcome& welcome);
+  void refused(const wire::Refuse& refuse);
+  void take(const wire::ForceMessage& message);
+  void violated(const wire::ProtocolError& error);
+  void closed(const std::string& reason);
+  void leave();
+  void send_reports(std::int64_t now_ns);
+  void publish();
+  void deadline_in(int milliseconds);
+  std::uint16_t slot(std::size_t stylus) const noexcept;
+
+  std::shared_ptr<wire::Connection> connection_;
+  Shared shared_;
+  std::function<void(const SessionEnd&)> ended_;
+  State state_ = State::kGreeting;
+  LinkState link_state_;
+  SessionEnd end_;
+  std::int64_t deadline_ns_ = 0;
+  std::int64_t force_ns_ = 0;  ///< when the last force came, or the session began
+  std::uint16_t first_stylus_ = 0;
+  bool reports_ = false;  ///< the server takes them
+  std::int64_t next_report_ns_ = 0;
+  std::vector<ForceIntake> intakes_;  ///< one a stylus, from Welcome on
+};
+
+}  // namespace irdm

@@ -9,6 +9,9 @@ echo
 echo "## Contacts"
 build/release/bin/bench_contact_step
 echo
+echo "## Contact solved at the bridge"
+build/release/bin/bench_foresee
+echo
 echo "## Deformation"
 build/release/bin/bench_deformation
 echo

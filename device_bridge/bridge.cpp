@@ -62,6 +62,7 @@ BridgeReport run_bridge(const BridgeConfig& config, StopSignal& stop_signal, dou
       link,
       {.server = *config.server,
        .lockstep = simulated,
+       .predict = config.predict,
        .connect_timeout_ms = static_cast<int>(std::ceil(1e3 * config.connect_timeout)),
        .scheduling = config.realtime},
       done);

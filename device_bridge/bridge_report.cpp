@@ -34,6 +34,10 @@ std::string to_text(const BridgeReport& report) {
   text << "forces: " << client.forces << " received, " << client.gaps << " gaps, "
        << client.steps_missed << " steps missed, longest gap " << client.longest_gap << ", "
        << client.forces_old << " dropped\n";
+  if (client.models + client.models_refused > 0) {
+    text << "contact models: " << client.models << " taken, " << client.models_refused
+         << " not believed\n";
+  }
   text << "round trip: " << percentiles(servo.lockstep ? servo.round_trip : client.round_trip)
        << '\n';
   if (servo.lockstep) {

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "common/contact/applied_forces.hpp"
+#include "common/contact/contact_model.hpp"
 #include "common/realtime/mailbox.hpp"
 #include "common/realtime/wakeup.hpp"
 #include "common/stylus.hpp"
@@ -17,14 +19,29 @@ struct LinkState {
   bool server_ended = false;   ///< the last session ended with the server's goodbye
   std::uint64_t sessions = 0;  ///< welcomed so far
   bool lockstep = false;       ///< of the newest session
+  bool predict = false;        ///< in the newest session the contact is solved here
   double dt = 0.0;             ///< force step of the newest session [s]
+};
+
+/// A contact model, and the session that it is of.
+struct LinkedModel {
+  std::uint64_t session = 0;  ///< as LinkState::sessions
+  ContactModel model;
+};
+
+/// What is told of the last steps, and the session that it is for.
+struct LinkedForces {
+  std::uint64_t session = 0;
+  AppliedForces applied;
 };
 
 /// Hand-over between servo thread and network thread. Neither ever waits for the other.
 struct ServoLink {
   struct Stylus {
-    Mailbox<StylusSample> sample;  ///< servo writes
-    Mailbox<ServoInput> input;     ///< network writes
+    Mailbox<StylusSample> sample;   ///< servo writes
+    Mailbox<ServoInput> input;      ///< network writes
+    Mailbox<LinkedModel> model;     ///< network writes, where the contact is solved here
+    Mailbox<LinkedForces> applied;  ///< servo writes, then
   };
   explicit ServoLink(std::size_t count) : styluses(count) {}
 

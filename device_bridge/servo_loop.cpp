@@ -15,6 +15,7 @@ void ServoLoop::restart() noexcept {
   filter_ = SafetyFilter(limits_);
   filter_.arm();
   clutch_ = Clutch{};
+  contact_.reset();
   reading_.reset();
   next_sequence_ = 0;
 }
@@ -37,16 +38,41 @@ StylusSample ServoLoop::take_sample(std::int64_t now_ns) noexcept {
           .orientation = pose_.orientation};
 }
 
+void ServoLoop::receive(const ContactModel& model, std::int64_t now_ns) noexcept {
+  if (contact_) contact_->receive(model, now_ns);
+}
+
+const AppliedForces* ServoLoop::end_steps(std::int64_t now_ns) noexcept {
+  if (!contact_ || !contact_->tick(now_ns, pose_.tip)) return nullptr;
+  return &contact_->applied();
+}
+
+// Force and normal in W.
+ForceDemand ServoLoop::demand(std::int64_t now_ns, const ServoInput& input) noexcept {
+  if (!contact_) {
+    const StylusForce& newest = input.force;
+    return {.linked = input.linked,
+            .any = input.any_force,
+            .sample_time_ns = newest.sample_time_ns,
+            .contact = newest.contact,
+            .force = newest.force};
+  }
+  const BridgeContact::Wanted& wanted = contact_->wanted();
+  return {.linked = input.linked && !wanted.standing,
+          .any = wanted.any,
+          .sample_time_ns = std::min(wanted.content_ns, now_ns),
+          .horizon_ns = wanted.horizon_ns,
+          .contact = wanted.contact,
+          .force = wanted.force,
+          .normal = wanted.normal};
+}
+
 void ServoLoop::apply(std::int64_t now_ns, const ServoInput& input) noexcept {
   if (!reading_) return rest();
-  const StylusForce& newest = input.force;
-  const Vector3 force =
-      filter_.step(now_ns, {.tip = *reading_},
-                   {.linked = input.linked,
-                    .any = input.any_force,
-                    .sample_time_ns = newest.sample_time_ns,
-                    .contact = newest.contact,
-                    .force = clutch_.gain(now_ns) * mapping_.workspace.to_device(newest.force)});
+  ForceDemand wanted = demand(now_ns, input);
+  wanted.force = clutch_.gain(now_ns) * mapping_.workspace.to_device(wanted.force);
+  wanted.normal = mapping_.workspace.direction_to_device(wanted.normal);
+  const Vector3 force = filter_.step(now_ns, {.tip = *reading_}, wanted);
   peak_force_ = std::max(peak_force_, force.norm());
   device_.write(force);
 }

@@ -6,6 +6,7 @@
 #include "common/stylus.hpp"
 #include "device_bridge/button_map.hpp"
 #include "device_bridge/clutch.hpp"
+#include "device_bridge/contact/bridge_contact.hpp"
 #include "device_bridge/haptic_device.hpp"
 #include "device_bridge/safety/safety_filter.hpp"
 #include "device_bridge/servo_input.hpp"
@@ -31,12 +32,25 @@ class ServoLoop {
   /// offset is gone, and the filter is armed.
   void restart() noexcept;
 
+  /// From here on the contact is solved here, from the server's models; until restart() or hold().
+  /// @param dt of the server's step [s]  @param tick_ns between two ticks
+  void predict(double dt, std::int64_t tick_ns) noexcept { contact_.emplace(dt, tick_ns); }
+  /// From here on the server's forces are shown as they come.
+  void hold() noexcept { contact_.reset(); }
+
   /// Reads the device.
   /// @param device_time as for HapticDevice::read() [s]
   void read(double device_time) noexcept;
   /// What was read last, as a sample with the next number.
   /// @param now_ns goes into the sample, and comes back with the force that answers it
   StylusSample take_sample(std::int64_t now_ns) noexcept;
+
+  /// Where the contact is solved here, else nothing happens.
+  /// @param model has passed check()
+  void receive(const ContactModel& model, std::int64_t now_ns) noexcept;
+  /// Ends the steps that are due, with the stylus where it was read last. What is news for the
+  /// server; null when there is none.
+  const AppliedForces* end_steps(std::int64_t now_ns) noexcept;
 
   /// Shows what the filter makes of the force; none before the first read().
   /// @param now_ns the clock that samples are stamped with
@@ -52,12 +66,15 @@ class ServoLoop {
   HapticDevice& device() noexcept { return device_; }
 
  private:
+  ForceDemand demand(std::int64_t now_ns, const ServoInput& input) noexcept;
+
   HapticDevice& device_;
   FilterLimits limits_;
   DeviceMapping mapping_;
   SafetyFilter filter_;
   Clutch clutch_;
-  StylusPose pose_;  ///< the last good one, W; buttons as on the wire
+  std::optional<BridgeContact> contact_;  ///< none: the server's forces are held
+  StylusPose pose_;                       ///< the last good one, W; buttons as on the wire
   /// Tip as it was read last, not a number if of no use; none since restart() [m], D.
   std::optional<Vector3> reading_;
   std::uint64_t next_sequence_ = 0;

@@ -62,6 +62,7 @@ ServoEnd ServoThread::run_real_time() noexcept {
       if (state.lockstep) return run_lockstep();
       start_ns = now_ns;
     }
+    if (session_ != state.sessions) begin_session(state);
     tick(now_ns, start_ns);
     if (report_.session_time >= settings_.duration) {
       end = ServoEnd::kFinished;
@@ -78,10 +79,35 @@ void ServoThread::tick(std::int64_t now_ns, std::int64_t start_ns) noexcept {
   for (std::size_t i = 0; i < loops_.size(); ++i) {
     loops_[i].read(report_.session_time);
     link_.styluses[i].sample.put(loops_[i].take_sample(now_ns));
+    end_steps(i, now_ns);
     link_.styluses[i].input.receive();
     loops_[i].apply(now_ns, link_.styluses[i].input.front());
   }
   link_.samples_ready.signal();
+}
+
+void ServoThread::begin_session(const LinkState& state) noexcept {
+  session_ = state.sessions;
+  for (ServoLoop& loop : loops_) {
+    if (state.predict) {
+      loop.predict(state.dt, to_ns(1.0 / settings_.rate));
+    } else {
+      loop.hold();
+    }
+  }
+}
+
+// Where the contact is solved here.
+void ServoThread::end_steps(std::size_t i, std::int64_t now_ns) noexcept {
+  ServoLink::Stylus& stylus = link_.styluses[i];
+  if (stylus.model.receive() && stylus.model.front().session == session_) {
+    loops_[i].receive(stylus.model.front().model, now_ns);
+  }
+  const AppliedForces* applied = loops_[i].end_steps(now_ns);
+  if (applied == nullptr) return;
+  stylus.applied.back().session = session_;
+  stylus.applied.back().applied = *applied;
+  stylus.applied.publish();
 }
 
 void ServoThread::fade_out() noexcept {

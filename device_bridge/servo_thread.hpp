@@ -64,6 +64,8 @@ class ServoThread {
   ServoEnd run_real_time() noexcept;
   ServoEnd run_lockstep() noexcept;
   void tick(std::int64_t now_ns, std::int64_t start_ns) noexcept;
+  void begin_session(const LinkState& state) noexcept;
+  void end_steps(std::size_t i, std::int64_t now_ns) noexcept;
   void fade_out() noexcept;
   void step(std::uint64_t k) noexcept;
   bool wait_for_forces(std::uint64_t k) noexcept;
@@ -72,6 +74,7 @@ class ServoThread {
   std::vector<ServoLoop>& loops_;
   ServoSettings settings_;
   Wakeup& done_;
+  std::uint64_t session_ = 0;  ///< that the loops are in
   ServoReport report_;
   std::string scheduling_;
   std::atomic<bool> stop_{false};

@@ -23,6 +23,10 @@ struct Workspace {
   StylusPose to_world(const StylusPose& pose_D) const noexcept;
   /// A force in W as the device shows it [N], D.
   Vector3 to_device(const Vector3& force_W) const noexcept;
+  /// A direction in W, in D.
+  Vector3 direction_to_device(const Vector3& direction_W) const noexcept {
+    return rotation.conjugate() * direction_W;
+  }
 };
 
 }  // namespace irdm

@@ -42,6 +42,8 @@ int print_report(const FinishedRun& run, const ServerOptions& options) {
   };
   faults("forces that were not finite, sent as zero", run.network.stats().forces_not_finite);
   faults("errors inside the network thread", run.network.stats().internal_errors);
+  faults("forces of bridges that came late, entered at their own step", force.late);
+  faults("forces of bridges that were lost", force.lost);
   faults("steps that the deformation did not see", run.deformation.lost_steps());
   if (run.recorder == nullptr) return 0;
   if (!run.recorder->error().empty()) {

@@ -89,10 +89,37 @@ ContactModelFault check_stiffness(const ContactModel& model, const Matrix3& rigi
 
 }  // namespace
 
+const char* word(ContactModelFault fault) noexcept {
+  switch (fault) {
+    case ContactModelFault::kNone:
+      return "nothing";
+    case ContactModelFault::kShape:
+      return "horizon, step or state";
+    case ContactModelFault::kNotFinite:
+      return "not finite";
+    case ContactModelFault::kFar:
+      return "too far or too fast";
+    case ContactModelFault::kBody:
+      return "mass, inertia or orientation";
+    case ContactModelFault::kNormal:
+      return "normal";
+    case ContactModelFault::kFriction:
+      return "friction";
+    case ContactModelFault::kAsymmetric:
+      return "compliance not symmetric";
+    case ContactModelFault::kStiffness:
+      return "too stiff, too soft or not positive";
+    case ContactModelFault::kGrowing:
+      return "more than a passive object answers";
+  }
+  return "unknown";
+}
+
 ContactModelFault check(const ContactModel& model, const ContactModelLimits& limits) noexcept {
   if (!model.valid) return ContactModelFault::kNone;
   if (model.horizon < 1 || model.horizon > kMaxHorizon || !(model.dt > 0.0) ||
-      !(model.dt <= limits.longest_step) || model.state > ContactState::kHeld) {
+      !(model.dt <= limits.longest_step) || (limits.dt > 0.0 && model.dt != limits.dt) ||
+      model.state > ContactState::kHeld) {
     return ContactModelFault::kShape;
   }
   if (!all_finite(model)) return ContactModelFault::kNotFinite;

@@ -13,16 +13,29 @@ namespace irdm {
 /// Steps that a contact model can look ahead.
 inline constexpr int kMaxHorizon = 50;
 
+inline constexpr std::uint64_t kNoStep = ~std::uint64_t{0};
+
 /// All that a bridge needs to go on by itself, for a while, with what the server computes of one
 /// stylus' contact: the rigid motion and all that drives it, and the elastic part as far as this
 /// contact sees it, its free path and its answer to the contact's own force. Rigid motion is in W,
 /// all else in B.
 struct ContactModel {
+  template <typename T>
+  static std::array<T, kMaxHorizon> zeros() noexcept {
+    std::array<T, kMaxHorizon> all;
+    all.fill(T::Zero());
+    return all;
+  }
+
   bool valid = false;         ///< false: the stylus cannot touch anything
   std::uint64_t step = 0;     ///< K, the last step that the server has done
   std::uint64_t missing = 0;  ///< bit i: the force of step K - i is not in it, and may yet come
-  double dt = 0.0;            ///< of a step [s], > 0
-  int horizon = 0;            ///< H, 1 to kMaxHorizon
+  /// The newest step of which the bridge's force had come by then; kNoStep: none had.
+  std::uint64_t newest = kNoStep;
+  /// The run stands still: what is felt is to fade. Nothing else means anything then.
+  bool standing = false;
+  double dt = 0.0;  ///< of a step [s], > 0
+  int horizon = 0;  ///< H, 1 to kMaxHorizon
 
   BodyProperties body;
   RigidState motion;                       ///< at the end of step K
@@ -39,10 +52,10 @@ struct ContactModel {
   Matrix3 series = Matrix3::Zero();  ///< compliance between place and tip: coupling spring [m/N]
   /// path[n-1]: elastic displacement of the place at the end of step K + n without a further force
   /// of this stylus [m]; the first H.
-  std::array<Vector3, kMaxHorizon> path;
+  std::array<Vector3, kMaxHorizon> path = zeros<Vector3>();
   /// response[n]: its elastic displacement at the end of step i + n per force in step i [m/N]; the
   /// first H. Symmetric.
-  std::array<Matrix3, kMaxHorizon> response;
+  std::array<Matrix3, kMaxHorizon> response = zeros<Matrix3>();
 };
 
 /// Bounds of what a bridge believes of a contact model.
@@ -51,6 +64,7 @@ struct ContactModelLimits {
   double fastest = 100.0;        ///< object [m/s]
   double fastest_spin = 1000.0;  ///< [rad/s]
   double lightest = 1e-6;        ///< object [kg]
+  double dt = 0.0;               ///< that a step must have [s]; 0: any
   double longest_step = 0.02;    ///< [s]
   double stiffest = 2e5;         ///< contact within a step [N/m]
   double softest = 1.0;          ///< the same
@@ -69,6 +83,9 @@ enum class ContactModelFault : std::uint8_t {
   kStiffness,  ///< within a step: not positive, too stiff or too soft
   kGrowing,    ///< answers later with more than a passive object can
 };
+
+/// For a log: what is wrong, in a few words.
+const char* word(ContactModelFault fault) noexcept;
 
 /// Looks at everything that a model says before anything is done with it. A passive linear object
 /// answers a force held for one step n steps later by at most 2n + 1 times its answer within the

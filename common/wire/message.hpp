@@ -5,6 +5,8 @@
 #include <string>
 #include <variant>
 
+#include "common/contact/applied_forces.hpp"
+#include "common/contact/contact_model.hpp"
 #include "common/stylus.hpp"
 
 /// The messages between bridge and server. docs/protocol.md is the document; this header is its
@@ -25,11 +27,11 @@ inline constexpr std::size_t kTextSize = 64;
 inline constexpr double kMaxCoordinate = 1000.0;
 /// Longest force step that a Welcome may announce [s].
 inline constexpr double kLongestStep = 1.0;
+/// No hand exerts more [N].
+inline constexpr double kMaxForce = 1000.0;
 
-/// Reserved for the contact solved at the bridge, and for monitoring; refused by version 1:
-/// 16 ContactModel (free path s_1..s_H and blocks C_0..C_{H-1}, server to bridge),
-/// 17 AppliedForces (bridge to server), 18 Status (server to bridge), 19 Command (bridge to
-/// server).
+/// Reserved for monitoring; refused by version 1: 18 Status (server to bridge), 19 Command (bridge
+/// to server).
 enum class MessageType : std::uint16_t {
   kHello = 1,
   kWelcome = 2,
@@ -38,10 +40,12 @@ enum class MessageType : std::uint16_t {
   kSample = 5,
   kForce = 6,
   kReport = 7,
+  kContactModel = 16,
+  kAppliedForces = 17,
 };
 
 /// Bits of Hello::capabilities and Welcome::capabilities.
-inline constexpr std::uint32_t kCapabilityContactModel = 1u << 0;  ///< reserved: types 16 and 17
+inline constexpr std::uint32_t kCapabilityContactModel = 1u << 0;  ///< types 16 and 17
 inline constexpr std::uint32_t kCapabilityStatus = 1u << 1;        ///< reserved: type 18
 inline constexpr std::uint32_t kCapabilityCommand = 1u << 2;       ///< reserved: type 19
 inline constexpr std::uint32_t kCapabilityReport = 1u << 3;        ///< type 7
@@ -117,6 +121,20 @@ struct ForceMessage {
   StylusForce force = {};
 };
 
+/// Server to bridge, after each step, where both sides are capable of it and not in lockstep: how
+/// the contact of a stylus goes on. Finite but for friction; what it says of a contact that is not
+/// valid means nothing. To be checked before use: irdm::check().
+struct ContactModelMessage {
+  std::uint16_t stylus = 0;  ///< server's slot
+  ContactModel model = {};
+};
+
+/// Bridge to server, after each step that it solved by itself. Finite.
+struct AppliedForcesMessage {
+  std::uint16_t stylus = 0;  ///< server's slot
+  AppliedForces applied = {};
+};
+
 /// Median, 99th percentile and maximum [us], none below 0.
 struct Quantiles {
   float median = 0;
@@ -132,7 +150,8 @@ struct Report {
   Quantiles age = {};         ///< of forces at the moment when a newer one took their place
 };
 
-using Message = std::variant<Hello, Welcome, Refuse, Goodbye, SampleMessage, ForceMessage, Report>;
+using Message = std::variant<Hello, Welcome, Refuse, Goodbye, SampleMessage, ForceMessage, Report,
+                             ContactModelMessage, AppliedForcesMessage>;
 
 struct Frame {
   Header header;

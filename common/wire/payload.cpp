@@ -1,9 +1,11 @@
 #include "common/wire/payload.hpp"
 
+#include <array>
 #include <cmath>
 #include <string>
 
 #include "common/wire/bytes.hpp"
+#include "common/wire/contact_payload.hpp"
 #include "common/wire/protocol_error.hpp"
 
 namespace irdm::wire {
@@ -201,8 +203,13 @@ Report decode_report(ByteReader& in) {
 }  // namespace
 
 MessageType type_of(const Message& message) noexcept {
-  // In the order of the variant's alternatives, which are numbered from 1.
-  return static_cast<MessageType>(message.index() + 1);
+  // In the order of the variant's alternatives.
+  constexpr std::array kTypes{
+      MessageType::kHello,   MessageType::kWelcome,      MessageType::kRefuse,
+      MessageType::kGoodbye, MessageType::kSample,       MessageType::kForce,
+      MessageType::kReport,  MessageType::kContactModel, MessageType::kAppliedForces};
+  static_assert(kTypes.size() == std::variant_size_v<Message>);
+  return kTypes[message.index()];
 }
 
 std::optional<std::size_t> payload_size(MessageType type) noexcept {
@@ -221,6 +228,10 @@ std::optional<std::size_t> payload_size(MessageType type) noexcept {
       return 80;
     case MessageType::kReport:
       return 32;
+    case MessageType::kContactModel:
+      return kContactModelSize;
+    case MessageType::kAppliedForces:
+      return kAppliedForcesSize;
   }
   return std::nullopt;
 }
@@ -247,6 +258,10 @@ Message decode_payload(MessageType type, std::span<const std::uint8_t> payload) 
       return decode_force(in);
     case MessageType::kReport:
       return decode_report(in);
+    case MessageType::kContactModel:
+      return decode_contact_model(in);
+    case MessageType::kAppliedForces:
+      return decode_applied_forces(in);
   }
   throw ProtocolError(ProtocolFault::kUnknownType,
                       "unknown message type " + std::to_string(static_cast<int>(type)));

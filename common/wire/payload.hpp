@@ -11,7 +11,7 @@
 namespace irdm::wire {
 
 /// The largest payload that this version writes.
-inline constexpr std::size_t kLargestPayload = 80;
+inline constexpr std::size_t kLargestPayload = 4072;
 
 MessageType type_of(const Message& message) noexcept;
 /// The fixed size of a type's payload; nothing for a type that this version does not know.

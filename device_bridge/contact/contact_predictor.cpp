@@ -11,9 +11,10 @@ Vector3 sideways(const Vector3& v, const Vector3& normal) noexcept {
 
 }  // namespace
 
+// Where nothing can be touched, nothing is foreseen for any longer.
 bool ContactPredictor::reaches(std::uint64_t k) const noexcept {
-  return model_.valid && k > model_.step &&
-         k - model_.step <= static_cast<std::uint64_t>(model_.horizon);
+  const int horizon = model_.valid ? model_.horizon : kMaxHorizon;
+  return any_ && k > model_.step && k - model_.step <= static_cast<std::uint64_t>(horizon);
 }
 
 bool ContactPredictor::missing(std::uint64_t step) const noexcept {
@@ -66,7 +67,8 @@ Vector3 ContactPredictor::surface_at(std::uint64_t k) const noexcept {
 }
 
 void ContactPredictor::receive(const ContactModel& model) noexcept {
-  if (body_ && model.step <= model_.step) return;
+  if (any_ && model.step <= model_.step) return;
+  any_ = true;
   model_ = model;
   if (!model_.valid) return end_touch();
   body_.emplace(model_.body, model_.dt);
@@ -116,6 +118,7 @@ ContactPredictor::Answer ContactPredictor::solve(std::uint64_t k, const Vector3&
   last_step_ = k;
   if (!reaches(k)) return answer;
   answer.known = true;
+  if (!model_.valid) return answer;
   move_to(k - 1);
   const Quaternion Q = motion_.orientation;
   const FreeMotion free = free_motion(*body_, model_.free_forces, motion_);

@@ -63,8 +63,9 @@ class ContactPredictor {
   bool touch(std::uint64_t k, const Vector3& from_surface) noexcept;
   void end_touch() noexcept;
 
+  bool any_ = false;  ///< model_ means something
   ContactModel model_;
-  std::optional<RigidBody> body_;  ///< of the model
+  std::optional<RigidBody> body_;  ///< of the model; while it is valid
   RigidState motion_;              ///< at the end of step moved_to_
   std::uint64_t moved_to_ = 0;
   std::array<Past, kKept> past_{};

@@ -17,6 +17,8 @@ struct ClientReport {
   std::uint64_t longest_gap = 0;   ///< [steps]
   std::uint64_t samples = 0;       ///< given to a connection
   std::uint64_t protocol_errors = 0;
+  std::uint64_t models = 0;          ///< contact models received and taken
+  std::uint64_t models_refused = 0;  ///< contact models that could not be true
   Histogram round_trip;  ///< sample taken to its first force received [ns]; real time only
   std::string failure;   ///< why it gave up, one line; empty: it did not
 };

@@ -40,8 +40,10 @@ void ServerSession::start(std::function<void(const SessionEnd&)> ended) {
       .violated = [this](const ProtocolError& error) { violated(error); },
       .closed = [this](const std::string& reason) { closed(reason); },
   });
+  std::uint32_t capabilities = wire::kCapabilityReport;
+  if (shared_.settings.predict) capabilities |= wire::kCapabilityContactModel;
   connection_->send(
-      wire::Hello{.capabilities = wire::kCapabilityReport,
+      wire::Hello{.capabilities = capabilities,
                   .styluses = static_cast<std::uint16_t>(shared_.link.styluses.size()),
                   .lockstep = shared_.settings.lockstep,
                   .name = shared_.settings.name});
@@ -63,6 +65,10 @@ void ServerSession::receive(const wire::Frame& frame) {
     if (!linked) unexpected("a force before Welcome");
     if (frame.header.session != connection_->session()) unexpected("a force of another session");
     take(*force);
+  } else if (const auto* model = std::get_if<wire::ContactModelMessage>(&frame.message)) {
+    if (!linked || !link_state_.predict) unexpected("a contact model that was not asked for");
+    if (frame.header.session != connection_->session()) unexpected("a model of another session");
+    take(*model);
   } else {
     unexpected("a message that only a bridge sends");
   }
@@ -83,13 +89,17 @@ void ServerSession::welcomed(const wire::Welcome& welcome) {
   link_state_ = {.linked = true,
                  .sessions = ++shared_.report.sessions,
                  .lockstep = welcome.lockstep,
+                 .predict = (welcome.capabilities & wire::kCapabilityContactModel) != 0,
                  .dt = welcome.dt};
   for (ServoLink::Stylus& stylus : shared_.link.styluses) {
     intakes_.emplace_back(welcome.lockstep);
     stylus.sample.receive();  // what was taken before the session is no part of it
+    stylus.applied.receive();
   }
   spdlog::info("server {}: session {}, dt {} s{}", shared_.server, welcome.session, welcome.dt,
-               welcome.lockstep ? ", lockstep" : "");
+               welcome.lockstep      ? ", lockstep"
+               : link_state_.predict ? ", contact solved here"
+                                     : ", forces held");
   publish();
 }
 
@@ -107,12 +117,31 @@ void ServerSession::refused(const wire::Refuse& refuse) {
   leave();
 }
 
-void ServerSession::take(const wire::ForceMessage& message) {
-  const int index = message.stylus - first_stylus_;
+std::size_t ServerSession::ours(std::uint16_t slot) const {
+  const int index = slot - first_stylus_;
   if (index < 0 || index >= static_cast<int>(intakes_.size())) {
-    unexpected("a force for a stylus that is not ours");
+    unexpected("an answer for a stylus that is not ours");
   }
-  const auto stylus = static_cast<std::size_t>(index);
+  return static_cast<std::size_t>(index);
+}
+
+// A model that cannot be true is as good as lost.
+void ServerSession::take(const wire::ContactModelMessage& message) {
+  const std::size_t stylus = ours(message.stylus);
+  const ContactModelFault fault = check(message.model, {.dt = link_state_.dt});
+  if (fault != ContactModelFault::kNone) {
+    if (shared_.report.models_refused++ == 0) {
+      spdlog::error("server {}: step {}: a contact model that cannot be true ({}) is not used",
+                    shared_.server, message.model.step, word(fault));
+    }
+    return;
+  }
+  ++shared_.report.models;
+  shared_.link.styluses[stylus].model.put({link_state_.sessions, message.model});
+}
+
+void ServerSession::take(const wire::ForceMessage& message) {
+  const std::size_t stylus = ours(message.stylus);
   const std::int64_t now_ns = monotonic_ns();
   if (!intakes_[stylus].take(message.force, now_ns, shared_.report)) return;
   force_ns_ = now_ns;
@@ -127,6 +156,13 @@ void ServerSession::send_samples() {
     intakes_[i].sent(box.front());
     connection_->send_newest(i, wire::SampleMessage{slot(i), box.front()});
     ++shared_.report.samples;
+  }
+  for (std::size_t i = 0; i < intakes_.size(); ++i) {
+    Mailbox<LinkedForces>& box = shared_.link.styluses[i].applied;
+    if (!box.receive() || state_ != State::kLinked || !link_state_.predict) continue;
+    if (box.front().session != link_state_.sessions) continue;
+    connection_->send_newest(2 * intakes_.size() + i,
+                             wire::AppliedForcesMessage{slot(i), box.front().applied});
   }
 }
 

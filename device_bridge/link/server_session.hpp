@@ -57,6 +57,8 @@ class ServerSession {
   void welcomed(const wire::Welcome& welcome);
   void refused(const wire::Refuse& refuse);
   void take(const wire::ForceMessage& message);
+  void take(const wire::ContactModelMessage& message);
+  std::size_t ours(std::uint16_t slot) const;
   void violated(const wire::ProtocolError& error);
   void closed(const std::string& reason);
   void leave();

@@ -58,6 +58,10 @@ void Deformation::follow(const StepRecord& record) {
   }
   for (; next < record.force_step; ++next) advance(last_);
   if (record.settings_change != last_.settings_change) follow_settings(record);
+  for (const LateForce& late : record.late.view()) {
+    Follower& follower = objects_[static_cast<std::size_t>(late.object)];
+    follower.engine->add_past(follower.forces->of(late), late.age);
+  }
   advance(record);
   last_ = record;
   trail_.follow(record);

@@ -51,6 +51,8 @@ void Session::receive(const wire::Frame& frame) {
     take(*sample);
   } else if (const auto* report = std::get_if<wire::Report>(&frame.message)) {
     take(*report);
+  } else if (const auto* applied = std::get_if<wire::AppliedForcesMessage>(&frame.message)) {
+    take(*applied);
   } else if (std::holds_alternative<wire::Goodbye>(frame.message)) {
     spdlog::info("bridge {}: goodbye", connection_->peer());
     // Counted before the styluses go, so that whoever sees them absent knows why.
@@ -76,7 +78,11 @@ void Session::greet(const wire::Hello& hello) {
     return refuse(wire::RefuseReason::kTooManyStyluses,
                   "the server has " + std::to_string(settings.styluses) + " styluses");
   }
-  const std::optional<int> first = shared_.slots.claim(hello.styluses);
+  std::uint32_t capabilities = wire::kCapabilityReport;
+  if (!settings.lockstep) capabilities |= wire::kCapabilityContactModel;
+  capabilities &= hello.capabilities;
+  predicts_ = (capabilities & wire::kCapabilityContactModel) != 0;
+  const std::optional<int> first = shared_.slots.claim(hello.styluses, predicts_);
   if (!first) return refuse(wire::RefuseReason::kNoFreeStylus, "no free stylus");
   welcomed_ = true;
   first_ = *first;
@@ -86,7 +92,7 @@ void Session::greet(const wire::Hello& hello) {
   connection_->set_session(id_);
   connection_->send(wire::Welcome{.version = std::min(hello.version_max, wire::kProtocolVersion),
                                   .first_stylus = static_cast<std::uint16_t>(first_),
-                                  .capabilities = hello.capabilities & wire::kCapabilityReport,
+                                  .capabilities = capabilities,
                                   .session = id_,
                                   .lockstep = settings.lockstep,
                                   .dt = settings.dt});
@@ -107,6 +113,14 @@ void Session::take(const wire::Report& report) {
     unexpected("a report of a stylus that is not its own");
   }
   shared_.slots.port(report.stylus).link.put({true, report});
+}
+
+void Session::take(const wire::AppliedForcesMessage& message) {
+  if (!predicts_) unexpected("forces that were not asked for");
+  if (message.stylus < first_ || message.stylus >= first_ + count_) {
+    unexpected("forces of a stylus that is not its own");
+  }
+  shared_.slots.put(message.stylus, message.applied);
 }
 
 void Session::violated(const ProtocolError& error) {
@@ -157,6 +171,14 @@ void Session::send_forces() {
     if (replaced) shared_.stats.forces_replaced.fetch_add(1);
     shared_.stats.forces.fetch_add(1);
   }
+  for (int slot = first_; predicts_ && slot < first_ + count_; ++slot) send_model(slot);
+}
+
+void Session::send_model(int slot) {
+  const ContactModel* const model = shared_.slots.take_model(slot);
+  if (model == nullptr) return;
+  connection_->send_newest(static_cast<std::size_t>(count_ + slot - first_),
+                           wire::ContactModelMessage{static_cast<std::uint16_t>(slot), *model});
 }
 
 void Session::check_time(std::int64_t now_ns) {

@@ -45,6 +45,8 @@ class Session {
   void greet(const wire::Hello& hello);
   void take(const wire::SampleMessage& message);
   void take(const wire::Report& report);
+  void take(const wire::AppliedForcesMessage& message);
+  void send_model(int slot);
   void violated(const wire::ProtocolError& error);
   void release();
 
@@ -54,6 +56,7 @@ class Session {
   std::int64_t accepted_ns_;
   std::optional<std::int64_t> ending_since_ns_;
   bool welcomed_ = false;
+  bool predicts_ = false;  ///< contact models go out, applied forces come in
   bool over_ = false;
   int first_ = 0;  ///< its slots
   int count_ = 0;

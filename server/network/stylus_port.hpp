@@ -3,6 +3,7 @@
 #include "common/realtime/mailbox.hpp"
 #include "common/stylus.hpp"
 #include "common/wire/message.hpp"
+#include "server/step/applied_history.hpp"
 
 namespace irdm {
 
@@ -10,6 +11,7 @@ namespace irdm {
 struct StylusInput {
   bool present = false;      ///< false: no bridge, or one that has fallen silent; touch nothing
   StylusSample sample = {};  ///< the newest one; meaningless when not present
+  bool predicts = false;     ///< its bridge can solve the contact itself
 };
 
 /// What a stylus' bridge says of its link.
@@ -23,7 +25,10 @@ struct LinkReport {
 struct StylusPort {
   Mailbox<StylusInput> in;
   Mailbox<StylusForce> out;
-  Mailbox<LinkReport> link;  ///< from the network thread to a viewer's thread
+  // Where the bridge solves the contact:
+  Mailbox<AppliedHistory> applied;  ///< from the network thread
+  Mailbox<ContactModel> model;      ///< from the force thread
+  Mailbox<LinkReport> link;         ///< from the network thread to a viewer's thread
 };
 
 }  // namespace irdm

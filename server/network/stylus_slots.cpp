@@ -9,12 +9,12 @@ StylusSlots::StylusSlots(int count, Wakeup& arrived)
       ports_(static_cast<std::size_t>(count)),
       owners_(static_cast<std::size_t>(count)) {}
 
-std::optional<int> StylusSlots::claim(int count) {
+std::optional<int> StylusSlots::claim(int count, bool predicts) {
   const auto first =
       std::search_n(owners_.begin(), owners_.end(), count, false,
                     [](const Owner& owner, bool wanted) { return owner.claimed == wanted; });
   if (first == owners_.end()) return std::nullopt;
-  std::fill_n(first, count, Owner{.claimed = true});
+  std::fill_n(first, count, Owner{.claimed = true, .predicts = predicts});
   return static_cast<int>(first - owners_.begin());
 }
 
@@ -22,6 +22,7 @@ void StylusSlots::release(int first, int count) {
   for (int slot = first; slot < first + count; ++slot) {
     make_absent(slot);
     port(slot).link.put({});
+    port(slot).applied.put({});
     owners_[static_cast<std::size_t>(slot)] = Owner{};
   }
 }
@@ -34,9 +35,21 @@ bool StylusSlots::put(int slot, const StylusSample& sample, std::int64_t now_ns)
   owner.present = true;
   owner.newest_sequence = sample.sequence;
   owner.arrived_ns = now_ns;
-  port(slot).in.put({.present = true, .sample = sample});
+  port(slot).in.put({.present = true, .sample = sample, .predicts = owner.predicts});
   arrived_.signal();
   return true;
+}
+
+void StylusSlots::put(int slot, const AppliedForces& applied) {
+  Owner& owner = owners_[static_cast<std::size_t>(slot)];
+  owner.applied.take(applied);
+  port(slot).applied.put(owner.applied);
+}
+
+const ContactModel* StylusSlots::take_model(int slot) {
+  Mailbox<ContactModel>& box = port(slot).model;
+  const bool usable = owners_[static_cast<std::size_t>(slot)].predicts;
+  return box.receive() && usable ? &box.front() : nullptr;
 }
 
 void StylusSlots::expire(std::int64_t now_ns, std::int64_t limit_ns) {

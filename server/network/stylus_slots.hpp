@@ -20,7 +20,8 @@ class StylusSlots {
   StylusPort& port(int slot) { return ports_[static_cast<std::size_t>(slot)]; }
 
   /// Takes `count` free slots in a row; the first of them, or nothing when there are no such slots.
-  std::optional<int> claim(int count);
+  /// @param predicts the bridge can solve the contact itself
+  std::optional<int> claim(int count, bool predicts = false);
   /// Gives them back; their styluses are absent from here on.
   void release(int first, int count);
 
@@ -29,13 +30,21 @@ class StylusSlots {
   /// Makes those styluses absent whose last sample is older than `limit_ns`.
   void expire(std::int64_t now_ns, std::int64_t limit_ns);
 
+  /// Hands on what the bridge has told of its last steps.
+  void put(int slot, const AppliedForces& applied);
+  /// The newest contact model that was not taken yet, if the present owner can use it; valid until
+  /// the next call.
+  const ContactModel* take_model(int slot);
+
   /// The newest force that was not taken yet, if it answers a sample of the present owner.
   std::optional<StylusForce> take_force(int slot);
 
  private:
   struct Owner {
     bool claimed = false;
+    bool predicts = false;
     bool present = false;
+    AppliedHistory applied = {};
     bool any_sample = false;
     std::uint64_t newest_sequence = 0;
     std::int64_t first_time_ns = 0;  ///< bridge's clock

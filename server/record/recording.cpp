@@ -1,5 +1,6 @@
 #include "server/record/recording.hpp"
 
+#include <algorithm>
 #include <array>
 #include <mutex>
 #include <string>
@@ -8,6 +9,7 @@
 #include "common/hdf5/library_lock.hpp"
 #include "common/motion/rigid_body.hpp"
 #include "server/record/trace_paths.hpp"
+#include "server/step/soft_object.hpp"
 
 namespace irdm {
 namespace {
@@ -147,6 +149,53 @@ SettingsRows read_settings(const hdf5::File& file, const SimulationConfig& confi
   return rows;
 }
 
+struct LateRows {
+  std::vector<std::uint64_t> force_step;
+  std::vector<LateForce> late;
+};
+
+void check_late(const LateForce& late, const SimulationConfig& config, const std::string& file) {
+  const auto within = [](int value, std::size_t count) {
+    return value >= 0 && static_cast<std::size_t>(value) < count;
+  };
+  bool good = within(late.object, config.objects.size()) &&
+              within(late.stylus, config.styluses.size()) && within(late.age, kMaxHorizon);
+  for (const int node : late.point.nodes) {
+    good =
+        good && node >= 0 &&
+        node <
+            config.objects[static_cast<std::size_t>(late.object)].model->mesh.surface_node_count();
+  }
+  if (!good) {
+    throw Error(file, "/late has a force on something that the model or the scene does not have",
+                "use the scene and the model that it was recorded with");
+  }
+}
+
+LateRows read_late(const hdf5::File& file, const SimulationConfig& config) {
+  LateRows rows;
+  if (!file.exists("/late/force_step")) return rows;  // an older trace
+  rows.force_step = file.read<std::uint64_t>("/late/force_step", {0});
+  const hsize_t count = rows.force_step.size();
+  const auto age = file.read<std::int32_t>("/late/age", {count});
+  const auto object = file.read<std::int32_t>("/late/object", {count});
+  const auto stylus = file.read<std::int32_t>("/late/stylus", {count});
+  const auto nodes = file.read<std::int32_t>("/late/contact_nodes", {count, 3});
+  const auto weights = file.read<double>("/late/contact_weights", {count, 3});
+  const auto force = file.read<double>("/late/force", {count, 3});
+  const auto arm = file.read<double>("/late/arm", {count, 3});
+  for (std::size_t e = 0; e < count; ++e) {
+    LateForce late{object[e], stylus[e], age[e], {}, vector_of(force, e), vector_of(arm, e)};
+    for (std::size_t i = 0; i < 3; ++i) {
+      late.point.nodes[i] = nodes[at(e, 3) + i];
+      late.point.weights[i] = weights[at(e, 3) + i];
+    }
+    check_late(late, config, file.name());
+    rows.late.push_back(late);
+  }
+  return rows;
+}
+
 }  // namespace
 
 struct Recording::Data {
@@ -158,6 +207,8 @@ struct Recording::Data {
   std::vector<std::size_t> settings_of;  ///< row in `settings`, of each step
   SettingsRows settings;
   std::vector<std::size_t> last_reset;  ///< step of the recording, of each step
+  LateRows late;
+  std::vector<std::span<const LateForce>> late_of;  ///< in `late`, of each step
   std::vector<StylusRows> styluses;
   std::vector<ObjectRows> objects;
 
@@ -166,6 +217,7 @@ struct Recording::Data {
                     const std::vector<std::string>& names);
   void read_styluses(const hdf5::File& file, const RowReader& reader);
   void number_settings_and_resets();
+  void number_late(const std::string& file);
   RigidState before(std::size_t object, std::size_t k) const;
   void object_step(std::size_t object, std::size_t k, ObjectRecord& out, bool feels_spin) const;
   ContactRecord contact(const ContactRows& rows, std::size_t k, const RigidState& before) const;
@@ -196,9 +248,11 @@ void Recording::Data::read(const hdf5::File& file, const std::vector<std::string
   reset = reader.read<std::uint8_t>("/step/reset");
   if (force_step.empty()) throw Error(file.name(), "holds no step", "record something");
   settings = read_settings(file, config);
+  late = read_late(file, config);
   read_styluses(file, reader);
   read_objects(file, reader, names);
   number_settings_and_resets();
+  number_late(file.name());
 }
 
 void Recording::Data::read_styluses(const hdf5::File& file, const RowReader& reader) {
@@ -252,6 +306,21 @@ void Recording::Data::number_settings_and_resets() {
   }
 }
 
+void Recording::Data::number_late(const std::string& file) {
+  std::size_t row = 0;
+  const std::size_t rows = late.force_step.size();
+  for (const std::uint64_t step : force_step) {
+    while (row < rows && late.force_step[row] < step) ++row;  // of a step that was lost
+    std::size_t end = row;
+    while (end < rows && late.force_step[end] == step) ++end;
+    if (end - row > LateForces::kMost) {
+      throw Error(file, "/late has more forces for a step than there can be", "record it again");
+    }
+    late_of.push_back(std::span(late.late).subspan(row, end - row));
+    row = end;
+  }
+}
+
 RigidState Recording::Data::before(std::size_t i, std::size_t k) const {
   const ObjectRows& rows = objects[i];
   RigidState state;
@@ -270,6 +339,9 @@ RigidState Recording::Data::before(std::size_t i, std::size_t k) const {
     angular_velocity = vector_of(rows.angular_velocity, k - 1);
   }
   state.angular_momentum = bodies[i].angular_momentum(state.orientation, angular_velocity);
+  for (const LateForce& each : late_of[k]) {
+    if (each.object == static_cast<int>(i)) state = with_late(bodies[i], state, each);
+  }
   return state;
 }
 
@@ -340,6 +412,9 @@ void Recording::step(std::size_t k, StepRecord& record) const {
   record.settings = data.settings.settings[data.settings_of[k]];
   record.object_count = static_cast<int>(data.objects.size());
   record.stylus_count = static_cast<int>(data.styluses.size());
+  const std::span<const LateForce> late = data.late_of[k];
+  record.late.count = late.size();
+  std::copy(late.begin(), late.end(), record.late.force.begin());
   for (std::size_t i = 0; i < data.objects.size(); ++i) {
     data.object_step(i, k, record.object[i], record.settings.object[i].inertial_loading);
   }

@@ -53,6 +53,7 @@ void TraceWriter::create_datasets() {
   file_.create_growing<std::uint64_t>("/step/force_step", {}, kChunkRows);
   file_.create_growing<std::uint8_t>("/step/reset", {}, kChunkRows);
   create_settings();
+  create_late();
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     const std::string group = object_path(i);
     create_object(group);
@@ -118,6 +119,33 @@ void TraceWriter::append_settings(std::span<const StepRecord> records) {
   }
 }
 
+// One row for every force that was entered late.
+void TraceWriter::create_late() {
+  file_.create_growing<std::uint64_t>("/late/force_step", {}, kChunkRows);
+  for (const char* name : {"/late/age", "/late/object", "/late/stylus"}) {
+    file_.create_growing<std::int32_t>(name, {}, kChunkRows);
+  }
+  file_.create_growing<std::int32_t>("/late/contact_nodes", {3}, kChunkRows);
+  for (const char* name : {"/late/contact_weights", "/late/force", "/late/arm"}) {
+    file_.create_growing<double>(name, {3}, kChunkRows);
+  }
+}
+
+void TraceWriter::append_late(std::span<const StepRecord> records) {
+  for (const StepRecord& record : records) {
+    for (const LateForce& late : record.late.view()) {
+      file_.append<std::uint64_t>("/late/force_step", 1, &record.force_step);
+      file_.append<std::int32_t>("/late/age", 1, &late.age);
+      file_.append<std::int32_t>("/late/object", 1, &late.object);
+      file_.append<std::int32_t>("/late/stylus", 1, &late.stylus);
+      file_.append<std::int32_t>("/late/contact_nodes", 1, late.point.nodes.data());
+      file_.append<double>("/late/contact_weights", 1, late.point.weights.data());
+      file_.append<double>("/late/force", 1, late.force.data());
+      file_.append<double>("/late/arm", 1, late.arm.data());
+    }
+  }
+}
+
 std::string TraceWriter::object_path(std::size_t object) const {
   return trace::object_path(several(), objects_[object].name);
 }
@@ -161,6 +189,7 @@ void TraceWriter::append(std::span<const StepRecord> records) {
   append_rows<double>("/step/time", 1, records,
                       [](const StepRecord& r, double* row) { *row = r.time; });
   append_settings(records);
+  append_late(records);
   for (std::size_t i = 0; i < objects_.size(); ++i) append_object(records, i);
   for (std::size_t s = 0; s < static_cast<std::size_t>(stylus_count_); ++s) {
     append_stylus(records, s);

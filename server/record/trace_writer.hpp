@@ -51,6 +51,8 @@ class TraceWriter {
   void append_object(std::span<const StepRecord> records, std::size_t object);
   void append_floor(std::span<const StepRecord> records, std::size_t object);
   void create_settings();
+  void create_late();
+  void append_late(std::span<const StepRecord> records);
   void append_settings(std::span<const StepRecord> records);
   void append_stylus(std::span<const StepRecord> records, std::size_t stylus);
   template <typename Contact>

@@ -21,4 +21,11 @@ std::span<const NodalForce> RecordedForces::of(const ObjectRecord& record) noexc
   return forces_.view();
 }
 
+std::span<const NodalForce> RecordedForces::of(const LateForce& late) noexcept {
+  forces_.clear();
+  masks_[static_cast<std::size_t>(late.stylus)].spread(late.point, patch_);
+  forces_.add(patch_, late.force);
+  return forces_.view();
+}
+
 }  // namespace irdm

@@ -18,6 +18,8 @@ class RecordedForces {
 
   /// Valid until the next call.
   std::span<const NodalForce> of(const ObjectRecord& record) noexcept;
+  /// The same for one that was entered late.
+  std::span<const NodalForce> of(const LateForce& late) noexcept;
 
  private:
   std::vector<PressureMask> masks_;

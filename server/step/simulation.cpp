@@ -39,6 +39,7 @@ void Simulation::set(const Settings& settings) noexcept {
 
 void Simulation::reset() noexcept {
   for (const auto& object : objects_) object->reset();
+  late_.count = 0;
   was_reset_ = true;
   reset_step_ = next_step_;
 }
@@ -63,6 +64,8 @@ void Simulation::step(std::span<const StylusCommand> commands, StepRecord& recor
   record.time = static_cast<double>(next_step_) * dt_;
   record.settings = settings_;
   record.settings_change = settings_change_;
+  record.late.count = std::exchange(late_.count, 0);
+  std::copy_n(late_.force.begin(), record.late.count, record.late.force.begin());
   record.object_count = object_count();
   record.stylus_count = static_cast<int>(stylus_count_);
   std::array<Quaternion, kMaxObjects> orientations;  // that turned the forces
@@ -102,8 +105,15 @@ void Simulation::foresee(std::size_t s, const Vector3& tip, int horizon,
 
 bool Simulation::enter_late(std::size_t s, const Vector3& force, int age) noexcept {
   if (age < 0 || age >= kMaxHorizon || !force.allFinite()) return false;
-  for (const auto& object : objects_) {
-    if (object->enter_late(s, force, age)) return true;
+  if (late_.count == LateForces::kMost) return false;
+  LateForce& entry = late_.force[late_.count];
+  entry.stylus = static_cast<int>(s);
+  entry.age = age;
+  for (std::size_t i = 0; i < objects_.size(); ++i) {
+    entry.object = static_cast<int>(i);
+    if (!objects_[i]->enter_late(s, force, entry)) continue;
+    ++late_.count;
+    return true;
   }
   return false;
 }

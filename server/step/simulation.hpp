@@ -39,7 +39,8 @@ class Simulation {
   void foresee(std::size_t s, const Vector3& tip, int horizon, ContactModel& model) noexcept;
 
   /// Between steps: stylus s exerted this force on the object [N], W, besides what is known, in the
-  /// step `age` steps before the last one. False: that is too long ago, or it touched nothing.
+  /// step `age` steps before the last one. False: that is too long ago, it touched
+  /// nothing, or there are more of them than LateForces::kMost.
   bool enter_late(std::size_t s, const Vector3& force, int age) noexcept;
 
   /// From the next step on. They must have passed check_settings(). Real-time safe.
@@ -47,6 +48,8 @@ class Simulation {
   const Settings& settings() const noexcept { return settings_; }
 
   double dt() const noexcept { return dt_; }
+  /// The number of the coming step.
+  std::uint64_t next_step() const noexcept { return next_step_; }
   int object_count() const noexcept { return static_cast<int>(objects_.size()); }
   const SoftObject& object(int i = 0) const noexcept {
     return *objects_[static_cast<std::size_t>(i)];
@@ -68,6 +71,7 @@ class Simulation {
   std::array<bool, kMaxStyluses> reset_down_;
   std::size_t stylus_count_;
   std::vector<std::unique_ptr<SoftObject>> objects_;
+  LateForces late_;  ///< entered since the last step
 };
 
 }  // namespace irdm

@@ -145,7 +145,8 @@ void SoftObject::collect(std::span<const StylusCommand> commands) noexcept {
       const bool grab = (command.buttons & kGrabButton) != 0;
       stylus.find({motion_.to_body(command.tip), grab, config_.styluses[s].reach}, surface_);
     }
-    if (command.bridged && stylus.state() == ContactState::kFree && !command.bridged->isZero(0.0)) {
+    if (command.bridged && !command.bridged->isZero(0.0) && stylus.state() == ContactState::kFree &&
+        stylus.outside()) {
       // The bridge found a contact that is none by now: its force acts where the tip is.
       stylus.impose(ContactState::kTouching, surface_.closest(motion_.to_body(command.tip)).point);
     }
@@ -366,6 +367,7 @@ void SoftObject::advance() noexcept {
     nodal_.add(patches_[index], solved.force);
     LastContact& last = last_[static_cast<std::size_t>(contacts_[index].stylus)];
     last.any = true;
+    last.point = points_[index];
     last.patch = patches_[index];
     last.arm = solved.arm;
     last.average += share * solved.force;

@@ -46,7 +46,8 @@ class SoftObject {
   void foresee(std::size_t s, const Vector3& tip, int horizon, ContactModel& model) noexcept;
   /// A force on the object [N], W, that stylus s exerted, besides what is known, in the step `age`
   /// steps before the last one, at the contact that it had last. Between steps. False: it had none.
-  bool enter_late(std::size_t s, const Vector3& force, int age) noexcept;
+  /// @param entry knows its age; the rest of it is written
+  bool enter_late(std::size_t s, const Vector3& force, LateForce& entry) noexcept;
   /// From the surface to a point of W, positive outside [m]. Between steps.
   double distance(const Vector3& tip) noexcept;
   ContactState contact_state(std::size_t s) const noexcept { return styluses_[s].state(); }
@@ -69,6 +70,7 @@ class SoftObject {
   /// The last contact of a stylus.
   struct LastContact {
     bool any = false;
+    SurfacePoint point;
     ContactPatch patch;
     Vector3 arm = Vector3::Zero();      ///< of its force [m], B
     Vector3 average = Vector3::Zero();  ///< of its force over the last while [N], B
@@ -119,5 +121,9 @@ class SoftObject {
   ContactSolver solver_;
   NodalForces nodal_;
 };
+
+/// The state of an object as it is with a late force in it.
+RigidState with_late(const RigidBody& body, const RigidState& state,
+                     const LateForce& late) noexcept;
 
 }  // namespace irdm

@@ -73,15 +73,23 @@ void SoftObject::foresee(std::size_t s, const Vector3& tip, int horizon,
   model.series += (1.0 / left - 1.0) * within;
 }
 
-bool SoftObject::enter_late(std::size_t s, const Vector3& force, int age) noexcept {
+bool SoftObject::enter_late(std::size_t s, const Vector3& force, LateForce& entry) noexcept {
   const LastContact& last = last_[s];
   if (!last.any) return false;
-  const Vector3 force_B = state_.orientation.conjugate() * force;
+  entry.point = last.point;
+  entry.force = state_.orientation.conjugate() * force;
+  entry.arm = last.arm;
   nodal_.clear();
-  nodal_.add(last.patch, force_B);
-  engine_->add_past(nodal_.view(), age);
-  state_ = body_.with_past(state_, force, state_.orientation * last.arm.cross(force_B), age);
+  nodal_.add(last.patch, entry.force);
+  engine_->add_past(nodal_.view(), entry.age);
+  state_ = with_late(body_, state_, entry);
   return true;
+}
+
+RigidState with_late(const RigidBody& body, const RigidState& state,
+                     const LateForce& late) noexcept {
+  return body.with_past(state, state.orientation * late.force,
+                        state.orientation * late.arm.cross(late.force), late.age);
 }
 
 double SoftObject::distance(const Vector3& tip) noexcept {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include "common/contact/contact_problem.hpp"
 #include "common/geometry.hpp"
@@ -72,6 +73,26 @@ struct ObjectRecord {
   bool solved = true;  ///< false: the contact problem had no finite solution and no force acted
 };
 
+/// A force that a bridge has told of after its step: it was entered before this one.
+struct LateForce {
+  int object = 0;
+  int stylus = 0;
+  int age = 0;                      ///< of its step, in steps before the last one
+  SurfacePoint point;               ///< middle of the contact
+  Vector3 force = Vector3::Zero();  ///< on the object [N], B
+  Vector3 arm = Vector3::Zero();    ///< from the centre of mass to where it acts [m], B
+};
+
+/// In the order in which they were entered.
+struct LateForces {
+  static constexpr std::size_t kMost = 32;  ///< that can be entered before one step
+
+  std::size_t count = 0;
+  std::array<LateForce, kMost> force;  ///< the first `count`
+
+  std::span<const LateForce> view() const noexcept { return {force.data(), count}; }
+};
+
 /// What became of one stylus in one step.
 struct StylusRecord {
   bool present = false;
@@ -96,6 +117,7 @@ struct StepRecord {
   int stylus_count = 0;
   std::array<ObjectRecord, kMaxObjects> object;
   std::array<StylusRecord, kMaxStyluses> stylus;
+  LateForces late;  ///< entered before the step
 };
 
 }  // namespace irdm

@@ -27,7 +27,9 @@ ForceThread::ForceThread(Simulation& simulation, NetworkServer& network, RunCont
       clock_(clock),
       sinks_(std::move(sinks)),
       steps_(steps),
-      commands_(static_cast<std::size_t>(network.styluses())) {}
+      commands_(static_cast<std::size_t>(network.styluses())) {
+  for (std::size_t s = 0; s < commands_.size(); ++s) bridged_.emplace_back(simulation, s);
+}
 
 void ForceThread::add_viewer_stylus(const ViewerStylus& stylus) {
   viewer_stylus_ = stylus;
@@ -61,6 +63,10 @@ void ForceThread::run() noexcept {
     report_.step_time.add(end - begin);
     ++report_.steps;
     watch_health(begin, end);
+  }
+  for (const BridgedStylus& stylus : bridged_) {
+    report_.late += stylus.late();
+    report_.lost += stylus.lost();
   }
   finished_.signal();
 }
@@ -99,6 +105,10 @@ void ForceThread::stand_still() noexcept {
       fading.proxy = port.in.front().sample.tip;
     }
     port.out.put(to_answer(record_, fading, port.in.front().sample));
+    if (!port.in.front().predicts) continue;
+    port.model.back().valid = false;
+    port.model.back().standing = true;
+    port.model.publish();
   }
   network_.forces_ready().signal();
 }
@@ -111,6 +121,9 @@ void ForceThread::take_commands() noexcept {
     commands_[s] = to_command(port.in.front());
     // Who feels nothing has to come from outside again; a step without it makes it so.
     if (stood_still_ && !clock_.lockstep()) commands_[s].present = false;
+    if (!port.in.front().predicts) continue;
+    port.applied.receive();
+    commands_[s] = bridged_[s].next(commands_[s], port.applied.front(), simulation_.next_step());
   }
   if (!control_.paused()) stood_still_ = false;
   if (!viewer_stylus_) return;
@@ -137,6 +150,20 @@ void ForceThread::step() noexcept {
     if (!record_.object[static_cast<std::size_t>(i)].solved) ++report_.unsolved;
   }
   for (StepSink* sink : sinks_) sink->put(record_);
+  foresee();
+}
+
+// After all else: who waits for a force has it by now.
+void ForceThread::foresee() noexcept {
+  bool any = false;
+  for (std::size_t s = 0; s < bridged_.size(); ++s) {
+    StylusPort& port = network_.port(static_cast<int>(s));
+    if (!commands_[s].present || !port.in.front().predicts) continue;
+    bridged_[s].foresee(port.model.back());
+    port.model.publish();
+    any = true;
+  }
+  if (any) network_.forces_ready().signal();
 }
 
 }  // namespace irdm

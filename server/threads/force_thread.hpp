@@ -11,6 +11,7 @@
 #include "common/realtime/scheduling.hpp"
 #include "common/realtime/wakeup.hpp"
 #include "server/network/network_server.hpp"
+#include "server/step/bridged_stylus.hpp"
 #include "server/step/simulation.hpp"
 #include "server/threads/run_control.hpp"
 #include "server/threads/step_clock.hpp"
@@ -24,6 +25,8 @@ struct ForceThreadReport {
   std::uint64_t steps = 0;
   std::uint64_t resets = 0;    ///< how often everything was put back to the start
   std::uint64_t unsolved = 0;  ///< steps whose contact problem had no finite solution
+  std::uint64_t late = 0;      ///< forces of bridges that came after their step, and entered it
+  std::uint64_t lost = 0;      ///< forces of bridges that came too late for that, or never
   double peak_force = 0.0;     ///< largest |force| on a stylus [N]
   Histogram step_time;         ///< from the clock's go to the forces' hand-over [ns]
 };
@@ -67,6 +70,7 @@ class ForceThread {
   void run() noexcept;
   void step() noexcept;
   void stand_still() noexcept;
+  void foresee() noexcept;
   void take_commands() noexcept;
   void watch_health(std::int64_t begin_ns, std::int64_t end_ns) noexcept;
 
@@ -79,6 +83,7 @@ class ForceThread {
   bool stood_still_ = false;
   std::uint64_t still_steps_ = 0;  ///< since it stands still
   std::optional<ViewerStylus> viewer_stylus_;
+  std::vector<BridgedStylus> bridged_;   ///< of the network's styluses
   std::vector<StylusCommand> commands_;  ///< of the network's styluses, and perhaps the viewers'
   StepRecord record_;
   ForceThreadReport report_;

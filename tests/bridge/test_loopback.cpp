@@ -73,7 +73,7 @@ class Bridge {
   Bridge(const std::string& script, std::uint16_t port, double duration)
       : device_(parse(script), HandParameters{}),
         link_(1),
-        client_(link_, {.server = {"127.0.0.1", port}}, done_) {
+        client_(link_, {.server = {"127.0.0.1", port}, .predict = false}, done_) {
     loops_.emplace_back(device_, FilterLimits{});
     servo_.emplace(link_, loops_, ServoSettings{.duration = duration}, done_);
     client_.start();

@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <memory>
 #include <random>
 
-#include "device_bridge/contact/contact_predictor.hpp"
+#include "device_bridge/contact/bridge_contact.hpp"
 #include "device_bridge/safety/safety_filter.hpp"
+#include "server/step/bridged_stylus.hpp"
 
 namespace irdm::test {
 namespace {
@@ -48,10 +49,14 @@ class Way {
   std::vector<Timed> under_way_;
 };
 
+// When buttons go down [s].
+constexpr double kGrabTime = 0.05;
+
 struct Up {
-  int step = 0;
+  std::uint64_t sequence = 0;
+  std::uint32_t buttons = 0;
   Vector3 tip = Vector3::Zero();
-  std::vector<Vector3> forces;  ///< of this step and those before it
+  AppliedForces applied;
 };
 
 struct Down {
@@ -61,37 +66,42 @@ struct Down {
   ContactModel model;
 };
 
-/// What the server knows of one stylus, step by step.
-struct Known {
-  std::vector<std::optional<Vector3>> tip;
-  std::vector<std::optional<Vector3>> force;
-  int newest = -1;
-  Vector3 newest_tip = Vector3::Zero();
+/// One stylus: its hand and device, the way to the server and back, and what is known at either
+/// end.
+struct Stylus {
+  Stylus(const LoopHand& loop_hand, const LoopLink& link, std::uint64_t seed, double dt)
+      : hand(loop_hand.hand, loop_hand.target(0.0)),
+        up(link, 100 + seed),
+        down(link, 200 + seed),
+        contact(dt, std::llround(1e9 * dt)),
+        filter({}) {
+    filter.arm();
+  }
+
+  VirtualHand hand;
+  Way<Up> up;
+  Way<Down> down;
+  BridgeContact contact;
+  SafetyFilter filter;
+  ForceDemand asked;
+  Vector3 shown = Vector3::Zero();
+  int newest_down = -1;
+  double energy = 0.0;
+  // At the server:
+  AppliedHistory history;
+  std::uint64_t newest_up = 0;
+  StylusCommand command;
 };
 
 class Loop {
  public:
   Loop(const LoopSetup& setup, LoopMode mode, const LoopLink& link)
       : setup_(setup), mode_(mode), simulation_(setup.config), dt_(simulation_.dt()) {
-    const double longest = link.delay + link.jitter + link.slack;
-    if (mode == LoopMode::kPredict) behind_ = static_cast<int>(std::ceil(longest / dt_ - 1e-9));
-    horizon_ = std::min(2 * behind_ + 4, kMaxHorizon);
     const std::size_t count = setup.hands.size();
     for (std::size_t s = 0; s < count; ++s) {
-      hands_.emplace_back(setup.hands[s].hand, setup.hands[s].target(0.0));
-      up_.emplace_back(link, 100 + s);
-      down_.emplace_back(link, 200 + s);
+      styluses_.push_back(std::make_unique<Stylus>(setup.hands[s], link, s, dt_));
+      bridged_.emplace_back(simulation_, s);
     }
-    const auto steps = static_cast<std::size_t>(setup.steps);
-    known_.assign(count, {std::vector<std::optional<Vector3>>(steps),
-                          std::vector<std::optional<Vector3>>(steps)});
-    predictors_.resize(count);
-    shown_.assign(count, Vector3::Zero());
-    asked_.resize(count);
-    filters_.assign(count, SafetyFilter({}));
-    for (SafetyFilter& each : filters_) each.arm();
-    newest_down_.assign(count, -1);
-    energy_.assign(count, 0.0);
     commands_.resize(count);
     run_.force.resize(count);
     run_.tip.resize(count);
@@ -101,143 +111,125 @@ class Loop {
   LoopRun run() {
     for (int t = 0; t < setup_.steps; ++t) {
       const double now = (t + 1) * dt_;
-      for (std::size_t s = 0; s < hands_.size(); ++s) bridge(s, t, now);
-      for (std::size_t s = 0; s < hands_.size(); ++s) receive(s, t - behind_, now);
-      if (t >= behind_) serve(t - behind_, now);
-      for (std::size_t s = 0; s < hands_.size(); ++s) {
-        down_[s].deliver(now, [&](const Down& message) { take(s, message); });
+      for (std::size_t s = 0; s < styluses_.size(); ++s) bridge(s, t, now);
+      serve(t, now);
+      for (std::size_t s = 0; s < styluses_.size(); ++s) {
+        styluses_[s]->down.deliver(now, [&](const Down& message) { take(s, message, now); });
         if (setup_.filtered) filter(s, now);
-        run_.force[s].push_back(shown_[s]);
+        run_.force[s].push_back(styluses_[s]->shown);
       }
     }
-    for (const Known& known : known_) {
-      if (mode_ != LoopMode::kPredict) break;
-      for (int k = 0; k < setup_.steps - 2 * behind_ - 10; ++k) {
-        run_.lost += known.force[static_cast<std::size_t>(k)] ? 0 : 1;
-      }
+    for (const BridgedStylus& stylus : bridged_) {
+      run_.late += static_cast<int>(stylus.late());
+      run_.lost += static_cast<int>(stylus.lost());
     }
     return std::move(run_);
   }
 
  private:
+  static std::int64_t to_ns(double seconds) { return std::llround(1e9 * seconds); }
+
   void bridge(std::size_t s, int t, double now) {
-    const Vector3 before = hands_[s].position();
-    hands_[s].advance(dt_, setup_.hands[s].target(now), shown_[s]);
-    const Vector3 tip = hands_[s].position();
-    energy_[s] -= shown_[s].dot(tip - before);
-    run_.lowest_energy[s] = std::min(run_.lowest_energy[s], energy_[s]);
-    Up message{t, tip, {}};
-    if (mode_ == LoopMode::kPredict) {
-      const auto answer = predictors_[s].solve(static_cast<std::uint64_t>(t), tip);
-      run_.unknown += answer.known ? 0 : 1;
-      asked_[s].force = -answer.force;
-      asked_[s].contact = answer.state;
-      asked_[s].normal = answer.normal;
-      shown_[s] = asked_[s].force;
-      for (int i = 0; i < setup_.repeats && i <= t; ++i) {
-        message.forces.push_back(predictors_[s].applied(static_cast<std::uint64_t>(t - i)));
-      }
-    }
+    Stylus& stylus = *styluses_[s];
+    const Vector3 before = stylus.hand.position();
+    stylus.hand.advance(dt_, setup_.hands[s].target(now), stylus.shown);
+    const Vector3 tip = stylus.hand.position();
+    stylus.energy -= stylus.shown.dot(tip - before);
+    run_.lowest_energy[s] = std::min(run_.lowest_energy[s], stylus.energy);
     run_.tip[s].push_back(tip);
-    up_[s].send(now, message);
+    const bool grab = setup_.hands[s].grab && now > kGrabTime;
+    Up message{static_cast<std::uint64_t>(t), grab ? kGrabButton : 0, tip, {}};
+    if (mode_ == LoopMode::kPredict && stylus.contact.tick(to_ns(now), tip)) {
+      message.applied = stylus.contact.applied();
+    }
+    if (mode_ == LoopMode::kPredict) want(s, now);
+    stylus.up.send(now, message);
   }
 
-  // The age of what a demand contains is none of this loop's business.
+  // Without a filter, what is too old is shown no more.
+  void want(std::size_t s, double now) {
+    Stylus& stylus = *styluses_[s];
+    const BridgeContact::Wanted& wanted = stylus.contact.wanted();
+    const bool old = wanted.any && to_ns(now) - wanted.content_ns > wanted.horizon_ns;
+    run_.unknown += old ? 1 : 0;
+    stylus.asked = {.any = wanted.any,
+                    .sample_time_ns = wanted.content_ns,
+                    .horizon_ns = wanted.horizon_ns,
+                    .contact = wanted.contact,
+                    .force = wanted.force,
+                    .normal = wanted.normal};
+    stylus.shown = old ? Vector3::Zero() : wanted.force;
+  }
+
+  // The age of what a held demand contains is none of this loop's business.
   void filter(std::size_t s, double now) {
-    const auto now_ns = std::llround(1e9 * now);
-    asked_[s].linked = asked_[s].any = true;
-    asked_[s].sample_time_ns = now_ns;
-    shown_[s] = filters_[s].step(now_ns, {.tip = run_.tip[s].back()}, asked_[s]);
+    Stylus& stylus = *styluses_[s];
+    stylus.asked.linked = true;
+    if (mode_ != LoopMode::kPredict) {
+      stylus.asked.any = true;
+      stylus.asked.sample_time_ns = to_ns(now);
+    }
+    stylus.shown = stylus.filter.step(to_ns(now), {.tip = run_.tip[s].back()}, stylus.asked);
   }
 
-  void take(std::size_t s, const Down& message) {
+  void take(std::size_t s, const Down& message, double now) {
+    Stylus& stylus = *styluses_[s];
     if (mode_ == LoopMode::kPredict) {
       const bool good = check(message.model) == ContactModelFault::kNone;
       run_.refused += good ? 0 : 1;
-      if (good) predictors_[s].receive(message.model);
-    } else if (message.step > newest_down_[s]) {
-      newest_down_[s] = message.step;
-      asked_[s].force = shown_[s] = message.force;
-      asked_[s].contact = message.contact;
+      if (good) stylus.contact.receive(message.model, to_ns(now));
+    } else if (message.step > stylus.newest_down) {
+      stylus.newest_down = message.step;
+      stylus.asked.force = stylus.shown = message.force;
+      stylus.asked.contact = message.contact;
     }
   }
 
-  void receive(std::size_t s, int coming, double now) {
-    Known& known = known_[s];
-    up_[s].deliver(now, [&](const Up& message) {
-      if (message.step > known.newest) {
-        known.newest = message.step;
-        known.newest_tip = message.tip;
-      }
-      known.tip[static_cast<std::size_t>(message.step)] = message.tip;
-      for (int i = 0; i < static_cast<int>(message.forces.size()); ++i) {
-        auto& force = known.force[static_cast<std::size_t>(message.step - i)];
-        if (force) continue;
-        const int age = coming - 1 - (message.step - i);
-        if (age >= kMaxHorizon) continue;
-        force = message.forces[static_cast<std::size_t>(i)];
-        if (age < 0 || force->isZero(0.0)) continue;
-        simulation_.enter_late(s, *force, age);
-        ++run_.late;
-      }
+  void receive(Stylus& stylus, double now) {
+    stylus.up.deliver(now, [&](const Up& message) {
+      stylus.history.take(message.applied);
+      if (stylus.command.present && message.sequence <= stylus.newest_up) return;
+      stylus.command.present = true;
+      stylus.command.tip = message.tip;
+      stylus.command.buttons = message.buttons;
+      stylus.newest_up = message.sequence;
     });
   }
 
-  void serve(int k, double now) {
-    const auto step = static_cast<std::size_t>(k);
-    for (std::size_t s = 0; s < hands_.size(); ++s) {
-      Known& known = known_[s];
-      StylusCommand& command = commands_[s];
-      command.present = known.newest >= 0;
-      command.buttons = setup_.hands[s].grab ? kGrabButton : 0;
-      if (mode_ == LoopMode::kPredict) {
-        command.tip = known.tip[step].value_or(command.tip);
-        command.bridged = known.force[step].value_or(Vector3::Zero());
-      } else {
-        command.tip = known.newest_tip;
-      }
+  void serve(int t, double now) {
+    for (std::size_t s = 0; s < styluses_.size(); ++s) {
+      Stylus& stylus = *styluses_[s];
+      receive(stylus, now);
+      commands_[s] = bridged_[s].next(stylus.command, stylus.history, simulation_.next_step());
     }
     simulation_.step(commands_, record_);
-    for (std::size_t s = 0; s < hands_.size(); ++s) {
-      Down message;
-      message.step = k;
-      message.force = record_.stylus[s].force;
-      message.contact = record_.stylus[s].contact;
-      if (mode_ == LoopMode::kDirect) {
-        asked_[s].force = shown_[s] = message.force;
-        asked_[s].contact = message.contact;
-        continue;
-      }
-      if (mode_ == LoopMode::kHold) {
-        down_[s].send(now, message);
-        continue;
-      }
-      simulation_.foresee(s, commands_[s].tip, horizon_, message.model);
-      for (int i = 0; i < 64 && i <= k; ++i) {
-        if (!known_[s].force[step - static_cast<std::size_t>(i)]) {
-          message.model.missing |= std::uint64_t{1} << i;
-        }
-      }
-      down_[s].send(now, message);
+    for (std::size_t s = 0; s < styluses_.size(); ++s) answer(s, t, now);
+  }
+
+  void answer(std::size_t s, int t, double now) {
+    Stylus& stylus = *styluses_[s];
+    Down message;
+    message.step = t;
+    message.force = record_.stylus[s].force;
+    message.contact = record_.stylus[s].contact;
+    if (mode_ == LoopMode::kDirect) {
+      stylus.asked.force = stylus.shown = message.force;
+      stylus.asked.contact = message.contact;
+      return;
     }
+    if (mode_ == LoopMode::kPredict) {
+      if (!stylus.command.present) return;
+      bridged_[s].foresee(message.model);
+    }
+    stylus.down.send(now, message);
   }
 
   const LoopSetup& setup_;
   LoopMode mode_;
   Simulation simulation_;
   double dt_;
-  int behind_ = 0;
-  int horizon_ = 0;
-  std::vector<VirtualHand> hands_;
-  std::vector<Way<Up>> up_;
-  std::vector<Way<Down>> down_;
-  std::vector<Known> known_;
-  std::vector<ContactPredictor> predictors_;
-  std::vector<Vector3> shown_;
-  std::vector<ForceDemand> asked_;
-  std::vector<SafetyFilter> filters_;
-  std::vector<int> newest_down_;
-  std::vector<double> energy_;
+  std::vector<std::unique_ptr<Stylus>> styluses_;
+  std::vector<BridgedStylus> bridged_;
   std::vector<StylusCommand> commands_;
   StepRecord record_;
   LoopRun run_;

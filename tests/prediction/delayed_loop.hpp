@@ -3,6 +3,7 @@
 #include <functional>
 #include <vector>
 
+#include "common/contact/applied_forces.hpp"
 #include "device_bridge/virtual_hand.hpp"
 #include "server/step/simulation.hpp"
 
@@ -19,7 +20,6 @@ struct LoopLink {
   double delay = 0.0;   ///< one way [s]
   double jitter = 0.0;  ///< up to so much more, each message anew [s]
   double loss = 0.0;    ///< share of messages
-  double slack = 0.0;   ///< by which the server's clock is further behind than it must [s]
 };
 
 /// A hand, what it wants, and its button.
@@ -33,7 +33,6 @@ struct LoopSetup {
   SimulationConfig config;
   std::vector<LoopHand> hands;
   int steps = 1500;
-  int repeats = 8;        ///< forces of so many steps in each message
   bool filtered = false;  ///< a safety filter before each device, a tick a step
 };
 
@@ -43,13 +42,12 @@ struct LoopRun {
   std::vector<std::vector<Vector3>> tip;    ///< [m], W
   std::vector<double> lowest_energy;        ///< that the device had taken from the hand [J]
   int refused = 0;                          ///< models that check() refused
-  int unknown = 0;                          ///< steps without a model that reaches them
+  int unknown = 0;                          ///< steps whose newest model was too old
   int late = 0;                             ///< forces that the server entered afterwards
   int lost = 0;                             ///< forces that came too late for that, or never
 };
 
-/// Runs hands, bridges, link and server on one virtual clock. The server's clock is behind the
-/// bridges' by the way up, jitter included, so that forces are there for their own step.
+/// Runs hands, bridges, link and server on one virtual clock.
 LoopRun run_loop(const LoopSetup& setup, LoopMode mode, const LoopLink& link = {});
 
 /// Largest difference of the forces on a hand, as a share of the largest force of the reference.

@@ -10,7 +10,8 @@
 
 namespace irdm::test {
 
-/// Two cubes that fall onto a floor, spin, and are touched; one of them changes its settings.
+/// Two cubes that fall onto a floor, spin, and are touched; one of them changes its settings, and
+/// for a while its first stylus is that of a bridge whose forces come late.
 inline SimulationConfig two_cubes() {
   SimulationConfig config;
   config.gravity = Vector3(0, -2, 0);
@@ -36,6 +37,9 @@ inline void play_step(Simulation& simulation, int k, StepRecord& record) {
     settings.gravity = Vector3(0, -1, 0);
     settings.object[0].inertial_loading = false;
     simulation.set(settings);
+  }
+  for (int age = 0; k > 30 && k < 50 && age < k % 4; ++age) {
+    simulation.enter_late(0, Vector3(0.001 * age, -0.002, 0.0005 * k), age);
   }
   const double depth = std::min(2e-4 * k, 0.01);
   const std::array<StylusCommand, 2> commands{
@@ -64,6 +68,13 @@ struct RecordedFall {
       deformation.follow(record);
       SurfaceFrame& frame = frames.emplace_back(rest_frame(config));
       deformation.compute(frame);
+      for (std::size_t i = 0; i < objects; ++i) {
+        Points displacement;
+        simulation.object(static_cast<int>(i)).engine().displacement(displacement);
+        off_the_step = std::max(
+            off_the_step, (frame.objects[i].displacement - displacement).cwiseAbs().maxCoeff());
+      }
+      late += record.late.count;
     }
     TraceWriter writer(path, header);
     writer.append(records);
@@ -73,6 +84,8 @@ struct RecordedFall {
   SimulationConfig config;
   std::vector<std::string> names;
   std::vector<SurfaceFrame> frames;
+  double off_the_step = 0.0;  ///< largest difference from what the force step itself has [m]
+  std::size_t late = 0;       ///< forces that were entered late
 };
 
 }  // namespace irdm::test

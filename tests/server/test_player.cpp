@@ -63,6 +63,8 @@ TEST_CASE("a recording, read back, gives the surfaces of the run again") {
       held = held || frame.styluses[s].contact == ContactState::kHeld;
     }
   }
+  CHECK(run.off_the_step == 0.0);
+  CHECK(run.late > 10);
   CHECK(touched);
   CHECK(held);
   INFO("largest difference " << largest << " m");

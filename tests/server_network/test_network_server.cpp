@@ -49,7 +49,7 @@ TEST_CASE("a sample reaches the force thread and its force comes back with its n
 TEST_CASE("a bridge's report is there for who watches, until the bridge goes") {
   RunningServer running;
   RawPeer peer = running.connect();
-  peer.send(Hello{.capabilities = 0xFF, .lockstep = true, .name = "test"});
+  peer.send(Hello{.capabilities = wire::kCapabilityReport, .lockstep = true, .name = "test"});
   const auto welcome = peer.receive_as<Welcome>();
   REQUIRE(welcome);
   CHECK(welcome->capabilities == wire::kCapabilityReport);

@@ -64,6 +64,23 @@ TEST_CASE("a run in real time: both end in order, and the trace says what they s
   CHECK_THAT(bridge.out(), Contains("sessions 1, reconnects 0, protocol errors 0"));
   CHECK(number_after(bridge.out(), "forces: ") > 0);
   CHECK(number_after(bridge.out(), "peak force: ") > 0.1);
+  CHECK(number_after(bridge.out(), "contact models: ") > 10);
+  CHECK_THAT(bridge.out(), Contains(" 0 not believed"));
+}
+
+TEST_CASE("a run in real time whose bridge holds the server's forces") {
+  const Stage stage;
+  Server server = stage.start_server({});
+  stage.write("bridge.toml",
+              "[bridge]\nmode = \"hold\"\n"
+              "[[device]]\ntype = \"virtual\"\nscript = \"script.csv\"\n"
+              "hand = { mass = 0.12, damping = 2.0, stiffness = 300.0 }\n");
+  ChildProcess bridge = stage.start_bridge(server);
+  check_ended_well(bridge);
+  server.process.signal(SIGTERM);
+  check_ended_well(server.process);
+  CHECK_THAT(bridge.out(), !Contains("contact models"));
+  CHECK(number_after(bridge.out(), "peak force: ") > 0.1);
 }
 
 TEST_CASE("a server runs for its duration, to the step, and tells the bridge when it ends") {

@@ -1,0 +1,63 @@
+#include "device_bridge/contact/bridge_contact.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace irdm {
+
+void BridgeContact::receive(const ContactModel& model, std::int64_t now_ns) noexcept {
+  if (model.standing) {  // nothing goes on from here: when the run does, all begins anew
+    pacer_.stop();
+    wanted_.standing = true;
+    return;
+  }
+  if (pacer_.running() && model.step <= newest_model_) return;
+  wanted_.standing = false;
+  if (!pacer_.running()) predictor_.reset();
+  newest_model_ = model.step;
+  horizon_ns_ = std::llround(1e9 * dt_ * (model.valid ? model.horizon : kMaxHorizon));
+  const bool in_contact = !wanted_.force.isZero(0.0);
+  pacer_.hear(model.step, model.newest == kNoStep ? std::nullopt : std::optional(model.newest),
+              in_contact, now_ns);
+  predictor_.receive(model);
+}
+
+// A tip that several steps share has come to where it is evenly.
+bool BridgeContact::tick(std::int64_t now_ns, const Vector3& tip) noexcept {
+  const std::uint64_t before = pacer_.step();
+  const int count = pacer_.due(now_ns);
+  for (int i = 1; i <= count; ++i) {
+    const double share = static_cast<double>(i) / count;
+    const Vector3 from = last_tip_.value_or(tip);
+    solve(before + static_cast<std::uint64_t>(i), now_ns, from + share * (tip - from));
+  }
+  if (count > 0) last_tip_ = tip;
+  return count > 0;
+}
+
+void BridgeContact::solve(std::uint64_t k, std::int64_t now_ns, const Vector3& tip) noexcept {
+  const ContactPredictor::Answer answer = predictor_.solve(k, tip);
+  remember(k, tip);
+  if (!answer.known) return;  // what was wanted last grows old
+  wanted_ = {.any = true,
+             .content_ns = std::max(wanted_.content_ns, pacer_.end_of(newest_model_, now_ns)),
+             .horizon_ns = horizon_ns_,
+             .contact = answer.state,
+             .force = -answer.force,
+             .normal = answer.normal};
+}
+
+void BridgeContact::remember(std::uint64_t k, const Vector3& tip) noexcept {
+  auto& past = applied_.past;
+  const bool follows = applied_.count > 0 && k == applied_.step + 1;
+  std::shift_right(past.begin(), past.end(), 1);
+  past[0] = {predictor_.applied(k), tip};
+  applied_.step = k;
+  applied_.count = follows ? std::min(applied_.count + 1, AppliedForces::kSteps) : 1;
+}
+
+std::uint64_t BridgeContact::lookahead() const noexcept {
+  return pacer_.running() && pacer_.step() > newest_model_ ? pacer_.step() - newest_model_ : 0;
+}
+
+}  // namespace irdm

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "common/contact/applied_forces.hpp"
+#include "common/stylus.hpp"
+#include "device_bridge/contact/contact_predictor.hpp"
+#include "device_bridge/contact/step_pacer.hpp"
+
+namespace irdm {
+
+/// The contact of one stylus at the bridge, tick by tick: step pacer, contact predictor, and what
+/// is told to the server of it. One session: make a new one for the next. Pure, real-time safe.
+class BridgeContact {
+ public:
+  /// The force that the contact asks for, and what it rests on.
+  struct Wanted {
+    bool any = false;             ///< the rest means something
+    bool standing = false;        ///< the run stands still: what was felt is to fade
+    std::int64_t content_ns = 0;  ///< end of the last step that the server knew everything of
+    std::int64_t horizon_ns = 0;  ///< how long after that it is good
+    ContactState contact = ContactState::kFree;
+    Vector3 force = Vector3::Zero();   ///< on the stylus [N], W
+    Vector3 normal = Vector3::Zero();  ///< outward, of the surface; unit, W; zero: not known
+  };
+
+  /// @param dt of the server's step [s]  @param tick_ns between two calls of tick()
+  BridgeContact(double dt, std::int64_t tick_ns) noexcept : pacer_(dt, tick_ns), dt_(dt) {}
+
+  /// @param model has passed check()
+  void receive(const ContactModel& model, std::int64_t now_ns) noexcept;
+
+  /// Ends the steps that are due, with the tip where it is now [m], W, finite. True: there is news
+  /// in applied().
+  bool tick(std::int64_t now_ns, const Vector3& tip) noexcept;
+
+  const Wanted& wanted() const noexcept { return wanted_; }
+  /// Of the last steps.
+  const AppliedForces& applied() const noexcept { return applied_; }
+  /// By how many steps it is ahead of the newest model; 0 without one.
+  std::uint64_t lookahead() const noexcept;
+
+ private:
+  void solve(std::uint64_t k, std::int64_t now_ns, const Vector3& tip) noexcept;
+  void remember(std::uint64_t k, const Vector3& tip) noexcept;
+
+  StepPacer pacer_;
+  double dt_;
+  ContactPredictor predictor_;
+  std::uint64_t newest_model_ = 0;  ///< step of the newest model; while the pacer runs
+  std::int64_t horizon_ns_ = 0;     ///< of that model
+  Wanted wanted_;
+  AppliedForces applied_;
+  std::optional<Vector3> last_tip_;
+};
+
+}  // namespace irdm

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "common/contact/applied_forces.hpp"
+#include "common/contact/contact_model.hpp"
+
+namespace irdm {
+
+/// What a bridge has told of the last steps of a stylus, put together from messages that overlap.
+class AppliedHistory {
+ public:
+  static constexpr std::uint64_t kKept = 64;  ///< [steps]
+
+  void take(const AppliedForces& applied) noexcept {
+    for (int i = applied.count - 1; i >= 0; --i) {
+      const std::uint64_t step = applied.step - static_cast<std::uint64_t>(i);
+      Entry& entry = entries_[step % kKept];
+      if (entry.step != kNoStep && entry.step > step) continue;
+      entry = {step, applied.past[static_cast<std::size_t>(i)]};
+    }
+    if (applied.count > 0 && (newest_ == kNoStep || applied.step > newest_)) newest_ = applied.step;
+  }
+
+  /// The newest step that anything is known of; kNoStep: none.
+  std::uint64_t newest() const noexcept { return newest_; }
+  /// What was done in a step; null when it is not known, or not any more.
+  const AppliedForce* find(std::uint64_t step) const noexcept {
+    const Entry& entry = entries_[step % kKept];
+    return entry.step == step ? &entry.applied : nullptr;
+  }
+
+ private:
+  struct Entry {
+    std::uint64_t step = kNoStep;
+    AppliedForce applied;
+  };
+  std::array<Entry, kKept> entries_;
+  std::uint64_t newest_ = kNoStep;
+};
+
+}  // namespace irdm

@@ -1,0 +1,129 @@
+#include <catch2/catch.hpp>
+
+#include "device_bridge/contact/bridge_contact.hpp"
+#include "tests/support/allocation_guard.hpp"
+
+using namespace irdm;
+
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+constexpr double kDt = 0.002;
+
+/// A fixed wall at y = 0 that gives way by 1 mm per newton within a step, and not later.
+ContactModel wall(std::uint64_t step) {
+  ContactModel model;
+  model.valid = true;
+  model.step = step;
+  model.newest = step;
+  model.dt = kDt;
+  model.horizon = 25;
+  model.body = {1.0, Matrix3::Identity(), Support::kFixed};
+  model.normal = Vector3(0, 1, 0);
+  model.response[0] = 1e-3 * Matrix3::Identity();
+  REQUIRE(check(model) == ContactModelFault::kNone);
+  return model;
+}
+
+/// Ticks of 1 ms with a tip at this height, each step with a newer model if `served`.
+class Bench {
+ public:
+  int ticks(int count, double height, bool served = true) {
+    int told = 0;
+    for (int i = 0; i < count; ++i, now_ns += kMs) {
+      if (served && now_ns % (2 * kMs) == 0) contact.receive(wall(server_step++), now_ns);
+      told += contact.tick(now_ns, Vector3(0, height, 0)) ? 1 : 0;
+    }
+    return told;
+  }
+  BridgeContact contact{kDt, kMs};
+  std::int64_t now_ns = 0;
+  std::uint64_t server_step = 100;
+};
+
+}  // namespace
+
+TEST_CASE("contact at the bridge: nothing is asked for before the first model") {
+  Bench bench;
+  CHECK(bench.ticks(10, -0.001, false) == 0);
+  CHECK_FALSE(bench.contact.wanted().any);
+  CHECK(bench.ticks(2, 0.001) > 0);
+  CHECK(bench.contact.wanted().any);
+  CHECK(bench.contact.wanted().force.isZero(0.0));
+}
+
+TEST_CASE("contact at the bridge: a wall pushes by its stiffness, and the server is told of it") {
+  Bench bench;
+  bench.ticks(100, 0.001);
+  CHECK(bench.ticks(40, -0.001) == 20);
+  const BridgeContact::Wanted& wanted = bench.contact.wanted();
+  CHECK(wanted.contact == ContactState::kTouching);
+  CHECK((wanted.force - Vector3(0, 1, 0)).norm() < 1e-12);
+  CHECK((wanted.normal - Vector3(0, 1, 0)).norm() < 1e-12);
+  CHECK(wanted.horizon_ns == 50 * kMs);
+  const AppliedForces& applied = bench.contact.applied();
+  CHECK(applied.count == AppliedForces::kSteps);
+  CHECK(applied.step == bench.server_step - 1 + bench.contact.lookahead());
+  CHECK((applied.past[3].force - Vector3(0, -1, 0)).norm() < 1e-12);
+  CHECK(applied.past[3].tip == Vector3(0, -0.001, 0));
+}
+
+TEST_CASE("contact at the bridge: without newer models what it asks for ages by its own clock") {
+  Bench bench;
+  bench.ticks(100, -0.001);
+  const std::int64_t last = bench.contact.wanted().content_ns;
+  CHECK(bench.now_ns - last <= 8 * kMs);
+  bench.ticks(40, -0.001, false);
+  CHECK(bench.contact.wanted().content_ns == last);
+  CHECK(bench.contact.wanted().force.y() > 0.9);
+  bench.ticks(40, -0.001,
+              false);  // beyond the horizon nothing is solved: the object is told of none
+  CHECK(bench.contact.wanted().content_ns == last);
+  CHECK(bench.contact.applied().past[0].force.isZero(0.0));
+}
+
+TEST_CASE("contact at the bridge: a run that stands still says so, and goes on at its own number") {
+  Bench bench;
+  bench.ticks(100, -0.001);
+  ContactModel standing;
+  standing.standing = true;
+  standing.step = bench.server_step - 1;
+  bench.contact.receive(standing, bench.now_ns);
+  CHECK(bench.contact.wanted().standing);
+  CHECK(bench.ticks(500, -0.001, false) == 0);
+  CHECK(bench.ticks(20, -0.001) > 5);
+  CHECK_FALSE(bench.contact.wanted().standing);
+  CHECK(bench.contact.lookahead() < 5);
+  CHECK((bench.contact.wanted().force - Vector3(0, 1, 0)).norm() < 1e-12);
+}
+
+TEST_CASE("contact at the bridge: where nothing can be touched no force is asked for") {
+  Bench bench;
+  bench.ticks(100, -0.001);
+  ContactModel none;
+  none.step = bench.server_step;
+  none.dt = kDt;
+  bench.contact.receive(none, bench.now_ns);
+  bench.ticks(4, -0.001, false);
+  CHECK(bench.contact.wanted().any);
+  CHECK(bench.contact.wanted().force.isZero(0.0));
+  CHECK(bench.contact.wanted().contact == ContactState::kFree);
+}
+
+TEST_CASE("contact at the bridge: a million ticks allocate nothing") {
+  if (!test::AllocationGuard::active()) return;
+  Bench bench;
+  const ContactModel model = wall(0);
+  ContactModel next = model;
+  const test::AllocationGuard guard;
+  for (int i = 0; i < 1'000'000; ++i) {
+    const std::int64_t now_ns = i * kMs;
+    if (i % 2 == 0) {
+      next.step = next.newest = static_cast<std::uint64_t>(i / 2);
+      bench.contact.receive(next, now_ns);
+    }
+    bench.contact.tick(now_ns, Vector3(0, i % 1000 < 500 ? -0.001 : 0.001, 0));
+  }
+  CHECK(guard.count() == 0);
+  CHECK(bench.contact.wanted().any);
+}

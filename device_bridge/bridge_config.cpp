@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <set>
+#include <utility>
 
 #include "common/error.hpp"
 #include "device_bridge/device_registry.hpp"
@@ -59,6 +60,7 @@ DeviceConfig read_device(TomlTable table, const BridgeOverrides& overrides) {
   DeviceConfig device;
   device.type = table.choice("type", device_types(), device.type);
   if (!overrides.device.empty()) device.type = overrides.device;
+  device.name = table.text("name", "");
   if (table.has("script")) {
     device.script = table.path("script");
     if (!overrides.script.empty()) {
@@ -90,6 +92,17 @@ void read_bridge(TomlTable table, const std::string& file, BridgeConfig& config)
   config.realtime =
       scheduling_from_word(table.choice("realtime", {"require", "prefer", "ignore"}, "prefer"));
   table.finish();
+}
+
+// Two devices of a driver have to be told apart.
+void check_names(const std::vector<DeviceConfig>& devices, const std::string& file) {
+  std::set<std::pair<std::string, std::string>> seen;
+  for (const DeviceConfig& device : devices) {
+    if (device.type == "virtual" || seen.insert({device.type, device.name}).second) continue;
+    throw Error(file,
+                "has two devices of type " + device.type + " with the name '" + device.name + "'",
+                "give each its own name, as in the vendor's setup");
+  }
 }
 
 }  // namespace
@@ -129,6 +142,7 @@ BridgeConfig read_bridge_config(TomlTable root, const std::string& name,
   if (config.devices.empty()) {
     throw Error(name, "has no device", "add a [[device]] table");
   }
+  check_names(config.devices, name);
   if (!overrides.script.empty() && config.devices.size() > 1) {
     throw Error(name, "has several devices and --script is one script",
                 "name each script in its [[device]] table");

@@ -3,15 +3,11 @@
 #include <array>
 
 #include "common/error.hpp"
+#include "device_bridge/openhaptics/openhaptics_device.hpp"
 #include "device_bridge/virtual_stylus.hpp"
 
 namespace irdm {
 namespace {
-
-std::unique_ptr<HapticDevice> no_openhaptics(const DeviceConfig&) {
-  throw Error("device openhaptics", "this build has no support for it",
-              "use type = \"virtual\" or --device virtual");
-}
 
 struct Entry {
   const char* type;
@@ -20,7 +16,7 @@ struct Entry {
 
 constexpr std::array kEntries{
     Entry{"virtual", make_virtual_stylus},
-    Entry{"openhaptics", no_openhaptics},
+    Entry{"openhaptics", make_openhaptics_device},
 };
 
 }  // namespace

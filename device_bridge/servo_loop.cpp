@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace irdm {
 
@@ -16,12 +17,14 @@ void ServoLoop::restart() noexcept {
   filter_.arm();
   clutch_ = Clutch{};
   reading_.reset();
+  was_ready_ = true;
   next_sequence_ = 0;
 }
 
 void ServoLoop::read(double device_time) noexcept {
   const StylusPose pose = device_.read(device_time);
   const bool finite = pose.tip.allFinite() && pose.orientation.coeffs().allFinite();
+  device_state_ = device_.state();
   reading_ = finite ? pose.tip : Vector3::Constant(std::numeric_limits<double>::quiet_NaN());
   if (!finite) return;
   pose_ = mapping_.workspace.to_world(pose);
@@ -37,11 +40,26 @@ StylusSample ServoLoop::take_sample(std::int64_t now_ns) noexcept {
           .orientation = pose_.orientation};
 }
 
+// What is not ready gets no force, and afterwards it comes back as after an arm action.
+void ServoLoop::heed_device() noexcept {
+  const FilterState state = filter_.state();
+  const bool was_ready = std::exchange(was_ready_, device_state_.ready);
+  if (state == FilterState::kFault) return;
+  if (device_state_.failed) {
+    if (state != FilterState::kDisarmed) filter_.fail();
+  } else if (!device_state_.ready) {
+    filter_.disarm();
+  } else if (!was_ready) {
+    filter_.arm();
+  }
+}
+
 void ServoLoop::apply(std::int64_t now_ns, const ServoInput& input) noexcept {
   if (!reading_) return rest();
+  heed_device();
   const StylusForce& newest = input.force;
   const Vector3 force =
-      filter_.step(now_ns, {.tip = *reading_},
+      filter_.step(now_ns, {.tip = *reading_, .motor_warmth = device_state_.motor_warmth},
                    {.linked = input.linked,
                     .any = input.any_force,
                     .sample_time_ns = newest.sample_time_ns,

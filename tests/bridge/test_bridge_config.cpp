@@ -165,8 +165,19 @@ TEST_CASE("a server address needs a host and a port in range") {
   }
 }
 
-TEST_CASE("a device that this build does not support is refused in one clear line") {
-  CHECK_THROWS_WITH(make_device({.type = "openhaptics"}), Catch::Contains("no support"));
+TEST_CASE("devices of a driver have names of their own") {
+  const std::string touch = "[[device]]\ntype = \"openhaptics\"\n";
+  const BridgeConfig config =
+      ConfigFile(touch + "name = \"Left\"\n" + touch + "name = \"Right\"\n").load();
+  CHECK(config.devices.at(0).name == "Left");
+  CHECK(config.devices.at(1).name == "Right");
+  CHECK(ConfigFile(touch).load().devices.at(0).name.empty());
+  check_refused(touch + touch, "two devices of type openhaptics with the name ''");
+  check_refused(touch + "name = 3\n", "name is not text");
+  CHECK_NOTHROW(ConfigFile(kDevice + kDevice).load());
+}
+
+TEST_CASE("a device of an unknown type is refused") {
   CHECK_THROWS_AS(make_device({.type = "magic"}), Error);
 }
 

@@ -1,6 +1,7 @@
 #include "device_bridge/bridge_config.hpp"
 
 #include <charconv>
+#include <limits>
 #include <set>
 #include <utility>
 
@@ -17,6 +18,30 @@ HandParameters read_hand(TomlTable table) {
   hand.stiffness = table.number("stiffness", between(1e-3, 1e6), hand.stiffness);
   table.finish();
   return hand;
+}
+
+SensorParameters read_sensor(TomlTable table) {
+  constexpr double kCoarsest = 0.01;
+  SensorParameters sensor;
+  sensor.resolution = table.number("resolution", between(0.0, kCoarsest), sensor.resolution);
+  sensor.noise = table.number("noise", between(0.0, kCoarsest), sensor.noise);
+  sensor.seed = static_cast<std::uint32_t>(
+      table.integer("seed", 0, std::numeric_limits<int>::max(), static_cast<int>(sensor.seed)));
+  table.finish();
+  return sensor;
+}
+
+MotorParameters read_motors(TomlTable table) {
+  const Range force{.lowest = 0.0, .highest = 100.0, .lowest_included = false};
+  MotorParameters motors;
+  if (table.has("max_force")) motors.max_force = table.number("max_force", force);
+  if (table.has("continuous_force")) {
+    motors.continuous_force = table.number("continuous_force", force);
+  }
+  motors.time_constant = table.number("time_constant", between(0.01, 1e4), motors.time_constant);
+  if (table.has("watchdog")) motors.watchdog = table.number("watchdog", between(0.001, 10.0));
+  table.finish();
+  return motors;
 }
 
 Workspace read_workspace(TomlTable table) {
@@ -72,6 +97,8 @@ DeviceConfig read_device(TomlTable table, const BridgeOverrides& overrides) {
     table.fail("", "has no script", "add script = \"FILE.csv\" or give --script FILE.csv");
   }
   if (table.has("hand")) device.hand = read_hand(table.table("hand"));
+  device.sensor = read_sensor(table.table("sensor"));
+  device.motors = read_motors(table.table("motors"));
   device.mapping.workspace = read_workspace(table.table("workspace"));
   device.mapping.buttons = read_buttons(table.table("buttons"));
   table.finish();

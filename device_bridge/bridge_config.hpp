@@ -26,7 +26,7 @@ ServerAddress parse_server_address(const std::string& text, const std::string& w
 
 /// One [[device]] table.
 struct DeviceConfig {
-  std::string type = "virtual";  ///< key `type`: virtual | openhaptics
+  std::string type = "virtual";  ///< key `type`: virtual | openhaptics | forcedimension
   std::string name = {};  ///< key `name`: of a real device in its vendor's setup; empty: default
   std::filesystem::path script = {};  ///< key `script`: of a virtual device, required there
   std::optional<HandParameters> hand =

@@ -9,37 +9,50 @@
 #include "common/error.hpp"
 #include "device_bridge/device_registry.hpp"
 #include "device_bridge/doctor/judgements.hpp"
+#include "device_bridge/forcedimension/dhd_api.hpp"
 #include "device_bridge/openhaptics/hd_library.hpp"
 
 namespace irdm::doctor {
 namespace {
 
-const char* const kOpenHaptics = "openhaptics";
-
 void add(Findings& findings, Findings more) {
   std::move(more.begin(), more.end(), std::back_inserter(findings));
 }
 
-std::string library_failure() {
+template <typename Load>
+std::string failure_of(Load load) {
   try {
-    hd::library();
+    load();
     return "";
   } catch (const Error& error) {
     return error.what();
   }
 }
 
-bool is_openhaptics(const DeviceConfig& device) {
-  return device.type == kOpenHaptics;
+bool has_type(const std::vector<DeviceConfig>& devices, const std::string& type) {
+  return std::any_of(devices.begin(), devices.end(),
+                     [&](const DeviceConfig& device) { return device.type == type; });
 }
 
-// @param wanted whether a device of it is configured
-Findings examine_openhaptics(const std::vector<DeviceConfig>& devices, bool wanted) {
+Findings examine_openhaptics(const std::vector<DeviceConfig>& devices) {
+  const bool wanted = has_type(devices, "openhaptics");
   const hd::TouchSystem system = hd::look_at_touch_system();
-  Findings findings{judge_library(library_failure(), wanted)};
+  Findings findings{judge_library("libHD.so", failure_of(hd::library), wanted)};
   add(findings, judge_ports(system, wanted));
   for (const DeviceConfig& device : devices) {
-    if (is_openhaptics(device)) findings.push_back(judge_setup(system, device.name));
+    if (device.type == "openhaptics") findings.push_back(judge_setup(system, device.name));
+  }
+  return findings;
+}
+
+// Drivers; those of no configured device only where there is no configuration.
+Findings examine_drivers(const std::optional<BridgeConfig>& config) {
+  Findings findings;
+  const std::vector<DeviceConfig> devices = config ? config->devices : std::vector<DeviceConfig>{};
+  if (!config || has_type(devices, "openhaptics")) add(findings, examine_openhaptics(devices));
+  const bool force_dimension = has_type(devices, "forcedimension");
+  if (!config || force_dimension) {
+    findings.push_back(judge_library("libdhd.so", failure_of(dhd::library), force_dimension));
   }
   return findings;
 }
@@ -81,11 +94,8 @@ Finding examine_server(const BridgeConfig& config) {
 
 Findings examine(const std::optional<BridgeConfig>& config) {
   const RealTimeScheduling scheduling = config ? config->realtime : RealTimeScheduling::kPrefer;
-  const std::vector<DeviceConfig> devices = config ? config->devices : std::vector<DeviceConfig>{};
-  const bool wanted = std::any_of(devices.begin(), devices.end(), is_openhaptics);
-  Findings findings;
-  if (!config || wanted) add(findings, examine_openhaptics(devices, wanted));
-  add(findings, open_devices(devices));
+  Findings findings = examine_drivers(config);
+  if (config) add(findings, open_devices(config->devices));
   findings.push_back(judge_real_time(try_real_time(), scheduling));
   findings.push_back(judge_locked_memory(try_locked_memory(), scheduling));
   const ClockFacts clock = look_at_clock();

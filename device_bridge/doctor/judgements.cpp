@@ -35,8 +35,8 @@ Finding from_error(Grade grade, const std::string& subject, const std::string& e
 
 }  // namespace
 
-Finding judge_library(const std::string& failure, bool wanted) {
-  if (failure.empty()) return {Grade::kOk, "driver", "libHD.so loads", ""};
+Finding judge_library(const std::string& library, const std::string& failure, bool wanted) {
+  if (failure.empty()) return {Grade::kOk, "driver", library + " loads", ""};
   return from_error(missing(wanted), "driver", failure);
 }
 

@@ -9,10 +9,10 @@
 /// What facts mean for a person. Pure.
 namespace irdm::doctor {
 
-/// @param wanted whether a device of OpenHaptics is configured; where none is, what is missing is
-/// no problem
-/// @param failure of loading the driver; empty: it loads
-Finding judge_library(const std::string& failure, bool wanted);
+/// @param library its name
+/// @param failure of loading it; empty: it loads
+/// @param wanted whether a device of it is configured; where none is, what is missing is no problem
+Finding judge_library(const std::string& library, const std::string& failure, bool wanted);
 
 /// One for each port, or one for none.
 Findings judge_ports(const hd::TouchSystem& system, bool wanted);

@@ -1,77 +1,15 @@
 #include "device_bridge/openhaptics/hd_library.hpp"
 
-#include <dlfcn.h>
-
 #include <cstdlib>
 
-#include "common/error.hpp"
+#include "device_bridge/driver_library.hpp"
 
 namespace irdm::hd {
-namespace {
-
-const char* const kWhere = "OpenHaptics";
-
-/// One library that was looked for.
-struct Attempt {
-  void* library = nullptr;
-  std::string failure;
-};
-
-Attempt attempt(const std::string& name) {
-  ::dlerror();
-  if (void* library = ::dlopen(name.c_str(), RTLD_NOW | RTLD_LOCAL)) return {library, ""};
-  const char* const why = ::dlerror();
-  return {nullptr, why != nullptr ? why : "no reason given"};
-}
-
-template <typename Function>
-void bind(void* library, const std::string& library_name, const char* name, Function& function) {
-  void* const symbol = ::dlsym(library, name);
-  if (symbol == nullptr) {
-    throw Error(kWhere, library_name + " has no function " + name, "install OpenHaptics 3.4");
-  }
-  function = reinterpret_cast<Function>(symbol);
-}
-
-Api bind_all(void* library, const std::string& name) {
-  Api api{};
-  const auto take = [&](const char* symbol, auto& function) {
-    bind(library, name, symbol, function);
-  };
-  take("hdInitDevice", api.init_device);
-  take("hdDisableDevice", api.disable_device);
-  take("hdMakeCurrentDevice", api.make_current_device);
-  take("hdBeginFrame", api.begin_frame);
-  take("hdEndFrame", api.end_frame);
-  take("hdGetError", api.get_error);
-  take("hdEnable", api.enable);
-  take("hdDisable", api.disable);
-  take("hdIsEnabled", api.is_enabled);
-  take("hdGetIntegerv", api.get_integerv);
-  take("hdGetDoublev", api.get_doublev);
-  take("hdGetString", api.get_string);
-  take("hdSetDoublev", api.set_doublev);
-  take("hdCheckCalibration", api.check_calibration);
-  take("hdUpdateCalibration", api.update_calibration);
-  take("hdStartScheduler", api.start_scheduler);
-  take("hdStopScheduler", api.stop_scheduler);
-  take("hdSetSchedulerRate", api.set_scheduler_rate);
-  take("hdScheduleAsynchronous", api.schedule_asynchronous);
-  take("hdUnschedule", api.unschedule);
-  return api;
-}
-
-}  // namespace
 
 std::vector<std::string> library_names() {
   const char* const chosen = std::getenv("HD_LIBRARY");
   if (chosen != nullptr && *chosen != '\0') return {chosen};
   return {"libHD.so.3.4", "libHD.so.3", "libHD.so"};
-}
-
-std::string missing_object(const std::string& message) {
-  const std::size_t end = message.find(": cannot open shared object file");
-  return end == std::string::npos ? "" : message.substr(0, end);
 }
 
 std::string package_of(const std::string& object) {
@@ -85,22 +23,35 @@ std::string package_of(const std::string& object) {
 }
 
 Api load_library(const std::vector<std::string>& names) {
-  for (const std::string& name : names) {
-    const auto [library, failure] = attempt(name);
-    if (library != nullptr) return bind_all(library, name);
-    const std::string missing = missing_object(failure);
-    if (missing == name) continue;
-    if (missing.empty()) {
-      throw Error(kWhere, name + " cannot be loaded: " + failure,
-                  "install the 64-bit OpenHaptics 3.4 and its device driver");
-    }
-    throw Error(kWhere, name + " is there, but needs " + missing + ", which is not",
-                package_of(missing));
-  }
-  std::string tried;
-  for (const std::string& name : names) tried += (tried.empty() ? "" : ", ") + name;
-  throw Error(kWhere, "its library is not found (tried " + tried + ")",
-              "install OpenHaptics 3.4 of 3D Systems, or name the library in $HD_LIBRARY");
+  const DriverLibrary library(
+      {.vendor = "OpenHaptics",
+       .names = names,
+       .install =
+           "install the 64-bit OpenHaptics 3.4 of 3D Systems with its device driver, or name "
+           "its libHD.so in $HD_LIBRARY",
+       .package_of = package_of});
+  Api api{};
+  library.bind("hdInitDevice", api.init_device);
+  library.bind("hdDisableDevice", api.disable_device);
+  library.bind("hdMakeCurrentDevice", api.make_current_device);
+  library.bind("hdBeginFrame", api.begin_frame);
+  library.bind("hdEndFrame", api.end_frame);
+  library.bind("hdGetError", api.get_error);
+  library.bind("hdEnable", api.enable);
+  library.bind("hdDisable", api.disable);
+  library.bind("hdIsEnabled", api.is_enabled);
+  library.bind("hdGetIntegerv", api.get_integerv);
+  library.bind("hdGetDoublev", api.get_doublev);
+  library.bind("hdGetString", api.get_string);
+  library.bind("hdSetDoublev", api.set_doublev);
+  library.bind("hdCheckCalibration", api.check_calibration);
+  library.bind("hdUpdateCalibration", api.update_calibration);
+  library.bind("hdStartScheduler", api.start_scheduler);
+  library.bind("hdStopScheduler", api.stop_scheduler);
+  library.bind("hdSetSchedulerRate", api.set_scheduler_rate);
+  library.bind("hdScheduleAsynchronous", api.schedule_asynchronous);
+  library.bind("hdUnschedule", api.unschedule);
+  return api;
 }
 
 const Api& library() {

@@ -11,16 +11,12 @@ namespace irdm::hd {
 /// usual names.
 std::vector<std::string> library_names();
 
-/// Loads the first of these libraries that is there, and keeps it for good: the vendor's driver
-/// does not bear to be loaded a second time. Throws Error that says what is missing: the library,
-/// one that it needs, or a function in it.
+/// Loads the first of these libraries that is there. Throws Error that says what is missing: the
+/// library, one that it needs, or a function in it.
 Api load_library(const std::vector<std::string>& names);
 
 /// The one of this process, loaded when first asked for. Throws as load_library().
 const Api& library();
-
-/// The shared object that a message of dlopen misses; empty when it is about something else. Pure.
-std::string missing_object(const std::string& message);
 
 /// Which package brings a shared object that libHD.so needs, as advice. Pure.
 std::string package_of(const std::string& object);

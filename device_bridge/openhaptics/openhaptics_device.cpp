@@ -158,7 +158,7 @@ void OpenHapticsDevice::read_warmth() noexcept {
     hd_.get_doublev(hd::kMotorTemperature, motors.data());
     const hd::ErrorInfo error = hd_.get_error();
     tells_warmth_ = hd::describe(error.code).meaning != hd::Meaning::kBadFrame;
-    if (tells_warmth_) take(error);
+    if (tells_warmth_) scheduler_->give(error, *this);
   }
   double warmest = 0.0;
   for (const double motor : motors) {

@@ -60,11 +60,15 @@ void OpenHapticsScheduler::fetch_errors(OpenHapticsDevice& here) noexcept {
   for (int i = 0; i < kMostErrors; ++i) {
     const hd::ErrorInfo error = api_.get_error();
     if (error.code == hd::kSuccess) return;
-    const auto about = std::find_if(
-        devices_.begin(), devices_.end(),
-        [&](const OpenHapticsDevice* device) { return device->handle() == error.device; });
-    (about == devices_.end() ? here : **about).take(error);
+    give(error, here);
   }
+}
+
+void OpenHapticsScheduler::give(const hd::ErrorInfo& error, OpenHapticsDevice& here) noexcept {
+  const auto about = std::find_if(
+      devices_.begin(), devices_.end(),
+      [&](const OpenHapticsDevice* device) { return device->handle() == error.device; });
+  (about == devices_.end() ? here : **about).take(error);
 }
 
 }  // namespace irdm

@@ -29,6 +29,8 @@ class OpenHapticsScheduler : public TickSource {
   /// Fetches the driver's errors and gives each to the device that it is about, those about none to
   /// `here`. Real-time safe.
   void fetch_errors(OpenHapticsDevice& here) noexcept;
+  /// Gives one error to the device that it is about, or to `here`. Real-time safe.
+  void give(const hd::ErrorInfo& error, OpenHapticsDevice& here) noexcept;
 
  private:
   static std::uint32_t call(void* self);

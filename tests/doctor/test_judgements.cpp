@@ -33,12 +33,13 @@ TEST_CASE("findings are a line each, with the remedy where there is one") {
 }
 
 TEST_CASE("doctor: a driver that does not load is a problem where a device needs it") {
-  CHECK(judge_library("", kWanted).grade == Grade::kOk);
-  const Finding finding = judge_library("OpenHaptics: libHD.so needs libx; install libx", kWanted);
+  CHECK(judge_library("libHD.so", "", kWanted).grade == Grade::kOk);
+  const Finding finding =
+      judge_library("libHD.so", "OpenHaptics: libHD.so needs libx; install libx", kWanted);
   CHECK(finding.grade == Grade::kProblem);
   CHECK(finding.what == "OpenHaptics: libHD.so needs libx");
   CHECK(finding.remedy == "install libx");
-  CHECK(judge_library("missing", kNotWanted).grade == Grade::kWarning);
+  CHECK(judge_library("libHD.so", "missing", kNotWanted).grade == Grade::kWarning);
 }
 
 TEST_CASE("doctor: each port is told, and whether it is permitted") {

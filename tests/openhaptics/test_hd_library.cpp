@@ -2,6 +2,7 @@
 #include <cstdlib>
 
 #include "common/error.hpp"
+#include "device_bridge/driver_library.hpp"
 #include "device_bridge/openhaptics/hd_library.hpp"
 
 using Catch::Matchers::Contains;
@@ -23,8 +24,9 @@ TEST_CASE("libHD.so is loaded with all its functions, the next name after one th
 }
 
 TEST_CASE("a missing libHD.so is told with all names that were tried") {
-  CHECK_THROWS_WITH(hd::load_library({"libHD.so.no", "/nowhere/libHD.so"}),
-                    Contains("libHD.so.no, /nowhere/libHD.so") && Contains("install OpenHaptics"));
+  CHECK_THROWS_WITH(
+      hd::load_library({"libHD.so.no", "/nowhere/libHD.so"}),
+      Contains("libHD.so.no, /nowhere/libHD.so") && Contains("install the 64-bit OpenHaptics"));
   CHECK_THROWS_AS(hd::load_library({"/nowhere/libHD.so"}), Error);
 }
 
@@ -44,9 +46,8 @@ TEST_CASE("a file that is no library is told in dlopen's words") {
 }
 
 TEST_CASE("what dlopen misses is read from its message") {
-  CHECK(hd::missing_object("libx.so.5: cannot open shared object file: No such file") ==
-        "libx.so.5");
-  CHECK(hd::missing_object("libx.so: wrong ELF class: ELFCLASS32").empty());
+  CHECK(missing_object("libx.so.5: cannot open shared object file: No such file") == "libx.so.5");
+  CHECK(missing_object("libx.so: wrong ELF class: ELFCLASS32").empty());
   CHECK_THAT(hd::package_of("libncurses.so.5"), Contains("libncurses5"));
   CHECK_THAT(hd::package_of("libtinfo.so.5"), Contains("libtinfo5"));
   CHECK_THAT(hd::package_of("libother.so"), Contains("LD_LIBRARY_PATH"));

@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "common/error.hpp"
+#include "common/realtime/clock.hpp"
 #include "device_bridge/device_registry.hpp"
+#include "device_bridge/device_watch.hpp"
 #include "device_bridge/network_client.hpp"
 #include "device_bridge/servo_link.hpp"
 #include "device_bridge/servo_loop.hpp"
@@ -37,6 +39,34 @@ class OpenDevices {
   std::size_t open_ = 0;
 };
 
+FilterLimits limits_for(const HapticDevice& device, const BridgeConfig& config) {
+  const ForceRating rating = device.rating();
+  return {.max_force = std::min(config.max_force, rating.peak),
+          .continuous_force = std::min(config.continuous_force, rating.continuous)};
+}
+
+// Until a signal comes, a thread of ours ends, or a driver stops making ticks.
+void await_end(StopSignal& stop_signal, Wakeup& done, const ServoThread& servo,
+               DeviceWatch& watch) {
+  constexpr int kLookMs = 100;
+  while (!stop_signal.wait_for(kLookMs, done.descriptor()) && !done.consume() &&
+         !servo.driver_silent(monotonic_ns())) {
+    watch.look();
+  }
+  watch.look();
+}
+
+std::string failure_of(ServoEnd end, const DeviceWatch& watch) {
+  if (end == ServoEnd::kLinkLost) {
+    return "server: connection lost in lockstep; start both programs again";
+  }
+  if (end == ServoEnd::kDeviceLost) return watch.troubles();
+  if (end == ServoEnd::kDriverStuck) {
+    return "device: its driver no longer makes ticks; check power and cable, and start again";
+  }
+  return {};
+}
+
 }  // namespace
 
 BridgeReport run_bridge(const BridgeConfig& config, StopSignal& stop_signal, double duration) {
@@ -48,10 +78,7 @@ BridgeReport run_bridge(const BridgeConfig& config, StopSignal& stop_signal, dou
   double longest = 0.0;
   bool simulated = true;
   for (const auto& device : devices.all()) {
-    loops.emplace_back(
-        *device,
-        FilterLimits{.max_force = config.max_force, .continuous_force = config.continuous_force},
-        config.devices[loops.size()].mapping);
+    loops.emplace_back(*device, limits_for(*device, config), config.devices[loops.size()].mapping);
     longest = std::max(longest, device->duration());
     simulated = simulated && device->simulated();
   }
@@ -72,7 +99,8 @@ BridgeReport run_bridge(const BridgeConfig& config, StopSignal& stop_signal, dou
       done);
   client.start();
   servo.start();
-  stop_signal.wait(done.descriptor());
+  DeviceWatch watch(devices.all());
+  await_end(stop_signal, done, servo, watch);
   servo.stop();
   client.stop(servo.report().end == ServoEnd::kFinished);
 
@@ -88,9 +116,7 @@ BridgeReport run_bridge(const BridgeConfig& config, StopSignal& stop_signal, dou
     report.filter.trips += counts.trips;
     report.filter.faults += counts.faults;
   }
-  if (report.servo.end == ServoEnd::kLinkLost && report.client.failure.empty()) {
-    report.client.failure = "server: connection lost in lockstep; start both programs again";
-  }
+  if (report.client.failure.empty()) report.client.failure = failure_of(report.servo.end, watch);
   return report;
 }
 

@@ -1,7 +1,9 @@
 #include "device_bridge/bridge_config.hpp"
 
 #include <charconv>
+#include <limits>
 #include <set>
+#include <utility>
 
 #include "common/error.hpp"
 #include "device_bridge/device_registry.hpp"
@@ -16,6 +18,30 @@ HandParameters read_hand(TomlTable table) {
   hand.stiffness = table.number("stiffness", between(1e-3, 1e6), hand.stiffness);
   table.finish();
   return hand;
+}
+
+SensorParameters read_sensor(TomlTable table) {
+  constexpr double kCoarsest = 0.01;
+  SensorParameters sensor;
+  sensor.resolution = table.number("resolution", between(0.0, kCoarsest), sensor.resolution);
+  sensor.noise = table.number("noise", between(0.0, kCoarsest), sensor.noise);
+  sensor.seed = static_cast<std::uint32_t>(
+      table.integer("seed", 0, std::numeric_limits<int>::max(), static_cast<int>(sensor.seed)));
+  table.finish();
+  return sensor;
+}
+
+MotorParameters read_motors(TomlTable table) {
+  const Range force{.lowest = 0.0, .highest = 100.0, .lowest_included = false};
+  MotorParameters motors;
+  if (table.has("max_force")) motors.max_force = table.number("max_force", force);
+  if (table.has("continuous_force")) {
+    motors.continuous_force = table.number("continuous_force", force);
+  }
+  motors.time_constant = table.number("time_constant", between(0.01, 1e4), motors.time_constant);
+  if (table.has("watchdog")) motors.watchdog = table.number("watchdog", between(0.001, 10.0));
+  table.finish();
+  return motors;
 }
 
 Workspace read_workspace(TomlTable table) {
@@ -59,6 +85,7 @@ DeviceConfig read_device(TomlTable table, const BridgeOverrides& overrides) {
   DeviceConfig device;
   device.type = table.choice("type", device_types(), device.type);
   if (!overrides.device.empty()) device.type = overrides.device;
+  device.name = table.text("name", "");
   if (table.has("script")) {
     device.script = table.path("script");
     if (!overrides.script.empty()) {
@@ -70,6 +97,8 @@ DeviceConfig read_device(TomlTable table, const BridgeOverrides& overrides) {
     table.fail("", "has no script", "add script = \"FILE.csv\" or give --script FILE.csv");
   }
   if (table.has("hand")) device.hand = read_hand(table.table("hand"));
+  device.sensor = read_sensor(table.table("sensor"));
+  device.motors = read_motors(table.table("motors"));
   device.mapping.workspace = read_workspace(table.table("workspace"));
   device.mapping.buttons = read_buttons(table.table("buttons"));
   table.finish();
@@ -91,6 +120,17 @@ void read_bridge(TomlTable table, const std::string& file, BridgeConfig& config)
   config.realtime =
       scheduling_from_word(table.choice("realtime", {"require", "prefer", "ignore"}, "prefer"));
   table.finish();
+}
+
+// Two devices of a driver have to be told apart.
+void check_names(const std::vector<DeviceConfig>& devices, const std::string& file) {
+  std::set<std::pair<std::string, std::string>> seen;
+  for (const DeviceConfig& device : devices) {
+    if (device.type == "virtual" || seen.insert({device.type, device.name}).second) continue;
+    throw Error(file,
+                "has two devices of type " + device.type + " with the name '" + device.name + "'",
+                "give each its own name, as in the vendor's setup");
+  }
 }
 
 }  // namespace
@@ -130,6 +170,7 @@ BridgeConfig read_bridge_config(TomlTable root, const std::string& name,
   if (config.devices.empty()) {
     throw Error(name, "has no device", "add a [[device]] table");
   }
+  check_names(config.devices, name);
   if (!overrides.script.empty() && config.devices.size() > 1) {
     throw Error(name, "has several devices and --script is one script",
                 "name each script in its [[device]] table");

@@ -10,6 +10,8 @@
 #include "common/realtime/scheduling.hpp"
 #include "device_bridge/servo_loop.hpp"
 #include "device_bridge/virtual_hand.hpp"
+#include "device_bridge/virtual_motors.hpp"
+#include "device_bridge/virtual_sensor.hpp"
 
 namespace irdm {
 
@@ -24,13 +26,20 @@ ServerAddress parse_server_address(const std::string& text, const std::string& w
 
 /// One [[device]] table.
 struct DeviceConfig {
-  std::string type = "virtual";       ///< key `type`: virtual | openhaptics
+  std::string type = "virtual";  ///< key `type`: virtual | openhaptics | forcedimension
+  std::string name = {};  ///< key `name`: of a real device in its vendor's setup; empty: default
   std::filesystem::path script = {};  ///< key `script`: of a virtual device, required there
   std::optional<HandParameters> hand =
       {};  ///< key `hand`, a table; left out: moves exactly as scripted
   // hand.mass [kg], 0.001 to 100, default 0.12
   // hand.damping [N s/m], 0 to 10000, default 2
   // hand.stiffness [N/m], 0.001 to 1e6, default 300
+  SensorParameters sensor = {};  ///< key `sensor`, a table, of a virtual device
+  // sensor.resolution, sensor.noise [m], 0 to 0.01, default 0; sensor.seed, from 0, default 1
+  MotorParameters motors = {};  ///< key `motors`, a table, of a virtual device
+  // motors.max_force, motors.continuous_force [N], (0, 100], default: no limit
+  // motors.time_constant [s], 0.01 to 10000, default 60
+  // motors.watchdog [s], 0.001 to 10, default: none
   DeviceMapping mapping = {};  ///< keys `workspace` and `buttons`, tables
   // workspace.position [m], W, each within 100; rotation w x y z, normalised when read
   // workspace.scale, workspace.force_scale, 0.01 to 100

@@ -3,15 +3,12 @@
 #include <array>
 
 #include "common/error.hpp"
+#include "device_bridge/forcedimension/forcedimension_device.hpp"
+#include "device_bridge/openhaptics/openhaptics_device.hpp"
 #include "device_bridge/virtual_stylus.hpp"
 
 namespace irdm {
 namespace {
-
-std::unique_ptr<HapticDevice> no_openhaptics(const DeviceConfig&) {
-  throw Error("device openhaptics", "this build has no support for it",
-              "use type = \"virtual\" or --device virtual");
-}
 
 struct Entry {
   const char* type;
@@ -20,7 +17,8 @@ struct Entry {
 
 constexpr std::array kEntries{
     Entry{"virtual", make_virtual_stylus},
-    Entry{"openhaptics", no_openhaptics},
+    Entry{"openhaptics", make_openhaptics_device},
+    Entry{"forcedimension", make_forcedimension_device},
 };
 
 }  // namespace
@@ -29,7 +27,8 @@ std::unique_ptr<HapticDevice> make_device(const DeviceConfig& config) {
   for (const Entry& entry : kEntries) {
     if (config.type == entry.type) return entry.make(config);
   }
-  throw Error("device " + config.type, "is not a known type", "use virtual or openhaptics");
+  throw Error("device " + config.type, "is not a known type",
+              "use virtual, openhaptics or forcedimension");
 }
 
 std::vector<std::string> device_types() {

@@ -1,13 +1,30 @@
 #pragma once
 
+#include <limits>
+#include <string>
+
 #include "common/geometry.hpp"
 #include "device_bridge/stylus_script.hpp"
+#include "device_bridge/tick_source.hpp"
 
 namespace irdm {
 
+/// What a device says of itself beside its readings.
+struct DeviceState {
+  double motor_warmth = 0.0;  ///< of the warmest motor, 0 cold to 1; 0: it says nothing
+  bool ready = true;          ///< calibrated; while it is not, no force
+  bool failed = false;        ///< something went wrong: no force any more
+  bool lost = false;          ///< and no readings either
+};
+
+/// The largest forces that a device is made for; infinity: it does not say.
+struct ForceRating {
+  double peak = std::numeric_limits<double>::infinity();        ///< [N], > 0
+  double continuous = std::numeric_limits<double>::infinity();  ///< for ever [N], > 0
+};
+
 /// A force-feedback stylus, in its own frame D; the servo loop knows where D lies in W. Made and
-/// opened at start-up, then used by the servo thread alone: once a tick read(), and write() when
-/// the force changes.
+/// opened at start-up, then used by the servo thread alone: once a tick read() and then write().
 class HapticDevice {
  public:
   HapticDevice() = default;
@@ -20,16 +37,25 @@ class HapticDevice {
   /// Turns the force off and lets go of the hardware.
   virtual void close() noexcept = 0;
 
-  /// The stylus now, in D; its buttons are the device's own bits (ButtonMap). Real-time safe.
+  /// The stylus now, in D; its buttons are the device's own bits (ButtonMap). What is not finite is
+  /// of no use. Real-time safe.
   /// @param time since the session began, does not decrease; 0 before [s]
   virtual StylusPose read(double time) noexcept = 0;
   /// Shows this force on the stylus until the next call [N], D. Real-time safe.
   virtual void write(const Vector3& force) noexcept = 0;
+  /// As of the last read() and write(). Real-time safe.
+  virtual DeviceState state() const noexcept { return {}; }
 
   /// Whether its time is ours to say, so that it can run in lockstep.
   virtual bool simulated() const noexcept = 0;
   /// Time after which nothing more comes from it [s]; infinity for a person's hand.
   virtual double duration() const noexcept = 0;
+  /// What it bears; after open().
+  virtual ForceRating rating() const noexcept { return {}; }
+  /// Whose ticks read() and write() belong to; nullptr: anybody's. Lives as long as the device.
+  virtual TickSource* tick_source() noexcept { return nullptr; }
+  /// What is wrong with it now and what to do, for a person; empty: nothing. Any thread.
+  virtual std::string trouble() const { return {}; }
 };
 
 }  // namespace irdm

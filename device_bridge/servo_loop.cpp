@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace irdm {
 
@@ -17,12 +18,14 @@ void ServoLoop::restart() noexcept {
   clutch_ = Clutch{};
   contact_.reset();
   reading_.reset();
+  was_ready_ = true;
   next_sequence_ = 0;
 }
 
 void ServoLoop::read(double device_time) noexcept {
   const StylusPose pose = device_.read(device_time);
   const bool finite = pose.tip.allFinite() && pose.orientation.coeffs().allFinite();
+  device_state_ = device_.state();
   reading_ = finite ? pose.tip : Vector3::Constant(std::numeric_limits<double>::quiet_NaN());
   if (!finite) return;
   pose_ = mapping_.workspace.to_world(pose);
@@ -67,12 +70,28 @@ ForceDemand ServoLoop::demand(std::int64_t now_ns, const ServoInput& input) noex
           .normal = wanted.normal};
 }
 
+// What is not ready gets no force, and afterwards it comes back as after an arm action.
+void ServoLoop::heed_device() noexcept {
+  const FilterState state = filter_.state();
+  const bool was_ready = std::exchange(was_ready_, device_state_.ready);
+  if (state == FilterState::kFault) return;
+  if (device_state_.failed) {
+    if (state != FilterState::kDisarmed) filter_.fail();
+  } else if (!device_state_.ready) {
+    filter_.disarm();
+  } else if (!was_ready) {
+    filter_.arm();
+  }
+}
+
 void ServoLoop::apply(std::int64_t now_ns, const ServoInput& input) noexcept {
   if (!reading_) return rest();
+  heed_device();
   ForceDemand wanted = demand(now_ns, input);
   wanted.force = clutch_.gain(now_ns) * mapping_.workspace.to_device(wanted.force);
   wanted.normal = mapping_.workspace.direction_to_device(wanted.normal);
-  const Vector3 force = filter_.step(now_ns, {.tip = *reading_}, wanted);
+  const Vector3 force = filter_.step(
+      now_ns, {.tip = *reading_, .motor_warmth = device_state_.motor_warmth}, wanted);
   peak_force_ = std::max(peak_force_, force.norm());
   device_.write(force);
 }

@@ -58,15 +58,25 @@ class ServoLoop {
   /// Shows no force.
   void rest() noexcept { device_.write(Vector3::Zero()); }
 
+  /// A tick without a session: reads the device, so that its driver and its state go on, and shows
+  /// no force.
+  void idle(double device_time) noexcept {
+    read(device_time);
+    rest();
+  }
+
   const FilterLimits& limits() const noexcept { return limits_; }
   const SafetyFilter& filter() const noexcept { return filter_; }
   double peak_force() const noexcept { return peak_force_; }  ///< shown so far [N], D
   /// Of all sessions.
   FilterCounts counts() const noexcept;
   HapticDevice& device() noexcept { return device_; }
+  /// As of the last read().
+  const DeviceState& device_state() const noexcept { return device_state_; }
 
  private:
   ForceDemand demand(std::int64_t now_ns, const ServoInput& input) noexcept;
+  void heed_device() noexcept;
 
   HapticDevice& device_;
   FilterLimits limits_;
@@ -77,6 +87,8 @@ class ServoLoop {
   StylusPose pose_;                       ///< the last good one, W; buttons as on the wire
   /// Tip as it was read last, not a number if of no use; none since restart() [m], D.
   std::optional<Vector3> reading_;
+  DeviceState device_state_;
+  bool was_ready_ = true;
   std::uint64_t next_sequence_ = 0;
   double peak_force_ = 0.0;
   FilterCounts counts_;  ///< of the sessions before

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/error.hpp"
 #include "common/realtime/clock.hpp"
 
 namespace irdm {
@@ -25,65 +26,146 @@ ServoThread::~ServoThread() {
 }
 
 void ServoThread::start() {
+  find_source();
+  if (source_ != nullptr) return start_source();
   thread_ = std::thread([this] { run(); });
   scheduling_ = apply_scheduling(settings_.scheduling, thread_, kServoPriority);
 }
 
 void ServoThread::stop() {
+  if (source_ != nullptr) return stop_source();
   if (!thread_.joinable()) return;
   stop_ = true;
   link_.news.signal();
   thread_.join();
 }
 
+void ServoThread::find_source() {
+  for (ServoLoop& loop : loops_) {
+    TickSource* const source = loop.device().tick_source();
+    if (source == nullptr || source == source_) continue;
+    if (source_ != nullptr) {
+      throw Error("devices", "two drivers want to make the ticks of the servo loop",
+                  "run a bridge for each of them");
+    }
+    source_ = source;
+  }
+}
+
+void ServoThread::start_source() {
+  scheduling_ = "the driver's own";
+  last_tick_ns_ = monotonic_ns();
+  try {
+    source_->start(settings_.rate, [this] { return source_tick(); });
+  } catch (...) {
+    source_ = nullptr;
+    throw;
+  }
+}
+
+void ServoThread::stop_source() {
+  constexpr int kLongestFadeMs = 500;
+  stop_ = true;
+  const bool ended = source_ended_.wait(kLongestFadeMs);
+  source_->stop();
+  source_ = nullptr;
+  if (!ended) report_.end = ServoEnd::kDriverStuck;
+}
+
+bool ServoThread::driver_silent(std::int64_t now_ns) const noexcept {
+  constexpr std::int64_t kLongestSilenceNs = 1'000'000'000;
+  return source_ != nullptr && now_ns - last_tick_ns_ > kLongestSilenceNs;
+}
+
+// The driver's clock is not ours: how late a tick is, is told from the one before.
+bool ServoThread::source_tick() noexcept {
+  const std::int64_t now_ns = monotonic_ns();
+  const std::int64_t period_ns = to_ns(1.0 / settings_.rate);
+  const std::int64_t late_ns = now_ns - last_tick_ns_ - period_ns;
+  last_tick_ns_ = now_ns;
+  if (phase_ == Phase::kRunning) {
+    report_.wakeup.add(late_ns);
+    if (late_ns > 0) report_.missed += static_cast<std::uint64_t>(late_ns / period_ns);
+  }
+  if (beat(now_ns)) return true;
+  source_ended_.signal();
+  done_.signal();
+  return false;
+}
+
 void ServoThread::run() noexcept {
-  report_.end = run_real_time();
+  run_real_time();
   for (ServoLoop& loop : loops_) loop.rest();
   done_.signal();
 }
 
-ServoEnd ServoThread::run_real_time() noexcept {
-  const std::int64_t period_ns = to_ns(1.0 / settings_.rate);
-  PeriodicSchedule schedule(monotonic_ns(), period_ns);
-  std::int64_t start_ns = 0;  // of the session's time; 0: no session yet
-  ServoEnd end = ServoEnd::kStopped;
+void ServoThread::run_real_time() noexcept {
+  PeriodicSchedule schedule(monotonic_ns(), to_ns(1.0 / settings_.rate));
   for (ServoLoop& loop : loops_) loop.rest();
-  while (!stop_) {
+  for (;;) {
     const std::int64_t deadline_ns = schedule.next(monotonic_ns());
     sleep_until(deadline_ns);
     const std::int64_t now_ns = monotonic_ns();
     report_.wakeup.add(now_ns - deadline_ns);
     report_.missed = schedule.missed();
-    link_.state.receive();
-    const LinkState& state = link_.state.front();
-    if (state.sessions == 0) continue;
-    if (start_ns == 0) {
-      for (ServoLoop& loop : loops_) loop.restart();
-      if (state.lockstep) return run_lockstep();
-      start_ns = now_ns;
-    }
-    if (session_ != state.sessions) begin_session(state);
-    tick(now_ns, start_ns);
-    if (report_.session_time >= settings_.duration) {
-      end = ServoEnd::kFinished;
-      break;
+    if (!beat(now_ns)) return;
+    if (report_.lockstep) {
+      report_.end = run_lockstep();
+      return;
     }
   }
-  if (start_ns != 0) fade_out();
-  return end;
 }
 
-void ServoThread::tick(std::int64_t now_ns, std::int64_t start_ns) noexcept {
+// One tick in real time; false when it was the last.
+bool ServoThread::beat(std::int64_t now_ns) noexcept {
+  if (phase_ == Phase::kWaiting) wait_for_session(now_ns);
+  if (phase_ == Phase::kRunning) {
+    tick(now_ns);
+  } else if (phase_ == Phase::kFading) {
+    fade(now_ns);
+  }
+  return phase_ != Phase::kOver;
+}
+
+void ServoThread::wait_for_session(std::int64_t now_ns) noexcept {
+  link_.state.receive();
+  const LinkState& state = link_.state.front();
+  if (state.sessions > 0 && !stop_) {
+    for (ServoLoop& loop : loops_) loop.restart();
+    report_.lockstep = state.lockstep;
+    start_ns_ = now_ns;
+    if (!state.lockstep) phase_ = Phase::kRunning;
+    return;
+  }
+  bool lost = false;
+  for (ServoLoop& loop : loops_) {
+    if (source_ == nullptr) continue;
+    loop.idle(0.0);
+    lost = lost || loop.device_state().lost;
+  }
+  report_.end = lost ? ServoEnd::kDeviceLost : ServoEnd::kStopped;
+  if (lost || stop_) phase_ = Phase::kOver;
+}
+
+void ServoThread::tick(std::int64_t now_ns) noexcept {
+  link_.state.receive();
+  const LinkState& state = link_.state.front();
+  if (session_ != state.sessions) begin_session(state);
   ++report_.ticks;
-  report_.session_time = static_cast<double>(now_ns - start_ns) / kNanosecondsPerSecond;
+  report_.session_time = static_cast<double>(now_ns - start_ns_) / kNanosecondsPerSecond;
+  bool lost = false;
   for (std::size_t i = 0; i < loops_.size(); ++i) {
     loops_[i].read(report_.session_time);
     link_.styluses[i].sample.put(loops_[i].take_sample(now_ns));
     end_steps(i, now_ns);
     link_.styluses[i].input.receive();
     loops_[i].apply(now_ns, link_.styluses[i].input.front());
+    lost = lost || loops_[i].device_state().lost;
   }
   link_.samples_ready.signal();
+  if (lost) return end(ServoEnd::kDeviceLost, now_ns);
+  if (report_.session_time >= settings_.duration) return end(ServoEnd::kFinished, now_ns);
+  if (stop_) end(ServoEnd::kStopped, now_ns);
 }
 
 void ServoThread::begin_session(const LinkState& state) noexcept {
@@ -110,16 +192,25 @@ void ServoThread::end_steps(std::size_t i, std::int64_t now_ns) noexcept {
   stylus.applied.publish();
 }
 
-void ServoThread::fade_out() noexcept {
-  const std::int64_t period_ns = to_ns(1.0 / settings_.rate);
-  const std::int64_t begin_ns = monotonic_ns();
-  PeriodicSchedule schedule(begin_ns, period_ns);
-  const ServoInput lost;
+void ServoThread::end(ServoEnd end, std::int64_t now_ns) noexcept {
+  report_.end = end;
+  fade_from_ns_ = now_ns;
+  phase_ = Phase::kFading;
+}
+
+void ServoThread::fade(std::int64_t now_ns) noexcept {
+  const double time = static_cast<double>(now_ns - start_ns_) / kNanosecondsPerSecond;
   const std::int64_t fade_ns = loops_.empty() ? 0 : loops_.front().limits().fade_ns;
-  for (std::int64_t now_ns = begin_ns; now_ns - begin_ns <= fade_ns; now_ns = monotonic_ns()) {
-    for (ServoLoop& loop : loops_) loop.apply(now_ns, lost);
-    sleep_until(schedule.next(now_ns));
+  const bool over = now_ns - fade_from_ns_ > fade_ns;
+  for (ServoLoop& loop : loops_) {
+    if (over) {
+      loop.idle(time);
+    } else {
+      loop.read(time);
+      loop.apply(now_ns, ServoInput{});
+    }
   }
+  if (over) phase_ = Phase::kOver;
 }
 
 ServoEnd ServoThread::run_lockstep() noexcept {

@@ -25,6 +25,8 @@ enum class ServoEnd {
   kFinished,     ///< the duration is over
   kLinkLost,     ///< lockstep: the connection broke
   kServerEnded,  ///< lockstep: the server said goodbye
+  kDeviceLost,   ///< a device no longer gives readings
+  kDriverStuck,  ///< the driver that makes the ticks does not any more
 };
 
 struct ServoReport {
@@ -38,8 +40,9 @@ struct ServoReport {
 };
 
 /// Runs the servo loops of all styluses: at a fixed rate in real time, or step by step on the
-/// server's simulated clock. Until the first session is welcomed the devices rest where they begin,
-/// without force. When it ends in real time, the force fades first.
+/// server's simulated clock. Where a device has a tick source, there is no thread of ours: the
+/// ticks of all devices are that source's. Until the first session is welcomed the devices rest
+/// where they begin, without force. When it ends in real time, the force fades first.
 class ServoThread {
  public:
   /// @param loops one for each stylus of the link, opened devices; used by the thread until stop()
@@ -50,23 +53,35 @@ class ServoThread {
   ServoThread& operator=(const ServoThread&) = delete;
   ~ServoThread();  ///< stops
 
-  /// Throws Error when real-time scheduling is required and not permitted.
+  /// Throws Error when real-time scheduling is required and not permitted, or a driver does not
+  /// make ticks.
   void start();
   /// Ends the thread and waits for it. Further calls do nothing.
   void stop();
+  /// Whether a driver that makes the ticks has made none for a second. Any thread, until stop().
+  bool driver_silent(std::int64_t now_ns) const noexcept;
   /// After stop().
   const ServoReport& report() const noexcept { return report_; }
   /// How the thread is scheduled, for a report; after start().
   const std::string& scheduling() const noexcept { return scheduling_; }
 
  private:
+  enum class Phase { kWaiting, kRunning, kFading, kOver };
+
+  void find_source();
+  void start_source();
+  void stop_source();
+  bool source_tick() noexcept;
   void run() noexcept;
-  ServoEnd run_real_time() noexcept;
+  void run_real_time() noexcept;
   ServoEnd run_lockstep() noexcept;
-  void tick(std::int64_t now_ns, std::int64_t start_ns) noexcept;
+  bool beat(std::int64_t now_ns) noexcept;
+  void wait_for_session(std::int64_t now_ns) noexcept;
+  void tick(std::int64_t now_ns) noexcept;
+  void fade(std::int64_t now_ns) noexcept;
+  void end(ServoEnd end, std::int64_t now_ns) noexcept;
   void begin_session(const LinkState& state) noexcept;
   void end_steps(std::size_t i, std::int64_t now_ns) noexcept;
-  void fade_out() noexcept;
   void step(std::uint64_t k) noexcept;
   bool wait_for_forces(std::uint64_t k) noexcept;
 
@@ -77,6 +92,12 @@ class ServoThread {
   std::uint64_t session_ = 0;  ///< that the loops are in
   ServoReport report_;
   std::string scheduling_;
+  Phase phase_ = Phase::kWaiting;
+  std::int64_t start_ns_ = 0;                  ///< of the session's time
+  std::int64_t fade_from_ns_ = 0;              ///< when the fading began
+  TickSource* source_ = nullptr;               ///< whose ticks they are; none: our own thread's
+  std::atomic<std::int64_t> last_tick_ns_{0};  ///< of the source
+  Wakeup source_ended_;                        ///< the source's last tick is over
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };

@@ -35,9 +35,9 @@ bool StopSignal::wait(int other_descriptor) {
   return entries[0].revents != 0;
 }
 
-bool StopSignal::wait_for(int timeout_ms) {
-  pollfd entry{descriptor_, POLLIN, 0};
-  return ::poll(&entry, 1, timeout_ms) > 0;
+bool StopSignal::wait_for(int timeout_ms, int other_descriptor) {
+  pollfd entries[2] = {{descriptor_, POLLIN, 0}, {other_descriptor, POLLIN, 0}};
+  return ::poll(entries, 2, timeout_ms) > 0 && entries[0].revents != 0;
 }
 
 }  // namespace irdm

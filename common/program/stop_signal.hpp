@@ -13,8 +13,9 @@ class StopSignal {
 
   /// Waits until a signal has come (true) or `other_descriptor` is readable (false); -1: no other.
   bool wait(int other_descriptor = -1);
-  /// Waits at most `timeout_ms`; true when a signal has come.
-  bool wait_for(int timeout_ms);
+  /// Waits at most `timeout_ms`, or until `other_descriptor` is readable; true when a signal has
+  /// come.
+  bool wait_for(int timeout_ms, int other_descriptor = -1);
 
  private:
   int descriptor_;

@@ -165,8 +165,50 @@ TEST_CASE("a server address needs a host and a port in range") {
   }
 }
 
-TEST_CASE("a device that this build does not support is refused in one clear line") {
-  CHECK_THROWS_WITH(make_device({.type = "openhaptics"}), Catch::Contains("no support"));
+TEST_CASE("bridge configuration takes sensor and motors of a virtual device, perfect by default") {
+  const DeviceConfig plain = ConfigFile(kDevice).load().devices.at(0);
+  CHECK(plain.sensor.resolution == 0.0);
+  CHECK(plain.sensor.noise == 0.0);
+  CHECK(plain.motors.max_force == MotorParameters::kNone);
+  CHECK(plain.motors.continuous_force == MotorParameters::kNone);
+  CHECK(plain.motors.watchdog == MotorParameters::kNone);
+  const DeviceConfig real =
+      ConfigFile(kDevice +
+                 "sensor = { resolution = 5.5e-5, noise = 1e-5, seed = 7 }\nmotors = { max_force = "
+                 "3.3, continuous_force = 0.88, time_constant = 30, watchdog = 0.032 }\n")
+          .load()
+          .devices.at(0);
+  CHECK(real.sensor.resolution == 5.5e-5);
+  CHECK(real.sensor.noise == 1e-5);
+  CHECK(real.sensor.seed == 7);
+  CHECK(real.motors.max_force == 3.3);
+  CHECK(real.motors.continuous_force == 0.88);
+  CHECK(real.motors.time_constant == 30.0);
+  CHECK(real.motors.watchdog == 0.032);
+  check_refused(kDevice + "sensor = { resolution = 0.02 }\n", "resolution is 0.02");
+  check_refused(kDevice + "sensor = { noise = -1 }\n", "noise is -1");
+  check_refused(kDevice + "sensor = { seed = -1 }\n", "seed is -1");
+  check_refused(kDevice + "sensor = { colour = 1 }\n", "not a known key");
+  check_refused(kDevice + "motors = { max_force = 0 }\n", "max_force is 0");
+  check_refused(kDevice + "motors = { continuous_force = 101 }\n", "continuous_force is 101");
+  check_refused(kDevice + "motors = { time_constant = 0 }\n", "time_constant is 0");
+  check_refused(kDevice + "motors = { watchdog = 0 }\n", "watchdog is 0");
+  check_refused(kDevice + "motors = { colour = 1 }\n", "not a known key");
+}
+
+TEST_CASE("devices of a driver have names of their own") {
+  const std::string touch = "[[device]]\ntype = \"openhaptics\"\n";
+  const BridgeConfig config =
+      ConfigFile(touch + "name = \"Left\"\n" + touch + "name = \"Right\"\n").load();
+  CHECK(config.devices.at(0).name == "Left");
+  CHECK(config.devices.at(1).name == "Right");
+  CHECK(ConfigFile(touch).load().devices.at(0).name.empty());
+  check_refused(touch + touch, "two devices of type openhaptics with the name ''");
+  check_refused(touch + "name = 3\n", "name is not text");
+  CHECK_NOTHROW(ConfigFile(kDevice + kDevice).load());
+}
+
+TEST_CASE("a device of an unknown type is refused") {
   CHECK_THROWS_AS(make_device({.type = "magic"}), Error);
 }
 

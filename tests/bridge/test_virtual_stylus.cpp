@@ -30,3 +30,47 @@ TEST_CASE("virtual stylus with a hand follows the script and gives way to the fo
   for (int tick = 1; tick <= 5000; ++tick) stylus.read(1e-3 * tick);
   CHECK((stylus.read(5.0).tip - Vector3(0.1, 0.01, 0)).norm() < 1e-9);
 }
+
+TEST_CASE("virtual stylus: the hand is let go when no force comes, to the moment") {
+  const MotorParameters watched{.watchdog = 0.032};
+  VirtualStylus stylus(script(), HandParameters{}, {}, watched);
+  VirtualHand hand(HandParameters{}, Vector3::Zero());
+  const Vector3 force(0, 1, 0);
+  stylus.write(force);
+  const Vector3 found = stylus.read(0.1).tip;
+  hand.advance(0.032, script().at(0.032).tip, force);
+  hand.advance(0.068, script().at(0.1).tip, Vector3::Zero());
+  CHECK(found.isApprox(hand.position(), 1e-12));
+  // With a force each millisecond nobody is let go.
+  VirtualStylus served(script(), HandParameters{}, {}, watched);
+  VirtualStylus plain(script(), HandParameters{});
+  for (int tick = 1; tick <= 500; ++tick) {
+    served.write(force);
+    plain.write(force);
+    REQUIRE(served.read(1e-3 * tick).tip == plain.read(1e-3 * tick).tip);
+  }
+}
+
+TEST_CASE("virtual stylus: the hand feels what the motors show, and its sensor what it measures") {
+  VirtualStylus stylus(script(), HandParameters{}, {.resolution = 0.001}, {.max_force = 3.0});
+  stylus.write(Vector3(0, 30, 0));
+  for (int tick = 1; tick <= 5000; ++tick) stylus.read(1e-3 * tick);
+  // 3 N against 300 N/m.
+  CHECK(stylus.read(5.0).tip.isApprox(Vector3(0.1, 0.01, 0), 1e-12));
+  CHECK(stylus.rating().peak == 3.0);
+}
+
+TEST_CASE("virtual stylus: warm motors are told to the filter and to people") {
+  VirtualStylus stylus(script(), {}, {}, {.continuous_force = 1.0, .time_constant = 1.0});
+  CHECK(stylus.rating().continuous == 1.0);
+  double last = 0.0;
+  for (int tick = 1; tick <= 1000; ++tick) {
+    stylus.write(Vector3(0, 2, 0));
+    stylus.read(1e-3 * tick);
+    REQUIRE(stylus.state().motor_warmth >= last);
+    last = stylus.state().motor_warmth;
+    CHECK(stylus.trouble().empty() == (last < 1.0));
+  }
+  CHECK(last == 1.0);
+  CHECK_THAT(stylus.trouble(), Catch::Contains("motors are warm"));
+}

@@ -33,8 +33,10 @@ class Load {
 };
 
 // One run of the whole script in lockstep, with `threads` wherever threads can be set.
-Trace play(const std::string& engine, int threads) {
+// @param device more keys of it
+Trace play(const std::string& engine, int threads, const std::string& device = "") {
   const Stage stage;
+  stage.write("bridge.toml", file_content(stage.path("bridge.toml")) + device);
   const std::string count = std::to_string(threads);
   std::string scene = scene_text("[world]\ngravity = [0, -0.02, 0.01]\n", engine);
   scene.replace(scene.find("threads = 1"), 11, "threads = " + count);
@@ -131,4 +133,15 @@ TEST_CASE("lockstep: a server that is killed ends its bridge with one line and s
   CHECK(server.process.wait() == -SIGKILL);
   CHECK(bridge.wait() == 1);
   CHECK_THAT(bridge.err(), Contains("irdm-bridge: error: ") && Contains("lost in lockstep"));
+}
+
+TEST_CASE("lockstep: a stylus with noise, encoders and motors leaves the same bits again") {
+  const std::string real =
+      "sensor = { resolution = 5.5e-5, noise = 1e-5 }\n"
+      "motors = { max_force = 3.3, continuous_force = 0.88, watchdog = 0.032 }\n";
+  const Trace first = play("modal", 1, real);
+  check_same_bits(first, play("modal", 2, real));
+  const Trace perfect = play("modal", 1);
+  REQUIRE(perfect.rows() == first.rows());
+  CHECK_FALSE(same_bits(first.numbers.at("/stylus/0/tip"), perfect.numbers.at("/stylus/0/tip")));
 }

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+/// The commands of irdm-bridge. Each function adds a command's options to the command line and
+/// returns what it does once they are parsed: its value is the exit status, its errors are thrown.
+namespace irdm::bridge {
+
+using Command = std::function<int()>;
+
+/// Without a word for it: BRIDGE.toml runs the bridge.
+Command add_run_command(CLI::App& app);
+
+/// doctor [--config BRIDGE.toml]: a line for each thing that newcomers stumble over; status 1 when
+/// one of them is a problem.
+Command add_doctor_command(CLI::App& app);
+
+}  // namespace irdm::bridge

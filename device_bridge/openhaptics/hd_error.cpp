@@ -1,0 +1,81 @@
+#include "device_bridge/openhaptics/hd_error.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+
+namespace irdm::hd {
+namespace {
+
+struct Entry {
+  Code code;
+  ErrorText text;
+};
+
+const char* const kReport = "report it as a fault of irdm-bridge";
+const char* const kCable = "check power and cable of the device, and start irdm-bridge again";
+const char* const kAgain = "start irdm-bridge again to arm it";
+
+constexpr std::array kEntries{
+    Entry{0x0000, {"HD_SUCCESS", "no error", "nothing", Meaning::kNothing}},
+    Entry{0x0100, {"HD_INVALID_ENUM", "a parameter it does not know", kReport, Meaning::kBadFrame}},
+    Entry{0x0101,
+          {"HD_INVALID_VALUE", "a value that it does not take", kReport, Meaning::kBadFrame}},
+    Entry{0x0102,
+          {"HD_INVALID_OPERATION", "not permitted at this time", kReport, Meaning::kBadFrame}},
+    Entry{0x0103, {"HD_INVALID_INPUT_TYPE", "wrong type of value", kReport, Meaning::kBadFrame}},
+    Entry{0x0104, {"HD_BAD_HANDLE", "the driver no longer knows it", kCable, Meaning::kLost}},
+    Entry{0x0200, {"HD_WARM_MOTORS", "its motors are warm", "let them cool down", Meaning::kWarm}},
+    Entry{0x0201, {"HD_EXCEEDED_MAX_FORCE", "more force than it bears", kAgain, Meaning::kUnsafe}},
+    Entry{
+        0x0202,
+        {"HD_EXCEEDED_MAX_FORCE_IMPULSE", "force that changed too fast", kAgain, Meaning::kUnsafe}},
+    Entry{0x0203, {"HD_EXCEEDED_MAX_VELOCITY", "it was moved too fast", kAgain, Meaning::kUnsafe}},
+    Entry{0x0204, {"HD_FORCE_ERROR", "it cannot show the force", kAgain, Meaning::kUnsafe}},
+    Entry{0x0300, {"HD_DEVICE_FAULT", "the device does not work", kCable, Meaning::kLost}},
+    Entry{0x0301,
+          {"HD_DEVICE_ALREADY_INITIATED", "it is in use already",
+           "close the other program, and name each device once", Meaning::kUnsafe}},
+    Entry{0x0302,
+          {"HD_COMM_ERROR", "communication with the device is lost", kCable, Meaning::kLost}},
+    Entry{0x0303,
+          {"HD_COMM_CONFIG_ERROR", "its connection is not set up",
+           "set the device up with the vendor's Touch_Setup", Meaning::kLost}},
+    Entry{0x0304,
+          {"HD_TIMER_ERROR", "the driver's clock failed", "run fewer programs beside it",
+           Meaning::kUnsafe}},
+    Entry{0x0400, {"HD_ILLEGAL_BEGIN", "a frame in a frame", kReport, Meaning::kBadFrame}},
+    Entry{0x0401, {"HD_ILLEGAL_END", "the end of no frame", kReport, Meaning::kBadFrame}},
+    Entry{0x0402,
+          {"HD_FRAME_ERROR", "a frame was not served in time", "run fewer programs beside it",
+           Meaning::kBadFrame}},
+    Entry{0x0500, {"HD_INVALID_PRIORITY", "a priority out of range", kReport, Meaning::kUnsafe}},
+    Entry{0x0501,
+          {"HD_SCHEDULER_FULL", "too many callbacks are scheduled", "stop other users of libHD",
+           Meaning::kUnsafe}},
+    Entry{0x0600,
+          {"HD_INVALID_LICENSE", "the vendor's licence is not valid",
+           "install OpenHaptics with a licence", Meaning::kUnsafe}},
+};
+
+constexpr ErrorText kUnknown{"unknown error", "an error that irdm-bridge does not know", kAgain,
+                             Meaning::kUnsafe};
+
+}  // namespace
+
+const ErrorText& describe(Code code) noexcept {
+  const auto* const entry = std::find_if(kEntries.begin(), kEntries.end(),
+                                         [code](const Entry& known) { return known.code == code; });
+  return entry == kEntries.end() ? kUnknown : entry->text;
+}
+
+std::string to_text(const ErrorInfo& error) {
+  const ErrorText& text = describe(error.code);
+  std::array<char, 16> number{};
+  std::snprintf(number.data(), number.size(), " 0x%04X", error.code);
+  const std::string internal =
+      error.internal == 0 ? "" : ", internal " + std::to_string(error.internal);
+  return std::string(text.name) + number.data() + internal + ": " + text.what;
+}
+
+}  // namespace irdm::hd

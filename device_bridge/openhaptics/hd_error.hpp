@@ -1,0 +1,40 @@
+#pragma once
+
+#include <string>
+
+#include "device_bridge/openhaptics/hd_api.hpp"
+
+namespace irdm::hd {
+
+/// What an error of the driver means for the force, from harmless to worst.
+enum class Meaning {
+  kNothing,   ///< no error
+  kWarm,      ///< the motors are warm: less force for a while
+  kBadFrame,  ///< what this frame read is of no use; several in a row are a fault of the reading
+  kUnsafe,    ///< no force any more; readings go on
+  kLost,      ///< no force, and no readings any more
+};
+
+/// An error in words.
+struct ErrorText {
+  const char* name;    ///< as the vendor's documents have it
+  const char* what;    ///< what is wrong
+  const char* remedy;  ///< what to do
+  Meaning meaning;     ///< when it comes while the device runs
+};
+
+/// Unknown codes are unsafe. Real-time safe.
+const ErrorText& describe(Code code) noexcept;
+
+inline constexpr Code kSuccess = 0x0000;
+inline constexpr Code kInvalidValue = 0x0101;
+inline constexpr Code kWarmMotors = 0x0200;
+inline constexpr Code kDeviceFault = 0x0300;
+inline constexpr Code kAlreadyInitiated = 0x0301;
+inline constexpr Code kCommunication = 0x0302;
+inline constexpr Code kCommunicationConfig = 0x0303;
+
+/// "NAME 0x0302, internal 5: WHAT".
+std::string to_text(const ErrorInfo& error);
+
+}  // namespace irdm::hd

@@ -1,0 +1,231 @@
+#include "device_bridge/openhaptics/openhaptics_device.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <array>
+#include <clocale>
+#include <cmath>
+#include <utility>
+
+#include "common/error.hpp"
+#include "device_bridge/bridge_config.hpp"
+#include "device_bridge/openhaptics/hd_library.hpp"
+#include "device_bridge/openhaptics/start_advice.hpp"
+
+namespace irdm {
+namespace {
+
+constexpr double kMetre = 1e-3;           // per mm
+constexpr int kWarmTicks = 5000;          // that a warning of warm motors counts
+constexpr std::int32_t kButtonBits = 15;  // four buttons
+
+using Transform = std::array<double, 16>;
+
+// Not a number unless the transform holds a rotation.
+StylusPose to_pose(const Transform& transform, std::int32_t buttons) noexcept {
+  const Eigen::Map<const Eigen::Matrix4d> matrix(transform.data());  // column by column as well
+  const Matrix3 rotation = matrix.topLeftCorner<3, 3>();
+  StylusPose pose;
+  pose.buttons = static_cast<std::uint32_t>(buttons & kButtonBits);
+  pose.tip = kMetre * matrix.topRightCorner<3, 1>();
+  pose.orientation = Quaternion(rotation).normalized();
+  constexpr double kTolerance = 0.1;
+  if (!(std::abs(rotation.determinant() - 1.0) < kTolerance)) {
+    pose.tip.setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
+  return pose;
+}
+
+double rated(double newton) noexcept {
+  return std::isfinite(newton) && newton > 0.0 ? newton : std::numeric_limits<double>::infinity();
+}
+
+std::uint64_t packed(const hd::ErrorInfo& error) noexcept {
+  return std::uint64_t{error.code} << 32 | static_cast<std::uint32_t>(error.internal);
+}
+
+hd::ErrorInfo unpacked(std::uint64_t both) noexcept {
+  return {.code = static_cast<hd::Code>(both >> 32),
+          .internal = static_cast<std::int32_t>(both & 0xFFFFFFFF)};
+}
+
+}  // namespace
+
+OpenHapticsDevice::OpenHapticsDevice(std::string name,
+                                     std::shared_ptr<OpenHapticsScheduler> scheduler)
+    : name_(std::move(name)), scheduler_(std::move(scheduler)), hd_(scheduler_->api()) {}
+
+std::string OpenHapticsDevice::label() const {
+  return name_.empty() ? "default device" : "device '" + name_ + "'";
+}
+
+void OpenHapticsDevice::open() {
+  initialise();
+  turn_on();
+  read_rating();
+  choose_calibration();
+  scheduler_->add(*this);
+  const auto text = [&](hd::Name name) {
+    const char* const word = hd_.get_string(name);
+    return std::string(word != nullptr ? word : "unknown");
+  };
+  spdlog::info("{}: {}, serial number {}, at most {} N, {} N for long", label(), text(hd::kModel),
+               text(hd::kSerialNumber), rating_.peak, rating_.continuous);
+  while (hd_.get_error().code != hd::kSuccess) {
+  }
+}
+
+// The vendor's setup files have decimal points, whatever the locale that a library may have set.
+void OpenHapticsDevice::initialise() {
+  std::setlocale(LC_NUMERIC, "C");
+  const hd::Handle handle = hd_.init_device(name_.empty() ? nullptr : name_.c_str());
+  std::setlocale(LC_NUMERIC, "C");
+  const hd::ErrorInfo error = hd_.get_error();
+  if (handle == hd::kInvalidHandle || hd::describe(error.code).meaning > hd::Meaning::kWarm) {
+    if (handle != hd::kInvalidHandle) hd_.disable_device(handle);
+    const hd::Advice advice = hd::start_advice(name_, error, hd::look_at_touch_system());
+    throw Error(label(), advice.what, advice.remedy);
+  }
+  handle_ = handle;
+}
+
+void OpenHapticsDevice::turn_on() {
+  hd_.make_current_device(handle_);
+  for (const hd::Name limit :
+       {hd::kMaxForceClamping, hd::kForceLimit, hd::kVelocityLimit, hd::kForceImpulseLimit}) {
+    hd_.enable(limit);  // not every driver lets them be chosen; they are on by themselves
+  }
+  hd_.enable(hd::kForceOutput);
+  if (hd_.is_enabled(hd::kForceOutput) != 0) return;
+  const hd::ErrorInfo error = hd_.get_error();
+  throw Error(label(), "its force cannot be turned on: " + to_text(error),
+              hd::describe(error.code).remedy);
+}
+
+void OpenHapticsDevice::read_rating() {
+  double peak = 0.0;
+  double continuous = 0.0;
+  hd_.get_doublev(hd::kMaxForce, &peak);
+  hd_.get_doublev(hd::kMaxContinuousForce, &continuous);
+  rating_ = {.peak = rated(peak), .continuous = rated(continuous)};
+}
+
+void OpenHapticsDevice::choose_calibration() {
+  std::int32_t styles = 0;
+  hd_.get_integerv(hd::kCalibrationStyles, &styles);
+  for (const hd::Name style : {hd::kEncoderReset, hd::kInkwell, hd::kAuto}) {  // best last
+    if ((static_cast<hd::Name>(styles) & style) != 0) calibration_style_ = style;
+  }
+}
+
+void OpenHapticsDevice::close() noexcept {
+  if (handle_ == hd::kInvalidHandle) return;
+  scheduler_->remove(*this);
+  hd_.make_current_device(handle_);
+  hd_.disable(hd::kForceOutput);
+  hd_.disable_device(handle_);
+  handle_ = hd::kInvalidHandle;
+}
+
+void OpenHapticsDevice::begin_frame() noexcept {
+  hd_.begin_frame(handle_);
+  in_frame_ = true;
+}
+
+StylusPose OpenHapticsDevice::read(double) noexcept {
+  if (in_frame_) write(Vector3::Zero());
+  begin_frame();
+  Transform transform;
+  transform.fill(std::numeric_limits<double>::quiet_NaN());
+  std::int32_t buttons = 0;
+  hd_.get_doublev(hd::kTransform, transform.data());
+  hd_.get_integerv(hd::kButtons, &buttons);
+  calibrate();
+  scheduler_->fetch_errors(*this);
+  read_warmth();
+  StylusPose pose = to_pose(transform, buttons);
+  if (std::exchange(bad_frame_, false)) {
+    pose.tip.setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
+  return pose;
+}
+
+// Not every device knows its temperature, and one that does not is no bad reading.
+void OpenHapticsDevice::read_warmth() noexcept {
+  std::array<double, hd::kMotors> motors{};
+  if (tells_warmth_) {
+    hd_.get_doublev(hd::kMotorTemperature, motors.data());
+    const hd::ErrorInfo error = hd_.get_error();
+    tells_warmth_ = hd::describe(error.code).meaning != hd::Meaning::kBadFrame;
+    if (tells_warmth_) scheduler_->give(error, *this);
+  }
+  double warmest = 0.0;
+  for (const double motor : motors) {
+    if (motor > warmest) warmest = std::min(motor, 1.0);
+  }
+  if (warm_ticks_ > 0) --warm_ticks_;
+  state_.motor_warmth = warm_ticks_ > 0 ? 1.0 : warmest;
+}
+
+void OpenHapticsDevice::calibrate() noexcept {
+  const hd::Name found = hd_.check_calibration();
+  if (found == hd::kCalibrationNeedsUpdate) hd_.update_calibration(calibration_style_);
+  state_.ready = found == hd::kCalibrationOk;
+  calibration_.store(found, std::memory_order_relaxed);
+}
+
+void OpenHapticsDevice::write(const Vector3& force) noexcept {
+  if (!in_frame_) begin_frame();
+  const bool sound = force.allFinite() && state_.ready;
+  const Vector3 shown = sound ? force : Vector3(Vector3::Zero());
+  hd_.set_doublev(hd::kForce, shown.data());
+  hd_.end_frame(handle_);
+  in_frame_ = false;
+  scheduler_->fetch_errors(*this);
+}
+
+DeviceState OpenHapticsDevice::state() const noexcept {
+  return state_;
+}
+
+void OpenHapticsDevice::take(const hd::ErrorInfo& error) noexcept {
+  const hd::Meaning meaning = hd::describe(error.code).meaning;
+  if (meaning == hd::Meaning::kWarm) warm_ticks_ = kWarmTicks;
+  if (meaning == hd::Meaning::kBadFrame) bad_frame_ = true;
+  if (meaning < hd::Meaning::kUnsafe) return;
+  state_.failed = true;
+  state_.lost = state_.lost || meaning == hd::Meaning::kLost;
+  std::uint64_t none = 0;
+  fault_.compare_exchange_strong(none, packed(error), std::memory_order_relaxed);
+}
+
+std::string OpenHapticsDevice::trouble() const {
+  if (const std::uint64_t fault = fault_.load(std::memory_order_relaxed); fault != 0) {
+    const hd::ErrorInfo error = unpacked(fault);
+    return label() + ": no force any more: " + to_text(error) + "; " +
+           hd::describe(error.code).remedy;
+  }
+  switch (calibration_.load(std::memory_order_relaxed)) {
+    case hd::kCalibrationOk:
+    case hd::kCalibrationNeedsUpdate:
+      return {};
+    default:
+      return label() +
+             ": no force until it is calibrated; put the stylus into its inkwell, or use " +
+             "the vendor's Touch_Diagnostic";
+  }
+}
+
+std::unique_ptr<HapticDevice> make_openhaptics_device(const DeviceConfig& config) {
+  // As long as one of its devices is there: the driver has one scheduler.
+  static std::weak_ptr<OpenHapticsScheduler> scheduler;
+  std::shared_ptr<OpenHapticsScheduler> shared = scheduler.lock();
+  if (!shared) {
+    shared = std::make_shared<OpenHapticsScheduler>(hd::library());
+    scheduler = shared;
+  }
+  return std::make_unique<OpenHapticsDevice>(config.name, std::move(shared));
+}
+
+}  // namespace irdm

@@ -1,0 +1,155 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <csignal>
+#include <fstream>
+#include <sstream>
+#include <vector>
+
+#include "tests/system/stage.hpp"
+
+using Catch::Matchers::Contains;
+using namespace irdm;
+using namespace irdm::test;
+
+namespace {
+
+/// What the fake driver wrote down of one frame.
+struct Frame {
+  unsigned long tick = 0;
+  bool failed = false;
+  double height = 0.0;  ///< of the stylus [mm]
+  double force = 0.0;   ///< asked for [N]
+};
+
+/// A bridge with a device of the fake driver (tests/fake_libhd), whose hand comes down onto the
+/// cube and presses for a second, again and again.
+class DeviceStage {
+ public:
+  DeviceStage() {
+    stage.write("scene.toml",
+                scene_text() + "tether = { stiffness = 200, angular_stiffness = 1 }\n");
+    stage.write("bridge.toml", "[[device]]\ntype = \"openhaptics\"\n");
+    stage.write("motion.txt",
+                "0 0 70 0 0\n500 0 50 0 0\n1500 0 50 0 0\n2000 0 70 0 0\n2200 0 70 0 0\n");
+  }
+
+  ChildOptions with(std::vector<std::string> environment = {}) const {
+    environment.push_back("HD_LIBRARY=" IRDM_FAKE_LIBHD);
+    environment.push_back("FAKE_HD_MOTION=" + stage.path("motion.txt").string());
+    environment.push_back("FAKE_HD_LOG=" + stage.path("frames.txt").string());
+    return {.environment = environment};
+  }
+  static std::vector<std::string> in_contact(const std::string& event) {
+    return {"FAKE_HD_EVENT=" + event, "FAKE_HD_EVENT_AFTER=100"};
+  }
+  std::vector<Frame> frames() const {
+    std::vector<Frame> found;
+    std::istringstream text(file_content(stage.path("frames.txt")));
+    double ignored = 0.0;
+    Frame frame;
+    for (double x = 0, y = 0, z = 0;
+         text >> frame.tick >> frame.failed >> ignored >> frame.height >> ignored >> x >> y >> z;) {
+      frame.force = std::sqrt(x * x + y * y + z * z);
+      found.push_back(frame);
+    }
+    return found;
+  }
+  /// What the bridge did wrong with the driver, as the driver says.
+  std::string misuses() const {
+    const std::string log = file_content(stage.path("frames.txt"));
+    return log.substr(std::min(log.find("misuses"), log.size()));
+  }
+
+  Stage stage;
+};
+
+double largest_force(const std::vector<Frame>& frames) {
+  double largest = 0.0;
+  for (const Frame& frame : frames) largest = std::max(largest, frame.force);
+  return largest;
+}
+
+}  // namespace
+
+TEST_CASE("a device of OpenHaptics feels the server's cube, one frame a tick") {
+  const DeviceStage device;
+  Server server = device.stage.start_server();
+  ChildProcess bridge = device.stage.start_bridge(server, {"--duration", "3"}, device.with());
+  CHECK(bridge.wait() == 0);
+  CHECK_THAT(bridge.err(), Contains("Touch, serial number fake-1, at most 3.3 N, 0.88 N for long"));
+  CHECK_THAT(bridge.out(), Contains("scheduling the driver's own") && Contains("faults 0"));
+  CHECK(device.misuses() == "misuses 0 \n");
+  const std::vector<Frame> frames = device.frames();
+  REQUIRE(frames.size() > 100);
+  CHECK(largest_force(frames) > 0.5);
+  CHECK(largest_force(frames) < 3.3 * (1.0 + 1e-9));
+  CHECK(frames.back().force == 0.0);
+  for (std::size_t i = 1; i < frames.size(); ++i) REQUIRE(frames[i].tick == frames[i - 1].tick + 1);
+}
+
+TEST_CASE("a device that is unplugged in contact: the force goes to zero, the bridge says why") {
+  const DeviceStage device;
+  Server server = device.stage.start_server();
+  ChildProcess bridge =
+      device.stage.start_bridge(server, {}, device.with(DeviceStage::in_contact("unplug")));
+  CHECK(bridge.wait() == 1);
+  CHECK_THAT(bridge.err(), Contains("irdm-bridge: error: ") && Contains("HD_COMM_ERROR") &&
+                               Contains("check power and cable"));
+  CHECK_THAT(bridge.out(), Contains("faults"));
+  CHECK(device.misuses() == "misuses 0 \n");
+  const std::vector<Frame> frames = device.frames();
+  const auto failed =
+      std::find_if(frames.begin(), frames.end(), [](const Frame& frame) { return frame.failed; });
+  REQUIRE(failed != frames.begin());
+  REQUIRE(failed != frames.end());
+  CHECK(largest_force(frames) > 0.2);
+  for (auto frame = failed; frame + 1 != frames.end(); ++frame) {
+    REQUIRE((frame + 1)->force <= frame->force);
+  }
+  CHECK(frames.back().force == 0.0);
+  server.process.signal(SIGTERM);
+  CHECK(server.process.wait() == 0);
+}
+
+TEST_CASE("a device that was moved too fast stays without force, and the bridge goes on") {
+  const DeviceStage device;
+  Server server = device.stage.start_server();
+  ChildProcess bridge =
+      device.stage.start_bridge(server, {}, device.with(DeviceStage::in_contact("0x0203")));
+  CHECK_THAT(bridge.line_with("HD_EXCEEDED_MAX_VELOCITY", true), Contains("no force any more"));
+  CHECK(bridge.running());
+  bridge.signal(SIGTERM);
+  CHECK(bridge.wait() == 0);
+  CHECK_THAT(bridge.out(), Contains("faults 1"));
+  const std::vector<Frame> frames = device.frames();
+  CHECK(largest_force(frames) > 0.2);
+  CHECK(frames.back().force == 0.0);
+}
+
+TEST_CASE("a driver that hangs ends the bridge with a word about it") {
+  const DeviceStage device;
+  Server server = device.stage.start_server();
+  ChildProcess bridge =
+      device.stage.start_bridge(server, {}, device.with(DeviceStage::in_contact("hang")));
+  CHECK(bridge.wait() == 1);
+  CHECK_THAT(bridge.err(), Contains("its driver no longer makes ticks"));
+}
+
+TEST_CASE("a device that cannot be had: the bridge says why in one line") {
+  const DeviceStage device;
+  const auto refused = [&](std::vector<std::string> environment) {
+    const FinishedProgram bridge = run_to_end(
+        {IRDM_BRIDGE, device.stage.path("bridge.toml").string(), "--server", "127.0.0.1:1"},
+        device.with(std::move(environment)));
+    CHECK(bridge.status == 1);
+    CHECK(bridge.out.empty());
+    return bridge.err;
+  };
+  CHECK_THAT(refused({"HD_LIBRARY=/nowhere/libHD.so"}),
+             Contains("irdm-bridge: error: OpenHaptics: its library is not found") &&
+                 Contains("/nowhere/libHD.so"));
+  CHECK_THAT(refused({"FAKE_HD_REFUSE=0x0301"}), Contains("default device") && Contains("in use"));
+  device.stage.write("bridge.toml", "[[device]]\ntype = \"openhaptics\"\nname = \"Nobody\"\n");
+  CHECK_THAT(refused({}), Contains("device 'Nobody': "));
+}

@@ -86,7 +86,7 @@ void read_bridge(TomlTable table, const std::string& file, BridgeConfig& config)
       table.number("continuous_force", {.lowest = 0.0, .highest = 40.0, .lowest_included = false},
                    config.continuous_force);
   config.connect_timeout =
-      table.number("connect_timeout", between(0.01, 10.0), config.connect_timeout);
+      table.number("connect_timeout", between(0.01, 0.1), config.connect_timeout);
   config.realtime =
       scheduling_from_word(table.choice("realtime", {"require", "prefer", "ignore"}, "prefer"));
   table.finish();

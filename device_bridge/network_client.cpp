@@ -18,6 +18,12 @@ namespace irdm {
 using boost::asio::ip::tcp;
 using boost::system::error_code;
 
+namespace {
+
+constexpr std::int64_t kNanosecondsPerMillisecond = 1'000'000;
+
+}  // namespace
+
 class NetworkClient::Impl {
  public:
   Impl(ServoLink& link, const ClientSettings& settings, Wakeup& gave_up);
@@ -36,12 +42,8 @@ class NetworkClient::Impl {
   void connect();
   void greet(tcp::socket socket);
   void ended(const SessionEnd& end);
-  void rest(const std::string& what, const std::string& reason);
+  void rest(int milliseconds, const std::string& what, const std::string& reason);
   void give_up(const std::string& why);
-  void deadline_in(int milliseconds) {
-    constexpr std::int64_t kNanosecondsPerMillisecond = 1'000'000;
-    deadline_ns_ = monotonic_ns() + milliseconds * kNanosecondsPerMillisecond;
-  }
 
   ServoLink& link_;
   const ClientSettings settings_;
@@ -54,6 +56,7 @@ class NetworkClient::Impl {
   // At most one of these two; neither while it rests until the next attempt, or gave up.
   std::optional<tcp::socket> connecting_;
   std::unique_ptr<ServerSession> session_;
+  std::int64_t began_ns_ = 0;     ///< the last attempt
   std::int64_t deadline_ns_ = 0;  ///< of the attempt to connect, or of the rest after it
   bool complained_ = false;       ///< about this run of failed attempts
   bool stopping_ = false;         ///< told to, or gave up
@@ -142,16 +145,19 @@ void NetworkClient::Impl::check_time(std::int64_t now_ns) {
 }
 
 void NetworkClient::Impl::connect() {
-  deadline_in(settings_.connect_timeout_ms);
+  began_ns_ = monotonic_ns();
+  deadline_ns_ = began_ns_ + settings_.connect_timeout_ms * kNanosecondsPerMillisecond;
   connecting_.emplace(io_);
-  boost::asio::async_connect(*connecting_, endpoints_,
-                             [this](error_code error, const tcp::endpoint&) {
-                               tcp::socket socket = std::move(*connecting_);
-                               connecting_.reset();
-                               if (stopping_) return;
-                               if (error) return rest("no connection", error.message());
-                               greet(std::move(socket));
-                             });
+  boost::asio::async_connect(
+      *connecting_, endpoints_, [this](error_code error, const tcp::endpoint&) {
+        tcp::socket socket = std::move(*connecting_);
+        connecting_.reset();
+        if (stopping_) return;
+        if (error) {
+          return rest(settings_.back_off_ms, "no connection", error.message());
+        }
+        greet(std::move(socket));
+      });
 }
 
 void NetworkClient::Impl::greet(tcp::socket socket) {
@@ -173,13 +179,16 @@ void NetworkClient::Impl::ended(const SessionEnd& end) {
                                           "; the run cannot be continued, start both again");
   }
   complained_ = complained_ && !end.welcomed;
-  rest(end.welcomed ? "connection lost" : "no connection", end.reason);
+  rest(end.refused ? settings_.refused_ms : settings_.back_off_ms,
+       end.welcomed ? "connection lost" : "no connection", end.reason);
 }
 
-void NetworkClient::Impl::rest(const std::string& what, const std::string& reason) {
+/// @param milliseconds from the begin of the last attempt to the next
+void NetworkClient::Impl::rest(int milliseconds, const std::string& what,
+                               const std::string& reason) {
   if (!complained_) spdlog::warn("server {}: {}: {}; trying again", server_, what, reason);
   complained_ = true;
-  deadline_in(settings_.back_off_ms);
+  deadline_ns_ = began_ns_ + milliseconds * kNanosecondsPerMillisecond;
 }
 
 void NetworkClient::Impl::give_up(const std::string& why) {

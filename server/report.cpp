@@ -41,6 +41,9 @@ int print_report(const FinishedRun& run, const ServerOptions& options) {
     if (count > 0) std::cout << what << ": " << count << '\n';
   };
   faults("forces that were not finite, sent as zero", run.network.stats().forces_not_finite);
+  faults("connections closed for being silent", run.network.stats().timeouts);
+  faults("connections closed for too many messages", run.network.stats().too_fast);
+  faults("lines about bridges that were not logged", run.network.stats().unlogged);
   faults("errors inside the network thread", run.network.stats().internal_errors);
   faults("steps that the deformation did not see", run.deformation.lost_steps());
   if (run.recorder == nullptr) return 0;

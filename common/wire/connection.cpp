@@ -1,5 +1,7 @@
 #include "common/wire/connection.hpp"
 
+#include <netinet/tcp.h>
+
 #include <sstream>
 #include <utility>
 
@@ -11,13 +13,21 @@ namespace irdm::wire {
 using boost::asio::ip::tcp;
 using boost::system::error_code;
 
+namespace {
+
+// What the kernel has queued cannot be replaced by something newer. The buffer holds what is under
+// way as well; of what has not been sent once, the kernel takes little [bytes].
+constexpr int kSendBuffer = 65536;
+constexpr int kNotSent = 2048;
+using NotSentLimit = boost::asio::detail::socket_option::integer<IPPROTO_TCP, TCP_NOTSENT_LOWAT>;
+
+}  // namespace
+
 Connection::Connection(tcp::socket socket) : socket_(std::move(socket)) {
-  // What the kernel has queued cannot be replaced by something newer: keep it to about a tenth of a
-  // second of samples.
-  constexpr int kSendBuffer = 65536;
   error_code ignored;
   socket_.set_option(tcp::no_delay(true), ignored);
   socket_.set_option(tcp::socket::send_buffer_size(kSendBuffer), ignored);
+  socket_.set_option(NotSentLimit(kNotSent), ignored);
   std::ostringstream name;
   name << socket_.remote_endpoint(ignored);
   peer_ = name.str();
@@ -46,6 +56,7 @@ void Connection::take(std::span<const std::uint8_t> bytes) {
       const std::optional<Frame> frame = reader_.read(bytes);
       if (!frame) break;
       partial_since_ns_.reset();
+      check_order(frame->header.sequence);
       handlers_.received(*frame);
     }
   } catch (const ProtocolError& error) {
@@ -56,6 +67,15 @@ void Connection::take(std::span<const std::uint8_t> bytes) {
   } else if (!partial_since_ns_) {
     partial_since_ns_ = received_ns_;
   }
+}
+
+void Connection::check_order(std::uint64_t sequence) {
+  if (received_sequence_ && sequence <= *received_sequence_) {
+    throw ProtocolError(ProtocolFault::kBackward, "frame " + std::to_string(sequence) +
+                                                      " after frame " +
+                                                      std::to_string(*received_sequence_));
+  }
+  received_sequence_ = sequence;
 }
 
 void Connection::append(const Message& message) {
@@ -106,6 +126,12 @@ void Connection::finish() {
   if (!open_ || finishing_) return;
   finishing_ = true;
   write();
+}
+
+void Connection::drop(const std::string& reason) {
+  error_code ignored;
+  socket_.set_option(tcp::socket::linger(true, 0), ignored);
+  close(reason);
 }
 
 void Connection::close(const std::string& reason) {

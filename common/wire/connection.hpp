@@ -23,8 +23,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
   struct Handlers {
     /// A whole, checked frame. May throw ProtocolError.
     std::function<void(const Frame&)> received;
-    /// The stream is not valid, or `received` threw. Send a last message and finish(), or close();
-    /// nothing is received any more.
+    /// The stream is not valid or goes backward, or `received` threw. Send a last message and
+    /// finish(), or close(); nothing is received any more.
     std::function<void(const ProtocolError&)> violated;
     /// The connection has ended for whatever reason; last call.
     std::function<void(const std::string& reason)> closed;
@@ -48,6 +48,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
   void finish();
   /// Ends it at once; `closed` is called.
   void close(const std::string& reason);
+  /// The same, and what the kernel has not sent yet is thrown away: it must not arrive late.
+  void drop(const std::string& reason);
 
   const std::string& peer() const noexcept { return peer_; }
   bool finishing() const noexcept { return finishing_; }
@@ -62,6 +64,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
  private:
   void read();
   void take(std::span<const std::uint8_t> bytes);
+  void check_order(std::uint64_t sequence);
   void append(const Message& message);
   void write();
 
@@ -75,6 +78,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   std::vector<std::uint8_t> writing_;
   std::uint32_t session_ = 0;
   std::uint64_t sequence_ = 0;
+  std::optional<std::uint64_t> received_sequence_;
   std::int64_t received_ns_ = 0;
   std::optional<std::int64_t> partial_since_ns_;
   std::optional<std::int64_t> writing_since_ns_;

@@ -11,14 +11,15 @@ namespace irdm {
 struct ClientReport {
   std::uint64_t sessions = 0;
   std::uint64_t forces = 0;        ///< received and taken
-  std::uint64_t forces_old = 0;    ///< dropped: not newer than the last, or of no sample of ours
+  std::uint64_t forces_old = 0;    ///< dropped: the last one again, or of before the session
   std::uint64_t gaps = 0;          ///< times that force steps are missing between two forces
   std::uint64_t steps_missed = 0;  ///< force steps missing in all gaps
   std::uint64_t longest_gap = 0;   ///< [steps]
   std::uint64_t samples = 0;       ///< given to a connection
   std::uint64_t protocol_errors = 0;
-  Histogram round_trip;  ///< sample taken to its first force received [ns]; real time only
-  std::string failure;   ///< why it gave up, one line; empty: it did not
+  std::uint64_t stalls = 0;  ///< connections closed because samples were not answered any more
+  Histogram round_trip;      ///< sample taken to its first force received [ns]; real time only
+  std::string failure;       ///< why it gave up, one line; empty: it did not
 };
 
 }  // namespace irdm

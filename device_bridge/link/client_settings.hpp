@@ -11,11 +11,13 @@ struct ClientSettings {
   ServerAddress server = {};
   std::string name = "irdm-bridge";  ///< for the server's log
   bool lockstep = true;              ///< whether all devices can run on the simulated clock
-  int connect_timeout_ms = 100;      ///< of one attempt
-  int back_off_ms = 50;              ///< between attempts
-  int answer_timeout_ms = 1000;      ///< from Hello to Welcome
+  int connect_timeout_ms = 75;       ///< of one attempt
+  int back_off_ms = 20;              ///< from the begin of one attempt to the next, at least
+  int refused_ms = 100;              ///< the same after a refusal that may pass
+  int answer_timeout_ms = 150;       ///< from Hello to Welcome
   RealTimeScheduling scheduling = RealTimeScheduling::kIgnore;
-  int silence_timeout_ms = 2000;  ///< without a force; real time only
+  /// Without an answer to a newer sample; real time only. At least five steps of the server.
+  int silence_timeout_ms = 100;
 };
 
 }  // namespace irdm

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "common/wire/protocol_error.hpp"
+
 namespace irdm {
 namespace {
 
@@ -20,8 +22,8 @@ void ForceIntake::sent(const StylusSample& sample) noexcept {
   newest_sample_ = sample.sequence;
 }
 
-bool ForceIntake::take(const StylusForce& force, std::int64_t now_ns,
-                       ClientReport& report) noexcept {
+bool ForceIntake::take(const StylusForce& force, std::int64_t now_ns, ClientReport& report) {
+  check_order(force);
   if (!news(force)) {
     ++report.forces_old;
     return false;
@@ -41,13 +43,23 @@ bool ForceIntake::take(const StylusForce& force, std::int64_t now_ns,
   return true;
 }
 
+void ForceIntake::check_order(const StylusForce& force) const {
+  const bool said = first_sample_ && force.sample_sequence <= newest_sample_;
+  if (!said) {
+    throw wire::ProtocolError(wire::ProtocolFault::kUnexpected,
+                              "a force for a sample that was not sent");
+  }
+  if (force_step_ && (force.force_step < *force_step_ || force.sample_sequence < *answered_)) {
+    throw wire::ProtocolError(wire::ProtocolFault::kBackward,
+                              "a force that is older than the last");
+  }
+}
+
+// A run that is paused answers newer samples in the step where it stands.
 bool ForceIntake::news(const StylusForce& force) const noexcept {
-  // A run that is paused answers newer samples in the step where it stands.
-  const bool newer = !force_step_ || force.force_step > *force_step_ ||
-                     (force.force_step == *force_step_ && force.sample_sequence > answered_);
-  const bool ours = first_sample_ && force.sample_sequence >= *first_sample_ &&
-                    force.sample_sequence <= newest_sample_;
-  return newer && ours;
+  const bool ours = force.sample_sequence >= *first_sample_;
+  return ours &&
+         (!force_step_ || force.force_step > *force_step_ || force.sample_sequence > *answered_);
 }
 
 void ForceIntake::count_gap(std::uint64_t step, ClientReport& report) noexcept {

@@ -2,6 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "common/realtime/clock.hpp"
@@ -16,6 +17,7 @@ constexpr std::int64_t kNanosecondsPerMillisecond = 1'000'000;
 constexpr std::int64_t kReportPeriodNs = 1000 * kNanosecondsPerMillisecond;
 constexpr int kFrameTimeoutMs = 1000;
 constexpr int kHangUpMs = 500;
+constexpr double kSilentSteps = 5;  // a server of long steps may be silent for so many of them
 
 [[noreturn]] void unexpected(const char* what) {
   throw ProtocolError(ProtocolFault::kUnexpected, what);
@@ -78,8 +80,10 @@ void ServerSession::welcomed(const wire::Welcome& welcome) {
   connection_->set_session(welcome.session);
   first_stylus_ = welcome.first_stylus;
   reports_ = (welcome.capabilities & wire::kCapabilityReport) != 0;
-  force_ns_ = monotonic_ns();
-  next_report_ns_ = force_ns_ + kReportPeriodNs;
+  answered_ns_ = monotonic_ns();
+  silence_ns_ = std::max(shared_.settings.silence_timeout_ms * kNanosecondsPerMillisecond,
+                         static_cast<std::int64_t>(kSilentSteps * 1e9 * welcome.dt));
+  next_report_ns_ = answered_ns_ + kReportPeriodNs;
   link_state_ = {.linked = true,
                  .sessions = ++shared_.report.sessions,
                  .lockstep = welcome.lockstep,
@@ -94,7 +98,8 @@ void ServerSession::welcomed(const wire::Welcome& welcome) {
 }
 
 void ServerSession::refused(const wire::Refuse& refuse) {
-  if (passes(refuse.reason)) return connection_->close("refused: " + refuse.text);
+  end_.refused = passes(refuse.reason);
+  if (end_.refused) return connection_->close("refused: " + refuse.text);
   if (refuse.reason == wire::RefuseReason::kVersion) {
     const wire::VersionMismatch mismatch(refuse.version_min, refuse.version_max,
                                          wire::kOldestProtocolVersion, wire::kProtocolVersion);
@@ -114,8 +119,9 @@ void ServerSession::take(const wire::ForceMessage& message) {
   }
   const auto stylus = static_cast<std::size_t>(index);
   const std::int64_t now_ns = monotonic_ns();
+  const std::optional<std::uint64_t> before = intakes_[stylus].answered();
   if (!intakes_[stylus].take(message.force, now_ns, shared_.report)) return;
-  force_ns_ = now_ns;
+  if (intakes_[stylus].answered() > before) answered_ns_ = now_ns;
   shared_.link.styluses[stylus].input.put(intakes_[stylus].input());
   shared_.link.news.signal();
 }
@@ -150,16 +156,17 @@ void ServerSession::check_time(std::int64_t now_ns) {
   const bool due = now_ns > deadline_ns_;
   switch (state_) {
     case State::kGreeting:
-      if (due) connection_->close("no answer to Hello");
+      if (due) connection_->drop("no answer to Hello");
       break;
     case State::kLinked:
       send_reports(now_ns);
-      if (!link_state_.lockstep && older(force_ns_, shared_.settings.silence_timeout_ms)) {
-        connection_->close("no force any more");
+      if (!link_state_.lockstep && now_ns - answered_ns_ > silence_ns_) {
+        ++shared_.report.stalls;
+        connection_->drop("no answers any more");
       }
       break;
     case State::kEnding:
-      if (due) connection_->close("the server does not hang up");
+      if (due) connection_->drop("the server does not hang up");
       break;
   }
 }

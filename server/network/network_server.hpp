@@ -18,11 +18,13 @@ struct NetworkSettings {
   bool lockstep = false;
   int styluses = 4;                 ///< slots, 1 to 64
   int max_connections = 16;         ///< >= 1
+  int max_frame_rate = 20000;       ///< of one bridge [1/s], >= 1; not in lockstep
   int handshake_timeout_ms = 1000;  ///< from connection to Hello
   int frame_timeout_ms = 1000;      ///< from the first byte of a frame to its last
   int absent_after_ms = 100;        ///< without a sample the stylus is absent; not in lockstep
+  int yield_after_ms = 50;  ///< without a byte a session gives way to who asks; not in lockstep
   RealTimeScheduling scheduling = RealTimeScheduling::kIgnore;
-  int silence_timeout_ms = 2000;  ///< without a byte the session ends; not in lockstep
+  int silence_timeout_ms = 500;  ///< without a byte the session ends; not in lockstep
 };
 
 /// Counters of the network thread; read from any thread.
@@ -31,13 +33,16 @@ struct NetworkStats {
   std::atomic<std::uint64_t> refused{0};          ///< connections refused
   std::atomic<std::uint64_t> protocol_errors{0};  ///< connections closed for breaking the protocol
   std::atomic<std::uint64_t> timeouts{0};         ///< connections closed for being silent
+  std::atomic<std::uint64_t> yielded{0};          ///< of these, for another bridge to come in
+  std::atomic<std::uint64_t> too_fast{0};         ///< connections closed for too many frames
   std::atomic<std::uint64_t> goodbyes{0};         ///< sessions that their bridge ended in order
   std::atomic<std::uint64_t> samples{0};          ///< handed to the force thread
-  std::atomic<std::uint64_t> samples_old{0};      ///< dropped: not newer than the last
+  std::atomic<std::uint64_t> samples_old{0};      ///< not newer than the last: their sessions ended
   std::atomic<std::uint64_t> forces{0};           ///< handed to a connection
   std::atomic<std::uint64_t> forces_replaced{0};  ///< not sent because a newer one was there
   std::atomic<std::uint64_t> forces_not_finite{0};  ///< sent as zero
   std::atomic<std::uint64_t> internal_errors{0};    ///< caught in the network thread
+  std::atomic<std::uint64_t> unlogged{0};  ///< complaints about peers beyond what is logged
 };
 
 /// Listens for bridges and relays samples and forces between them and the force thread, on a thread

@@ -37,6 +37,11 @@ class OpenDevices {
   std::size_t open_ = 0;
 };
 
+std::optional<wire::SecretKey> key_of(const BridgeConfig& config) {
+  if (!config.key_file) return std::nullopt;
+  return wire::read_key_file(*config.key_file);
+}
+
 }  // namespace
 
 BridgeReport run_bridge(const BridgeConfig& config, StopSignal& stop_signal, double duration) {
@@ -63,7 +68,8 @@ BridgeReport run_bridge(const BridgeConfig& config, StopSignal& stop_signal, dou
       {.server = *config.server,
        .lockstep = simulated,
        .connect_timeout_ms = static_cast<int>(std::ceil(1e3 * config.connect_timeout)),
-       .scheduling = config.realtime},
+       .scheduling = config.realtime,
+       .key = key_of(config)},
       done);
   ServoThread servo(
       link, loops,

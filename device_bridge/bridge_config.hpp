@@ -44,6 +44,8 @@ struct BridgeConfig {
   double max_force = 3.3;               ///< key `bridge.max_force`: shown at most [N], (0, 40]
   double continuous_force = 0.88;       ///< key `bridge.continuous_force`: for long [N], (0, 40]
   double connect_timeout = 0.075;  ///< key `bridge.connect_timeout`: an attempt [s], 0.01 to 0.1
+  /// key `bridge.key_file`: the server's key; none: the server is on this machine
+  std::optional<std::filesystem::path> key_file;
   /// key `bridge.realtime`: "require" | "prefer" | "ignore"; scheduling of the servo loop
   RealTimeScheduling realtime = RealTimeScheduling::kPrefer;
   std::vector<DeviceConfig> devices;  ///< [[device]], one or more, one a stylus

@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <exception>
 #include <optional>
@@ -11,6 +12,7 @@
 
 #include "common/error.hpp"
 #include "common/realtime/clock.hpp"
+#include "common/wire/tls.hpp"
 #include "device_bridge/link/server_session.hpp"
 
 namespace irdm {
@@ -41,6 +43,7 @@ class NetworkClient::Impl {
   void check_time(std::int64_t now_ns);
   void connect();
   void greet(tcp::socket socket);
+  std::unique_ptr<wire::Stream> make_stream(tcp::socket socket);
   void ended(const SessionEnd& end);
   void rest(int milliseconds, const std::string& what, const std::string& reason);
   void give_up(const std::string& why);
@@ -49,6 +52,7 @@ class NetworkClient::Impl {
   const ClientSettings settings_;
   Wakeup& gave_up_;
   const std::string server_;  ///< for messages
+  std::optional<wire::Tls> tls_;
   boost::asio::io_context io_{1};
   tcp::resolver::results_type endpoints_;
   boost::asio::posix::stream_descriptor samples_descriptor_;
@@ -77,6 +81,14 @@ NetworkClient::Impl::Impl(ServoLink& link, const ClientSettings& settings, Wakeu
       tcp::resolver(io_).resolve(settings.server.host, std::to_string(settings.server.port), error);
   if (error) {
     throw Error(server_, "cannot resolve the name: " + error.message(), "check the server's name");
+  }
+  if (settings_.key) {
+    tls_.emplace(wire::TlsRole::kClient, *settings_.key);
+  } else if (!std::all_of(endpoints_.begin(), endpoints_.end(), [](const auto& entry) {
+               return entry.endpoint().address().is_loopback();
+             })) {
+    throw Error(server_, "is not on this machine, and there is no key",
+                "set bridge.key_file to a copy of the server's (docs/configuration.md)");
   }
   samples_descriptor_.assign(::dup(link_.samples_ready.descriptor()));
 }
@@ -161,10 +173,14 @@ void NetworkClient::Impl::connect() {
 }
 
 void NetworkClient::Impl::greet(tcp::socket socket) {
-  session_ =
-      std::make_unique<ServerSession>(std::make_shared<wire::Connection>(std::move(socket)),
-                                      ServerSession::Shared{link_, settings_, server_, report_});
+  session_ = std::make_unique<ServerSession>(
+      std::make_shared<wire::Connection>(make_stream(std::move(socket))),
+      ServerSession::Shared{link_, settings_, server_, report_});
   session_->start([this](const SessionEnd& end) { ended(end); });
+}
+
+std::unique_ptr<wire::Stream> NetworkClient::Impl::make_stream(tcp::socket socket) {
+  return tls_ ? tls_->make_stream(std::move(socket)) : wire::make_plain_stream(std::move(socket));
 }
 
 void NetworkClient::Impl::ended(const SessionEnd& end) {

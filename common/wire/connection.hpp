@@ -11,12 +11,14 @@
 #include "common/wire/asio.hpp"
 #include "common/wire/frame.hpp"
 #include "common/wire/protocol_error.hpp"
+#include "common/wire/stream.hpp"
 
 namespace irdm::wire {
 
-/// A TCP connection that carries frames, on the thread of its io_context. Control messages go out
-/// in order and all of them; of the messages of one stream (a stylus, say) only the newest goes out
-/// when the peer or the network cannot keep up. It knows no time-out: its owner looks at the ages.
+/// A TCP connection, perhaps with TLS, that carries frames, on the thread of its io_context.
+/// Control messages go out in order and all of them; of the messages of one stream (a stylus, say)
+/// only the newest goes out when the peer or the network cannot keep up. It knows no time-out: its
+/// owner looks at the ages.
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
   /// Called on the thread of the io_context; what they refer to must live until `closed` returns.
@@ -30,8 +32,9 @@ class Connection : public std::enable_shared_from_this<Connection> {
     std::function<void(const std::string& reason)> closed;
   };
 
-  /// Takes over a connected socket and turns no-delay on.
-  explicit Connection(boost::asio::ip::tcp::socket socket);
+  /// Takes over a stream that is connected and turns no-delay on.
+  explicit Connection(std::unique_ptr<Stream> stream);
+  /// What is sent before the handshake of the stream is done waits for it.
   void start(Handlers handlers);
 
   /// Goes into the headers of all messages from now on.
@@ -44,7 +47,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   /// @param stream small number >= 0
   bool send_newest(std::size_t stream, const Message& message);
   /// Sends what waits, then ends the sending half and waits for the peer to close; what still
-  /// comes is ignored.
+  /// comes is ignored. Before the handshake is done: closes.
   void finish();
   /// Ends it at once; `closed` is called.
   void close(const std::string& reason);
@@ -53,6 +56,10 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
   const std::string& peer() const noexcept { return peer_; }
   bool finishing() const noexcept { return finishing_; }
+  /// Whether the handshake of the stream is done.
+  bool ready() const noexcept { return ready_; }
+  /// Whether that failed for want of a common key, or of TLS at the other end.
+  bool refused() const noexcept { return refused_; }
   std::int64_t received_ns() const noexcept {
     return received_ns_;
   }  ///< of the last bytes, or start
@@ -62,13 +69,14 @@ class Connection : public std::enable_shared_from_this<Connection> {
   std::optional<std::int64_t> writing_since_ns() const noexcept { return writing_since_ns_; }
 
  private:
+  void shaken(const boost::system::error_code& error);
   void read();
   void take(std::span<const std::uint8_t> bytes);
   void check_order(std::uint64_t sequence);
   void append(const Message& message);
   void write();
 
-  boost::asio::ip::tcp::socket socket_;
+  std::unique_ptr<Stream> stream_;
   std::string peer_;
   Handlers handlers_;
   FrameReader reader_;
@@ -82,6 +90,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
   std::int64_t received_ns_ = 0;
   std::optional<std::int64_t> partial_since_ns_;
   std::optional<std::int64_t> writing_since_ns_;
+  bool ready_ = false;
+  bool refused_ = false;
   bool finishing_ = false;
   bool open_ = true;
 };

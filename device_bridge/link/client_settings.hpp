@@ -1,8 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "common/realtime/scheduling.hpp"
+#include "common/wire/secret_key.hpp"
 #include "device_bridge/bridge_config.hpp"
 
 namespace irdm {
@@ -18,6 +20,8 @@ struct ClientSettings {
   RealTimeScheduling scheduling = RealTimeScheduling::kIgnore;
   /// Without an answer to a newer sample; real time only. At least five steps of the server.
   int silence_timeout_ms = 100;
+  /// The server's, for TLS; nothing: no TLS, and the server has to be on this machine.
+  std::optional<wire::SecretKey> key = {};
 };
 
 }  // namespace irdm

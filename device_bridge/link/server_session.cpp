@@ -203,6 +203,17 @@ void ServerSession::closed(const std::string& reason) {
   state_ = State::kEnding;
   publish();
   end_.reason = reason;
+  if (connection_->refused()) {
+    end_.reason = "no TLS with this key: " + reason;
+    // Later on it is something on the way that spoils the bytes.
+    if (shared_.report.sessions == 0) {
+      end_.failure = shared_.server + ": " + end_.reason +
+                     "; give bridge and server the same key file (bridge.key_file, "
+                     "server.key_file)";
+    }
+  } else if (!end_.welcomed && !end_.refused && !shared_.settings.key) {
+    end_.reason += " (a server that wants a key hangs up on a bridge without bridge.key_file)";
+  }
   ended_(end_);
 }
 

@@ -15,6 +15,7 @@
 
 #include "common/error.hpp"
 #include "common/realtime/clock.hpp"
+#include "common/wire/tls.hpp"
 #include "server/network/session.hpp"
 
 namespace irdm {
@@ -39,6 +40,7 @@ class NetworkServer::Impl {
         timer_(io_) {
     // Made before any thread logs: the thread sanitizer cannot see the guard inside spdlog.
     spdlog::default_logger();
+    if (settings_.key) tls_.emplace(wire::TlsRole::kServer, *settings_.key);
     listen();
     forces_descriptor_.assign(::dup(forces_ready_.descriptor()));
   }
@@ -61,6 +63,7 @@ class NetworkServer::Impl {
   void run() noexcept;
   void accept();
   void admit(tcp::socket socket);
+  std::unique_ptr<wire::Stream> make_stream(tcp::socket socket);
   void remove_ended();
   std::uint32_t new_session();
   void make_room();
@@ -68,6 +71,7 @@ class NetworkServer::Impl {
   void await_tick();
   void shut_down();
 
+  std::optional<wire::Tls> tls_;
   boost::asio::io_context io_{1};
   tcp::acceptor acceptor_;
   boost::asio::posix::stream_descriptor forces_descriptor_;
@@ -95,6 +99,11 @@ void NetworkServer::Impl::listen() {
   const auto address = boost::asio::ip::make_address(settings_.address, error);
   if (error) {
     throw Error(wanted, "is not an address", "give a numeric address of this machine");
+  }
+  if (!address.is_loopback() && !tls_) {
+    throw Error(wanted, "can be reached from other machines, and there is no key",
+                "set server.key_file and give bridges the same key (docs/configuration.md), or "
+                "listen on 127.0.0.1");
   }
   try {
     const tcp::endpoint endpoint(address, settings_.port);
@@ -165,10 +174,14 @@ void NetworkServer::Impl::admit(tcp::socket socket) {
   }
   const bool full = sessions_.size() >= limit;
   Session& session = sessions_.emplace_back(
-      new_session(), std::make_shared<wire::Connection>(std::move(socket)),
+      new_session(), std::make_shared<wire::Connection>(make_stream(std::move(socket))),
       Session::Shared{settings_, slots_, stats_, complaints_, [this] { make_room(); }});
   session.start();
   if (full) session.refuse(wire::RefuseReason::kTooManyConnections, "too many connections");
+}
+
+std::unique_ptr<wire::Stream> NetworkServer::Impl::make_stream(tcp::socket socket) {
+  return tls_ ? tls_->make_stream(std::move(socket)) : wire::make_plain_stream(std::move(socket));
 }
 
 /// Where nothing of a session is on the stack.

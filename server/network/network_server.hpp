@@ -3,10 +3,12 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "common/realtime/scheduling.hpp"
 #include "common/realtime/wakeup.hpp"
+#include "common/wire/secret_key.hpp"
 #include "server/network/stylus_port.hpp"
 
 namespace irdm {
@@ -25,12 +27,15 @@ struct NetworkSettings {
   int yield_after_ms = 50;  ///< without a byte a session gives way to who asks; not in lockstep
   RealTimeScheduling scheduling = RealTimeScheduling::kIgnore;
   int silence_timeout_ms = 500;  ///< without a byte the session ends; not in lockstep
+  /// What bridges have to know, in TLS; nothing: no TLS, and the address has to be a loopback one.
+  std::optional<wire::SecretKey> key = {};
 };
 
 /// Counters of the network thread; read from any thread.
 struct NetworkStats {
   std::atomic<std::uint64_t> accepted{0};         ///< sessions welcomed
   std::atomic<std::uint64_t> refused{0};          ///< connections refused
+  std::atomic<std::uint64_t> wrong_keys{0};       ///< connections without the server's key
   std::atomic<std::uint64_t> protocol_errors{0};  ///< connections closed for breaking the protocol
   std::atomic<std::uint64_t> timeouts{0};         ///< connections closed for being silent
   std::atomic<std::uint64_t> yielded{0};          ///< of these, for another bridge to come in

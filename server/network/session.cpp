@@ -41,6 +41,10 @@ void Session::start() {
             if (welcomed_ && !ending_since_ns_) {
               complain("connection lost: " + reason);
             }
+            if (connection_->refused()) {
+              complain("refused: not the server's key, or no TLS: " + reason);
+              shared_.stats.wrong_keys.fetch_add(1);
+            }
             release();
             over_ = true;
           },

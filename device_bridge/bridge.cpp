@@ -53,10 +53,11 @@ BridgeReport run_bridge(const BridgeConfig& config, StopSignal& stop_signal, dou
   double longest = 0.0;
   bool simulated = true;
   for (const auto& device : devices.all()) {
-    loops.emplace_back(
-        *device,
-        FilterLimits{.max_force = config.max_force, .continuous_force = config.continuous_force},
-        config.devices[loops.size()].mapping);
+    loops.emplace_back(*device,
+                       FilterLimits{.max_force = config.max_force,
+                                    .continuous_force = config.continuous_force,
+                                    .needed_success = LinkGate::kNeeded},
+                       config.devices[loops.size()].mapping);
     longest = std::max(longest, device->duration());
     simulated = simulated && device->simulated();
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -23,8 +24,10 @@ struct LinkState {
 /// Hand-over between servo thread and network thread. Neither ever waits for the other.
 struct ServoLink {
   struct Stylus {
-    Mailbox<StylusSample> sample;  ///< servo writes
-    Mailbox<ServoInput> input;     ///< network writes
+    Mailbox<StylusSample> sample;           ///< servo writes
+    Mailbox<ServoInput> input;              ///< network writes
+    std::atomic<bool> armed{false};         ///< servo writes; and the next
+    std::atomic<double> success_rate{0.0};  ///< LinkGate's
   };
   explicit ServoLink(std::size_t count) : styluses(count) {}
 

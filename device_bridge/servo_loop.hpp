@@ -28,8 +28,9 @@ class ServoLoop {
   ServoLoop(HapticDevice& device, const FilterLimits& limits, const DeviceMapping& mapping = {});
 
   /// Begins a session of the device's time: samples are numbered from 0 again, the clutch's
-  /// offset is gone, and the filter is armed.
-  void restart() noexcept;
+  /// offset is gone, and the filter is to arm.
+  /// @param link_matters false: at once, however good the link is
+  void restart(bool link_matters = false) noexcept;
 
   /// Reads the device.
   /// @param device_time as for HapticDevice::read() [s]

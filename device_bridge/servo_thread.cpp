@@ -58,7 +58,7 @@ ServoEnd ServoThread::run_real_time() noexcept {
     const LinkState& state = link_.state.front();
     if (state.sessions == 0) continue;
     if (start_ns == 0) {
-      for (ServoLoop& loop : loops_) loop.restart();
+      for (ServoLoop& loop : loops_) loop.restart(!state.lockstep);
       if (state.lockstep) return run_lockstep();
       start_ns = now_ns;
     }
@@ -80,6 +80,9 @@ void ServoThread::tick(std::int64_t now_ns, std::int64_t start_ns) noexcept {
     link_.styluses[i].sample.put(loops_[i].take_sample(now_ns));
     link_.styluses[i].input.receive();
     loops_[i].apply(now_ns, link_.styluses[i].input.front());
+    const SafetyFilter& filter = loops_[i].filter();
+    link_.styluses[i].armed = filter.state() != FilterState::kDisarmed;
+    link_.styluses[i].success_rate = filter.success_rate();
   }
   link_.samples_ready.signal();
 }

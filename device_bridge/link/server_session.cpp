@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "common/realtime/clock.hpp"
+#include "device_bridge/safety/link_gate.hpp"
 
 namespace irdm {
 namespace {
@@ -15,6 +16,7 @@ using wire::ProtocolFault;
 
 constexpr std::int64_t kNanosecondsPerMillisecond = 1'000'000;
 constexpr std::int64_t kReportPeriodNs = 1000 * kNanosecondsPerMillisecond;
+constexpr std::int64_t kArmingPatienceNs = 5000 * kNanosecondsPerMillisecond;
 constexpr int kFrameTimeoutMs = 1000;
 constexpr int kHangUpMs = 500;
 constexpr double kSilentSteps = 5;  // a server of long steps may be silent for so many of them
@@ -84,6 +86,7 @@ void ServerSession::welcomed(const wire::Welcome& welcome) {
   silence_ns_ = std::max(shared_.settings.silence_timeout_ms * kNanosecondsPerMillisecond,
                          static_cast<std::int64_t>(kSilentSteps * 1e9 * welcome.dt));
   next_report_ns_ = answered_ns_ + kReportPeriodNs;
+  arming_due_ns_ = answered_ns_ + kArmingPatienceNs;
   link_state_ = {.linked = true,
                  .sessions = ++shared_.report.sessions,
                  .lockstep = welcome.lockstep,
@@ -146,6 +149,20 @@ void ServerSession::send_reports(std::int64_t now_ns) {
   }
 }
 
+// A person who feels nothing should know why.
+void ServerSession::tell_of_arming(std::int64_t now_ns) {
+  if (link_state_.lockstep || now_ns < arming_due_ns_) return;
+  arming_due_ns_ = now_ns + kArmingPatienceNs;
+  for (std::size_t i = 0; i < shared_.link.styluses.size(); ++i) {
+    const ServoLink::Stylus& stylus = shared_.link.styluses[i];
+    if (stylus.armed) continue;
+    spdlog::warn(
+        "stylus {}: no force yet: {:.0f} % of the last ticks were answered in time, {:.0f} % are "
+        "needed; irdm-bridge check-link says more",
+        i, 100.0 * stylus.success_rate, 100.0 * LinkGate::kNeeded);
+  }
+}
+
 void ServerSession::check_time(std::int64_t now_ns) {
   const auto older = [now_ns](std::optional<std::int64_t> since, int limit_ms) {
     return since && now_ns - *since > limit_ms * kNanosecondsPerMillisecond;
@@ -160,6 +177,7 @@ void ServerSession::check_time(std::int64_t now_ns) {
       break;
     case State::kLinked:
       send_reports(now_ns);
+      tell_of_arming(now_ns);
       if (!link_state_.lockstep && now_ns - answered_ns_ > silence_ns_) {
         ++shared_.report.stalls;
         connection_->drop("no answers any more");

@@ -62,6 +62,7 @@ class ServerSession {
   void closed(const std::string& reason);
   void leave();
   void send_reports(std::int64_t now_ns);
+  void tell_of_arming(std::int64_t now_ns);
   void publish();
   void deadline_in(int milliseconds);
   std::uint16_t slot(std::size_t stylus) const noexcept;
@@ -78,6 +79,7 @@ class ServerSession {
   std::uint16_t first_stylus_ = 0;
   bool reports_ = false;  ///< the server takes them
   std::int64_t next_report_ns_ = 0;
+  std::int64_t arming_due_ns_ = 0;    ///< when it is said that a stylus is not armed
   std::vector<ForceIntake> intakes_;  ///< one a stylus, from Welcome on
 };
 

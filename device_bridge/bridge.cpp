@@ -37,12 +37,16 @@ class OpenDevices {
   std::size_t open_ = 0;
 };
 
-std::optional<wire::SecretKey> key_of(const BridgeConfig& config) {
-  if (!config.key_file) return std::nullopt;
-  return wire::read_key_file(*config.key_file);
-}
-
 }  // namespace
+
+ClientSettings client_settings(const BridgeConfig& config) {
+  ClientSettings settings{
+      .server = *config.server,
+      .connect_timeout_ms = static_cast<int>(std::ceil(1e3 * config.connect_timeout)),
+      .scheduling = config.realtime};
+  if (config.key_file) settings.key = wire::read_key_file(*config.key_file);
+  return settings;
+}
 
 BridgeReport run_bridge(const BridgeConfig& config, StopSignal& stop_signal, double duration) {
   if (!config.server) {
@@ -64,14 +68,9 @@ BridgeReport run_bridge(const BridgeConfig& config, StopSignal& stop_signal, dou
 
   Wakeup done;
   ServoLink link(loops.size());
-  NetworkClient client(
-      link,
-      {.server = *config.server,
-       .lockstep = simulated,
-       .connect_timeout_ms = static_cast<int>(std::ceil(1e3 * config.connect_timeout)),
-       .scheduling = config.realtime,
-       .key = key_of(config)},
-      done);
+  ClientSettings settings = client_settings(config);
+  settings.lockstep = simulated;
+  NetworkClient client(link, settings, done);
   ServoThread servo(
       link, loops,
       {.rate = config.rate, .scheduling = config.realtime, .duration = std::min(duration, longest)},

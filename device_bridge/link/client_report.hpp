@@ -19,6 +19,7 @@ struct ClientReport {
   std::uint64_t protocol_errors = 0;
   std::uint64_t stalls = 0;  ///< connections closed because samples were not answered any more
   Histogram round_trip;      ///< sample taken to its first force received [ns]; real time only
+  Histogram jitter;          ///< how much a round trip differs from the one before [ns]
   std::string failure;       ///< why it gave up, one line; empty: it did not
 };
 

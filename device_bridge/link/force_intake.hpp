@@ -36,6 +36,7 @@ class ForceIntake {
  private:
   void check_order(const StylusForce& force) const;
   bool news(const StylusForce& force) const noexcept;
+  void measure(std::int64_t round_trip_ns, ClientReport& report) noexcept;
   void count_gap(std::uint64_t step, ClientReport& report) noexcept;
 
   bool lockstep_;
@@ -43,6 +44,7 @@ class ForceIntake {
   std::uint64_t newest_sample_ = 0;
   std::optional<std::uint64_t> answered_;
   std::optional<std::uint64_t> force_step_;
+  std::optional<std::int64_t> last_round_trip_ns_;
   ServoInput input_;
   Histogram round_trip_;  ///< this and the next: since the last report [ns]
   Histogram age_;

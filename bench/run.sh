@@ -20,3 +20,6 @@ mkdir -p out/bench
 [ -f out/bench/paper-cube.h5 ] ||
   build/release/bin/irdm-precompute configs/models/paper-cube.toml -o out/bench/paper-cube.h5 >out/bench/paper-cube.log
 build/release/bin/bench_viewer_load out/bench/paper-cube.h5
+echo
+echo "## Reconnects"
+build/release/bin/bench_reconnect

@@ -69,6 +69,16 @@ std::string failure_of(ServoEnd end, const DeviceWatch& watch) {
 
 }  // namespace
 
+ClientSettings client_settings(const BridgeConfig& config) {
+  ClientSettings settings{
+      .server = *config.server,
+      .predict = config.predict,
+      .connect_timeout_ms = static_cast<int>(std::ceil(1e3 * config.connect_timeout)),
+      .scheduling = config.realtime};
+  if (config.key_file) settings.key = wire::read_key_file(*config.key_file);
+  return settings;
+}
+
 BridgeReport run_bridge(const BridgeConfig& config, StopSignal& stop_signal, double duration) {
   if (!config.server) {
     throw Error("bridge", "no server is named", "give --server HOST:PORT or the key bridge.server");
@@ -78,21 +88,18 @@ BridgeReport run_bridge(const BridgeConfig& config, StopSignal& stop_signal, dou
   double longest = 0.0;
   bool simulated = true;
   for (const auto& device : devices.all()) {
-    loops.emplace_back(*device, limits_for(*device, config), config.devices[loops.size()].mapping);
+    FilterLimits limits = limits_for(*device, config);
+    limits.needed_success = LinkGate::kNeeded;
+    loops.emplace_back(*device, limits, config.devices[loops.size()].mapping);
     longest = std::max(longest, device->duration());
     simulated = simulated && device->simulated();
   }
 
   Wakeup done;
   ServoLink link(loops.size());
-  NetworkClient client(
-      link,
-      {.server = *config.server,
-       .lockstep = simulated,
-       .predict = config.predict,
-       .connect_timeout_ms = static_cast<int>(std::ceil(1e3 * config.connect_timeout)),
-       .scheduling = config.realtime},
-      done);
+  ClientSettings settings = client_settings(config);
+  settings.lockstep = simulated;
+  NetworkClient client(link, settings, done);
   ServoThread servo(
       link, loops,
       {.rate = config.rate, .scheduling = config.realtime, .duration = std::min(duration, longest)},

@@ -116,7 +116,8 @@ void read_bridge(TomlTable table, const std::string& file, BridgeConfig& config)
                    config.continuous_force);
   config.predict = table.choice("mode", {"predict", "hold"}, "predict") == "predict";
   config.connect_timeout =
-      table.number("connect_timeout", between(0.01, 10.0), config.connect_timeout);
+      table.number("connect_timeout", between(0.01, 0.1), config.connect_timeout);
+  if (table.has("key_file")) config.key_file = table.path("key_file");
   config.realtime =
       scheduling_from_word(table.choice("realtime", {"require", "prefer", "ignore"}, "prefer"));
   table.finish();

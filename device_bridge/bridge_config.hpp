@@ -55,7 +55,9 @@ struct BridgeConfig {
   /// key `bridge.mode`: "predict": the contact is solved here, so that delay is not felt | "hold":
   /// the server's forces are held. In lockstep there is no delay, and forces are held.
   bool predict = true;
-  double connect_timeout = 0.1;  ///< key `bridge.connect_timeout`: an attempt [s], 0.01 to 10
+  double connect_timeout = 0.075;  ///< key `bridge.connect_timeout`: an attempt [s], 0.01 to 0.1
+  /// key `bridge.key_file`: the server's key; none: the server is on this machine
+  std::optional<std::filesystem::path> key_file;
   /// key `bridge.realtime`: "require" | "prefer" | "ignore"; scheduling of the servo loop
   RealTimeScheduling realtime = RealTimeScheduling::kPrefer;
   std::vector<DeviceConfig> devices;  ///< [[device]], one or more, one a stylus

@@ -29,7 +29,8 @@ std::string to_text(const BridgeReport& report) {
   text << std::fixed << std::setprecision(3);
   text << "session: " << servo.session_time << " s " << (servo.lockstep ? "lockstep" : "real time")
        << ", styluses " << styluses << ", sessions " << client.sessions << ", reconnects "
-       << reconnects << ", protocol errors " << client.protocol_errors << '\n';
+       << reconnects << ", protocol errors " << client.protocol_errors << ", stalls "
+       << client.stalls << '\n';
   text << "samples: " << client.samples << " sent\n";
   text << "forces: " << client.forces << " received, " << client.gaps << " gaps, "
        << client.steps_missed << " steps missed, longest gap " << client.longest_gap << ", "

@@ -1,3 +1,6 @@
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
 #include <map>
 
 #include "common/program/program.hpp"
@@ -12,10 +15,12 @@ int main(int argc, char** argv) {
   const bridge::Command run = bridge::add_run_command(app);
   // A further command is one file in device_bridge/command and one line here.
   const std::map<std::string, bridge::Command> commands{
+      {"check-link", bridge::add_check_link_command(app)},
       {"doctor", bridge::add_doctor_command(app)},
   };
 
   return run_program(app, argc, argv, [&] {
+    spdlog::set_default_logger(spdlog::stderr_color_mt("irdm-bridge"));
     const auto chosen = app.get_subcommands();
     return chosen.empty() ? run() : commands.at(chosen.front()->get_name())();
   });

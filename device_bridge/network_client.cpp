@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <exception>
 #include <optional>
@@ -11,12 +12,19 @@
 
 #include "common/error.hpp"
 #include "common/realtime/clock.hpp"
+#include "common/wire/tls.hpp"
 #include "device_bridge/link/server_session.hpp"
 
 namespace irdm {
 
 using boost::asio::ip::tcp;
 using boost::system::error_code;
+
+namespace {
+
+constexpr std::int64_t kNanosecondsPerMillisecond = 1'000'000;
+
+}  // namespace
 
 class NetworkClient::Impl {
  public:
@@ -35,18 +43,16 @@ class NetworkClient::Impl {
   void check_time(std::int64_t now_ns);
   void connect();
   void greet(tcp::socket socket);
+  std::unique_ptr<wire::Stream> make_stream(tcp::socket socket);
   void ended(const SessionEnd& end);
-  void rest(const std::string& what, const std::string& reason);
+  void rest(int milliseconds, const std::string& what, const std::string& reason);
   void give_up(const std::string& why);
-  void deadline_in(int milliseconds) {
-    constexpr std::int64_t kNanosecondsPerMillisecond = 1'000'000;
-    deadline_ns_ = monotonic_ns() + milliseconds * kNanosecondsPerMillisecond;
-  }
 
   ServoLink& link_;
   const ClientSettings settings_;
   Wakeup& gave_up_;
   const std::string server_;  ///< for messages
+  std::optional<wire::Tls> tls_;
   boost::asio::io_context io_{1};
   tcp::resolver::results_type endpoints_;
   boost::asio::posix::stream_descriptor samples_descriptor_;
@@ -54,6 +60,7 @@ class NetworkClient::Impl {
   // At most one of these two; neither while it rests until the next attempt, or gave up.
   std::optional<tcp::socket> connecting_;
   std::unique_ptr<ServerSession> session_;
+  std::int64_t began_ns_ = 0;     ///< the last attempt
   std::int64_t deadline_ns_ = 0;  ///< of the attempt to connect, or of the rest after it
   bool complained_ = false;       ///< about this run of failed attempts
   bool stopping_ = false;         ///< told to, or gave up
@@ -74,6 +81,14 @@ NetworkClient::Impl::Impl(ServoLink& link, const ClientSettings& settings, Wakeu
       tcp::resolver(io_).resolve(settings.server.host, std::to_string(settings.server.port), error);
   if (error) {
     throw Error(server_, "cannot resolve the name: " + error.message(), "check the server's name");
+  }
+  if (settings_.key) {
+    tls_.emplace(wire::TlsRole::kClient, *settings_.key);
+  } else if (!std::all_of(endpoints_.begin(), endpoints_.end(), [](const auto& entry) {
+               return entry.endpoint().address().is_loopback();
+             })) {
+    throw Error(server_, "is not on this machine, and there is no key",
+                "set bridge.key_file to a copy of the server's (docs/configuration.md)");
   }
   samples_descriptor_.assign(::dup(link_.samples_ready.descriptor()));
 }
@@ -142,23 +157,30 @@ void NetworkClient::Impl::check_time(std::int64_t now_ns) {
 }
 
 void NetworkClient::Impl::connect() {
-  deadline_in(settings_.connect_timeout_ms);
+  began_ns_ = monotonic_ns();
+  deadline_ns_ = began_ns_ + settings_.connect_timeout_ms * kNanosecondsPerMillisecond;
   connecting_.emplace(io_);
-  boost::asio::async_connect(*connecting_, endpoints_,
-                             [this](error_code error, const tcp::endpoint&) {
-                               tcp::socket socket = std::move(*connecting_);
-                               connecting_.reset();
-                               if (stopping_) return;
-                               if (error) return rest("no connection", error.message());
-                               greet(std::move(socket));
-                             });
+  boost::asio::async_connect(
+      *connecting_, endpoints_, [this](error_code error, const tcp::endpoint&) {
+        tcp::socket socket = std::move(*connecting_);
+        connecting_.reset();
+        if (stopping_) return;
+        if (error) {
+          return rest(settings_.back_off_ms, "no connection", error.message());
+        }
+        greet(std::move(socket));
+      });
 }
 
 void NetworkClient::Impl::greet(tcp::socket socket) {
-  session_ =
-      std::make_unique<ServerSession>(std::make_shared<wire::Connection>(std::move(socket)),
-                                      ServerSession::Shared{link_, settings_, server_, report_});
+  session_ = std::make_unique<ServerSession>(
+      std::make_shared<wire::Connection>(make_stream(std::move(socket))),
+      ServerSession::Shared{link_, settings_, server_, report_});
   session_->start([this](const SessionEnd& end) { ended(end); });
+}
+
+std::unique_ptr<wire::Stream> NetworkClient::Impl::make_stream(tcp::socket socket) {
+  return tls_ ? tls_->make_stream(std::move(socket)) : wire::make_plain_stream(std::move(socket));
 }
 
 void NetworkClient::Impl::ended(const SessionEnd& end) {
@@ -173,13 +195,16 @@ void NetworkClient::Impl::ended(const SessionEnd& end) {
                                           "; the run cannot be continued, start both again");
   }
   complained_ = complained_ && !end.welcomed;
-  rest(end.welcomed ? "connection lost" : "no connection", end.reason);
+  rest(end.refused ? settings_.refused_ms : settings_.back_off_ms,
+       end.welcomed ? "connection lost" : "no connection", end.reason);
 }
 
-void NetworkClient::Impl::rest(const std::string& what, const std::string& reason) {
+/// @param milliseconds from the begin of the last attempt to the next
+void NetworkClient::Impl::rest(int milliseconds, const std::string& what,
+                               const std::string& reason) {
   if (!complained_) spdlog::warn("server {}: {}: {}; trying again", server_, what, reason);
   complained_ = true;
-  deadline_in(settings_.back_off_ms);
+  deadline_ns_ = began_ns_ + milliseconds * kNanosecondsPerMillisecond;
 }
 
 void NetworkClient::Impl::give_up(const std::string& why) {

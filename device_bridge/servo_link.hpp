@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -42,6 +43,8 @@ struct ServoLink {
     Mailbox<ServoInput> input;      ///< network writes
     Mailbox<LinkedModel> model;     ///< network writes, where the contact is solved here
     Mailbox<LinkedForces> applied;  ///< servo writes, then
+    std::atomic<bool> armed{false};         ///< servo writes; and the next
+    std::atomic<double> success_rate{0.0};  ///< LinkGate's
   };
   explicit ServoLink(std::size_t count) : styluses(count) {}
 

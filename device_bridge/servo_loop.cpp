@@ -11,9 +11,11 @@ ServoLoop::ServoLoop(HapticDevice& device, const FilterLimits& limits, const Dev
   filter_.arm();
 }
 
-void ServoLoop::restart() noexcept {
+void ServoLoop::restart(bool link_matters) noexcept {
   counts_ = counts();
-  filter_ = SafetyFilter(limits_);
+  FilterLimits limits = limits_;
+  if (!link_matters) limits.needed_success = 0.0;
+  filter_ = SafetyFilter(limits);
   filter_.arm();
   clutch_ = Clutch{};
   contact_.reset();

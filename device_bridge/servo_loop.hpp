@@ -29,8 +29,9 @@ class ServoLoop {
   ServoLoop(HapticDevice& device, const FilterLimits& limits, const DeviceMapping& mapping = {});
 
   /// Begins a session of the device's time: samples are numbered from 0 again, the clutch's
-  /// offset is gone, and the filter is armed.
-  void restart() noexcept;
+  /// offset is gone, and the filter is to arm.
+  /// @param link_matters false: at once, however good the link is
+  void restart(bool link_matters = false) noexcept;
 
   /// From here on the contact is solved here, from the server's models; until restart() or hold().
   /// @param dt of the server's step [s]  @param tick_ns between two ticks

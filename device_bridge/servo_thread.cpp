@@ -131,7 +131,7 @@ void ServoThread::wait_for_session(std::int64_t now_ns) noexcept {
   link_.state.receive();
   const LinkState& state = link_.state.front();
   if (state.sessions > 0 && !stop_) {
-    for (ServoLoop& loop : loops_) loop.restart();
+    for (ServoLoop& loop : loops_) loop.restart(!state.lockstep);
     report_.lockstep = state.lockstep;
     start_ns_ = now_ns;
     if (!state.lockstep) phase_ = Phase::kRunning;
@@ -161,6 +161,9 @@ void ServoThread::tick(std::int64_t now_ns) noexcept {
     link_.styluses[i].input.receive();
     loops_[i].apply(now_ns, link_.styluses[i].input.front());
     lost = lost || loops_[i].device_state().lost;
+    const SafetyFilter& filter = loops_[i].filter();
+    link_.styluses[i].armed = filter.state() != FilterState::kDisarmed;
+    link_.styluses[i].success_rate = filter.success_rate();
   }
   link_.samples_ready.signal();
   if (lost) return end(ServoEnd::kDeviceLost, now_ns);

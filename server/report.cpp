@@ -41,6 +41,10 @@ int print_report(const FinishedRun& run, const ServerOptions& options) {
     if (count > 0) std::cout << what << ": " << count << '\n';
   };
   faults("forces that were not finite, sent as zero", run.network.stats().forces_not_finite);
+  faults("connections without the server's key", run.network.stats().wrong_keys);
+  faults("connections closed for being silent", run.network.stats().timeouts);
+  faults("connections closed for too many messages", run.network.stats().too_fast);
+  faults("lines about bridges that were not logged", run.network.stats().unlogged);
   faults("errors inside the network thread", run.network.stats().internal_errors);
   faults("forces of bridges that came late, entered at their own step", force.late);
   faults("forces of bridges that were lost", force.lost);

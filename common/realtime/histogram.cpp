@@ -30,6 +30,15 @@ void Histogram::add(std::int64_t nanoseconds) noexcept {
   maximum_ = std::max(maximum_, value);
 }
 
+double Histogram::share_up_to(std::int64_t limit) const noexcept {
+  if (count_ == 0 || limit < 0) return 0.0;
+  if (limit >= maximum_) return 1.0;
+  const auto last = static_cast<std::size_t>(bucket(static_cast<std::uint64_t>(limit)));
+  std::uint64_t seen = 0;
+  for (std::size_t i = 0; i <= last; ++i) seen += buckets_[i];
+  return static_cast<double>(seen) / static_cast<double>(count_);
+}
+
 std::int64_t Histogram::percentile(double fraction) const noexcept {
   const auto wanted = static_cast<std::uint64_t>(std::ceil(fraction * static_cast<double>(count_)));
   std::uint64_t seen = 0;

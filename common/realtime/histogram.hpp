@@ -14,6 +14,9 @@ class Histogram {
   std::int64_t maximum() const noexcept { return maximum_; }
   /// The value that a share `fraction` in [0, 1] of the samples does not exceed [ns]; 0 when empty.
   std::int64_t percentile(double fraction) const noexcept;
+  /// Share of the samples that do not exceed `limit` [ns], as finely as the buckets tell; 0 when
+  /// empty.
+  double share_up_to(std::int64_t limit) const noexcept;
 
  private:
   static constexpr int kSubBits = 5;  // 32 buckets an octave

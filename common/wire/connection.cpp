@@ -1,43 +1,64 @@
 #include "common/wire/connection.hpp"
 
+#include <netinet/tcp.h>
+
 #include <sstream>
 #include <utility>
 
 #include "common/realtime/clock.hpp"
 #include "common/wire/protocol_error.hpp"
+#include "common/wire/tls.hpp"
 
 namespace irdm::wire {
 
 using boost::asio::ip::tcp;
 using boost::system::error_code;
 
-Connection::Connection(tcp::socket socket) : socket_(std::move(socket)) {
-  // What the kernel has queued cannot be replaced by something newer: keep it to about a tenth of a
-  // second of samples.
-  constexpr int kSendBuffer = 65536;
+namespace {
+
+// What the kernel has queued cannot be replaced by something newer. The buffer holds what is under
+// way as well; of what has not been sent once, the kernel takes little [bytes].
+constexpr int kSendBuffer = 65536;
+constexpr int kNotSent = 2048;
+using NotSentLimit = boost::asio::detail::socket_option::integer<IPPROTO_TCP, TCP_NOTSENT_LOWAT>;
+
+}  // namespace
+
+Connection::Connection(std::unique_ptr<Stream> stream) : stream_(std::move(stream)) {
+  tcp::socket& socket = stream_->socket();
   error_code ignored;
-  socket_.set_option(tcp::no_delay(true), ignored);
-  socket_.set_option(tcp::socket::send_buffer_size(kSendBuffer), ignored);
+  socket.set_option(tcp::no_delay(true), ignored);
+  socket.set_option(tcp::socket::send_buffer_size(kSendBuffer), ignored);
+  socket.set_option(NotSentLimit(kNotSent), ignored);
   std::ostringstream name;
-  name << socket_.remote_endpoint(ignored);
+  name << socket.remote_endpoint(ignored);
   peer_ = name.str();
 }
 
 void Connection::start(Handlers handlers) {
   handlers_ = std::move(handlers);
   received_ns_ = monotonic_ns();
+  stream_->handshake([self = shared_from_this()](const error_code& error) { self->shaken(error); });
+}
+
+void Connection::shaken(const error_code& error) {
+  if (!open_) return;
+  refused_ = is_tls_failure(error);
+  if (error) return close(error.message());
+  ready_ = true;
   read();
+  write();
 }
 
 void Connection::read() {
-  socket_.async_read_some(boost::asio::buffer(incoming_),
-                          [self = shared_from_this()](error_code error, std::size_t size) {
-                            if (!self->open_) return;
-                            if (error) return self->close(error.message());
-                            self->received_ns_ = monotonic_ns();
-                            self->take({self->incoming_.data(), size});
-                            if (self->open_) self->read();
-                          });
+  stream_->read_some(boost::asio::buffer(incoming_),
+                     [self = shared_from_this()](const error_code& error, std::size_t size) {
+                       if (!self->open_) return;
+                       if (error) return self->close(error.message());
+                       self->received_ns_ = monotonic_ns();
+                       self->take({self->incoming_.data(), size});
+                       if (self->open_) self->read();
+                     });
 }
 
 void Connection::take(std::span<const std::uint8_t> bytes) {
@@ -46,6 +67,7 @@ void Connection::take(std::span<const std::uint8_t> bytes) {
       const std::optional<Frame> frame = reader_.read(bytes);
       if (!frame) break;
       partial_since_ns_.reset();
+      check_order(frame->header.sequence);
       handlers_.received(*frame);
     }
   } catch (const ProtocolError& error) {
@@ -56,6 +78,15 @@ void Connection::take(std::span<const std::uint8_t> bytes) {
   } else if (!partial_since_ns_) {
     partial_since_ns_ = received_ns_;
   }
+}
+
+void Connection::check_order(std::uint64_t sequence) {
+  if (received_sequence_ && sequence <= *received_sequence_) {
+    throw ProtocolError(ProtocolFault::kBackward, "frame " + std::to_string(sequence) +
+                                                      " after frame " +
+                                                      std::to_string(*received_sequence_));
+  }
+  received_sequence_ = sequence;
 }
 
 void Connection::append(const Message& message) {
@@ -79,7 +110,7 @@ bool Connection::send_newest(std::size_t stream, const Message& message) {
 }
 
 void Connection::write() {
-  if (!open_ || writing_since_ns_) return;
+  if (!open_ || !ready_ || writing_since_ns_) return;
   writing_.clear();
   for (std::optional<Message>& message : newest_) {
     if (message) append(*message);
@@ -89,30 +120,37 @@ void Connection::write() {
   control_.clear();
   if (writing_.empty()) {
     error_code ignored;
-    if (finishing_) socket_.shutdown(tcp::socket::shutdown_send, ignored);
+    if (finishing_) stream_->socket().shutdown(tcp::socket::shutdown_send, ignored);
     return;
   }
   writing_since_ns_ = monotonic_ns();
-  boost::asio::async_write(socket_, boost::asio::buffer(writing_),
-                           [self = shared_from_this()](error_code error, std::size_t) {
-                             self->writing_since_ns_.reset();
-                             if (!self->open_) return;
-                             if (error) return self->close(error.message());
-                             self->write();
-                           });
+  stream_->write(boost::asio::buffer(writing_),
+                 [self = shared_from_this()](const error_code& error) {
+                   self->writing_since_ns_.reset();
+                   if (!self->open_) return;
+                   if (error) return self->close(error.message());
+                   self->write();
+                 });
 }
 
 void Connection::finish() {
   if (!open_ || finishing_) return;
   finishing_ = true;
+  if (!ready_) return close("ended before the handshake");
   write();
+}
+
+void Connection::drop(const std::string& reason) {
+  error_code ignored;
+  stream_->socket().set_option(tcp::socket::linger(true, 0), ignored);
+  close(reason);
 }
 
 void Connection::close(const std::string& reason) {
   if (!open_) return;
   open_ = false;
   error_code ignored;
-  socket_.close(ignored);
+  stream_->socket().close(ignored);
   if (handlers_.closed) handlers_.closed(reason);
 }
 

@@ -11,27 +11,30 @@
 #include "common/wire/asio.hpp"
 #include "common/wire/frame.hpp"
 #include "common/wire/protocol_error.hpp"
+#include "common/wire/stream.hpp"
 
 namespace irdm::wire {
 
-/// A TCP connection that carries frames, on the thread of its io_context. Control messages go out
-/// in order and all of them; of the messages of one stream (a stylus, say) only the newest goes out
-/// when the peer or the network cannot keep up. It knows no time-out: its owner looks at the ages.
+/// A TCP connection, perhaps with TLS, that carries frames, on the thread of its io_context.
+/// Control messages go out in order and all of them; of the messages of one stream (a stylus, say)
+/// only the newest goes out when the peer or the network cannot keep up. It knows no time-out: its
+/// owner looks at the ages.
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
   /// Called on the thread of the io_context; what they refer to must live until `closed` returns.
   struct Handlers {
     /// A whole, checked frame. May throw ProtocolError.
     std::function<void(const Frame&)> received;
-    /// The stream is not valid, or `received` threw. Send a last message and finish(), or close();
-    /// nothing is received any more.
+    /// The stream is not valid or goes backward, or `received` threw. Send a last message and
+    /// finish(), or close(); nothing is received any more.
     std::function<void(const ProtocolError&)> violated;
     /// The connection has ended for whatever reason; last call.
     std::function<void(const std::string& reason)> closed;
   };
 
-  /// Takes over a connected socket and turns no-delay on.
-  explicit Connection(boost::asio::ip::tcp::socket socket);
+  /// Takes over a stream that is connected and turns no-delay on.
+  explicit Connection(std::unique_ptr<Stream> stream);
+  /// What is sent before the handshake of the stream is done waits for it.
   void start(Handlers handlers);
 
   /// Goes into the headers of all messages from now on.
@@ -44,13 +47,19 @@ class Connection : public std::enable_shared_from_this<Connection> {
   /// @param stream small number >= 0
   bool send_newest(std::size_t stream, const Message& message);
   /// Sends what waits, then ends the sending half and waits for the peer to close; what still
-  /// comes is ignored.
+  /// comes is ignored. Before the handshake is done: closes.
   void finish();
   /// Ends it at once; `closed` is called.
   void close(const std::string& reason);
+  /// The same, and what the kernel has not sent yet is thrown away: it must not arrive late.
+  void drop(const std::string& reason);
 
   const std::string& peer() const noexcept { return peer_; }
   bool finishing() const noexcept { return finishing_; }
+  /// Whether the handshake of the stream is done.
+  bool ready() const noexcept { return ready_; }
+  /// Whether that failed for want of a common key, or of TLS at the other end.
+  bool refused() const noexcept { return refused_; }
   std::int64_t received_ns() const noexcept {
     return received_ns_;
   }  ///< of the last bytes, or start
@@ -60,12 +69,14 @@ class Connection : public std::enable_shared_from_this<Connection> {
   std::optional<std::int64_t> writing_since_ns() const noexcept { return writing_since_ns_; }
 
  private:
+  void shaken(const boost::system::error_code& error);
   void read();
   void take(std::span<const std::uint8_t> bytes);
+  void check_order(std::uint64_t sequence);
   void append(const Message& message);
   void write();
 
-  boost::asio::ip::tcp::socket socket_;
+  std::unique_ptr<Stream> stream_;
   std::string peer_;
   Handlers handlers_;
   FrameReader reader_;
@@ -75,9 +86,12 @@ class Connection : public std::enable_shared_from_this<Connection> {
   std::vector<std::uint8_t> writing_;
   std::uint32_t session_ = 0;
   std::uint64_t sequence_ = 0;
+  std::optional<std::uint64_t> received_sequence_;
   std::int64_t received_ns_ = 0;
   std::optional<std::int64_t> partial_since_ns_;
   std::optional<std::int64_t> writing_since_ns_;
+  bool ready_ = false;
+  bool refused_ = false;
   bool finishing_ = false;
   bool open_ = true;
 };

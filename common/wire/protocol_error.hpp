@@ -16,6 +16,7 @@ enum class ProtocolFault {
   kBadValue,      ///< a field outside its range
   kNotFinite,     ///< a number that is infinite or not a number
   kUnexpected,    ///< a message that has no place at this point of the session
+  kBackward,      ///< a sequence that does not grow
   kTruncated,     ///< a frame that was begun and not finished in time
 };
 

@@ -16,4 +16,7 @@ Command add_run_command(CLI::App& app);
 /// one of them is a problem.
 Command add_doctor_command(CLI::App& app);
 
+/// check-link measures the link to a running server; status 1 when a stylus would not arm on it.
+Command add_check_link_command(CLI::App& app);
+
 }  // namespace irdm::bridge

@@ -1,6 +1,3 @@
-#include <spdlog/sinks/stdout_color_sinks.h>
-#include <spdlog/spdlog.h>
-
 #include <iostream>
 #include <limits>
 #include <memory>
@@ -23,7 +20,6 @@ struct Options {
 
 int run(const Options& options) {
   StopSignal stop_signal;
-  spdlog::set_default_logger(spdlog::stderr_color_mt("irdm-bridge"));
   const BridgeConfig config = load_bridge_config(options.config, options.overrides);
   const BridgeReport report = run_bridge(config, stop_signal, options.duration);
   if (report.client.sessions > 0) std::cout << to_text(report) << std::flush;

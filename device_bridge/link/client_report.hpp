@@ -11,7 +11,7 @@ namespace irdm {
 struct ClientReport {
   std::uint64_t sessions = 0;
   std::uint64_t forces = 0;        ///< received and taken
-  std::uint64_t forces_old = 0;    ///< dropped: not newer than the last, or of no sample of ours
+  std::uint64_t forces_old = 0;    ///< dropped: the last one again, or of before the session
   std::uint64_t gaps = 0;          ///< times that force steps are missing between two forces
   std::uint64_t steps_missed = 0;  ///< force steps missing in all gaps
   std::uint64_t longest_gap = 0;   ///< [steps]
@@ -19,8 +19,10 @@ struct ClientReport {
   std::uint64_t protocol_errors = 0;
   std::uint64_t models = 0;          ///< contact models received and taken
   std::uint64_t models_refused = 0;  ///< contact models that could not be true
-  Histogram round_trip;  ///< sample taken to its first force received [ns]; real time only
-  std::string failure;   ///< why it gave up, one line; empty: it did not
+  std::uint64_t stalls = 0;  ///< connections closed because samples were not answered any more
+  Histogram round_trip;      ///< sample taken to its first force received [ns]; real time only
+  Histogram jitter;          ///< how much a round trip differs from the one before [ns]
+  std::string failure;       ///< why it gave up, one line; empty: it did not
 };
 
 }  // namespace irdm

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "common/realtime/scheduling.hpp"
+#include "common/wire/secret_key.hpp"
 #include "device_bridge/bridge_config.hpp"
 
 namespace irdm {
@@ -12,11 +14,15 @@ struct ClientSettings {
   std::string name = "irdm-bridge";  ///< for the server's log
   bool lockstep = true;              ///< whether all devices can run on the simulated clock
   bool predict = true;               ///< whether it wants to solve the contact itself
-  int connect_timeout_ms = 100;      ///< of one attempt
-  int back_off_ms = 50;              ///< between attempts
-  int answer_timeout_ms = 1000;      ///< from Hello to Welcome
+  int connect_timeout_ms = 75;       ///< of one attempt
+  int back_off_ms = 20;              ///< from the begin of one attempt to the next, at least
+  int refused_ms = 100;              ///< the same after a refusal that may pass
+  int answer_timeout_ms = 150;       ///< from Hello to Welcome
   RealTimeScheduling scheduling = RealTimeScheduling::kIgnore;
-  int silence_timeout_ms = 2000;  ///< without a force; real time only
+  /// Without an answer to a newer sample; real time only. At least five steps of the server.
+  int silence_timeout_ms = 100;
+  /// The server's, for TLS; nothing: no TLS, and the server has to be on this machine.
+  std::optional<wire::SecretKey> key = {};
 };
 
 }  // namespace irdm

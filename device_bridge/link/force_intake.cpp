@@ -1,6 +1,9 @@
 #include "device_bridge/link/force_intake.hpp"
 
 #include <algorithm>
+#include <cstdlib>
+
+#include "common/wire/protocol_error.hpp"
 
 namespace irdm {
 namespace {
@@ -20,8 +23,8 @@ void ForceIntake::sent(const StylusSample& sample) noexcept {
   newest_sample_ = sample.sequence;
 }
 
-bool ForceIntake::take(const StylusForce& force, std::int64_t now_ns,
-                       ClientReport& report) noexcept {
+bool ForceIntake::take(const StylusForce& force, std::int64_t now_ns, ClientReport& report) {
+  check_order(force);
   if (!news(force)) {
     ++report.forces_old;
     return false;
@@ -31,8 +34,7 @@ bool ForceIntake::take(const StylusForce& force, std::int64_t now_ns,
   force_step_ = force.force_step;
   // Several steps may answer the same sample; only the first of them is its round trip.
   if (!lockstep_ && (!answered_ || force.sample_sequence > *answered_)) {
-    report.round_trip.add(now_ns - force.sample_time_ns);
-    round_trip_.add(now_ns - force.sample_time_ns);
+    measure(now_ns - force.sample_time_ns, report);
   }
   if (input_.any_force) age_.add(now_ns - input_.force.sample_time_ns);
   answered_ = force.sample_sequence;
@@ -41,13 +43,30 @@ bool ForceIntake::take(const StylusForce& force, std::int64_t now_ns,
   return true;
 }
 
+void ForceIntake::check_order(const StylusForce& force) const {
+  const bool said = first_sample_ && force.sample_sequence <= newest_sample_;
+  if (!said) {
+    throw wire::ProtocolError(wire::ProtocolFault::kUnexpected,
+                              "a force for a sample that was not sent");
+  }
+  if (force_step_ && (force.force_step < *force_step_ || force.sample_sequence < *answered_)) {
+    throw wire::ProtocolError(wire::ProtocolFault::kBackward,
+                              "a force that is older than the last");
+  }
+}
+
+// A run that is paused answers newer samples in the step where it stands.
 bool ForceIntake::news(const StylusForce& force) const noexcept {
-  // A run that is paused answers newer samples in the step where it stands.
-  const bool newer = !force_step_ || force.force_step > *force_step_ ||
-                     (force.force_step == *force_step_ && force.sample_sequence > answered_);
-  const bool ours = first_sample_ && force.sample_sequence >= *first_sample_ &&
-                    force.sample_sequence <= newest_sample_;
-  return newer && ours;
+  const bool ours = force.sample_sequence >= *first_sample_;
+  return ours &&
+         (!force_step_ || force.force_step > *force_step_ || force.sample_sequence > *answered_);
+}
+
+void ForceIntake::measure(std::int64_t round_trip_ns, ClientReport& report) noexcept {
+  report.round_trip.add(round_trip_ns);
+  round_trip_.add(round_trip_ns);
+  if (last_round_trip_ns_) report.jitter.add(std::abs(round_trip_ns - *last_round_trip_ns_));
+  last_round_trip_ns_ = round_trip_ns;
 }
 
 void ForceIntake::count_gap(std::uint64_t step, ClientReport& report) noexcept {

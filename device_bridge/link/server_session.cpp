@@ -2,9 +2,11 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "common/realtime/clock.hpp"
+#include "device_bridge/safety/link_gate.hpp"
 
 namespace irdm {
 namespace {
@@ -14,8 +16,10 @@ using wire::ProtocolFault;
 
 constexpr std::int64_t kNanosecondsPerMillisecond = 1'000'000;
 constexpr std::int64_t kReportPeriodNs = 1000 * kNanosecondsPerMillisecond;
+constexpr std::int64_t kArmingPatienceNs = 5000 * kNanosecondsPerMillisecond;
 constexpr int kFrameTimeoutMs = 1000;
 constexpr int kHangUpMs = 500;
+constexpr double kSilentSteps = 5;  // a server of long steps may be silent for so many of them
 
 [[noreturn]] void unexpected(const char* what) {
   throw ProtocolError(ProtocolFault::kUnexpected, what);
@@ -84,8 +88,11 @@ void ServerSession::welcomed(const wire::Welcome& welcome) {
   connection_->set_session(welcome.session);
   first_stylus_ = welcome.first_stylus;
   reports_ = (welcome.capabilities & wire::kCapabilityReport) != 0;
-  force_ns_ = monotonic_ns();
-  next_report_ns_ = force_ns_ + kReportPeriodNs;
+  answered_ns_ = monotonic_ns();
+  silence_ns_ = std::max(shared_.settings.silence_timeout_ms * kNanosecondsPerMillisecond,
+                         static_cast<std::int64_t>(kSilentSteps * 1e9 * welcome.dt));
+  next_report_ns_ = answered_ns_ + kReportPeriodNs;
+  arming_due_ns_ = answered_ns_ + kArmingPatienceNs;
   link_state_ = {.linked = true,
                  .sessions = ++shared_.report.sessions,
                  .lockstep = welcome.lockstep,
@@ -104,7 +111,8 @@ void ServerSession::welcomed(const wire::Welcome& welcome) {
 }
 
 void ServerSession::refused(const wire::Refuse& refuse) {
-  if (passes(refuse.reason)) return connection_->close("refused: " + refuse.text);
+  end_.refused = passes(refuse.reason);
+  if (end_.refused) return connection_->close("refused: " + refuse.text);
   if (refuse.reason == wire::RefuseReason::kVersion) {
     const wire::VersionMismatch mismatch(refuse.version_min, refuse.version_max,
                                          wire::kOldestProtocolVersion, wire::kProtocolVersion);
@@ -143,8 +151,9 @@ void ServerSession::take(const wire::ContactModelMessage& message) {
 void ServerSession::take(const wire::ForceMessage& message) {
   const std::size_t stylus = ours(message.stylus);
   const std::int64_t now_ns = monotonic_ns();
+  const std::optional<std::uint64_t> before = intakes_[stylus].answered();
   if (!intakes_[stylus].take(message.force, now_ns, shared_.report)) return;
-  force_ns_ = now_ns;
+  if (intakes_[stylus].answered() > before) answered_ns_ = now_ns;
   shared_.link.styluses[stylus].input.put(intakes_[stylus].input());
   shared_.link.news.signal();
 }
@@ -176,6 +185,20 @@ void ServerSession::send_reports(std::int64_t now_ns) {
   }
 }
 
+// A person who feels nothing should know why.
+void ServerSession::tell_of_arming(std::int64_t now_ns) {
+  if (link_state_.lockstep || now_ns < arming_due_ns_) return;
+  arming_due_ns_ = now_ns + kArmingPatienceNs;
+  for (std::size_t i = 0; i < shared_.link.styluses.size(); ++i) {
+    const ServoLink::Stylus& stylus = shared_.link.styluses[i];
+    if (stylus.armed) continue;
+    spdlog::warn(
+        "stylus {}: no force yet: {:.0f} % of the last ticks were answered in time, {:.0f} % are "
+        "needed; irdm-bridge check-link says more",
+        i, 100.0 * stylus.success_rate, 100.0 * LinkGate::kNeeded);
+  }
+}
+
 void ServerSession::check_time(std::int64_t now_ns) {
   const auto older = [now_ns](std::optional<std::int64_t> since, int limit_ms) {
     return since && now_ns - *since > limit_ms * kNanosecondsPerMillisecond;
@@ -186,16 +209,18 @@ void ServerSession::check_time(std::int64_t now_ns) {
   const bool due = now_ns > deadline_ns_;
   switch (state_) {
     case State::kGreeting:
-      if (due) connection_->close("no answer to Hello");
+      if (due) connection_->drop("no answer to Hello");
       break;
     case State::kLinked:
       send_reports(now_ns);
-      if (!link_state_.lockstep && older(force_ns_, shared_.settings.silence_timeout_ms)) {
-        connection_->close("no force any more");
+      tell_of_arming(now_ns);
+      if (!link_state_.lockstep && now_ns - answered_ns_ > silence_ns_) {
+        ++shared_.report.stalls;
+        connection_->drop("no answers any more");
       }
       break;
     case State::kEnding:
-      if (due) connection_->close("the server does not hang up");
+      if (due) connection_->drop("the server does not hang up");
       break;
   }
 }
@@ -232,6 +257,17 @@ void ServerSession::closed(const std::string& reason) {
   state_ = State::kEnding;
   publish();
   end_.reason = reason;
+  if (connection_->refused()) {
+    end_.reason = "no TLS with this key: " + reason;
+    // Later on it is something on the way that spoils the bytes.
+    if (shared_.report.sessions == 0) {
+      end_.failure = shared_.server + ": " + end_.reason +
+                     "; give bridge and server the same key file (bridge.key_file, "
+                     "server.key_file)";
+    }
+  } else if (!end_.welcomed && !end_.refused && !shared_.settings.key) {
+    end_.reason += " (a server that wants a key hangs up on a bridge without bridge.key_file)";
+  }
   ended_(end_);
 }
 

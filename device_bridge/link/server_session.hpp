@@ -21,6 +21,7 @@ struct SessionEnd {
   bool welcomed = false;      ///< there was one
   bool lockstep = false;      ///< it was in lockstep
   bool server_ended = false;  ///< the server said goodbye to it
+  bool refused = false;       ///< for a reason that may pass
   std::string failure = {};   ///< why another attempt makes no sense; empty: it does
 };
 
@@ -63,6 +64,7 @@ class ServerSession {
   void closed(const std::string& reason);
   void leave();
   void send_reports(std::int64_t now_ns);
+  void tell_of_arming(std::int64_t now_ns);
   void publish();
   void deadline_in(int milliseconds);
   std::uint16_t slot(std::size_t stylus) const noexcept;
@@ -74,10 +76,12 @@ class ServerSession {
   LinkState link_state_;
   SessionEnd end_;
   std::int64_t deadline_ns_ = 0;
-  std::int64_t force_ns_ = 0;  ///< when the last force came, or the session began
+  std::int64_t answered_ns_ = 0;  ///< when a sample was answered last, or the session began
+  std::int64_t silence_ns_ = 0;   ///< longest time without
   std::uint16_t first_stylus_ = 0;
   bool reports_ = false;  ///< the server takes them
   std::int64_t next_report_ns_ = 0;
+  std::int64_t arming_due_ns_ = 0;    ///< when it is said that a stylus is not armed
   std::vector<ForceIntake> intakes_;  ///< one a stylus, from Welcome on
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace irdm {
 namespace {
@@ -35,8 +36,19 @@ SafetyFilter::SafetyFilter(const FilterLimits& limits, Guards guards)
   if (!guards_.on(Guard::kFallLimit)) limits_.rate.fall = 1e9;
 }
 
+void SafetyFilter::arm() noexcept {
+  waits_ = state() == FilterState::kDisarmed && gate_.success_rate() < limits_.needed_success;
+  if (!waits_) arming_.arm();
+}
+
+void SafetyFilter::disarm() noexcept {
+  waits_ = false;
+  arming_.disarm();
+}
+
 void SafetyFilter::fail() noexcept {
   ++counts_.faults;
+  if (std::exchange(waits_, false)) arming_.arm();  // else the fault would be forgotten
   arming_.fail();
 }
 
@@ -46,13 +58,15 @@ Vector3 SafetyFilter::step(std::int64_t now_ns, const DeviceReading& reading,
   passivity_.observe(reading_.displacement(), sent_);
   thermal_.heat(sent_.norm(), reading_.elapsed(), reading.motor_warmth);
   accept(now_ns, demand);
+  const double fresh_share = fresh(now_ns);
+  watch_link(fresh_share);
   const Vector3 force = wanted();
   // Where no force is shown or asked for there is none to drop: a hand may be fast in free air.
   if (verdict == ReadingVerdict::kTrip && !(sent_.isZero(0.0) && force.isZero(0.0))) {
     ++counts_.trips;
     arming_.trip();
   }
-  const double share = arming_.step(reading_.elapsed(), fresh(now_ns), force.norm());
+  const double share = arming_.step(reading_.elapsed(), fresh_share, force.norm());
   sent_ = limited(damped(share * force, share));
   return sent_;
 }
@@ -96,6 +110,14 @@ double SafetyFilter::fresh(std::int64_t now_ns) const noexcept {
   }
   return std::clamp(1.0 - static_cast<double>(over_ns) / static_cast<double>(limits_.fade_ns), 0.0,
                     1.0);
+}
+
+void SafetyFilter::watch_link(double fresh) noexcept {
+  gate_.tick(fresh == 1.0);
+  if (waits_ && gate_.success_rate() >= limits_.needed_success) {
+    waits_ = false;
+    arming_.arm();
+  }
 }
 
 // Outward only, unless held.

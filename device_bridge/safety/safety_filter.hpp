@@ -7,6 +7,7 @@
 #include "common/stylus.hpp"
 #include "device_bridge/safety/arming.hpp"
 #include "device_bridge/safety/guards.hpp"
+#include "device_bridge/safety/link_gate.hpp"
 #include "device_bridge/safety/passivity.hpp"
 #include "device_bridge/safety/rate_limit.hpp"
 #include "device_bridge/safety/reading_check.hpp"
@@ -21,6 +22,7 @@ struct FilterLimits {
   std::int64_t max_horizon_ns = 50'000'000;  ///< no demand is trusted for longer than this
   std::int64_t fade_ns = 30'000'000;         ///< in which one that is too old goes to zero
   double fade_damping = 2.0;                 ///< while it does [N s/m]
+  double needed_success = 0.0;  ///< LinkGate's, below which it does not arm; 0: arms at once
   ReadingLimits reading = {};
   ArmingLimits arming = {};
   PassivityLimits passivity = {};
@@ -64,8 +66,10 @@ class SafetyFilter {
   /// @param guards all but in tests
   explicit SafetyFilter(const FilterLimits& limits, Guards guards = {});
 
-  void arm() noexcept { arming_.arm(); }
-  void disarm() noexcept { arming_.disarm(); }
+  /// An action of the person, or of who acts for them: at once, or when the link has become good
+  /// enough.
+  void arm() noexcept;
+  void disarm() noexcept;
   /// The device says that something is wrong with it.
   void fail() noexcept;
 
@@ -76,6 +80,7 @@ class SafetyFilter {
 
   FilterState state() const noexcept { return arming_.state(); }
   const FilterCounts& counts() const noexcept { return counts_; }
+  double success_rate() const noexcept { return gate_.success_rate(); }
   double port_energy() const noexcept { return passivity_.energy(); }  ///< see Passivity [J]
   double warmth() const noexcept { return thermal_.warmth(); }
 
@@ -83,6 +88,7 @@ class SafetyFilter {
   ReadingVerdict check(std::int64_t now_ns, const DeviceReading& reading) noexcept;
   void accept(std::int64_t now_ns, const ForceDemand& demand) noexcept;
   double fresh(std::int64_t now_ns) const noexcept;
+  void watch_link(double fresh) noexcept;
   Vector3 wanted() const noexcept;
   Vector3 damped(const Vector3& force, double share) const noexcept;
   Vector3 limited(const Vector3& force) const noexcept;
@@ -92,6 +98,8 @@ class SafetyFilter {
   Guards guards_;
   ReadingCheck reading_;
   Arming arming_;
+  LinkGate gate_;
+  bool waits_ = false;  ///< told to arm, and the link is not good enough yet
   Passivity passivity_;
   ThermalDerating thermal_;
   ForceDemand held_;  ///< the newest that was accepted

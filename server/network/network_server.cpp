@@ -3,22 +3,32 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <exception>
 #include <list>
+#include <random>
 #include <sstream>
 #include <thread>
 #include <utility>
 
 #include "common/error.hpp"
 #include "common/realtime/clock.hpp"
+#include "common/wire/tls.hpp"
 #include "server/network/session.hpp"
 
 namespace irdm {
 
 using boost::asio::ip::tcp;
 using boost::system::error_code;
+
+namespace {
+
+constexpr double kComplaintRate = 5.0;  // [1/s]
+constexpr double kComplaintBurst = 50.0;
+
+}  // namespace
 
 class NetworkServer::Impl {
  public:
@@ -30,6 +40,7 @@ class NetworkServer::Impl {
         timer_(io_) {
     // Made before any thread logs: the thread sanitizer cannot see the guard inside spdlog.
     spdlog::default_logger();
+    if (settings_.key) tls_.emplace(wire::TlsRole::kServer, *settings_.key);
     listen();
     forces_descriptor_.assign(::dup(forces_ready_.descriptor()));
   }
@@ -52,16 +63,22 @@ class NetworkServer::Impl {
   void run() noexcept;
   void accept();
   void admit(tcp::socket socket);
+  std::unique_ptr<wire::Stream> make_stream(tcp::socket socket);
+  void remove_ended();
+  std::uint32_t new_session();
+  void make_room();
   void await_forces();
   void await_tick();
   void shut_down();
 
+  std::optional<wire::Tls> tls_;
   boost::asio::io_context io_{1};
   tcp::acceptor acceptor_;
   boost::asio::posix::stream_descriptor forces_descriptor_;
   boost::asio::steady_timer timer_;
   std::list<Session> sessions_;
-  std::uint32_t newest_session_ = 0;
+  std::random_device random_;
+  Allowance complaints_{kComplaintRate, kComplaintBurst};
   bool accepting_ = false;
   bool stopping_ = false;
   std::thread thread_;
@@ -70,7 +87,8 @@ class NetworkServer::Impl {
 const NetworkSettings& NetworkServer::Impl::checked(const NetworkSettings& settings) {
   const bool good = std::isfinite(settings.dt) && settings.dt > 0.0 &&
                     settings.dt <= wire::kLongestStep && settings.styluses >= 1 &&
-                    settings.styluses <= 64 && settings.max_connections >= 1;
+                    settings.styluses <= 64 && settings.max_connections >= 1 &&
+                    settings.max_frame_rate >= 1;
   if (!good) throw Error("network", "settings out of range", "see NetworkSettings");
   return settings;
 }
@@ -81,6 +99,11 @@ void NetworkServer::Impl::listen() {
   const auto address = boost::asio::ip::make_address(settings_.address, error);
   if (error) {
     throw Error(wanted, "is not an address", "give a numeric address of this machine");
+  }
+  if (!address.is_loopback() && !tls_) {
+    throw Error(wanted, "can be reached from other machines, and there is no key",
+                "set server.key_file and give bridges the same key (docs/configuration.md), or "
+                "listen on 127.0.0.1");
   }
   try {
     const tcp::endpoint endpoint(address, settings_.port);
@@ -143,17 +166,42 @@ void NetworkServer::Impl::accept() {
 }
 
 void NetworkServer::Impl::admit(tcp::socket socket) {
+  remove_ended();
   const auto limit = static_cast<std::size_t>(settings_.max_connections);
   if (sessions_.size() >= 2 * limit) {  // those beyond the limit wait for nothing but their end
     stats_.refused.fetch_add(1);
     return;
   }
   const bool full = sessions_.size() >= limit;
-  Session& session = sessions_.emplace_back(++newest_session_,
-                                            std::make_shared<wire::Connection>(std::move(socket)),
-                                            Session::Shared{settings_, slots_, stats_});
+  Session& session = sessions_.emplace_back(
+      new_session(), std::make_shared<wire::Connection>(make_stream(std::move(socket))),
+      Session::Shared{settings_, slots_, stats_, complaints_, [this] { make_room(); }});
   session.start();
   if (full) session.refuse(wire::RefuseReason::kTooManyConnections, "too many connections");
+}
+
+std::unique_ptr<wire::Stream> NetworkServer::Impl::make_stream(tcp::socket socket) {
+  return tls_ ? tls_->make_stream(std::move(socket)) : wire::make_plain_stream(std::move(socket));
+}
+
+/// Where nothing of a session is on the stack.
+void NetworkServer::Impl::remove_ended() {
+  sessions_.remove_if([](const Session& session) { return session.over(); });
+}
+
+// Not to be guessed, so that what is said in one session is worth nothing in another.
+std::uint32_t NetworkServer::Impl::new_session() {
+  for (;;) {
+    const auto id = static_cast<std::uint32_t>(random_());
+    const bool taken = std::any_of(sessions_.begin(), sessions_.end(),
+                                   [id](const Session& session) { return session.id() == id; });
+    if (id != 0 && !taken) return id;
+  }
+}
+
+void NetworkServer::Impl::make_room() {
+  const std::int64_t now_ns = monotonic_ns();
+  for (Session& session : sessions_) session.yield(now_ns);
 }
 
 void NetworkServer::Impl::await_forces() {
@@ -176,8 +224,7 @@ void NetworkServer::Impl::await_tick() {
       slots_.expire(now_ns, settings_.absent_after_ms * kNanosecondsPerMillisecond);
     }
     for (Session& session : sessions_) session.check_time(now_ns);
-    // Nothing of a session is on the stack here, so this is the place to remove it.
-    sessions_.remove_if([](const Session& session) { return session.over(); });
+    remove_ended();
     if (!accepting_ && !stopping_) accept();
     if (!stopping_ || !sessions_.empty()) await_tick();
   });

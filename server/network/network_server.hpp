@@ -3,10 +3,12 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "common/realtime/scheduling.hpp"
 #include "common/realtime/wakeup.hpp"
+#include "common/wire/secret_key.hpp"
 #include "server/network/stylus_port.hpp"
 
 namespace irdm {
@@ -18,26 +20,34 @@ struct NetworkSettings {
   bool lockstep = false;
   int styluses = 4;                 ///< slots, 1 to 64
   int max_connections = 16;         ///< >= 1
+  int max_frame_rate = 20000;       ///< of one bridge [1/s], >= 1; not in lockstep
   int handshake_timeout_ms = 1000;  ///< from connection to Hello
   int frame_timeout_ms = 1000;      ///< from the first byte of a frame to its last
   int absent_after_ms = 100;        ///< without a sample the stylus is absent; not in lockstep
+  int yield_after_ms = 50;  ///< without a byte a session gives way to who asks; not in lockstep
   RealTimeScheduling scheduling = RealTimeScheduling::kIgnore;
-  int silence_timeout_ms = 2000;  ///< without a byte the session ends; not in lockstep
+  int silence_timeout_ms = 500;  ///< without a byte the session ends; not in lockstep
+  /// What bridges have to know, in TLS; nothing: no TLS, and the address has to be a loopback one.
+  std::optional<wire::SecretKey> key = {};
 };
 
 /// Counters of the network thread; read from any thread.
 struct NetworkStats {
   std::atomic<std::uint64_t> accepted{0};         ///< sessions welcomed
   std::atomic<std::uint64_t> refused{0};          ///< connections refused
+  std::atomic<std::uint64_t> wrong_keys{0};       ///< connections without the server's key
   std::atomic<std::uint64_t> protocol_errors{0};  ///< connections closed for breaking the protocol
   std::atomic<std::uint64_t> timeouts{0};         ///< connections closed for being silent
+  std::atomic<std::uint64_t> yielded{0};          ///< of these, for another bridge to come in
+  std::atomic<std::uint64_t> too_fast{0};         ///< connections closed for too many frames
   std::atomic<std::uint64_t> goodbyes{0};         ///< sessions that their bridge ended in order
   std::atomic<std::uint64_t> samples{0};          ///< handed to the force thread
-  std::atomic<std::uint64_t> samples_old{0};      ///< dropped: not newer than the last
+  std::atomic<std::uint64_t> samples_old{0};      ///< not newer than the last: their sessions ended
   std::atomic<std::uint64_t> forces{0};           ///< handed to a connection
   std::atomic<std::uint64_t> forces_replaced{0};  ///< not sent because a newer one was there
   std::atomic<std::uint64_t> forces_not_finite{0};  ///< sent as zero
   std::atomic<std::uint64_t> internal_errors{0};    ///< caught in the network thread
+  std::atomic<std::uint64_t> unlogged{0};  ///< complaints about peers beyond what is logged
 };
 
 /// Listens for bridges and relays samples and forces between them and the force thread, on a thread

@@ -11,6 +11,7 @@ namespace irdm {
 namespace {
 
 constexpr std::int64_t kNanosecondsPerMillisecond = 1'000'000;
+constexpr double kBurst = 0.25;  // of the frames of a second, at once
 constexpr std::int64_t kHangUpNs = 500 * kNanosecondsPerMillisecond;  // for the peer to close
 
 using wire::ProtocolError;
@@ -24,7 +25,12 @@ using wire::ProtocolFault;
 
 Session::Session(std::uint32_t id, std::shared_ptr<wire::Connection> connection,
                  const Shared& shared)
-    : id_(id), connection_(std::move(connection)), shared_(shared), accepted_ns_(monotonic_ns()) {}
+    : id_(id),
+      connection_(std::move(connection)),
+      shared_(shared),
+      accepted_ns_(monotonic_ns()),
+      frames_(shared.settings.max_frame_rate,
+              std::max(1.0, kBurst * shared.settings.max_frame_rate)) {}
 
 void Session::start() {
   connection_->start({
@@ -33,7 +39,11 @@ void Session::start() {
       .closed =
           [this](const std::string& reason) {
             if (welcomed_ && !ending_since_ns_) {
-              spdlog::warn("bridge {}: connection lost: {}", connection_->peer(), reason);
+              complain("connection lost: " + reason);
+            }
+            if (connection_->refused()) {
+              complain("refused: not the server's key, or no TLS: " + reason);
+              shared_.stats.wrong_keys.fetch_add(1);
             }
             release();
             over_ = true;
@@ -42,6 +52,11 @@ void Session::start() {
 }
 
 void Session::receive(const wire::Frame& frame) {
+  if (!shared_.settings.lockstep && !frames_.take(connection_->received_ns())) {
+    shared_.stats.too_fast.fetch_add(1);
+    unexpected("more messages than " + std::to_string(shared_.settings.max_frame_rate) +
+               " a second");
+  }
   if (frame.header.session != (welcomed_ ? id_ : 0)) unexpected("a message of another session");
   if (const auto* hello = std::get_if<wire::Hello>(&frame.message)) {
     greet(*hello);
@@ -82,8 +97,14 @@ void Session::greet(const wire::Hello& hello) {
   if (!settings.lockstep) capabilities |= wire::kCapabilityContactModel;
   capabilities &= hello.capabilities;
   predicts_ = (capabilities & wire::kCapabilityContactModel) != 0;
-  const std::optional<int> first = shared_.slots.claim(hello.styluses, predicts_);
-  if (!first) return refuse(wire::RefuseReason::kNoFreeStylus, "no free stylus");
+  std::optional<int> first = shared_.slots.claim(hello.styluses, predicts_);
+  if (!first) {
+    shared_.make_room();
+    first = shared_.slots.claim(hello.styluses, predicts_);
+  }
+  if (!first) {
+    return refuse(wire::RefuseReason::kNoFreeStylus, "no free stylus: another bridge has it");
+  }
   welcomed_ = true;
   first_ = *first;
   count_ = hello.styluses;
@@ -104,8 +125,11 @@ void Session::take(const wire::SampleMessage& message) {
   if (message.stylus < first_ || message.stylus >= first_ + count_) {
     unexpected("a sample of a stylus that is not its own");
   }
-  const bool newer = shared_.slots.put(message.stylus, message.sample, monotonic_ns());
-  (newer ? shared_.stats.samples : shared_.stats.samples_old).fetch_add(1);
+  if (!shared_.slots.put(message.stylus, message.sample, monotonic_ns())) {
+    shared_.stats.samples_old.fetch_add(1);
+    throw ProtocolError(ProtocolFault::kBackward, "a sample that is not newer than the last");
+  }
+  shared_.stats.samples.fetch_add(1);
 }
 
 void Session::take(const wire::Report& report) {
@@ -127,13 +151,13 @@ void Session::violated(const ProtocolError& error) {
   if (error.fault() == ProtocolFault::kWrongVersion) {
     return refuse(wire::RefuseReason::kVersion, error.what());
   }
-  spdlog::error("bridge {}: {}; connection closed", connection_->peer(), error.what());
+  complain(std::string(error.what()) + "; connection closed");
   shared_.stats.protocol_errors.fetch_add(1);
   end(wire::GoodbyeReason::kProtocolError);
 }
 
 void Session::refuse(wire::RefuseReason reason, const std::string& text) {
-  spdlog::warn("bridge {}: refused: {}", connection_->peer(), text);
+  complain("refused: " + text);
   shared_.stats.refused.fetch_add(1);
   ending_since_ns_ = monotonic_ns();
   connection_->send(wire::Refuse{.reason = reason, .text = text});
@@ -181,19 +205,38 @@ void Session::send_model(int slot) {
                            wire::ContactModelMessage{static_cast<std::uint16_t>(slot), *model});
 }
 
+void Session::yield(std::int64_t now_ns) {
+  const NetworkSettings& settings = shared_.settings;
+  const std::int64_t silent_ns = now_ns - connection_->received_ns();
+  if (!welcomed_ || over_ || ending_since_ns_ || settings.lockstep) return;
+  if (silent_ns <= settings.yield_after_ms * kNanosecondsPerMillisecond) return;
+  shared_.stats.yielded.fetch_add(1);
+  time_out("silent, and another bridge asks for a stylus");
+}
+
+void Session::time_out(const std::string& what) {
+  complain(what + "; connection closed");
+  shared_.stats.timeouts.fetch_add(1);
+  end(wire::GoodbyeReason::kTimeout);
+}
+
+// One who knocks again and again does not fill the disk.
+void Session::complain(const std::string& what) {
+  if (shared_.complaints.take(monotonic_ns())) {
+    spdlog::warn("bridge {}: {}", connection_->peer(), what);
+  } else {
+    shared_.stats.unlogged.fetch_add(1);
+  }
+}
+
 void Session::check_time(std::int64_t now_ns) {
   const NetworkSettings& settings = shared_.settings;
   const auto older = [now_ns](std::optional<std::int64_t> since, int limit_ms) {
     return since && now_ns - *since > limit_ms * kNanosecondsPerMillisecond;
   };
-  const auto time_out = [this](const char* what) {
-    spdlog::warn("bridge {}: {}; connection closed", connection_->peer(), what);
-    shared_.stats.timeouts.fetch_add(1);
-    end(wire::GoodbyeReason::kTimeout);
-  };
   if (over_) return;
   if (ending_since_ns_) {
-    if (now_ns - *ending_since_ns_ > kHangUpNs) connection_->close("the peer does not hang up");
+    if (now_ns - *ending_since_ns_ > kHangUpNs) connection_->drop("the peer does not hang up");
   } else if (older(connection_->partial_since_ns(), settings.frame_timeout_ms)) {
     violated(ProtocolError(ProtocolFault::kTruncated, "a message is not complete in time"));
   } else if (!welcomed_) {

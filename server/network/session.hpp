@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "common/wire/connection.hpp"
+#include "server/network/allowance.hpp"
 #include "server/network/network_server.hpp"
 #include "server/network/stylus_slots.hpp"
 
@@ -20,18 +22,23 @@ class Session {
     const NetworkSettings& settings;
     StylusSlots& slots;
     NetworkStats& stats;
+    Allowance& complaints;            ///< lines of the log about peers
+    std::function<void()> make_room;  ///< ends the sessions that yield
   };
 
   Session(std::uint32_t id, std::shared_ptr<wire::Connection> connection, const Shared& shared);
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
+  std::uint32_t id() const noexcept { return id_; }
   /// Starts to receive.
   void start();
   /// Answers with a refusal instead of a session.
   void refuse(wire::RefuseReason reason, const std::string& text);
   /// Says goodbye and gives its styluses back.
   void end(wire::GoodbyeReason reason);
+  /// Ends it when its bridge is silent: another one asks for a stylus.
+  void yield(std::int64_t now_ns);
   /// Sends the forces that are ready.
   void send_forces();
   /// Applies the time limits.
@@ -48,12 +55,15 @@ class Session {
   void take(const wire::AppliedForcesMessage& message);
   void send_model(int slot);
   void violated(const wire::ProtocolError& error);
+  void time_out(const std::string& what);
+  void complain(const std::string& what);
   void release();
 
   std::uint32_t id_;
   std::shared_ptr<wire::Connection> connection_;
   Shared shared_;
   std::int64_t accepted_ns_;
+  Allowance frames_;
   std::optional<std::int64_t> ending_since_ns_;
   bool welcomed_ = false;
   bool predicts_ = false;  ///< contact models go out, applied forces come in

@@ -47,7 +47,7 @@ TEST_CASE("bridge configuration has defaults for all but the script") {
   CHECK_FALSE(config.server);
   CHECK(config.rate == 1000.0);
   CHECK(config.max_force == 3.3);
-  CHECK(config.connect_timeout == 0.1);
+  CHECK(config.connect_timeout == 0.075);
   REQUIRE(config.devices.size() == 1);
   CHECK(config.devices[0].type == "virtual");
   CHECK(config.devices[0].script == file.path().parent_path() / "a.csv");
@@ -103,7 +103,7 @@ TEST_CASE("bridge configuration takes every key") {
   const BridgeConfig config =
       ConfigFile(
           "[bridge]\nserver = \"[::1]:4000\"\nrate = 500\nmax_force = 2\ncontinuous_force = "
-          "1\nconnect_timeout = 0.5\n"
+          "1\nconnect_timeout = 0.05\n"
           "[[device]]\ntype = \"virtual\"\nscript = \"/a.csv\"\nhand = { mass = 0.2 }\n"
           "[[device]]\ntype = \"openhaptics\"\n")
           .load();
@@ -113,7 +113,7 @@ TEST_CASE("bridge configuration takes every key") {
   CHECK(config.rate == 500.0);
   CHECK(config.max_force == 2.0);
   CHECK(config.continuous_force == 1.0);
-  CHECK(config.connect_timeout == 0.5);
+  CHECK(config.connect_timeout == 0.05);
   REQUIRE(config.devices.size() == 2);
   CHECK(config.devices[0].script == "/a.csv");
   REQUIRE(config.devices[0].hand);
@@ -151,6 +151,7 @@ TEST_CASE("bridge configuration refuses what does not fit") {
   check_refused("[bridge]\nmax_force = 41\n" + kDevice, "max_force is 41");
   check_refused("[bridge]\ncontinuous_force = 0\n" + kDevice, "continuous_force is 0");
   check_refused("[bridge]\nconnect_timeout = 0\n" + kDevice, "connect_timeout is 0");
+  check_refused("[bridge]\nconnect_timeout = 0.2\n" + kDevice, "connect_timeout is 0.2");
   check_refused("[bridge]\nserver = \"here\"\n" + kDevice, "'here' has no port");
   check_refused(kDevice, "given here and by --script", {.script = "b.csv"});
   check_refused("[[device]]\n[[device]]\n", "several devices", {.script = "b.csv"});

@@ -180,7 +180,7 @@ TEST_CASE("a bridge whose server dies shows no force, and feels again when one i
   REQUIRE(eventually([&] { return bridge.shown() > 0.5; }));
   bridge.stop();
   CHECK(bridge.servo().end == ServoEnd::kStopped);
-  CHECK(bridge.client().sessions == 2);
+  CHECK(bridge.client().sessions >= 2);
   CHECK(bridge.shown() == 0.0);
 }
 

@@ -101,7 +101,7 @@ TEST_CASE("client takes answers to newer samples from a run that stands still") 
   CHECK(report.gaps == 0);
 }
 
-TEST_CASE("client drops forces that are old or answer nothing it said, and counts gaps") {
+TEST_CASE("client drops forces that are repeated or older than the session, and counts gaps") {
   ScriptedServer server;
   RawPeer peer = server.welcome();
   server.give({.sequence = 4});
@@ -110,16 +110,15 @@ TEST_CASE("client drops forces that are old or answer nothing it said, and count
     peer.send(
         ForceMessage{.stylus = 2, .force = {.force_step = step, .sample_sequence = sequence}});
   };
+  send(9, 3);  // said before this session
   send(10, 4);
-  send(9, 4);   // older
-  send(11, 5);  // not said yet
-  send(12, 3);  // said before this session
+  send(10, 4);  // again
   send(13, 4);  // after 11 and 12
   send(20, 4);  // after 14 to 19
   REQUIRE(server.wait_for([&] { return server.input().force.force_step == 20; }));
   const ClientReport& report = server.end();
   CHECK(report.forces == 3);
-  CHECK(report.forces_old == 3);
+  CHECK(report.forces_old == 2);
   CHECK(report.gaps == 2);
   CHECK(report.steps_missed == 8);
   CHECK(report.longest_gap == 6);
@@ -191,6 +190,29 @@ TEST_CASE("client leaves a server that breaks the protocol") {
     CHECK(peer.ends());
   }
   CHECK(server.end().protocol_errors == 7);
+}
+
+TEST_CASE("client leaves a server that goes backward or answers what was not said") {
+  ScriptedServer server;
+  std::uint64_t said = 0;
+  const auto check_left = [&](std::uint64_t step, std::uint64_t sequence, bool old_frame) {
+    RawPeer peer = server.welcome();
+    for (int i = 0; i < 2; ++i) {
+      server.give({.sequence = ++said});
+      REQUIRE(peer.receive_as<SampleMessage>());
+    }
+    peer.send(ForceMessage{.stylus = 2, .force = {.force_step = 10, .sample_sequence = said}});
+    REQUIRE(server.wait_for([&] { return server.input().force.sample_sequence == said; }));
+    if (old_frame) --peer.sequence;
+    peer.send(ForceMessage{.stylus = 2,
+                           .force = {.force_step = step, .sample_sequence = said + sequence - 2}});
+    CHECK(peer.ends());
+  };
+  check_left(9, 2, false);
+  check_left(11, 1, false);
+  check_left(11, 3, false);
+  check_left(11, 2, true);
+  CHECK(server.end().protocol_errors == 4);
 }
 
 TEST_CASE("client gives up when the versions do not match, and names both") {

@@ -30,3 +30,13 @@ TEST_CASE("histogram keeps what is out of range") {
   CHECK(histogram.percentile(0.5) == 0);
   CHECK(histogram.maximum() == std::int64_t{1} << 60);
 }
+
+TEST_CASE("histogram tells the share up to a limit") {
+  Histogram histogram;
+  CHECK(histogram.share_up_to(1'000'000) == 0.0);
+  for (std::int64_t ms = 1; ms <= 100; ++ms) histogram.add(ms * 1'000'000);
+  CHECK(histogram.share_up_to(-1) == 0.0);
+  CHECK(histogram.share_up_to(500'000) == 0.0);
+  CHECK(histogram.share_up_to(50'000'000) == Approx(0.5).margin(0.02));
+  CHECK(histogram.share_up_to(100'000'000) == 1.0);
+}

@@ -101,6 +101,13 @@ TEST_CASE("server sends a message of another session away") {
   });
 }
 
+TEST_CASE("server sends a frame away whose number does not grow") {
+  check_violation([](RawPeer& peer) {
+    --peer.sequence;
+    peer.send(SampleMessage{.sample = {.sequence = 1}});
+  });
+}
+
 TEST_CASE("server sends a second hello away") {
   check_violation([](RawPeer& peer) { peer.send(Hello{}); });
 }

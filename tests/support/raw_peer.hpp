@@ -22,7 +22,8 @@ class RawPeer {
   RawPeer& operator=(RawPeer&&) = delete;
   ~RawPeer();
 
-  void send(std::span<const std::uint8_t> bytes);
+  /// True when all of them were taken.
+  bool send(std::span<const std::uint8_t> bytes);
   /// Encodes and sends, with the session of the last Welcome that was received.
   void send(const wire::Message& message);
 

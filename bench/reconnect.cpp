@@ -1,0 +1,149 @@
+// How long after the path is back a bridge feels the server again: the time from then to the first
+// force that answers a sample taken after it. On the loopback address, 1000 samples a second.
+//   bench_reconnect [CUTS]      200 of each kind unless given
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <iostream>
+#include <random>
+#include <string>
+#include <thread>
+
+#include "bench/tcp_relay.hpp"
+#include "common/program/stop_signal.hpp"
+#include "common/realtime/clock.hpp"
+#include "common/realtime/histogram.hpp"
+#include "device_bridge/network_client.hpp"
+#include "server/network/network_server.hpp"
+#include "tests/support/child_process.hpp"
+
+using namespace irdm;
+
+namespace {
+
+constexpr std::int64_t kMillisecond = 1'000'000;
+
+/// A server that answers every sample at once, until it is killed.
+int serve(std::uint16_t port) {
+  NetworkServer server({.port = port, .styluses = 1});
+  server.start();
+  std::cout << "listening on " << server.port_number() << std::endl;
+  std::uint64_t step = 0;
+  for (;;) {
+    StylusPort& stylus = server.port(0);
+    if (!server.samples_arrived().wait(-1) || !stylus.in.receive()) continue;
+    if (!stylus.in.front().present) continue;
+    const StylusSample& sample = stylus.in.front().sample;
+    stylus.out.put({.force_step = step++,
+                    .sample_sequence = sample.sequence,
+                    .sample_time_ns = sample.time_ns});
+    server.forces_ready().signal();
+  }
+}
+
+/// A bridge whose stylus stands still.
+class Bridge {
+ public:
+  explicit Bridge(std::uint16_t port)
+      : link_(1), client_(link_, {.server = {"127.0.0.1", port}}, gave_up_) {
+    client_.start();
+  }
+  void tick() {
+    sleep_until(schedule_.next(monotonic_ns()));
+    link_.styluses[0].sample.put({.sequence = sequence_++, .time_ns = monotonic_ns()});
+    link_.samples_ready.signal();
+    link_.styluses[0].input.receive();
+  }
+  void run_until(std::int64_t end_ns) {
+    while (monotonic_ns() < end_ns) tick();
+  }
+  /// Until a force answers a sample of `since_ns` or later; returns when it did [ns].
+  std::int64_t feel(std::int64_t since_ns) {
+    for (;;) {
+      tick();
+      const ServoInput& input = link_.styluses[0].input.front();
+      if (input.linked && input.any_force && input.force.sample_time_ns >= since_ns) {
+        return monotonic_ns();
+      }
+    }
+  }
+
+ private:
+  ServoLink link_;
+  Wakeup gave_up_;
+  NetworkClient client_;
+  PeriodicSchedule schedule_{monotonic_ns(), kMillisecond};
+  std::uint64_t sequence_ = 0;
+};
+
+test::ChildProcess start_server(const char* self, std::uint16_t port, std::uint16_t& listens) {
+  test::ChildProcess server({self, "serve", std::to_string(port)});
+  const std::string line = server.line_with("listening on ");
+  listens = static_cast<std::uint16_t>(std::stoi(line.substr(line.rfind(' '))));
+  return server;
+}
+
+void print(const char* what, const Histogram& times) {
+  const auto ms = [](std::int64_t ns) {
+    return static_cast<double>(ns) / static_cast<double>(kMillisecond);
+  };
+  std::printf("| %s | %llu | %.1f | %.1f | %.1f |\n", what,
+              static_cast<unsigned long long>(times.count()), ms(times.percentile(0.5)),
+              ms(times.percentile(0.95)), ms(times.maximum()));
+}
+
+/// @param longest that the path is cut [ms]; at least a tenth of it
+Histogram cut_path(const char* self, int cuts, int longest) {
+  std::mt19937 random(1);
+  std::uniform_int_distribution<std::int64_t> length(longest / 10, longest);
+  std::uint16_t port = 0;
+  const test::ChildProcess server = start_server(self, 0, port);
+  TcpRelay relay(port);
+  Bridge bridge(relay.port());
+  Histogram times;
+  for (int i = 0; i < cuts; ++i) {
+    bridge.run_until(bridge.feel(monotonic_ns()) + 50 * kMillisecond);
+    relay.cut();
+    bridge.run_until(monotonic_ns() + length(random) * kMillisecond);
+    relay.mend();
+    const std::int64_t back_ns = monotonic_ns();
+    times.add(bridge.feel(back_ns) - back_ns);
+  }
+  return times;
+}
+
+Histogram kill_server(const char* self, int kills) {
+  std::mt19937 random(1);
+  std::uniform_int_distribution<std::int64_t> length(10, 500);
+  std::uint16_t port = 0;
+  std::optional<test::ChildProcess> server(start_server(self, 0, port));
+  Bridge bridge(port);
+  Histogram times;
+  for (int i = 0; i < kills; ++i) {
+    bridge.run_until(bridge.feel(monotonic_ns()) + 50 * kMillisecond);
+    server->signal(SIGKILL);
+    server->wait();
+    server.reset();
+    bridge.run_until(monotonic_ns() + length(random) * kMillisecond);
+    server.emplace(start_server(self, port, port));
+    const std::int64_t back_ns = monotonic_ns();
+    times.add(bridge.feel(back_ns) - back_ns);
+  }
+  return times;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc == 3 && std::string(argv[1]) == "serve") {
+    return serve(static_cast<std::uint16_t>(std::atoi(argv[2])));
+  }
+  const StopSignal ignores_pipes;
+  const int count = argc > 1 ? std::atoi(argv[1]) : 200;
+  std::printf(
+      "| what | times | median [ms] | 95 %% | longest |\n| --- | --- | --- | --- | --- |\n");
+  print("server killed and started again", kill_server(argv[0], count));
+  print("path cut for 10 to 100 ms", cut_path(argv[0], count, 100));
+  print("path cut for 0.1 to 1 s", cut_path(argv[0], count, 1000));
+  return 0;
+}

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "common/realtime/histogram.hpp"
+#include "device_bridge/link/client_report.hpp"
+#include "device_bridge/servo_input.hpp"
+
+namespace irdm {
+
+/// What is measured of a link in ticks of a servo loop. Adding is pure and real-time safe.
+struct LinkMeasurement {
+  static constexpr std::int64_t kHoldNs = 20'000'000;     ///< age that a held force may have
+  static constexpr std::int64_t kPredictNs = 50'000'000;  ///< that of a contact model
+
+  /// One tick.
+  /// @param late_ns how late it began  @param input what the servo loop knows then
+  void tick(std::int64_t now_ns, std::int64_t late_ns, const ServoInput& input) noexcept;
+  /// Share of the ticks whose newest force was young enough to be shown; 0 without ticks.
+  double hold_success() const noexcept { return share(young_for_hold); }
+  double predict_success() const noexcept { return share(young_for_predict); }
+  /// Share of the server's steps that did not arrive.
+  double loss() const noexcept;
+
+  std::uint64_t ticks = 0;
+  std::uint64_t missed = 0;  ///< ticks skipped because the loop was late
+  std::uint64_t young_for_hold = 0;
+  std::uint64_t young_for_predict = 0;
+  Histogram age;             ///< of the newest force at a tick [ns]
+  Histogram wakeup;          ///< how late a tick began [ns]
+  double duration = 0.0;     ///< [s]
+  double dt = 0.0;           ///< the server's step [s]
+  std::string scheduling;    ///< of the loop
+  ClientReport client = {};  ///< of the network thread
+
+ private:
+  double share(std::uint64_t count) const noexcept;
+};
+
+}  // namespace irdm

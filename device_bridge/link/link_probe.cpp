@@ -1,0 +1,112 @@
+#include "device_bridge/link/link_probe.hpp"
+
+#include <atomic>
+#include <cmath>
+#include <stdexcept>
+#include <thread>
+
+#include "common/error.hpp"
+#include "common/realtime/clock.hpp"
+#include "device_bridge/bridge.hpp"
+#include "device_bridge/network_client.hpp"
+
+namespace irdm {
+namespace {
+
+constexpr double kNanosecondsPerSecond = 1e9;
+constexpr std::int64_t kWarmUpNs = 100'000'000;      // of a session, not measured
+constexpr std::int64_t kPatienceNs = 5'000'000'000;  // for the first session
+const Vector3 kFarAway(0.0, 500.0, 0.0);             // where a tip touches nothing [m], W
+
+/// A servo loop without a device.
+class ProbeLoop {
+ public:
+  ProbeLoop(ServoLink& link, double rate, double duration, Wakeup& done)
+      : link_(link), rate_(rate), duration_(duration), done_(done) {}
+  ~ProbeLoop() { stop(); }
+
+  void start(RealTimeScheduling scheduling) {
+    thread_ = std::thread([this] { run(); });
+    measured_.scheduling = apply_scheduling(scheduling, thread_, kServoPriority);
+  }
+  void stop() {
+    stop_ = true;
+    if (thread_.joinable()) thread_.join();
+  }
+  /// After stop().
+  const LinkMeasurement& measured() const noexcept { return measured_; }
+
+ private:
+  void run() noexcept;
+  void say(std::int64_t now_ns) noexcept;
+
+  ServoLink& link_;
+  double rate_;
+  double duration_;
+  Wakeup& done_;
+  LinkMeasurement measured_;
+  std::uint64_t sequence_ = 0;
+  std::atomic<bool> stop_{false};
+  std::thread thread_;
+};
+
+void ProbeLoop::say(std::int64_t now_ns) noexcept {
+  link_.styluses[0].sample.put({.sequence = sequence_++, .time_ns = now_ns, .tip = kFarAway});
+  link_.samples_ready.signal();
+  link_.styluses[0].armed = true;  // nothing is to be felt
+}
+
+void ProbeLoop::run() noexcept {
+  const std::int64_t begin_ns = monotonic_ns();
+  PeriodicSchedule schedule(begin_ns, std::llround(kNanosecondsPerSecond / rate_));
+  std::int64_t from_ns = 0;  // 0: no session yet
+  std::uint64_t missed_before = 0;
+  while (!stop_) {
+    const std::int64_t deadline_ns = schedule.next(monotonic_ns());
+    sleep_until(deadline_ns);
+    const std::int64_t now_ns = monotonic_ns();
+    say(now_ns);
+    link_.state.receive();
+    link_.styluses[0].input.receive();
+    if (from_ns == 0 && link_.state.front().sessions > 0) from_ns = now_ns + kWarmUpNs;
+    if (from_ns == 0 && now_ns - begin_ns > kPatienceNs) break;
+    if (from_ns == 0 || now_ns < from_ns) {
+      missed_before = schedule.missed();
+      continue;
+    }
+    measured_.tick(now_ns, now_ns - deadline_ns, link_.styluses[0].input.front());
+    measured_.missed = schedule.missed() - missed_before;
+    measured_.dt = link_.state.front().dt;
+    measured_.duration = static_cast<double>(now_ns - from_ns) / kNanosecondsPerSecond;
+    if (measured_.duration >= duration_) break;
+  }
+  done_.signal();
+}
+
+}  // namespace
+
+LinkMeasurement probe_link(const BridgeConfig& config, double duration, StopSignal& stop_signal) {
+  Wakeup done;
+  ServoLink link(1);
+  ClientSettings settings = client_settings(config);
+  settings.name = "irdm-bridge check-link";
+  settings.lockstep = false;
+  NetworkClient client(link, settings, done);
+  ProbeLoop loop(link, config.rate, duration, done);
+  client.start();
+  loop.start(config.realtime);
+  stop_signal.wait(done.descriptor());
+  loop.stop();
+  client.stop(true);
+  LinkMeasurement measured = loop.measured();
+  measured.client = client.report();
+  if (!measured.client.failure.empty()) throw std::runtime_error(measured.client.failure);
+  if (measured.ticks == 0) {
+    throw Error(config.server->host + ":" + std::to_string(config.server->port),
+                "no session, and so nothing was measured",
+                "start irdm-server there, with a stylus that no other bridge has");
+  }
+  return measured;
+}
+
+}  // namespace irdm

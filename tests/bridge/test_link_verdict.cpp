@@ -1,0 +1,95 @@
+#include <catch2/catch.hpp>
+#include <string>
+
+#include "device_bridge/link/link_verdict.hpp"
+
+using namespace irdm;
+using Catch::Matchers::Contains;
+
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+
+/// A link of 1000 ticks with nothing wrong, of which `old` have a force of 30 ms.
+LinkMeasurement link_with(int old) {
+  LinkMeasurement link;
+  std::int64_t now_ns = 0;
+  for (int i = 0; i < 1000; ++i, now_ns += kMs) {
+    const std::int64_t age_ns = i < old ? 30 * kMs : 2 * kMs;
+    link.tick(now_ns, 10'000,
+              {.linked = true, .any_force = true, .force = {.sample_time_ns = now_ns - age_ns}});
+    link.client.round_trip.add(kMs);
+    link.client.jitter.add(kMs / 10);
+  }
+  link.duration = 1.0;
+  link.dt = 0.002;
+  link.scheduling = "none";
+  link.client.sessions = 1;
+  link.client.forces = 500;
+  return link;
+}
+
+/// What is advised when this is wrong with a link.
+template <typename Fault>
+std::string advice(const Fault& fault) {
+  LinkMeasurement link = link_with(0);
+  fault(link);
+  const LinkVerdict verdict = judge(link);
+  return verdict.advice.size() == 1 ? verdict.advice.front()
+                                    : std::to_string(verdict.advice.size());
+}
+
+void add(Histogram& histogram, std::int64_t ns) {
+  for (int i = 0; i < 5000; ++i) histogram.add(ns);
+}
+
+}  // namespace
+
+TEST_CASE("a link's ticks count by the age of the newest force; none counts without a session") {
+  LinkMeasurement link = link_with(100);
+  CHECK(link.hold_success() == 0.9);
+  CHECK(link.predict_success() == 1.0);
+  CHECK(link.age.maximum() == 30 * kMs);
+  for (int i = 0; i < 1000; ++i) {
+    link.tick(2000 * kMs, 0, {.linked = i < 500, .force = {.sample_time_ns = 2000 * kMs}});
+  }
+  CHECK(link.hold_success() == 0.45);
+  CHECK(link.age.count() == 1000);
+  CHECK(LinkMeasurement{}.hold_success() == 0.0);
+}
+
+TEST_CASE("a link is graded by the share of ticks that were answered in time") {
+  CHECK(judge(link_with(0)).grade == LinkGrade::kGood);
+  CHECK(judge(link_with(10)).grade == LinkGrade::kGood);
+  CHECK(judge(link_with(11)).grade == LinkGrade::kPassable);
+  CHECK(judge(link_with(100)).grade == LinkGrade::kPassable);
+  CHECK(judge(link_with(101)).grade == LinkGrade::kBad);
+  CHECK(judge(LinkMeasurement{}).grade == LinkGrade::kBad);
+  CHECK(judge(link_with(0)).advice.empty());
+}
+
+TEST_CASE("each fault of a link has its advice") {
+  CHECK_THAT(advice([](auto& link) { link.client.round_trip = Histogram{}; }),
+             Contains("answers nothing"));
+  CHECK_THAT(advice([](auto& link) { add(link.client.round_trip, 25 * kMs); }),
+             Contains("nearer to the device"));
+  CHECK_THAT(advice([](auto& link) { add(link.client.jitter, 6 * kMs); }), Contains("cable"));
+  CHECK_THAT(advice([](auto& link) { link.client.steps_missed = 10; }), Contains("Steps get lost"));
+  CHECK_THAT(advice([](auto& link) { link.client.sessions = 2; }), Contains("made anew"));
+  CHECK_THAT(advice([](auto& link) { add(link.wakeup, 2 * kMs); }),
+             Contains("real-time scheduling"));
+  CHECK_THAT(advice([](auto& link) { link.dt = 0.015; }), Contains("shorter dt"));
+}
+
+TEST_CASE("a link's report says what was measured, with the verdict") {
+  LinkMeasurement link = link_with(150);
+  link.client.steps_missed = 500;
+  const std::string text = to_text(link);
+  CHECK_THAT(text, Contains("link: 1.0 s, 1000 ticks, 1 sessions, server's step 2.0 ms\n"));
+  CHECK_THAT(text, Contains("success: 85.00 % of the ticks"));
+  CHECK_THAT(text, Contains("(100.00 % of at most 50 ms)"));
+  CHECK_THAT(text, Contains("loss: 50.00 %"));
+  CHECK_THAT(text, Contains("  up to     0.125 ms 100.00 % ###"));
+  CHECK_THAT(text, Contains("verdict: bad"));
+  CHECK_THAT(text, Contains("advice: Steps get lost"));
+}

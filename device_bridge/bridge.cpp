@@ -49,9 +49,12 @@ FilterLimits limits_for(const HapticDevice& device, const BridgeConfig& config) 
 void await_end(StopSignal& stop_signal, Wakeup& done, const ServoThread& servo,
                DeviceWatch& watch) {
   constexpr int kLookMs = 100;
+  constexpr int kSilentLooks = 3;  // one is seen by a process that was itself asleep
+  int silent = 0;
   while (!stop_signal.wait_for(kLookMs, done.descriptor()) && !done.consume() &&
-         !servo.driver_silent(monotonic_ns())) {
+         silent < kSilentLooks) {
     watch.look();
+    silent = servo.driver_silent(monotonic_ns()) ? silent + 1 : 0;
   }
   watch.look();
 }

@@ -64,7 +64,7 @@ void ServoThread::start_source() {
 }
 
 void ServoThread::stop_source() {
-  constexpr int kLongestFadeMs = 500;
+  constexpr int kLongestFadeMs = 2000;
   stop_ = true;
   const bool ended = source_ended_.wait(kLongestFadeMs);
   source_->stop();

@@ -12,9 +12,9 @@ struct Entry {
   ErrorText text;
 };
 
-const char* const kReport = "report it as a fault of irdm-bridge";
-const char* const kCable = "check power and cable of the device, and start irdm-bridge again";
-const char* const kAgain = "start irdm-bridge again to arm it";
+constexpr const char* kReport = "report it as a fault of irdm-bridge";
+constexpr const char* kCable = "check power and cable of the device, and start irdm-bridge again";
+constexpr const char* kAgain = "start irdm-bridge again to arm it";
 
 constexpr std::array kEntries{
     Entry{0x0000, {"HD_SUCCESS", "no error", "nothing", Meaning::kNothing}},

@@ -72,8 +72,7 @@ void OpenHapticsDevice::open() {
   };
   spdlog::info("{}: {}, serial number {}, at most {} N, {} N for long", label(), text(hd::kModel),
                text(hd::kSerialNumber), rating_.peak, rating_.continuous);
-  while (hd_.get_error().code != hd::kSuccess) {
-  }
+  scheduler_->forget_errors();
 }
 
 // The vendor's setup files have decimal points, whatever the locale that a library may have set.

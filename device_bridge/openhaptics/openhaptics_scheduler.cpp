@@ -64,6 +64,11 @@ void OpenHapticsScheduler::fetch_errors(OpenHapticsDevice& here) noexcept {
   }
 }
 
+void OpenHapticsScheduler::forget_errors() noexcept {
+  for (int i = 0; i < kMostErrors && api_.get_error().code != hd::kSuccess; ++i) {
+  }
+}
+
 void OpenHapticsScheduler::give(const hd::ErrorInfo& error, OpenHapticsDevice& here) noexcept {
   const auto about = std::find_if(
       devices_.begin(), devices_.end(),

@@ -29,6 +29,9 @@ class OpenHapticsScheduler : public TickSource {
   /// Fetches the driver's errors and gives each to the device that it is about, those about none to
   /// `here`. Real-time safe.
   void fetch_errors(OpenHapticsDevice& here) noexcept;
+  /// What a driver says to questions that it does not know is nobody's error; while the scheduler
+  /// does not run.
+  void forget_errors() noexcept;
   /// Gives one error to the device that it is about, or to `here`. Real-time safe.
   void give(const hd::ErrorInfo& error, OpenHapticsDevice& here) noexcept;
 

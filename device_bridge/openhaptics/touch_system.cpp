@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
-#include <regex>
 #include <system_error>
 
 namespace irdm::hd {
@@ -53,11 +52,31 @@ std::vector<fs::path> setup_folders(const fs::path& root) {
   return folders;
 }
 
+std::size_t digits_from(const std::string& text, std::size_t begin) {
+  const std::size_t end = std::min(text.find_first_not_of("0123456789", begin), text.size());
+  return end - begin;
+}
+
+// "1,5", with a sign or without, and nothing else: two numbers with a comma between are a list only
+// where there are more of them.
+bool is_comma_number(const std::string& value) {
+  const std::size_t whole = value.find_first_of("-+") == 0 ? 1 : 0;
+  const std::size_t comma = whole + digits_from(value, whole);
+  if (comma == whole || comma >= value.size() || value[comma] != ',') return false;
+  const std::size_t fraction = digits_from(value, comma + 1);
+  return fraction > 0 && comma + 1 + fraction == value.size();
+}
+
 bool has_decimal_comma(const fs::path& path) {
-  static const std::regex kComma(R"(^[^#]*[=:\s][-+]?[0-9]+,[0-9]+\s*$)");
+  const char* const blanks = " \t\r";
   std::ifstream file(path);
   for (std::string line; std::getline(file, line);) {
-    if (std::regex_match(line, kComma)) return true;
+    const std::size_t equals = line.find('=');
+    if (equals == std::string::npos) continue;
+    const std::size_t begin = line.find_first_not_of(blanks, equals + 1);
+    if (begin == std::string::npos) continue;
+    const std::size_t end = line.find_last_not_of(blanks) + 1;
+    if (is_comma_number(line.substr(begin, end - begin))) return true;
   }
   return false;
 }

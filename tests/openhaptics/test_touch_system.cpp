@@ -56,10 +56,10 @@ TEST_CASE("ports of the vendor are found by their USB id, serial and HID") {
 
 TEST_CASE("setups of the vendor are found, and decimal commas in them") {
   const FakeRoot root;
-  root.write("home/config/Left.config", "[DEVICE]\nName=Left\nScale=1.5\n");
+  root.write("home/config/Left.config",
+             "[DEVICE]\nName=Left\nScale=1.5\nList=1,2,3\nOdd=1,\nEmpty=\n");
   root.write("home/config/notes.txt", "x=1,5\n");
-  root.write("usr/share/3DSystems/config/Default Device.config",
-             "[DEVICE]\nScale = 1,5\nList=1,2,3\n");
+  root.write("usr/share/3DSystems/config/Default Device.config", "[DEVICE]\nOffset = -1,5 \n");
   ::setenv("GTDD_HOME", root.path("home").c_str(), 1);
   const hd::TouchSystem system = hd::look_at_touch_system(root.root());
   ::unsetenv("GTDD_HOME");

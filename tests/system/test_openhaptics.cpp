@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <cmath>
 #include <csignal>
 #include <fstream>
 #include <sstream>
+#include <thread>
 #include <vector>
 
 #include "tests/system/stage.hpp"
@@ -86,6 +88,31 @@ TEST_CASE("a device of OpenHaptics feels the server's cube, one frame a tick") {
   CHECK(largest_force(frames) < 3.3 * (1.0 + 1e-9));
   CHECK(frames.back().force == 0.0);
   for (std::size_t i = 1; i < frames.size(); ++i) REQUIRE(frames[i].tick == frames[i - 1].tick + 1);
+}
+
+TEST_CASE("a bridge with two devices of OpenHaptics outlives being stopped and continued") {
+  const DeviceStage device;
+  std::string scene = scene_text();
+  scene.replace(scene.find("port = 0"), 8, "port = 0\nstyluses = 2");
+  device.stage.write("scene.toml", scene + "tether = { stiffness = 200, angular_stiffness = 1 }\n");
+  device.stage.write("bridge.toml",
+                     "[[device]]\ntype = \"openhaptics\"\nname = \"Left\"\n"
+                     "[[device]]\ntype = \"openhaptics\"\nname = \"Right\"\n"
+                     "workspace = { position = [0.02, 0, 0] }\n");
+  Server server = device.stage.start_server();
+  ChildProcess bridge =
+      device.stage.start_bridge(server, {}, device.with({"FAKE_HD_DEVICES=Left,Right"}));
+  bridge.line_with("session 1", true);
+  // Longer than the bridge bears without a tick: it was not the driver that slept.
+  bridge.signal(SIGSTOP);
+  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  bridge.signal(SIGCONT);
+  std::this_thread::sleep_for(std::chrono::milliseconds(700));
+  CHECK(bridge.running());
+  bridge.signal(SIGTERM);
+  CHECK(bridge.wait() == 0);
+  CHECK_THAT(bridge.out(), Contains("styluses 2"));
+  CHECK(device.misuses().ends_with("misuses 0 \n"));
 }
 
 TEST_CASE("a device that is unplugged in contact: the force goes to zero, the bridge says why") {

@@ -1,12 +1,12 @@
 #include "device_bridge/doctor/examine.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <utility>
 #include <vector>
 
 #include "common/error.hpp"
+#include "device_bridge/bridge.hpp"
 #include "device_bridge/device_registry.hpp"
 #include "device_bridge/doctor/judgements.hpp"
 #include "device_bridge/forcedimension/dhd_api.hpp"
@@ -80,11 +80,7 @@ Finding examine_server(const BridgeConfig& config) {
   const ServerAddress& server = *config.server;
   const std::string address = server.host + ":" + std::to_string(server.port);
   try {
-    return judge_server(ask_server({.server = server,
-                                    .connect_timeout_ms =
-                                        static_cast<int>(std::ceil(1e3 * config.connect_timeout))},
-                                   config.devices.size()),
-                        address);
+    return judge_server(ask_server(client_settings(config), config.devices.size()), address);
   } catch (const Error& error) {
     return judge_server({.words = error.what()}, address);
   }

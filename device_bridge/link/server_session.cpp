@@ -45,7 +45,7 @@ void ServerSession::start(std::function<void(const SessionEnd&)> ended) {
       .closed = [this](const std::string& reason) { closed(reason); },
   });
   connection_->send(
-      wire::Hello{.capabilities = wire::kCapabilityReport,
+      wire::Hello{.capabilities = wire::kCapabilityReport | wire::kCapabilityStatus,
                   .styluses = static_cast<std::uint16_t>(shared_.link.styluses.size()),
                   .lockstep = shared_.settings.lockstep,
                   .name = shared_.settings.name});
@@ -67,6 +67,9 @@ void ServerSession::receive(const wire::Frame& frame) {
     if (!linked) unexpected("a force before Welcome");
     if (frame.header.session != connection_->session()) unexpected("a force of another session");
     take(*force);
+  } else if (const auto* status = std::get_if<wire::Status>(&frame.message)) {
+    if (!linked) unexpected("a status before Welcome");
+    take(*status);
   } else {
     unexpected("a message that only a bridge sends");
   }
@@ -127,6 +130,11 @@ void ServerSession::take(const wire::ForceMessage& message) {
   if (intakes_[stylus].answered() > before) answered_ns_ = now_ns;
   shared_.link.styluses[stylus].input.put(intakes_[stylus].input());
   shared_.link.news.signal();
+}
+
+void ServerSession::take(const wire::Status& status) {
+  if (!shared_.report.server_at_first) shared_.report.server_at_first = status;
+  shared_.report.server = status;
 }
 
 void ServerSession::send_samples() {

@@ -58,6 +58,7 @@ class ServerSession {
   void welcomed(const wire::Welcome& welcome);
   void refused(const wire::Refuse& refuse);
   void take(const wire::ForceMessage& message);
+  void take(const wire::Status& status);
   void violated(const wire::ProtocolError& error);
   void closed(const std::string& reason);
   void leave();

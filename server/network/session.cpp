@@ -91,6 +91,10 @@ void Session::greet(const wire::Hello& hello) {
     return refuse(wire::RefuseReason::kTooManyStyluses,
                   "the server has " + std::to_string(settings.styluses) + " styluses");
   }
+  std::uint32_t capabilities = wire::kCapabilityReport;
+  if (!settings.lockstep) capabilities |= wire::kCapabilityStatus;
+  capabilities &= hello.capabilities;
+  wants_status_ = (capabilities & wire::kCapabilityStatus) != 0;
   std::optional<int> first = shared_.slots.claim(hello.styluses);
   if (!first) {
     shared_.make_room();
@@ -107,7 +111,7 @@ void Session::greet(const wire::Hello& hello) {
   connection_->set_session(id_);
   connection_->send(wire::Welcome{.version = std::min(hello.version_max, wire::kProtocolVersion),
                                   .first_stylus = static_cast<std::uint16_t>(first_),
-                                  .capabilities = hello.capabilities & wire::kCapabilityReport,
+                                  .capabilities = capabilities,
                                   .session = id_,
                                   .lockstep = settings.lockstep,
                                   .dt = settings.dt});
@@ -205,6 +209,12 @@ void Session::complain(const std::string& what) {
   } else {
     shared_.stats.unlogged.fetch_add(1);
   }
+}
+
+void Session::send_status(const wire::Status& status) {
+  if (!wants_status_ || count_ == 0) return;
+  const auto stream = static_cast<std::size_t>(2 * count_);  // after those of the styluses
+  connection_->send_newest(stream, status);
 }
 
 void Session::check_time(std::int64_t now_ns) {

@@ -39,10 +39,10 @@ struct LinkedForces {
 /// Hand-over between servo thread and network thread. Neither ever waits for the other.
 struct ServoLink {
   struct Stylus {
-    Mailbox<StylusSample> sample;   ///< servo writes
-    Mailbox<ServoInput> input;      ///< network writes
-    Mailbox<LinkedModel> model;     ///< network writes, where the contact is solved here
-    Mailbox<LinkedForces> applied;  ///< servo writes, then
+    Mailbox<StylusSample> sample;           ///< servo writes
+    Mailbox<ServoInput> input;              ///< network writes
+    Mailbox<LinkedModel> model;             ///< network writes, where the contact is solved here
+    Mailbox<LinkedForces> applied;          ///< servo writes, then
     std::atomic<bool> armed{false};         ///< servo writes; and the next
     std::atomic<double> success_rate{0.0};  ///< LinkGate's
   };

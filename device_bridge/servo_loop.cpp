@@ -92,8 +92,8 @@ void ServoLoop::apply(std::int64_t now_ns, const ServoInput& input) noexcept {
   ForceDemand wanted = demand(now_ns, input);
   wanted.force = clutch_.gain(now_ns) * mapping_.workspace.to_device(wanted.force);
   wanted.normal = mapping_.workspace.direction_to_device(wanted.normal);
-  const Vector3 force = filter_.step(
-      now_ns, {.tip = *reading_, .motor_warmth = device_state_.motor_warmth}, wanted);
+  const Vector3 force =
+      filter_.step(now_ns, {.tip = *reading_, .motor_warmth = device_state_.motor_warmth}, wanted);
   peak_force_ = std::max(peak_force_, force.norm());
   device_.write(force);
 }

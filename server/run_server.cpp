@@ -16,6 +16,7 @@
 #include "server/threads/deformation_thread.hpp"
 #include "server/threads/force_thread.hpp"
 #include "server/threads/recorder_thread.hpp"
+#include "server/threads/status_thread.hpp"
 #include "server/threads/step_clock.hpp"
 #include "server/viewed_run/live_run.hpp"
 #include "server/viewed_run/viewer_scene.hpp"
@@ -176,14 +177,18 @@ int run_server(const ServerOptions& options) {
                                                   recordings, deformation, force, control, network)
                                             : nullptr;
 
+  StatusThread status({force, network, deformation, recorder.get()}, scene.server.status_period);
+
   network.start();
   say_where(network.endpoint());
   if (viewers) viewers->start();
   if (recorder) recorder->start();
   deformation.start();
   force.start(scheduling(scene, options));
+  if (!options.lockstep) status.start();
   stop.wait(force.finished().descriptor());
 
+  status.finish();
   force.finish();
   network.stop();
   deformation.finish();

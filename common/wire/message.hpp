@@ -30,8 +30,7 @@ inline constexpr double kLongestStep = 1.0;
 /// No hand exerts more [N].
 inline constexpr double kMaxForce = 1000.0;
 
-/// Reserved for monitoring; refused by version 1: 18 Status (server to bridge), 19 Command (bridge
-/// to server).
+/// Reserved; refused by version 1: 19 Command (bridge to server).
 enum class MessageType : std::uint16_t {
   kHello = 1,
   kWelcome = 2,
@@ -42,11 +41,12 @@ enum class MessageType : std::uint16_t {
   kReport = 7,
   kContactModel = 16,
   kAppliedForces = 17,
+  kStatus = 18,
 };
 
 /// Bits of Hello::capabilities and Welcome::capabilities.
 inline constexpr std::uint32_t kCapabilityContactModel = 1u << 0;  ///< types 16 and 17
-inline constexpr std::uint32_t kCapabilityStatus = 1u << 1;        ///< reserved: type 18
+inline constexpr std::uint32_t kCapabilityStatus = 1u << 1;        ///< type 18
 inline constexpr std::uint32_t kCapabilityCommand = 1u << 2;       ///< reserved: type 19
 inline constexpr std::uint32_t kCapabilityReport = 1u << 3;        ///< type 7
 
@@ -150,8 +150,20 @@ struct Report {
   Quantiles age = {};         ///< of forces at the moment when a newer one took their place
 };
 
+/// Server to bridge, about once a second, where both sides are capable of it and not in lockstep:
+/// how the run goes. Counts are since its start, times of the last second.
+struct Status {
+  std::uint64_t steps = 0;
+  std::uint64_t missed = 0;     ///< steps that were skipped because the one before was late
+  std::uint64_t unsolved = 0;   ///< steps without a finite solution of the contacts
+  std::uint64_t overflows = 0;  ///< steps that did not fit into a queue: deformation, recorder
+  Quantiles step_time = {};
+  Quantiles wakeup_delay = {};  ///< how late a step began
+  float surface_rate = 0;       ///< deformed surfaces [1/s], not below 0
+};
+
 using Message = std::variant<Hello, Welcome, Refuse, Goodbye, SampleMessage, ForceMessage, Report,
-                             ContactModelMessage, AppliedForcesMessage>;
+                             ContactModelMessage, AppliedForcesMessage, Status>;
 
 struct Frame {
   Header header;

@@ -200,14 +200,40 @@ Report decode_report(ByteReader& in) {
   return report;
 }
 
+void encode(const Status& status, ByteWriter& out) {
+  for (const std::uint64_t count :
+       {status.steps, status.missed, status.unsolved, status.overflows}) {
+    out.put(count);
+  }
+  encode(status.step_time, out);
+  encode(status.wakeup_delay, out);
+  out.put(status.surface_rate);
+  out.put_zeros(4);
+}
+
+Status decode_status(ByteReader& in) {
+  Status status;
+  for (std::uint64_t* count :
+       {&status.steps, &status.missed, &status.unsolved, &status.overflows}) {
+    *count = in.get<std::uint64_t>();
+  }
+  status.step_time = decode_quantiles(in, "a step time");
+  status.wakeup_delay = decode_quantiles(in, "a wake-up delay");
+  status.surface_rate = in.get_single();
+  check_finite(std::isfinite(status.surface_rate), "the surface rate");
+  if (status.surface_rate < 0.0F) bad_value("the surface rate is below 0");
+  return status;
+}
+
 }  // namespace
 
 MessageType type_of(const Message& message) noexcept {
   // In the order of the variant's alternatives.
-  constexpr std::array kTypes{
-      MessageType::kHello,   MessageType::kWelcome,      MessageType::kRefuse,
-      MessageType::kGoodbye, MessageType::kSample,       MessageType::kForce,
-      MessageType::kReport,  MessageType::kContactModel, MessageType::kAppliedForces};
+  constexpr std::array kTypes{MessageType::kHello,         MessageType::kWelcome,
+                              MessageType::kRefuse,        MessageType::kGoodbye,
+                              MessageType::kSample,        MessageType::kForce,
+                              MessageType::kReport,        MessageType::kContactModel,
+                              MessageType::kAppliedForces, MessageType::kStatus};
   static_assert(kTypes.size() == std::variant_size_v<Message>);
   return kTypes[message.index()];
 }
@@ -232,6 +258,8 @@ std::optional<std::size_t> payload_size(MessageType type) noexcept {
       return kContactModelSize;
     case MessageType::kAppliedForces:
       return kAppliedForcesSize;
+    case MessageType::kStatus:
+      return 64;
   }
   return std::nullopt;
 }
@@ -262,6 +290,8 @@ Message decode_payload(MessageType type, std::span<const std::uint8_t> payload) 
       return decode_contact_model(in);
     case MessageType::kAppliedForces:
       return decode_applied_forces(in);
+    case MessageType::kStatus:
+      return decode_status(in);
   }
   throw ProtocolError(ProtocolFault::kUnknownType,
                       "unknown message type " + std::to_string(static_cast<int>(type)));

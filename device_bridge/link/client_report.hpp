@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "common/realtime/histogram.hpp"
+#include "common/wire/message.hpp"
 
 namespace irdm {
 
@@ -22,7 +24,9 @@ struct ClientReport {
   std::uint64_t stalls = 0;  ///< connections closed because samples were not answered any more
   Histogram round_trip;      ///< sample taken to its first force received [ns]; real time only
   Histogram jitter;          ///< how much a round trip differs from the one before [ns]
-  std::string failure;       ///< why it gave up, one line; empty: it did not
+  std::optional<wire::Status> server_at_first;  ///< what the server said of its run, first
+  std::optional<wire::Status> server;           ///< and last
+  std::string failure;                          ///< why it gave up, one line; empty: it did not
 };
 
 }  // namespace irdm

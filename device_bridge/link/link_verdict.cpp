@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kGoodSuccess = 0.99;
 constexpr double kNoticeableLoss = 0.01;
+constexpr double kNoticeableOverruns = 0.01;
 constexpr std::int64_t kMillisecond = 1'000'000;
 constexpr std::int64_t kLongJitterNs = 5 * kMillisecond;
 constexpr std::int64_t kLateNs = 1 * kMillisecond;
@@ -59,6 +60,26 @@ LinkGrade grade_of(double success) {
   return success >= LinkGate::kNeeded ? LinkGrade::kPassable : LinkGrade::kBad;
 }
 
+/// Share of the steps that the server skipped meanwhile.
+double server_overruns(const ClientReport& client) {
+  if (!client.server || client.server->steps <= client.server_at_first->steps) return 0.0;
+  const auto since = [](std::uint64_t now, std::uint64_t before) {
+    return static_cast<double>(now - std::min(now, before));
+  };
+  const double missed = since(client.server->missed, client.server_at_first->missed);
+  return missed / (missed + since(client.server->steps, client.server_at_first->steps));
+}
+
+std::string of_server(const wire::Status& status) {
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(1) << "step p50 " << status.step_time.median << ", p99 "
+       << status.step_time.p99 << ", max " << status.step_time.maximum << " us, wake-up p99 "
+       << status.wakeup_delay.p99 << " us, overruns " << status.missed << " of " << status.steps
+       << " steps, lost in full queues " << status.overflows << ", " << status.surface_rate
+       << " surfaces/s";
+  return text.str();
+}
+
 const char* word(LinkGrade grade) {
   switch (grade) {
     case LinkGrade::kGood:
@@ -94,6 +115,9 @@ LinkVerdict judge(const LinkMeasurement& link) {
   advise(link.wakeup.percentile(0.99) > kLateNs,
          "This machine wakes the loop late: allow real-time scheduling (rtprio in "
          "/etc/security/limits.d), end other programs, switch power saving off.");
+  advise(server_overruns(link.client) > kNoticeableOverruns,
+         "The server skips steps: give it a faster machine, a smaller model, or real-time "
+         "scheduling.");
   advise(2e9 * link.dt > static_cast<double>(LinkMeasurement::kHoldNs),
          "The server's step is too long for a held force: use a model with a shorter dt.");
   return verdict;
@@ -116,6 +140,7 @@ std::string to_text(const LinkMeasurement& link) {
   text << "jitter: " << percentiles(client.jitter) << '\n' << bars(client.jitter);
   text << "loop: " << link.missed << " ticks missed, wake-up " << percentiles(link.wakeup)
        << ", scheduling " << link.scheduling << '\n';
+  if (client.server) text << "server: " << of_server(*client.server) << '\n';
   text << "verdict: " << word(verdict.grade) << '\n';
   for (const std::string& advice : verdict.advice) text << "advice: " << advice << '\n';
   return text.str();

@@ -44,7 +44,7 @@ void ServerSession::start(std::function<void(const SessionEnd&)> ended) {
       .violated = [this](const ProtocolError& error) { violated(error); },
       .closed = [this](const std::string& reason) { closed(reason); },
   });
-  std::uint32_t capabilities = wire::kCapabilityReport;
+  std::uint32_t capabilities = wire::kCapabilityReport | wire::kCapabilityStatus;
   if (shared_.settings.predict) capabilities |= wire::kCapabilityContactModel;
   connection_->send(
       wire::Hello{.capabilities = capabilities,
@@ -73,6 +73,9 @@ void ServerSession::receive(const wire::Frame& frame) {
     if (!linked || !link_state_.predict) unexpected("a contact model that was not asked for");
     if (frame.header.session != connection_->session()) unexpected("a model of another session");
     take(*model);
+  } else if (const auto* status = std::get_if<wire::Status>(&frame.message)) {
+    if (!linked) unexpected("a status before Welcome");
+    take(*status);
   } else {
     unexpected("a message that only a bridge sends");
   }
@@ -156,6 +159,11 @@ void ServerSession::take(const wire::ForceMessage& message) {
   if (intakes_[stylus].answered() > before) answered_ns_ = now_ns;
   shared_.link.styluses[stylus].input.put(intakes_[stylus].input());
   shared_.link.news.signal();
+}
+
+void ServerSession::take(const wire::Status& status) {
+  if (!shared_.report.server_at_first) shared_.report.server_at_first = status;
+  shared_.report.server = status;
 }
 
 void ServerSession::send_samples() {

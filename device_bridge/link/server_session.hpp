@@ -60,6 +60,7 @@ class ServerSession {
   void take(const wire::ForceMessage& message);
   void take(const wire::ContactModelMessage& message);
   std::size_t ours(std::uint16_t slot) const;
+  void take(const wire::Status& status);
   void violated(const wire::ProtocolError& error);
   void closed(const std::string& reason);
   void leave();

@@ -21,6 +21,7 @@ struct ServerConfig {
       1;  ///< how many styluses take part, 1..kMaxStyluses; default: the [[stylus]] tables
   double deformation_rate = 60.0;  ///< deformed surfaces a second, 1..1000 [Hz]
   RealTimeScheduling realtime = RealTimeScheduling::kPrefer;  ///< "require" | "prefer" | "ignore"
+  double status_period = 10.0;  ///< of status lines in the log, 0..3600 [s]; 0: none
   std::optional<std::filesystem::path> key_file;  ///< none: the address is a loopback one
   int deformation_threads = 0;  ///< OpenMP threads for them, 0..64; 0: all cores but one
 };

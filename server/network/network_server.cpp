@@ -54,6 +54,7 @@ class NetworkServer::Impl {
   NetworkStats stats_;
   Wakeup samples_arrived_;
   Wakeup forces_ready_;
+  Mailbox<wire::Status> status_;
   StylusSlots slots_;
   std::uint16_t port_ = 0;
 
@@ -224,6 +225,9 @@ void NetworkServer::Impl::await_tick() {
       slots_.expire(now_ns, settings_.absent_after_ms * kNanosecondsPerMillisecond);
     }
     for (Session& session : sessions_) session.check_time(now_ns);
+    if (status_.receive()) {
+      for (Session& session : sessions_) session.send_status(status_.front());
+    }
     remove_ended();
     if (!accepting_ && !stopping_) accept();
     if (!stopping_ || !sessions_.empty()) await_tick();
@@ -259,6 +263,9 @@ Wakeup& NetworkServer::samples_arrived() noexcept {
 }
 Wakeup& NetworkServer::forces_ready() noexcept {
   return impl_->forces_ready_;
+}
+Mailbox<wire::Status>& NetworkServer::status() noexcept {
+  return impl_->status_;
 }
 const NetworkStats& NetworkServer::stats() const noexcept {
   return impl_->stats_;

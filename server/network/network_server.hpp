@@ -20,7 +20,7 @@ struct NetworkSettings {
   bool lockstep = false;
   int styluses = 4;                 ///< slots, 1 to 64
   int max_connections = 16;         ///< >= 1
-  int max_frame_rate = 20000;       ///< of one bridge [1/s], >= 1; not in lockstep
+  int max_frame_rate = 40000;       ///< of one bridge [1/s], >= 1; not in lockstep
   int handshake_timeout_ms = 1000;  ///< from connection to Hello
   int frame_timeout_ms = 1000;      ///< from the first byte of a frame to its last
   int absent_after_ms = 100;        ///< without a sample the stylus is absent; not in lockstep
@@ -72,6 +72,8 @@ class NetworkServer {
   /// To be signalled once after the `out` mailboxes of a step were filled.
   Wakeup& forces_ready() noexcept;
   const NetworkStats& stats() const noexcept;
+  /// What goes to the bridges soon after it is put in; from one thread.
+  Mailbox<wire::Status>& status() noexcept;
 
   /// Starts the thread. Throws Error when real-time scheduling is required and not permitted.
   void start();

@@ -95,8 +95,10 @@ void Session::greet(const wire::Hello& hello) {
   }
   std::uint32_t capabilities = wire::kCapabilityReport;
   if (!settings.lockstep) capabilities |= wire::kCapabilityContactModel;
+  if (!settings.lockstep) capabilities |= wire::kCapabilityStatus;
   capabilities &= hello.capabilities;
   predicts_ = (capabilities & wire::kCapabilityContactModel) != 0;
+  wants_status_ = (capabilities & wire::kCapabilityStatus) != 0;
   std::optional<int> first = shared_.slots.claim(hello.styluses, predicts_);
   if (!first) {
     shared_.make_room();
@@ -227,6 +229,12 @@ void Session::complain(const std::string& what) {
   } else {
     shared_.stats.unlogged.fetch_add(1);
   }
+}
+
+void Session::send_status(const wire::Status& status) {
+  if (!wants_status_ || count_ == 0) return;
+  const auto stream = static_cast<std::size_t>(2 * count_);  // after those of the styluses
+  connection_->send_newest(stream, status);
 }
 
 void Session::check_time(std::int64_t now_ns) {

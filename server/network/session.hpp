@@ -41,6 +41,8 @@ class Session {
   void yield(std::int64_t now_ns);
   /// Sends the forces that are ready.
   void send_forces();
+  /// Where the bridge wants it.
+  void send_status(const wire::Status& status);
   /// Applies the time limits.
   void check_time(std::int64_t now_ns);
 
@@ -68,6 +70,7 @@ class Session {
   bool welcomed_ = false;
   bool predicts_ = false;  ///< contact models go out, applied forces come in
   bool over_ = false;
+  bool wants_status_ = false;
   int first_ = 0;  ///< its slots
   int count_ = 0;
 };

@@ -80,7 +80,8 @@ void ForceThread::watch_health(std::int64_t begin_ns, std::int64_t end_ns) noexc
   window_.resets = report_.resets;
   window_.unsolved = report_.unsolved;
   window_.missed = clock_.missed();
-  health_.put(window_);  // some 10 kB, once a second
+  health_.put(window_);  // some 10 kB each, once a second
+  status_.put(window_);
   window_ = ForceHealth{};
   window_begin_ns_ = end_ns;
 }

@@ -61,6 +61,8 @@ class ForceThread {
   const ForceThreadReport& report() const noexcept { return report_; }
   /// While it runs, anew about every kHealthPeriodNs; for one reader.
   Mailbox<ForceHealth>& health() noexcept { return health_; }
+  /// The same for another one.
+  Mailbox<ForceHealth>& status() noexcept { return status_; }
   static constexpr double kPauseFade = 0.03;  ///< in which a force fades when the run is paused [s]
   static constexpr std::int64_t kHealthPeriodNs = 1'000'000'000;
   /// How the thread is scheduled, for a report.
@@ -90,6 +92,7 @@ class ForceThread {
   ForceHealth window_;  ///< what is being gathered for health_
   std::int64_t window_begin_ns_ = 0;
   Mailbox<ForceHealth> health_;
+  Mailbox<ForceHealth> status_;
   std::string scheduling_;
   Wakeup finished_;
   std::thread thread_;

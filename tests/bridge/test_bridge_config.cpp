@@ -103,7 +103,7 @@ TEST_CASE("bridge configuration takes every key") {
   const BridgeConfig config =
       ConfigFile(
           "[bridge]\nserver = \"[::1]:4000\"\nrate = 500\nmax_force = 2\ncontinuous_force = "
-          "1\nconnect_timeout = 0.05\n"
+          "1\nconnect_timeout = 0.05\nkey_file = \"/k/irdm.key\"\n"
           "[[device]]\ntype = \"virtual\"\nscript = \"/a.csv\"\nhand = { mass = 0.2 }\n"
           "[[device]]\ntype = \"openhaptics\"\n")
           .load();
@@ -114,6 +114,7 @@ TEST_CASE("bridge configuration takes every key") {
   CHECK(config.max_force == 2.0);
   CHECK(config.continuous_force == 1.0);
   CHECK(config.connect_timeout == 0.05);
+  CHECK(config.key_file == "/k/irdm.key");
   REQUIRE(config.devices.size() == 2);
   CHECK(config.devices[0].script == "/a.csv");
   REQUIRE(config.devices[0].hand);

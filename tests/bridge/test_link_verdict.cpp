@@ -78,18 +78,27 @@ TEST_CASE("each fault of a link has its advice") {
   CHECK_THAT(advice([](auto& link) { link.client.sessions = 2; }), Contains("made anew"));
   CHECK_THAT(advice([](auto& link) { add(link.wakeup, 2 * kMs); }),
              Contains("real-time scheduling"));
+  CHECK_THAT(advice([](auto& link) {
+               link.client.server_at_first = wire::Status{.steps = 1000, .missed = 500};
+               link.client.server = wire::Status{.steps = 1490, .missed = 510};
+             }),
+             Contains("server skips steps"));
   CHECK_THAT(advice([](auto& link) { link.dt = 0.015; }), Contains("shorter dt"));
 }
 
 TEST_CASE("a link's report says what was measured, with the verdict") {
   LinkMeasurement link = link_with(150);
   link.client.steps_missed = 500;
+  link.client.server_at_first = link.client.server =
+      wire::Status{.steps = 70, .missed = 3, .overflows = 2, .surface_rate = 60.0F};
   const std::string text = to_text(link);
   CHECK_THAT(text, Contains("link: 1.0 s, 1000 ticks, 1 sessions, server's step 2.0 ms\n"));
   CHECK_THAT(text, Contains("success: 85.00 % of the ticks"));
   CHECK_THAT(text, Contains("(100.00 % of at most 50 ms)"));
   CHECK_THAT(text, Contains("loss: 50.00 %"));
   CHECK_THAT(text, Contains("  up to     0.125 ms 100.00 % ###"));
+  CHECK_THAT(text, Contains("server: step p50 0.0") &&
+                       Contains("overruns 3 of 70 steps, lost in full queues 2, 60.0 surfaces/s"));
   CHECK_THAT(text, Contains("verdict: bad"));
   CHECK_THAT(text, Contains("advice: Steps get lost"));
 }

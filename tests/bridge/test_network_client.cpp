@@ -124,6 +124,20 @@ TEST_CASE("client drops forces that are repeated or older than the session, and 
   CHECK(report.longest_gap == 6);
 }
 
+TEST_CASE("client keeps what the server says of its run, first and last") {
+  ScriptedServer server;
+  RawPeer peer = server.welcome();
+  server.give({});
+  REQUIRE(peer.receive_as<SampleMessage>());
+  for (const std::uint64_t steps : {7u, 8u, 9u}) peer.send(wire::Status{.steps = steps});
+  peer.send(ForceMessage{.stylus = 2});
+  REQUIRE(server.wait_for([&] { return server.input().any_force; }));
+  const ClientReport& report = server.end();
+  REQUIRE(report.server);
+  CHECK(report.server_at_first->steps == 7);
+  CHECK(report.server->steps == 9);
+}
+
 TEST_CASE("client says goodbye when it is stopped") {
   ScriptedServer server;
   RawPeer peer = server.welcome();

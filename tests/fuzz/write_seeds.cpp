@@ -1,4 +1,5 @@
 // Writes valid messages, where fuzzing begins: write_fuzz_seeds FOLDER. Text seeds are files.
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -77,14 +78,16 @@ void write_wire_frames(const Seeds& seeds) {
       wire::Goodbye{},
       wire::SampleMessage{.sample = {.sequence = 3, .tip = Vector3(0.01, 0.02, 0.03)}},
       wire::ForceMessage{.force = {.force_step = 5, .force = Vector3(0.5, 0, -1)}},
+      wire::Status{.steps = 9},
   };
   viewer::Bytes stream = {0};
   for (const wire::Message& message : messages) {
     const wire::FrameBytes frame = wire::encode_frame(message, 7, 1, 1000);
-    viewer::Bytes single = {5};
-    single.insert(single.end(), frame.view().begin(), frame.view().end());
+    viewer::Bytes single(1 + frame.size, 5);
+    std::copy(frame.view().begin(), frame.view().end(), single.begin() + 1);
     stream.insert(stream.end(), frame.view().begin(), frame.view().end());
-    seeds.write("wire_frames", "type_" + std::to_string(message.index() + 1), single);
+    seeds.write("wire_frames", "type_" + std::to_string(static_cast<int>(wire::type_of(message))),
+                single);
   }
   seeds.write("wire_frames", "all", stream);
 }

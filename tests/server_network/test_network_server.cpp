@@ -52,7 +52,7 @@ TEST_CASE("a bridge's report is there for who watches, until the bridge goes") {
   peer.send(Hello{.capabilities = wire::kCapabilityReport, .lockstep = true, .name = "test"});
   const auto welcome = peer.receive_as<Welcome>();
   REQUIRE(welcome);
-  CHECK(welcome->capabilities == wire::kCapabilityReport);
+  CHECK(welcome->capabilities == (wire::kCapabilityReport | wire::kCapabilityStatus));
   peer.send(wire::Report{.round_trip = {1.0F, 2.0F, 3.0F}});
   Mailbox<LinkReport>& link = running.server.port(0).link;
   REQUIRE(eventually([&] { return link.receive(); }));
@@ -61,6 +61,31 @@ TEST_CASE("a bridge's report is there for who watches, until the bridge goes") {
   peer.send(Goodbye{});
   REQUIRE(eventually([&] { return link.receive(); }));
   CHECK_FALSE(link.front().reported);
+}
+
+TEST_CASE("a status goes to those bridges that want it, not in lockstep") {
+  for (const bool lockstep : {false, true}) {
+    RunningServer running({.lockstep = lockstep});
+    RawPeer indifferent = running.join();
+    RawPeer curious = running.connect();
+    curious.send(
+        Hello{.capabilities = wire::kCapabilityStatus | wire::kCapabilityReport, .lockstep = true});
+    const auto welcome = curious.receive_as<Welcome>();
+    REQUIRE(welcome);
+    CHECK(welcome->capabilities ==
+          (wire::kCapabilityReport | (lockstep ? 0 : wire::kCapabilityStatus)));
+    running.server.status().put({.steps = 7, .surface_rate = 60.0F});
+    if (!lockstep) {
+      const auto status = curious.receive_as<wire::Status>();
+      REQUIRE(status);
+      CHECK(status->steps == 7);
+      CHECK(status->surface_rate == 60.0F);
+    }
+    for (RawPeer* peer : {&indifferent, &curious}) {
+      peer->send(Goodbye{});
+      CHECK(peer->receive_as<Goodbye>());  // and nothing else before it
+    }
+  }
 }
 
 TEST_CASE("a force that is not finite goes out as zero") {

@@ -31,6 +31,18 @@ TEST_CASE("check-link measures a running server and says what it thinks of it") 
   CHECK_THAT(server.process.out(), Contains("peak force: 0.000 N"));
 }
 
+TEST_CASE("a server tells in its log how the run goes") {
+  const Stage stage;
+  stage.write("scene.toml", "[server]\nstatus_period = 1\n" + scene_text().substr(9));
+  Server server = stage.start_server({"--no-viewer"});
+  CHECK_THAT(server.process.line_with("status: "),
+             Contains(" steps, step p50 ") && Contains(", wake-up p50 ") &&
+                 Contains(", overruns ") && Contains(", lost in full queues 0") &&
+                 Contains(" surfaces/s, sessions 0"));
+  server.process.signal(SIGTERM);
+  CHECK(server.process.wait() == 0);
+}
+
 TEST_CASE("check-link of a server in lockstep, of none, or without a name is one line, status 1") {
   const Stage stage;
   Server server = stage.start_server({"--no-viewer", "--lockstep"});

@@ -179,6 +179,29 @@ TEST_CASE("report has its documented bytes") {
   CHECK(back.age.maximum == 8.0F);
 }
 
+TEST_CASE("status has its documented bytes") {
+  const Status status{.steps = 1,
+                      .missed = 2,
+                      .unsolved = 3,
+                      .overflows = 4,
+                      .step_time = {1.0F, 2.0F, 4.0F},
+                      .wakeup_delay = {0.5F, 0.25F, 8.0F},
+                      .surface_rate = 2.0F};
+  CHECK(encoded(status) ==
+        golden("12 00 40 00 00 00", "35 d1 4b 0d ",
+               "01 00 00 00 00 00 00 00  02 00 00 00 00 00 00 00  03 00 00 00 00 00 00 00 "
+               "04 00 00 00 00 00 00 00  00 00 80 3f 00 00 00 40 00 00 80 40 "
+               "00 00 00 3f 00 00 80 3e 00 00 00 41  00 00 00 40 00 00 00 00"));
+  const Status back = round_trip(status);
+  CHECK(back.steps == 1);
+  CHECK(back.missed == 2);
+  CHECK(back.unsolved == 3);
+  CHECK(back.overflows == 4);
+  CHECK(back.step_time.p99 == 2.0F);
+  CHECK(back.wakeup_delay.maximum == 8.0F);
+  CHECK(back.surface_rate == 2.0F);
+}
+
 TEST_CASE("text is cut to its field and cleaned of what a log should not see") {
   CHECK(round_trip(Hello{.name = std::string(100, 'x')}).name == std::string(kNameSize, 'x'));
   CHECK(round_trip(Hello{.name = "a\nb\x1b"}).name == "a?b?");

@@ -1,0 +1,105 @@
+#include "server/threads/status_thread.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
+#include "common/realtime/clock.hpp"
+
+namespace irdm {
+namespace {
+
+constexpr double kNanosecondsPerSecond = 1e9;
+constexpr int kPeriodMs = 1000;
+
+wire::Quantiles quantiles(const Histogram& histogram) {
+  const auto microseconds = [](std::int64_t ns) { return static_cast<float>(ns) / 1000.0F; };
+  return {microseconds(histogram.percentile(0.5)), microseconds(histogram.percentile(0.99)),
+          microseconds(histogram.maximum())};
+}
+
+void put(std::ostringstream& text, const char* name, const wire::Quantiles& value) {
+  text << ", " << name << " p50 " << value.median << ", p99 " << value.p99 << ", max "
+       << value.maximum << " us";
+}
+
+}  // namespace
+
+StatusThread::StatusThread(const Parts& parts, double log_period)
+    : parts_(parts), log_period_ns_(std::llround(kNanosecondsPerSecond * log_period)) {}
+
+StatusThread::~StatusThread() {
+  finish();
+}
+
+void StatusThread::start() {
+  gathered_ns_ = monotonic_ns();
+  thread_ = std::thread([this] { run(); });
+}
+
+void StatusThread::finish() {
+  if (!thread_.joinable()) return;
+  stop_.signal();
+  thread_.join();
+}
+
+void StatusThread::run() {
+  std::int64_t logged_ns = monotonic_ns();
+  while (!stop_.wait(kPeriodMs)) {
+    const wire::Status status = gather();
+    parts_.network.status().put(status);
+    if (log_period_ns_ == 0 || gathered_ns_ - logged_ns < log_period_ns_) continue;
+    logged_ns = gathered_ns_;
+    spdlog::info("{}", status_line(status, parts_.network.stats()));
+  }
+}
+
+wire::Status StatusThread::gather() {
+  parts_.force.status().receive();
+  const ForceHealth& force = parts_.force.status().front();
+  wire::Status status;
+  status.steps = force.steps;
+  status.missed = force.missed;
+  status.unsolved = force.unsolved;
+  status.overflows = parts_.deformation.lost_steps();
+  if (parts_.recorder != nullptr) status.overflows += parts_.recorder->lost();
+  status.step_time = quantiles(force.step_time);
+  status.wakeup_delay = quantiles(force.wakeup_delay);
+  status.surface_rate = surface_rate();
+  return status;
+}
+
+// Since the last time.
+float StatusThread::surface_rate() {
+  const std::int64_t now_ns = monotonic_ns();
+  const std::uint64_t frames = parts_.deformation.frames();
+  const double rate = kNanosecondsPerSecond * static_cast<double>(frames - frames_) /
+                      static_cast<double>(std::max<std::int64_t>(1, now_ns - gathered_ns_));
+  frames_ = frames;
+  gathered_ns_ = now_ns;
+  return static_cast<float>(rate);
+}
+
+std::string status_line(const wire::Status& status, const NetworkStats& network) {
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(1) << "status: " << status.steps << " steps";
+  put(text, "step", status.step_time);
+  put(text, "wake-up", status.wakeup_delay);
+  text << ", overruns " << status.missed << ", lost in full queues " << status.overflows
+       << ", unsolved " << status.unsolved << ", " << status.surface_rate
+       << " surfaces/s, sessions " << network.accepted;
+  const auto count = [&text](const char* name, std::uint64_t value) {
+    if (value > 0) text << ", " << name << ' ' << value;
+  };
+  count("refused", network.refused);
+  count("without the key", network.wrong_keys);
+  count("protocol errors", network.protocol_errors);
+  count("silent", network.timeouts);
+  count("forces replaced", network.forces_replaced);
+  return text.str();
+}
+
+}  // namespace irdm

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <thread>
+
+#include "common/realtime/wakeup.hpp"
+#include "common/wire/message.hpp"
+#include "server/network/network_server.hpp"
+#include "server/threads/deformation_thread.hpp"
+#include "server/threads/force_thread.hpp"
+#include "server/threads/recorder_thread.hpp"
+
+namespace irdm {
+
+/// Tells once a second, to the bridges, how a run in real time goes, and now and then to the log.
+class StatusThread {
+ public:
+  /// The threads of the run; they must outlive this object.
+  struct Parts {
+    ForceThread& force;
+    NetworkServer& network;
+    const DeformationThread& deformation;
+    const RecorderThread* recorder;  ///< null: not recorded
+  };
+  /// @param log_period of lines in the log, to the second [s]; 0: none
+  StatusThread(const Parts& parts, double log_period);
+  ~StatusThread();
+
+  void start();
+  void finish();
+
+ private:
+  void run();
+  wire::Status gather();
+  float surface_rate();
+
+  Parts parts_;
+  std::int64_t log_period_ns_;
+  std::uint64_t frames_ = 0;  ///< and the next: at the last gathering
+  std::int64_t gathered_ns_ = 0;
+  Wakeup stop_;
+  std::thread thread_;
+};
+
+/// One line for the log.
+std::string status_line(const wire::Status& status, const NetworkStats& network);
+
+}  // namespace irdm

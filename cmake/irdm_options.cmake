@@ -24,10 +24,19 @@ if(IRDM_SANITIZE)
   target_compile_definitions(irdm_options INTERFACE IRDM_SANITIZED)
 endif()
 
+# Headers that most files of a target need, read once. Only in the sanitizers' builds: in all others every
+# file has to name what it needs.
+function(irdm_precompile name)
+  if(IRDM_SANITIZE)
+    target_precompile_headers(${name} PRIVATE ${ARGN})
+  endif()
+endfunction()
+
 # irdm_add_library(NAME SOURCES... ) makes one static library target for a folder.
 function(irdm_add_library name)
   add_library(${name} STATIC ${ARGN})
   target_link_libraries(${name} PUBLIC irdm_options)
+  irdm_precompile(${name} <Eigen/Dense> <algorithm> <functional> <memory> <string> <vector>)
 endfunction()
 
 # irdm_add_program(NAME LIBRARY) makes a program from the folder's main.cpp and its library.

@@ -52,7 +52,7 @@ TEST_CASE("a bridge's report is there for who watches, until the bridge goes") {
   peer.send(Hello{.capabilities = wire::kCapabilityReport, .lockstep = true, .name = "test"});
   const auto welcome = peer.receive_as<Welcome>();
   REQUIRE(welcome);
-  CHECK(welcome->capabilities == (wire::kCapabilityReport | wire::kCapabilityStatus));
+  CHECK(welcome->capabilities == wire::kCapabilityReport);
   peer.send(wire::Report{.round_trip = {1.0F, 2.0F, 3.0F}});
   Mailbox<LinkReport>& link = running.server.port(0).link;
   REQUIRE(eventually([&] { return link.receive(); }));

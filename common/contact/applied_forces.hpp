@@ -18,7 +18,8 @@ struct AppliedForce {
 struct AppliedForces {
   static constexpr int kSteps = 16;
 
-  std::uint64_t step = 0;                 ///< the newest
+  std::uint64_t step = 0;  ///< the newest
+  std::uint64_t base = 0;  ///< step of the contact model that the newest rests on
   int count = 0;                          ///< how many there are, 0 to kSteps, at most step + 1
   std::array<AppliedForce, kSteps> past;  ///< past[i] of step - i; the first `count`
 };

@@ -186,6 +186,7 @@ void encode(const AppliedForcesMessage& message, ByteWriter& out) {
   out.put(static_cast<std::uint16_t>(applied.count));
   out.put_zeros(4);
   out.put(applied.step);
+  out.put(applied.base);
   for (int i = 0; i < AppliedForces::kSteps; ++i) {
     if (i >= applied.count) {
       out.put_zeros(48);
@@ -203,6 +204,7 @@ AppliedForcesMessage decode_applied_forces(ByteReader& in) {
   applied.count = in.get<std::uint16_t>();
   in.skip(4);
   applied.step = in.get<std::uint64_t>();
+  applied.base = in.get<std::uint64_t>();
   if (applied.count < 1 || applied.count > AppliedForces::kSteps) {
     bad_value("the count of forces is " + std::to_string(applied.count));
   }

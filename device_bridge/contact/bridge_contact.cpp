@@ -16,9 +16,8 @@ void BridgeContact::receive(const ContactModel& model, std::int64_t now_ns) noex
   if (!pacer_.running()) predictor_.reset();
   newest_model_ = model.step;
   horizon_ns_ = std::llround(1e9 * dt_ * (model.valid ? model.horizon : kMaxHorizon));
-  const bool in_contact = !wanted_.force.isZero(0.0);
   pacer_.hear(model.step, model.newest == kNoStep ? std::nullopt : std::optional(model.newest),
-              in_contact, now_ns);
+              in_contact_, now_ns);
   predictor_.receive(model);
 }
 
@@ -38,6 +37,7 @@ bool BridgeContact::tick(std::int64_t now_ns, const Vector3& tip) noexcept {
 void BridgeContact::solve(std::uint64_t k, std::int64_t now_ns, const Vector3& tip) noexcept {
   const ContactPredictor::Answer answer = predictor_.solve(k, tip);
   remember(k, tip);
+  in_contact_ = answer.known && answer.state != ContactState::kFree;
   if (!answer.known) return;  // what was wanted last grows old
   wanted_ = {.any = true,
              .content_ns = std::max(wanted_.content_ns, pacer_.end_of(newest_model_, now_ns)),
@@ -53,6 +53,7 @@ void BridgeContact::remember(std::uint64_t k, const Vector3& tip) noexcept {
   std::shift_right(past.begin(), past.end(), 1);
   past[0] = {predictor_.applied(k), tip};
   applied_.step = k;
+  applied_.base = newest_model_;
   applied_.count = follows ? std::min(applied_.count + 1, AppliedForces::kSteps) : 1;
 }
 

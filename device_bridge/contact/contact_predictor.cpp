@@ -9,6 +9,16 @@ Vector3 sideways(const Vector3& v, const Vector3& normal) noexcept {
   return v - v.dot(normal) * normal;
 }
 
+// Below the surface, besides the tip's way in the step [m].
+constexpr double kDeepStart = 0.002;
+// No hand pushes harder [N].
+constexpr double kMostForce = 100.0;
+
+Vector3 bounded(const Vector3& force) noexcept {
+  const double norm = force.norm();
+  return norm > kMostForce ? Vector3(kMostForce / norm * force) : force;
+}
+
 }  // namespace
 
 // Where nothing can be touched, nothing is foreseen for any longer.
@@ -98,13 +108,16 @@ void ContactPredictor::end_touch() noexcept {
   offset_.setZero();
 }
 
-// Whether there is a touch in this step; it begins straight below the tip.
-bool ContactPredictor::touch(std::uint64_t k, const Vector3& from_surface) noexcept {
+// Whether there is a touch in this step; it begins straight below the tip, no deeper than the tip
+// can have come in the step.
+bool ContactPredictor::touch(std::uint64_t k, const Vector3& from_surface, double way) noexcept {
   if (!touching_) {
-    if (from_surface.dot(model_.normal) >= 0.0) return false;
-    touching_ = true;
+    const double depth = -from_surface.dot(model_.normal);
+    if (depth <= 0.0) return false;
     // What the server touches already has a place.
     const bool known = model_.state == ContactState::kTouching;
+    if (!known && depth > way + kDeepStart) return false;
+    touching_ = true;
     began_ = known ? 0 : k;
     slipping_ = known && model_.slipping;
     offset_ = known ? Vector3::Zero() : sideways(from_surface, model_.normal);
@@ -127,7 +140,9 @@ ContactPredictor::Answer ContactPredictor::solve(std::uint64_t k, const Vector3&
   const Vector3 tip_B = end.orientation.conjugate() * (tip - end.position);
   const bool held = model_.state == ContactState::kHeld;
   const Vector3 surface = surface_at(k);
-  if (!held && !touch(k, tip_B - surface)) return answer;
+  const double way = (tip - last_tip_.value_or(tip) - model_.dt * motion_.velocity).norm();
+  last_tip_ = tip;
+  if (!held && !touch(k, tip_B - surface, way)) return answer;
   Friction friction = model_.friction;
   if (slipping_) friction.static_ = friction.kinetic;
   const Vector3 arm = surface + offset_;
@@ -142,10 +157,10 @@ ContactPredictor::Answer ContactPredictor::solve(std::uint64_t k, const Vector3&
   slipping_ = found.mode == ContactMode::kSlipping;
   offset_ += found.slip;
   last_place_ = model_.place + offset_;
-  answer.force = Q * found.force;
+  answer.force = Q * bounded(found.force);
   answer.state = held ? ContactState::kHeld : ContactState::kTouching;
   answer.normal = end.orientation * model_.normal;
-  past(k) = {k, answer.force, found.force, arm, found.slip};
+  past(k) = {k, answer.force, bounded(found.force), arm, found.slip};
   return answer;
 }
 

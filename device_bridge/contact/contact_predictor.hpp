@@ -60,7 +60,7 @@ class ContactPredictor {
   void move_to(std::uint64_t k) noexcept;
   Vector3 surface_at(std::uint64_t k) const noexcept;
   void place_anew() noexcept;
-  bool touch(std::uint64_t k, const Vector3& from_surface) noexcept;
+  bool touch(std::uint64_t k, const Vector3& from_surface, double way) noexcept;
   void end_touch() noexcept;
 
   bool any_ = false;  ///< model_ means something
@@ -75,6 +75,7 @@ class ContactPredictor {
   std::uint64_t began_ = 0;           ///< in this step
   Vector3 offset_ = Vector3::Zero();  ///< from the model's place to ours, along the surface [m]
   std::uint64_t last_step_ = 0;
+  std::optional<Vector3> last_tip_;  ///< W
   Vector3 last_place_ = Vector3::Zero();  ///< of a touching contact, object at rest [m]
 };
 

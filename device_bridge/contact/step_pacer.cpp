@@ -11,8 +11,11 @@ constexpr std::uint64_t kFirstLead = 2;
 // A force that is there when its step is made came early enough; one step more is kept in reserve.
 constexpr std::int64_t kLeast = 0;
 constexpr std::int64_t kReserve = 1;
-// What is borne of either while in contact.
-constexpr std::int64_t kTolerance = 8;
+// What is borne while in contact of being late, and of being early.
+constexpr std::int64_t kLateTolerance = 8;
+constexpr std::int64_t kEarlyTolerance = 8;
+// Ahead of the server, beyond which nothing fits together any more [steps].
+constexpr std::uint64_t kFarthest = 200;
 // For how many steps all forces have to be early before some of that is given up.
 constexpr int kPatience = 100;
 
@@ -23,28 +26,29 @@ StepPacer::StepPacer(double dt, std::int64_t tick_ns) noexcept
 
 void StepPacer::hear(std::uint64_t step, std::optional<std::uint64_t> newest, bool in_contact,
                      std::int64_t now_ns) noexcept {
-  if (!running_) {
-    running_ = true;
-    step_ = step + kFirstLead - 1;
-    next_end_ns_ = now_ns + tick_ns_;
-    settled_from_ = step_ + 1;
-    heard_ = 0;
-    return;
-  }
+  // Who is behind the server knows nothing of the coming step.
+  if (!running_ || step >= step_ || step_ - step > kFarthest) return begin(step, now_ns);
   if (!newest || *newest < settled_from_ || *newest > step_) return;
   keep_pace(static_cast<std::int64_t>(*newest - step), in_contact);
 }
 
+void StepPacer::begin(std::uint64_t step, std::int64_t now_ns) noexcept {
+  running_ = true;
+  step_ = step + kFirstLead - 1;
+  next_end_ns_ = now_ns + tick_ns_;
+  settled_from_ = step_ + 1;
+  heard_ = 0;
+}
+
 void StepPacer::keep_pace(std::int64_t lead, bool in_contact) noexcept {
-  const std::int64_t tolerance = in_contact ? kTolerance : 0;
   least_lead_ = heard_ == 0 ? lead : std::min(least_lead_, lead);
   ++heard_;
   std::int64_t change = 0;
-  if (lead < kLeast - tolerance) {
+  if (lead < kLeast - (in_contact ? kLateTolerance : 0)) {
     change = std::min<std::int64_t>(kLeast - lead, kMost);
   } else if (heard_ >= kPatience) {
     const std::int64_t wanted = kLeast + kReserve;
-    if (least_lead_ > wanted + tolerance) change = wanted - least_lead_;
+    if (least_lead_ > wanted + (in_contact ? kEarlyTolerance : 0)) change = wanted - least_lead_;
     heard_ = 0;
   }
   if (change == 0) return;

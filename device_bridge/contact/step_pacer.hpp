@@ -36,6 +36,7 @@ class StepPacer {
   static constexpr int kMost = 50;
 
  private:
+  void begin(std::uint64_t step, std::int64_t now_ns) noexcept;
   void keep_pace(std::int64_t lead, bool in_contact) noexcept;
 
   std::int64_t dt_ns_;

@@ -12,12 +12,19 @@ struct StylusInput {
   bool present = false;      ///< false: no bridge, or one that has fallen silent; touch nothing
   StylusSample sample = {};  ///< the newest one; meaningless when not present
   bool predicts = false;     ///< its bridge can solve the contact itself
+  std::uint64_t session = 0;  ///< changes with the bridge
 };
 
 /// What a stylus' bridge says of its link.
 struct LinkReport {
   bool reported = false;  ///< else the rest means nothing
   wire::Report report = {};
+};
+
+/// A contact model for the bridge of a session.
+struct ServedModel {
+  std::uint64_t session = 0;
+  ContactModel model;
 };
 
 /// Hand-over between network thread and force thread for one stylus: the network thread writes `in`
@@ -27,7 +34,7 @@ struct StylusPort {
   Mailbox<StylusForce> out;
   // Where the bridge solves the contact:
   Mailbox<AppliedHistory> applied;  ///< from the network thread
-  Mailbox<ContactModel> model;      ///< from the force thread
+  Mailbox<ServedModel> model;       ///< from the force thread
   Mailbox<LinkReport> link;         ///< from the network thread to a viewer's thread
 };
 

@@ -14,7 +14,10 @@ std::optional<int> StylusSlots::claim(int count, bool predicts) {
       std::search_n(owners_.begin(), owners_.end(), count, false,
                     [](const Owner& owner, bool wanted) { return owner.claimed == wanted; });
   if (first == owners_.end()) return std::nullopt;
-  std::fill_n(first, count, Owner{.claimed = true, .predicts = predicts});
+  std::for_each(first, first + count, [&](Owner& owner) {
+    owner = Owner{.claimed = true, .predicts = predicts, .session = ++sessions_};
+    owner.applied = AppliedHistory(owner.session);
+  });
   return static_cast<int>(first - owners_.begin());
 }
 
@@ -22,7 +25,7 @@ void StylusSlots::release(int first, int count) {
   for (int slot = first; slot < first + count; ++slot) {
     make_absent(slot);
     port(slot).link.put({});
-    port(slot).applied.put({});
+    port(slot).applied.put(AppliedHistory());
     owners_[static_cast<std::size_t>(slot)] = Owner{};
   }
 }
@@ -35,7 +38,7 @@ bool StylusSlots::put(int slot, const StylusSample& sample, std::int64_t now_ns)
   owner.present = true;
   owner.newest_sequence = sample.sequence;
   owner.arrived_ns = now_ns;
-  port(slot).in.put({.present = true, .sample = sample, .predicts = owner.predicts});
+  port(slot).in.put({.present = true, .sample = sample, .predicts = owner.predicts, .session = owner.session});
   arrived_.signal();
   return true;
 }
@@ -47,9 +50,10 @@ void StylusSlots::put(int slot, const AppliedForces& applied) {
 }
 
 const ContactModel* StylusSlots::take_model(int slot) {
-  Mailbox<ContactModel>& box = port(slot).model;
-  const bool usable = owners_[static_cast<std::size_t>(slot)].predicts;
-  return box.receive() && usable ? &box.front() : nullptr;
+  Mailbox<ServedModel>& box = port(slot).model;
+  const Owner& owner = owners_[static_cast<std::size_t>(slot)];
+  const bool usable = box.receive() && owner.predicts && box.front().session == owner.session;
+  return usable ? &box.front().model : nullptr;
 }
 
 void StylusSlots::expire(std::int64_t now_ns, std::int64_t limit_ns) {

@@ -43,8 +43,9 @@ class StylusSlots {
   struct Owner {
     bool claimed = false;
     bool predicts = false;
+    std::uint64_t session = 0;
     bool present = false;
-    AppliedHistory applied = {};
+    AppliedHistory applied = AppliedHistory();
     bool any_sample = false;
     std::uint64_t newest_sequence = 0;
     std::int64_t first_time_ns = 0;  ///< bridge's clock
@@ -55,6 +56,7 @@ class StylusSlots {
   Wakeup& arrived_;
   std::vector<StylusPort> ports_;
   std::vector<Owner> owners_;
+  std::uint64_t sessions_ = 0;  ///< slots claimed so far
 };
 
 }  // namespace irdm

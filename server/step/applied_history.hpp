@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -13,6 +14,10 @@ class AppliedHistory {
  public:
   static constexpr std::uint64_t kKept = 64;  ///< [steps]
 
+  /// @param session of the bridge, as StylusInput::session
+  explicit AppliedHistory(std::uint64_t session = 0) : session_(session) {}
+  std::uint64_t session() const noexcept { return session_; }
+
   void take(const AppliedForces& applied) noexcept {
     for (int i = applied.count - 1; i >= 0; --i) {
       const std::uint64_t step = applied.step - static_cast<std::uint64_t>(i);
@@ -21,10 +26,13 @@ class AppliedHistory {
       entry = {step, applied.past[static_cast<std::size_t>(i)]};
     }
     if (applied.count > 0 && (newest_ == kNoStep || applied.step > newest_)) newest_ = applied.step;
+    base_ = std::max(base_, applied.base);
   }
 
   /// The newest step that anything is known of; kNoStep: none.
   std::uint64_t newest() const noexcept { return newest_; }
+  /// The newest contact model that anything of it rests on, by its step.
+  std::uint64_t base() const noexcept { return base_; }
   /// What was done in a step; null when it is not known, or not any more.
   const AppliedForce* find(std::uint64_t step) const noexcept {
     const Entry& entry = entries_[step % kKept];
@@ -38,6 +46,8 @@ class AppliedHistory {
   };
   std::array<Entry, kKept> entries_;
   std::uint64_t newest_ = kNoStep;
+  std::uint64_t base_ = 0;
+  std::uint64_t session_;
 };
 
 }  // namespace irdm

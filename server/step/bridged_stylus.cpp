@@ -7,6 +7,13 @@ namespace {
 
 // No contact model is good for longer [s].
 constexpr double kLongestHorizon = 0.05;
+// No hand pushes harder [N].
+constexpr double kMostForce = 100.0;
+
+Vector3 bounded(const Vector3& force) noexcept {
+  const double norm = force.norm();
+  return norm > kMostForce ? Vector3(kMostForce / norm * force) : force;
+}
 
 }  // namespace
 
@@ -15,22 +22,29 @@ const AppliedForce* BridgedStylus::find(const AppliedHistory& history,
   return step >= first_ ? history.find(step) : nullptr;
 }
 
-StylusCommand BridgedStylus::next(const StylusCommand& command, const AppliedHistory& history,
-                                  std::uint64_t k) noexcept {
+StylusCommand BridgedStylus::next(const StylusCommand& command, std::uint64_t session,
+                                  const AppliedHistory& history) noexcept {
   StylusCommand next = command;
-  if (!command.present) {
-    forget(history);
+  const std::uint64_t k = simulation_.next_step();
+  if (session != session_) {  // a new hand: what the last one touched is nothing to it
+    session_ = session;
+    forget(AppliedHistory{});
+    next.present = false;
+  }
+  const bool ours = session != 0 && history.session() == session;
+  if (!next.present || !ours) {
+    if (ours) forget(history);
+    tip_ = command.tip;
     return next;
   }
-  const bool any = history.newest() != kNoStep && history.newest() >= first_;
-  if (any && !bridged_) {  // it begins: there is nothing from before that may yet come
-    bridged_ = true;
-    known_ = ~std::uint64_t{0};
-    tip_ = command.tip;
-    std::uint64_t told = history.newest();
-    while (told > first_ && history.find(told - 1) != nullptr) --told;
-    first_ = told;
+  if (reset_ != simulation_.reset_step() && history.base() < simulation_.reset_step()) {
+    forget(history);  // all of it is for the object as it was before
+    next.bridged = BridgedForce{};
+    return next;
   }
+  reset_ = simulation_.reset_step();
+  const bool any = history.newest() != kNoStep && history.newest() >= first_;
+  if (any && !bridged_) begin(command, history);
   newest_ = any ? history.newest() : kNoStep;
   if (!bridged_) {
     tip_ = command.tip;
@@ -39,25 +53,38 @@ StylusCommand BridgedStylus::next(const StylusCommand& command, const AppliedHis
   enter_late(history, k);
   const AppliedForce* const applied = find(history, k);
   known_ = known_ << 1 | (applied != nullptr || k < first_ ? 1 : 0);
-  next.tip = applied != nullptr ? applied->tip : tip_;
-  next.bridged = applied != nullptr ? applied->force : Vector3::Zero();
-  tip_ = next.tip;
+  if (applied != nullptr) tip_ = applied->tip;
+  next.tip = tip_;
+  next.bridged = {applied != nullptr ? bounded(applied->force) : Vector3::Zero(),
+                  simulation_.foreseen_object(s_)};
   return next;
 }
 
-// Bit i of known_ is step k - 1 - i.
+// There is nothing from before that may yet come.
+void BridgedStylus::begin(const StylusCommand& command, const AppliedHistory& history) noexcept {
+  bridged_ = true;
+  known_ = ~std::uint64_t{0};
+  tip_ = command.tip;
+  std::uint64_t told = history.newest();
+  while (told > first_ && history.find(told - 1) != nullptr) --told;
+  first_ = told;
+}
+
+// Bit i of known_ is step k - 1 - i. What finds no place is left out for good; what finds no room
+// waits for the next step.
 void BridgedStylus::enter_late(const AppliedHistory& history, std::uint64_t k) noexcept {
   constexpr std::uint64_t kOldest = kMaxHorizon - 1;
   for (std::uint64_t i = 0; i <= kOldest && i < k; ++i) {
     if ((known_ >> i & 1) != 0) continue;
     const AppliedForce* const applied = find(history, k - 1 - i);
-    if (applied == nullptr) {
+    if (applied == nullptr || (simulation_.late_room() == 0 && !applied->force.isZero(0.0))) {
       if (i == kOldest) ++lost_;
       continue;
     }
     known_ |= std::uint64_t{1} << i;
     if (applied->force.isZero(0.0)) continue;
-    ++(simulation_.enter_late(s_, applied->force, static_cast<int>(i)) ? late_ : lost_);
+    const AppliedForce late{bounded(applied->force), applied->tip};
+    ++(simulation_.enter_late(s_, late, static_cast<int>(i)) ? late_ : lost_);
   }
 }
 

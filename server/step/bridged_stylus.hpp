@@ -18,9 +18,9 @@ class BridgedStylus {
 
   /// Before each step: enters forces that were late for theirs.
   /// @param command of the newest sample
-  /// @param k number of the step
-  StylusCommand next(const StylusCommand& command, const AppliedHistory& history,
-                     std::uint64_t k) noexcept;
+  /// @param session of the stylus' bridge; 0: of none that solves contacts
+  StylusCommand next(const StylusCommand& command, std::uint64_t session,
+                     const AppliedHistory& history) noexcept;
 
   /// After the step of next(): how the contact goes on.
   void foresee(ContactModel& model) noexcept;
@@ -33,11 +33,14 @@ class BridgedStylus {
   std::uint64_t lost() const noexcept { return lost_; }
 
  private:
+  void begin(const StylusCommand& command, const AppliedHistory& history) noexcept;
   void enter_late(const AppliedHistory& history, std::uint64_t k) noexcept;
   const AppliedForce* find(const AppliedHistory& history, std::uint64_t step) const noexcept;
 
   Simulation& simulation_;
   std::size_t s_;
+  std::uint64_t session_ = 0;
+  std::uint64_t reset_ = 0;  ///< step of the last reset that was heeded
   std::uint64_t known_ = ~std::uint64_t{0};  ///< bit i: the force of the last step less i is in
   std::uint64_t first_ = 0;                  ///< forces of steps before it are of no use
   std::uint64_t newest_ = kNoStep;           ///< step of the newest force at the last step

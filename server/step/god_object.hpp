@@ -29,6 +29,11 @@ class GodObject {
   }
   /// A contact that was decided elsewhere.
   void impose(ContactState state, const SurfacePoint& point) noexcept;
+  /// The same, where its triangle is known.
+  void impose(ContactState state, int triangle, const SurfacePoint& point) noexcept {
+    impose(state, point);
+    triangle_ = triangle;
+  }
 
   /// After the step: still in contact, having to slip by `slip` [m, B] along the surface. As far as
   /// the tip itself has moved it does so at once; of what is more (an edge let go, say) it goes a

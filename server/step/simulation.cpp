@@ -18,6 +18,7 @@ Simulation::Simulation(const SimulationConfig& config)
                 "use 1 to " + std::to_string(kMaxStyluses));
   }
   reset_down_.fill(true);
+  foreseen_.fill(-1);
   dt_ = config.objects.front().model->dt;
   for (const SimulationObject& object : config.objects) {
     if (object.model->dt != dt_) {
@@ -79,14 +80,14 @@ void Simulation::step(std::span<const StylusCommand> commands, StepRecord& recor
 }
 
 // The object that a stylus is in contact with, or else the nearest.
-SoftObject* Simulation::touched_by(std::size_t s, const Vector3& tip) noexcept {
-  SoftObject* nearest = nullptr;
+int Simulation::touched_by(std::size_t s, const Vector3& tip) noexcept {
+  int nearest = -1;
   double distance = std::numeric_limits<double>::infinity();
-  for (const auto& object : objects_) {
-    if (object->contact_state(s) != ContactState::kFree) return object.get();
-    if (objects_.size() == 1) return object.get();
-    const double here = object->distance(tip);
-    if (here < distance) nearest = object.get();
+  for (int i = 0; i < object_count(); ++i) {
+    SoftObject& candidate = *objects_[static_cast<std::size_t>(i)];
+    if (candidate.contact_state(s) != ContactState::kFree || objects_.size() == 1) return i;
+    const double here = candidate.distance(tip);
+    if (here < distance) nearest = i;
     distance = std::min(distance, here);
   }
   return nearest;
@@ -95,27 +96,28 @@ SoftObject* Simulation::touched_by(std::size_t s, const Vector3& tip) noexcept {
 void Simulation::foresee(std::size_t s, const Vector3& tip, int horizon,
                          ContactModel& model) noexcept {
   model.valid = false;
-  if (next_step_ == 0 || !tip.allFinite()) return;
-  SoftObject* object = touched_by(s, tip);
-  if (object == nullptr) return;
-  object->foresee(s, tip, horizon, model);
   model.step = next_step_ - 1;
   model.dt = dt_;
+  foreseen_[s] = -1;
+  if (next_step_ == 0 || !tip.allFinite()) return;
+  foreseen_[s] = touched_by(s, tip);
+  if (foreseen_[s] < 0) return;
+  objects_[static_cast<std::size_t>(foreseen_[s])]->foresee(s, tip, horizon, model);
 }
 
-bool Simulation::enter_late(std::size_t s, const Vector3& force, int age) noexcept {
-  if (age < 0 || age >= kMaxHorizon || !force.allFinite()) return false;
+bool Simulation::enter_late(std::size_t s, const AppliedForce& applied, int age) noexcept {
+  if (age < 0 || age >= kMaxHorizon) return false;
+  if (!applied.force.allFinite() || !applied.tip.allFinite()) return false;
   if (late_.count == LateForces::kMost) return false;
   LateForce& entry = late_.force[late_.count];
   entry.stylus = static_cast<int>(s);
   entry.age = age;
-  for (std::size_t i = 0; i < objects_.size(); ++i) {
-    entry.object = static_cast<int>(i);
-    if (!objects_[i]->enter_late(s, force, entry)) continue;
-    ++late_.count;
-    return true;
-  }
-  return false;
+  entry.object = foreseen_[s];
+  if (entry.object < 0) return false;
+  SoftObject& touched = *objects_[static_cast<std::size_t>(entry.object)];
+  if (!touched.enter_late(s, applied, entry)) return false;
+  ++late_.count;
+  return true;
 }
 
 // Step 6: -Q f.

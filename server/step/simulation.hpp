@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "common/contact/applied_forces.hpp"
 #include "server/step/simulation_config.hpp"
 #include "server/step/soft_object.hpp"
 #include "server/step/step_record.hpp"
@@ -38,10 +39,16 @@ class Simulation {
   /// @param horizon steps to look ahead, 1 to kMaxHorizon
   void foresee(std::size_t s, const Vector3& tip, int horizon, ContactModel& model) noexcept;
 
-  /// Between steps: stylus s exerted this force on the object [N], W, besides what is known, in the
+  /// Between steps: stylus s exerted this force on the object, besides what is known, in the
   /// step `age` steps before the last one. False: that is too long ago, it touched
   /// nothing, or there are more of them than LateForces::kMost.
-  bool enter_late(std::size_t s, const Vector3& force, int age) noexcept;
+  bool enter_late(std::size_t s, const AppliedForce& applied, int age) noexcept;
+  /// How many more can be entered before the coming step.
+  std::size_t late_room() const noexcept { return LateForces::kMost - late_.count; }
+  /// The object that foresee() last spoke of; -1: none.
+  int foreseen_object(std::size_t s) const noexcept { return foreseen_[s]; }
+  /// The last step before which everything was put back; 0: none.
+  std::uint64_t reset_step() const noexcept { return reset_step_; }
 
   /// From the next step on. They must have passed check_settings(). Real-time safe.
   void set(const Settings& settings) noexcept;
@@ -56,7 +63,7 @@ class Simulation {
   }
 
  private:
-  SoftObject* touched_by(std::size_t s, const Vector3& tip) noexcept;
+  int touched_by(std::size_t s, const Vector3& tip) noexcept;
   bool reset_pressed(std::span<const StylusCommand> commands) noexcept;
   void write_stylus(std::size_t s, const StylusCommand& command,
                     std::span<const Quaternion> orientations, StepRecord& record) const noexcept;
@@ -71,6 +78,7 @@ class Simulation {
   std::array<bool, kMaxStyluses> reset_down_;
   std::size_t stylus_count_;
   std::vector<std::unique_ptr<SoftObject>> objects_;
+  std::array<int, kMaxStyluses> foreseen_;  ///< object, -1: none
   LateForces late_;  ///< entered since the last step
 };
 

@@ -22,6 +22,8 @@ bool pushes(const ContactUnknown& contact) noexcept {
          (std::isinf(contact.friction.static_) || along.norm() <= contact.friction.static_ * push);
 }
 
+// From the surface, within which a force that comes from elsewhere acts on it [m].
+constexpr double kNear = 0.002;
 // Over which the force of a stylus is averaged for what the bridges of others foresee [s].
 constexpr double kAverageTime = 0.2;
 // In which a contact catches up with a tip that has passed an edge [s].
@@ -145,11 +147,7 @@ void SoftObject::collect(std::span<const StylusCommand> commands) noexcept {
       const bool grab = (command.buttons & kGrabButton) != 0;
       stylus.find({motion_.to_body(command.tip), grab, config_.styluses[s].reach}, surface_);
     }
-    if (command.bridged && !command.bridged->isZero(0.0) && stylus.state() == ContactState::kFree &&
-        stylus.outside()) {
-      // The bridge found a contact that is none by now: its force acts where the tip is.
-      stylus.impose(ContactState::kTouching, surface_.closest(motion_.to_body(command.tip)).point);
-    }
+    if (command.bridged) take_over(s, command);
     if (stylus.state() == ContactState::kFree) continue;
     if (stylus.fresh() && !settle_down(s, motion_.to_body(command.tip))) {
       stylus.pass_by();
@@ -164,6 +162,21 @@ void SoftObject::collect(std::span<const StylusCommand> commands) noexcept {
     contacts_[a].normal = place.normal;
     stylus.set_inset(place.position - mean(patches_[a], [&](int i) { return rest_.node(i); }));
   }
+}
+
+// The bridge has one object in mind. Its contact with that one may be none by now: its force acts
+// where the tip is, if that is near enough.
+void SoftObject::take_over(std::size_t s, const StylusCommand& command) noexcept {
+  GodObject& stylus = styluses_[s];
+  if (command.bridged->object != number_) {
+    if (stylus.state() != ContactState::kFree) stylus.pass_by();
+    return;
+  }
+  if (stylus.state() != ContactState::kFree || !stylus.outside()) return;
+  if (command.bridged->force.isZero(0.0)) return;
+  const SurfaceHit hit = surface_.closest(motion_.to_body(command.tip));
+  if (std::abs(hit.signed_distance) > stylus.tip_moved() + kNear) return;
+  stylus.impose(ContactState::kTouching, hit.triangle, hit.point);
 }
 
 // A contact begins where the tip is straight below the surface that it feels: were it drawn aside
@@ -238,7 +251,7 @@ void SoftObject::pose_problem(std::span<const StylusCommand> commands) noexcept 
     if (commands[s].bridged) {
       contacts_[static_cast<std::size_t>(a)].law = unknown.law;
       unknown.law = ContactLaw::kGiven;
-      unknown.force = state_.orientation.conjugate() * *commands[s].bridged;
+      unknown.force = state_.orientation.conjugate() * commands[s].bridged->force;
     }
   }
 }
@@ -366,6 +379,8 @@ void SoftObject::advance() noexcept {
     const auto index = static_cast<std::size_t>(a);
     nodal_.add(patches_[index], solved.force);
     LastContact& last = last_[static_cast<std::size_t>(contacts_[index].stylus)];
+    if (!last.any || last.last_step + 1 != steps_) last.first_step = steps_;
+    last.last_step = steps_;
     last.any = true;
     last.point = points_[index];
     last.patch = patches_[index];
@@ -384,6 +399,7 @@ void SoftObject::advance() noexcept {
   engine_->advance(nodal_.view());
   const Quaternion Q = state_.orientation;
   state_ = body_.advance(state_, motion_.force + Q * force, motion_.torque + Q * torque);
+  ++steps_;
 }
 
 }  // namespace irdm

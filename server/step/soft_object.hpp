@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "common/contact/applied_forces.hpp"
 #include "common/contact/contact_model.hpp"
 #include "common/motion/free_motion.hpp"
 #include "common/motion/rigid_body.hpp"
@@ -44,10 +45,11 @@ class SoftObject {
   /// @param tip where the stylus was in the last step [m], W
   /// @param horizon steps to look ahead, 1 to kMaxHorizon
   void foresee(std::size_t s, const Vector3& tip, int horizon, ContactModel& model) noexcept;
-  /// A force on the object [N], W, that stylus s exerted, besides what is known, in the step `age`
-  /// steps before the last one, at the contact that it had last. Between steps. False: it had none.
+  /// What stylus s exerted, besides what is known, in the step `age` steps before the last one: at
+  /// the contact that it had then, or else where the tip was near the surface. Between steps. False:
+  /// neither.
   /// @param entry knows its age; the rest of it is written
-  bool enter_late(std::size_t s, const Vector3& force, LateForce& entry) noexcept;
+  bool enter_late(std::size_t s, const AppliedForce& applied, LateForce& entry) noexcept;
   /// From the surface to a point of W, positive outside [m]. Between steps.
   double distance(const Vector3& tip) noexcept;
   ContactState contact_state(std::size_t s) const noexcept { return styluses_[s].state(); }
@@ -70,11 +72,15 @@ class SoftObject {
   /// The last contact of a stylus.
   struct LastContact {
     bool any = false;
+    std::uint64_t first_step = 0;  ///< of its steps, counted from the start of this object
+    std::uint64_t last_step = 0;
     SurfacePoint point;
     ContactPatch patch;
     Vector3 arm = Vector3::Zero();      ///< of its force [m], B
     Vector3 average = Vector3::Zero();  ///< of its force over the last while [N], B
   };
+  void take_over(std::size_t s, const StylusCommand& command) noexcept;
+  bool place_late(std::size_t s, const Vector3& tip, LateForce& entry) noexcept;
   void collect_others(std::size_t s, ContactModel& model) noexcept;
   void follow_bridged(std::span<const StylusCommand> commands) noexcept;
   void spin(ObjectRecord& record) noexcept;
@@ -100,6 +106,7 @@ class SoftObject {
   double material_damping_ = 1.0;
   bool feels_spin_;
   FreeForces free_forces_;
+  std::uint64_t steps_ = 0;  ///< made so far
   RigidState start_;
   RigidState state_;
   std::vector<GodObject> styluses_;

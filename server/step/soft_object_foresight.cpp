@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include "server/step/soft_object.hpp"
 
@@ -73,14 +74,34 @@ void SoftObject::foresee(std::size_t s, const Vector3& tip, int horizon,
   model.series += (1.0 / left - 1.0) * within;
 }
 
-bool SoftObject::enter_late(std::size_t s, const Vector3& force, LateForce& entry) noexcept {
+bool SoftObject::place_late(std::size_t s, const Vector3& tip, LateForce& entry) noexcept {
   const LastContact& last = last_[s];
-  if (!last.any) return false;
-  entry.point = last.point;
-  entry.force = state_.orientation.conjugate() * force;
-  entry.arm = last.arm;
+  const auto age = static_cast<std::uint64_t>(entry.age);
+  const std::uint64_t step = steps_ - 1 - age;
+  if (age >= steps_) return false;
+  if (last.any && last.first_step <= step && step <= last.last_step) {
+    entry.point = last.point;
+    entry.arm = last.arm;
+    foreseen_patch_ = last.patch;
+    return true;
+  }
+  constexpr double kNear = 0.005;  // the tip may have gone on since [m]
+  surface_.begin_step(*engine_);
+  const SurfaceHit hit =
+      surface_.closest(free_motion(body_, free_forces_, state_).to_body(tip));
+  if (std::abs(hit.signed_distance) > kNear) return false;
+  entry.point = hit.point;
+  masks_[s].spread(entry.point, foreseen_patch_);
+  entry.arm = mean(foreseen_patch_, [&](int i) { return rest_.node(i); });
+  return true;
+}
+
+bool SoftObject::enter_late(std::size_t s, const AppliedForce& applied,
+                            LateForce& entry) noexcept {
+  if (!place_late(s, applied.tip, entry)) return false;
+  entry.force = state_.orientation.conjugate() * applied.force;
   nodal_.clear();
-  nodal_.add(last.patch, entry.force);
+  nodal_.add(foreseen_patch_, entry.force);
   engine_->add_past(nodal_.view(), entry.age);
   state_ = with_late(body_, state_, entry);
   return true;

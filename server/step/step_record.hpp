@@ -23,6 +23,13 @@ struct GivenForce {
   int object = 0;
 };
 
+/// A force that the bridge decided on: it acts in place of the one that the step would find. Where
+/// the contact is, how it slips and when it ends is found here from the tip.
+struct BridgedForce {
+  Vector3 force = Vector3::Zero();  ///< on the object [N], W
+  int object = -1;                  ///< the only one that the stylus touches; -1: none
+};
+
 /// What one stylus asks of one step.
 struct StylusCommand {
   bool present = false;  ///< false: nobody is there; a contact that was there ends
@@ -30,10 +37,7 @@ struct StylusCommand {
   Vector3 tip =
       Vector3::Zero();  ///< at the end of the step [m], W; the step solves for the force ...
   std::optional<GivenForce> given;  ///< ... unless it is given
-  /// Force on the object that the bridge decided on [N], W: it acts in place of the one that the
-  /// step would find. Where the contact is, how it slips and when it ends is found here from the
-  /// tip.
-  std::optional<Vector3> bridged = {};
+  std::optional<BridgedForce> bridged = {};  ///< the bridge solves the contact
 };
 
 /// What one stylus did to one object in one step.

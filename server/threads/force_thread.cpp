@@ -107,8 +107,9 @@ void ForceThread::stand_still() noexcept {
     }
     port.out.put(to_answer(record_, fading, port.in.front().sample));
     if (!port.in.front().predicts) continue;
-    port.model.back().valid = false;
-    port.model.back().standing = true;
+    port.model.back().session = port.in.front().session;
+    port.model.back().model.valid = false;
+    port.model.back().model.standing = true;
     port.model.publish();
   }
   network_.forces_ready().signal();
@@ -122,9 +123,9 @@ void ForceThread::take_commands() noexcept {
     commands_[s] = to_command(port.in.front());
     // Who feels nothing has to come from outside again; a step without it makes it so.
     if (stood_still_ && !clock_.lockstep()) commands_[s].present = false;
-    if (!port.in.front().predicts) continue;
     port.applied.receive();
-    commands_[s] = bridged_[s].next(commands_[s], port.applied.front(), simulation_.next_step());
+    const std::uint64_t session = port.in.front().predicts ? port.in.front().session : 0;
+    commands_[s] = bridged_[s].next(commands_[s], session, port.applied.front());
   }
   if (!control_.paused()) stood_still_ = false;
   if (!viewer_stylus_) return;
@@ -160,7 +161,8 @@ void ForceThread::foresee() noexcept {
   for (std::size_t s = 0; s < bridged_.size(); ++s) {
     StylusPort& port = network_.port(static_cast<int>(s));
     if (!commands_[s].present || !port.in.front().predicts) continue;
-    bridged_[s].foresee(port.model.back());
+    port.model.back().session = port.in.front().session;
+    bridged_[s].foresee(port.model.back().model);
     port.model.publish();
     any = true;
   }

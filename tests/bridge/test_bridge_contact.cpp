@@ -31,7 +31,14 @@ class Bench {
   int ticks(int count, double height, bool served = true) {
     int told = 0;
     for (int i = 0; i < count; ++i, now_ns += kMs) {
-      if (served && now_ns % (2 * kMs) == 0) contact.receive(wall(server_step++), now_ns);
+      if (served && now_ns % (2 * kMs) == 0) {
+        // The server has heard of the touch by then.
+        ContactModel model = wall(server_step++);
+        if (contact.wanted().contact == ContactState::kTouching) {
+          model.state = ContactState::kTouching;
+        }
+        contact.receive(model, now_ns);
+      }
       told += contact.tick(now_ns, Vector3(0, height, 0)) ? 1 : 0;
     }
     return told;
@@ -126,4 +133,35 @@ TEST_CASE("contact at the bridge: a million ticks allocate nothing") {
   }
   CHECK(guard.count() == 0);
   CHECK(bench.contact.wanted().any);
+}
+
+TEST_CASE("contact at the bridge: no touch begins deeper than the tip can have come") {
+  Bench bench;
+  bench.ticks(100, -0.05);
+  CHECK(bench.contact.wanted().any);
+  CHECK(bench.contact.wanted().force.isZero(0.0));
+  bench.ticks(100, 0.001);
+  bench.ticks(20, -0.001);
+  CHECK(bench.contact.wanted().force.y() > 0.9);
+}
+
+TEST_CASE("contact at the bridge: no force is larger than a hand's") {
+  Bench bench;
+  bench.ticks(100, 0.001);
+  for (int i = 0; i < 300; ++i) bench.ticks(1, -0.001 * i);
+  CHECK(bench.contact.wanted().force.norm() == Approx(100.0));
+  CHECK(bench.contact.applied().past[0].force.norm() == Approx(100.0));
+}
+
+TEST_CASE("contact at the bridge: who falls behind the server catches up, in contact too") {
+  Bench bench;
+  bench.ticks(100, 0.001);
+  bench.ticks(40, -0.001);
+  bench.server_step += 12;
+  bench.ticks(10, -0.001);
+  CHECK(bench.contact.lookahead() >= 1);
+  CHECK(bench.contact.wanted().force.y() > 0.9);
+  bench.server_step += 1'000'000;
+  bench.ticks(10, -0.001);
+  CHECK(bench.contact.lookahead() >= 1);
 }

@@ -49,6 +49,7 @@ class Way {
   std::vector<Timed> under_way_;
 };
 
+constexpr std::uint64_t kSession = 1;
 // When buttons go down [s].
 constexpr double kGrabTime = 0.05;
 
@@ -88,7 +89,7 @@ struct Stylus {
   int newest_down = -1;
   double energy = 0.0;
   // At the server:
-  AppliedHistory history;
+  AppliedHistory history{kSession};
   std::uint64_t newest_up = 0;
   StylusCommand command;
 };
@@ -200,7 +201,8 @@ class Loop {
     for (std::size_t s = 0; s < styluses_.size(); ++s) {
       Stylus& stylus = *styluses_[s];
       receive(stylus, now);
-      commands_[s] = bridged_[s].next(stylus.command, stylus.history, simulation_.next_step());
+      commands_[s] = bridged_[s].next(stylus.command, mode_ == LoopMode::kPredict ? kSession : 0,
+                                      stylus.history);
     }
     simulation_.step(commands_, record_);
     for (std::size_t s = 0; s < styluses_.size(); ++s) answer(s, t, now);

@@ -39,7 +39,8 @@ inline void play_step(Simulation& simulation, int k, StepRecord& record) {
     simulation.set(settings);
   }
   for (int age = 0; k > 30 && k < 50 && age < k % 4; ++age) {
-    simulation.enter_late(0, Vector3(0.001 * age, -0.002, 0.0005 * k), age);
+    simulation.enter_late(0, {Vector3(0.001 * age, -0.002, 0.0005 * k), Vector3(0.01, 0.06, 0.005)},
+                          age);
   }
   const double depth = std::min(2e-4 * k, 0.01);
   const std::array<StylusCommand, 2> commands{
@@ -47,6 +48,8 @@ inline void play_step(Simulation& simulation, int k, StepRecord& record) {
       StylusCommand{
           true, k > 20 && k < 90 ? kGrabButton : 0, Vector3(0.30 + 1e-4 * k, 0.17, 0.0), {}}};
   simulation.step(commands, record, k == 110);
+  ContactModel model;
+  if (k > 25 && k < 60) simulation.foresee(0, commands[0].tip, 1, model);
 }
 
 /// The surface after every step, as the deformation of the run itself has it.

@@ -114,6 +114,7 @@ ContactModelMessage numbered() {
 AppliedForcesMessage forces(int count) {
   AppliedForcesMessage message{.stylus = 2};
   message.applied.step = 100;
+  message.applied.base = 95;
   message.applied.count = count;
   for (int i = 0; i < count; ++i) {
     message.applied.past[static_cast<std::size_t>(i)] = {Vector3(i, 2, 3), Vector3(4, 5, i)};
@@ -181,15 +182,16 @@ TEST_CASE("a contact model is refused for each number that is not finite, and fo
 
 TEST_CASE("applied forces have their documented fields, and those that are there come back") {
   const Bytes payload = payload_of(forces(3));
-  REQUIRE(payload.size() == 784);
+  REQUIRE(payload.size() == 792);
   const Bytes head{2, 0, 3, 0, 0, 0, 0, 0, 100, 0, 0, 0, 0, 0, 0, 0};
   CHECK(std::equal(head.begin(), head.end(), payload.begin()));
-  CHECK(number_at(payload, 16 + 48 * 2) == 2.0);
-  CHECK(number_at(payload, 16 + 48 * 2 + 24) == 4.0);
-  CHECK(number_at(payload, 16 + 48 * 3) == 0.0);
+  CHECK(number_at(payload, 24 + 48 * 2) == 2.0);
+  CHECK(number_at(payload, 24 + 48 * 2 + 24) == 4.0);
+  CHECK(number_at(payload, 24 + 48 * 3) == 0.0);
   const AppliedForces back = read_back<AppliedForcesMessage>(payload).applied;
   CHECK(back.count == 3);
   CHECK(back.step == 100);
+  CHECK(back.base == 95);
   CHECK(back.past[2].tip == Vector3(4, 5, 2));
 }
 
@@ -201,7 +203,7 @@ TEST_CASE("applied forces are refused that are none, too many, of no step, too l
   CHECK(fault_of<M>(with(good, 8, std::uint64_t{14})) == ProtocolFault::kBadValue);
   CHECK(read_back<M>(with(good, 8, std::uint64_t{15})).applied.step == 15);
   CHECK(fault_of<M>(with(good, 8, ~std::uint64_t{0})) == ProtocolFault::kBadValue);
-  for (std::size_t at = 16; at < good.size(); at += 8) {
+  for (std::size_t at = 24; at < good.size(); at += 8) {
     CHECK(fault_of<M>(with(good, at, kNan)) == ProtocolFault::kNotFinite);
     CHECK(fault_of<M>(with(good, at, -1000.1)) == ProtocolFault::kBadValue);
   }

@@ -1,0 +1,154 @@
+#include <array>
+#include <catch2/catch.hpp>
+
+#include "server/step/bridged_stylus.hpp"
+#include "tests/support/fem_cube.hpp"
+
+// What the server makes of the forces of a bridge that solves the contact, when the bridge, the
+// object or the run changes.
+
+using namespace irdm;
+
+namespace {
+
+constexpr double kHalfEdge = 0.06;
+constexpr std::uint64_t kSession = 7;
+
+SimulationConfig cubes(std::size_t count) {
+  SimulationConfig config;
+  config.objects.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    config.objects[i].model = test::fem_cube({.cells = 3, .youngs_modulus = 2e4});
+    config.objects[i].position = Vector3(0.3 * static_cast<double>(i), 0, 0);
+    config.objects[i].friction = {0.6, 0.5};
+  }
+  config.styluses = {{0.0, 2000.0, 0.0}};
+  return config;
+}
+
+/// A server, and what one bridge tells it.
+class Served {
+ public:
+  explicit Served(std::size_t objects) : simulation(cubes(objects)), bridged(simulation, 0) {}
+
+  /// One step with the tip here; the bridge tells of this force, unless it is held back.
+  void step(const Vector3& tip, const Vector3& force, bool told = true, bool put_back = false) {
+    applied.step = simulation.next_step();
+    applied.count = 1;
+    applied.base = base.value_or(applied.step);
+    applied.past[0] = {force, tip};
+    if (told) history.take(applied);
+    const std::array commands{bridged.next({true, 0, tip, {}}, session, history)};
+    simulation.step(commands, record, put_back);
+    bridged.foresee(model);
+  }
+  void tell_now(std::uint64_t step, const Vector3& tip, const Vector3& force) {
+    applied.step = step;
+    applied.past[0] = {force, tip};
+    history.take(applied);
+  }
+  void begin_session(std::uint64_t number) {
+    session = number;
+    history = AppliedHistory(number);
+  }
+  Vector3 moved(int object) const { return record.object[static_cast<std::size_t>(object)].velocity; }
+
+  Simulation simulation;
+  BridgedStylus bridged;
+  std::uint64_t session = kSession;
+  AppliedHistory history{kSession};
+  AppliedForces applied;
+  std::optional<std::uint64_t> base;  ///< that the bridge tells of; none: the newest
+  StepRecord record;
+  ContactModel model;
+};
+
+const Vector3 kAbove(0.005, kHalfEdge + 0.001, 0.005);
+const Vector3 kPush(0, -0.2, 0);
+
+}  // namespace
+
+TEST_CASE("bridged stylus: its force acts on the object that the model spoke of, and on no other") {
+  Served served(2);
+  for (int k = 0; k < 5; ++k) served.step(kAbove, Vector3::Zero());
+  for (int k = 0; k < 5; ++k) served.step(kAbove, kPush);
+  CHECK(served.moved(0).y() < -1e-4);
+  CHECK(served.moved(1).isZero(0.0));
+  CHECK((served.record.stylus[0].force + kPush).norm() < 1e-12);
+}
+
+TEST_CASE("bridged stylus: a force from far away acts on nothing") {
+  Served served(1);
+  for (int k = 0; k < 5; ++k) served.step(Vector3(0, 0.2, 0), Vector3::Zero());
+  for (int k = 0; k < 5; ++k) served.step(Vector3(0, 0.2, 0), kPush);
+  CHECK(served.moved(0).isZero(0.0));
+}
+
+TEST_CASE("bridged stylus: a new session knows nothing of the one before") {
+  Served served(1);
+  for (int k = 0; k < 5; ++k) served.step(kAbove, Vector3::Zero());
+  served.begin_session(kSession + 1);
+  // The next hand is on the other side: no way leads through the object.
+  const Vector3 below(0.005, -kHalfEdge - 0.001, 0.005);
+  for (int k = 0; k < 20; ++k) {
+    served.step(below, Vector3::Zero());
+    CHECK(served.record.stylus[0].contact == ContactState::kFree);
+    if (k > 2) CHECK(served.model.normal.y() < -0.9);
+  }
+  CHECK(served.moved(0).isZero(1e-12));
+}
+
+TEST_CASE("bridged stylus: numbers of steps that no bridge counts harm its own session only") {
+  Served served(1);
+  served.tell_now(std::uint64_t{1} << 60, kAbove, kPush);
+  for (int k = 0; k < 5; ++k) served.step(kAbove, Vector3::Zero(), false);
+  served.begin_session(kSession + 1);
+  for (int k = 0; k < 5; ++k) served.step(kAbove, Vector3::Zero());
+  for (int k = 0; k < 5; ++k) served.step(kAbove, kPush);
+  CHECK(served.moved(0).y() < -1e-4);
+}
+
+TEST_CASE("bridged stylus: the late force of a new touch acts where the tip was, not where it touched last") {
+  Served served(1);
+  for (int k = 0; k < 5; ++k) served.step(kAbove, Vector3::Zero());
+  for (int k = 0; k < 5; ++k) served.step(kAbove, kPush);
+  const Vector3 right(kHalfEdge + 0.001, 0.005, 0.005);
+  for (int k = 0; k < 10; ++k) served.step(Vector3(0.1, 0.1, 0), Vector3::Zero());
+  for (int k = 0; k < 10; ++k) served.step(right, Vector3::Zero());
+  served.step(right, Vector3::Zero(), false);
+  const std::uint64_t missed = served.simulation.next_step() - 1;
+  served.tell_now(missed, right, Vector3(-0.2, 0, 0));
+  served.step(right, Vector3::Zero());
+  CHECK(served.bridged.late() == 1);
+  REQUIRE(served.record.late.count == 1);
+  const LateForce& late = served.record.late.force[0];
+  CHECK(late.arm.x() > 0.9 * kHalfEdge);
+  CHECK(late.age == 0);
+}
+
+TEST_CASE("bridged stylus: what rests on a model from before a reset is for another object") {
+  Served served(1);
+  for (int k = 0; k < 5; ++k) served.step(kAbove, Vector3::Zero());
+  served.base = served.simulation.next_step() - 1;
+  served.step(kAbove, kPush, true, true);  // put back before this step
+  for (int k = 0; k < 5; ++k) served.step(kAbove, kPush);
+  CHECK(served.moved(0).isZero(0.0));
+  served.base.reset();
+  for (int k = 0; k < 5; ++k) served.step(kAbove, Vector3::Zero());
+  for (int k = 0; k < 5; ++k) served.step(kAbove, kPush);
+  CHECK(served.moved(0).y() < -1e-4);
+}
+
+TEST_CASE("bridged stylus: a force is bounded, and one that is never told of is lost") {
+  Served served(1);
+  for (int k = 0; k < 5; ++k) served.step(kAbove, Vector3::Zero());
+  served.step(kAbove, 500.0 * kPush.normalized());
+  CHECK(served.record.stylus[0].force.norm() == Approx(100.0));
+  Served silent(1);
+  for (int k = 0; k < 5; ++k) silent.step(kAbove, Vector3::Zero());
+  silent.step(kAbove, Vector3::Zero(), false);
+  CHECK((silent.model.missing & 1) == 1);
+  for (int k = 0; k < 60; ++k) silent.step(kAbove, Vector3::Zero());
+  CHECK(silent.bridged.lost() == 1);
+  CHECK(silent.model.missing == 0);
+}

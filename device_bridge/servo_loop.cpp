@@ -78,7 +78,7 @@ void ServoLoop::heed_device() noexcept {
   const bool was_ready = std::exchange(was_ready_, device_state_.ready);
   if (state == FilterState::kFault) return;
   if (device_state_.failed) {
-    if (state != FilterState::kDisarmed) filter_.fail();
+    if (state != FilterState::kDisarmed || filter_.waits()) filter_.fail();
   } else if (!device_state_.ready) {
     filter_.disarm();
   } else if (!was_ready) {

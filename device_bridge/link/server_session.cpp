@@ -99,7 +99,8 @@ void ServerSession::welcomed(const wire::Welcome& welcome) {
   link_state_ = {.linked = true,
                  .sessions = ++shared_.report.sessions,
                  .lockstep = welcome.lockstep,
-                 .predict = (welcome.capabilities & wire::kCapabilityContactModel) != 0,
+                 .predict = shared_.settings.predict &&
+                            (welcome.capabilities & wire::kCapabilityContactModel) != 0,
                  .dt = welcome.dt};
   for (ServoLink::Stylus& stylus : shared_.link.styluses) {
     intakes_.emplace_back(welcome.lockstep);

@@ -79,6 +79,8 @@ class SafetyFilter {
                const ForceDemand& demand) noexcept;
 
   FilterState state() const noexcept { return arming_.state(); }
+  /// Told to arm, and the link is not good enough yet.
+  bool waits() const noexcept { return waits_; }
   const FilterCounts& counts() const noexcept { return counts_; }
   double success_rate() const noexcept { return gate_.success_rate(); }
   double port_energy() const noexcept { return passivity_.energy(); }  ///< see Passivity [J]

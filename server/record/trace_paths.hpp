@@ -6,6 +6,9 @@
 /// Where things are in a trace file (docs/files.md).
 namespace irdm::trace {
 
+/// How many steps are whole: a killed server may leave sets that are longer.
+inline constexpr const char* kCommitted = "/committed";
+
 inline std::string stylus_path(std::size_t stylus) {
   return "/stylus/" + std::to_string(stylus);
 }

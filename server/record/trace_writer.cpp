@@ -49,6 +49,7 @@ void TraceWriter::write_header(const TraceHeader& header) {
 }
 
 void TraceWriter::create_datasets() {
+  file_.write<std::uint64_t>(trace::kCommitted, {1}, &rows_);
   file_.create_growing<double>("/step/time", {}, kChunkRows);
   file_.create_growing<std::uint64_t>("/step/force_step", {}, kChunkRows);
   file_.create_growing<std::uint8_t>("/step/reset", {}, kChunkRows);
@@ -180,8 +181,21 @@ void TraceWriter::append_rows(const std::string& dataset, std::size_t width,
   file_.append<T>(dataset, records.size(), values.data());
 }
 
+// The count goes to the disk after what it counts.
+void TraceWriter::flush() {
+  file_.flush();
+  file_.write_slab<std::uint64_t>(trace::kCommitted, {0}, {1}, &rows_);
+  file_.flush();
+}
+
+void TraceWriter::close() {
+  flush();
+  file_.close();
+}
+
 void TraceWriter::append(std::span<const StepRecord> records) {
   if (records.empty()) return;
+  rows_ += records.size();
   append_rows<std::uint64_t>("/step/force_step", 1, records,
                              [](const StepRecord& r, std::uint64_t* row) { *row = r.force_step; });
   append_rows<std::uint8_t>("/step/reset", 1, records,

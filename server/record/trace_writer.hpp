@@ -36,10 +36,11 @@ class TraceWriter {
 
   /// Appends steps in their order. Throws Error when they cannot be written.
   void append(std::span<const StepRecord> records);
-  /// Makes what was appended safe against a kill of this process.
-  void flush() { file_.flush(); }
+  /// Makes what was appended safe against a kill of this process, and says in the file how many
+  /// steps are.
+  void flush();
   /// Completes the file. Throws Error when it cannot be written.
-  void close() { file_.close(); }
+  void close();
 
  private:
   void write_header(const TraceHeader& header);
@@ -67,6 +68,7 @@ class TraceWriter {
   std::vector<TraceObject> objects_;
   int stylus_count_;
   bool floor_;
+  std::uint64_t rows_ = 0;  ///< appended
   std::optional<std::uint32_t> settings_change_;  ///< that was written last
 };
 

@@ -33,11 +33,24 @@ void http_connection(Input input);
 /// One byte: 0 puts the right checksums into the frames first, and how many bytes come at a time;
 /// then the stream.
 void wire_frames(Input input);
+/// The payload of a contact model, and what a bridge makes of it.
+void contact_model(Input input);
 
 void scene_config(Input input);
 void precompute_config(Input input);
 void bridge_config(Input input);
 void stylus_script(Input input);
+
+void mesh_msh(Input input);
+/// Nodes, a percent sign, elements.
+void mesh_tetgen(Input input);
+void mesh_vtk(Input input);
+void mesh_vtu(Input input);
+void mesh_medit(Input input);
+void mesh_stl(Input input);
+void mesh_obj(Input input);
+void mesh_ply(Input input);
+void model_file(Input input);
 
 struct Harness {
   std::string_view name;
@@ -49,7 +62,16 @@ inline constexpr std::array kHarnesses = {
     Harness{"viewer_state", viewer_state},       Harness{"request_rules", request_rules},
     Harness{"http_connection", http_connection}, Harness{"wire_frames", wire_frames},
     Harness{"scene_config", scene_config},       Harness{"precompute_config", precompute_config},
-    Harness{"bridge_config", bridge_config},     Harness{"stylus_script", stylus_script},
+    Harness{"bridge_config", bridge_config},     Harness{"stylus_script", stylus_script},     Harness{"contact_model", contact_model},
+    Harness{"mesh_msh", mesh_msh},
+    Harness{"mesh_tetgen", mesh_tetgen},
+    Harness{"mesh_vtk", mesh_vtk},
+    Harness{"mesh_vtu", mesh_vtu},
+    Harness{"mesh_medit", mesh_medit},
+    Harness{"mesh_stl", mesh_stl},
+    Harness{"mesh_obj", mesh_obj},
+    Harness{"mesh_ply", mesh_ply},
+    Harness{"model_file", model_file},
 };
 
 }  // namespace irdm::fuzz

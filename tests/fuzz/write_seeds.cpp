@@ -4,8 +4,10 @@
 #include <fstream>
 #include <string>
 
+#include "common/model/model_writer.hpp"
 #include "common/wire/frame.hpp"
 #include "server/viewer/message.hpp"
+#include "tests/support/synthetic_model.hpp"
 #include "tests/viewer/frames.hpp"
 
 using namespace irdm;
@@ -16,10 +18,14 @@ class Seeds {
  public:
   explicit Seeds(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
+  /// Of a seed that is to be written; its folder is there.
+  std::filesystem::path path(const std::string& harness, const std::string& name) const {
+    std::filesystem::create_directories(folder_ / harness);
+    return folder_ / harness / name;
+  }
   template <typename Bytes>
   void write(const std::string& harness, const std::string& name, const Bytes& bytes) const {
-    std::filesystem::create_directories(folder_ / harness);
-    std::ofstream file(folder_ / harness / name, std::ios::binary);
+    std::ofstream file(path(harness, name), std::ios::binary);
     for (const auto byte : bytes) file.put(static_cast<char>(byte));
   }
 
@@ -70,6 +76,41 @@ void write_server_messages(const Seeds& seeds) {
   }
 }
 
+/// A fixed wall at y = 0 that gives way by 1 mm per newton within a step.
+ContactModel wall() {
+  ContactModel model;
+  model.valid = true;
+  model.step = 100;
+  model.newest = 101;
+  model.dt = 0.002;
+  model.horizon = 25;
+  model.body = {1.0, 1e-3 * Matrix3::Identity(), Support::kFixed};
+  model.normal = Vector3(0, 1, 0);
+  model.friction = {0.6, 0.5};
+  for (std::size_t n = 0; n < 25; ++n) {
+    model.response[n] = 1e-3 / static_cast<double>(n + 1) * Matrix3::Identity();
+  }
+  return model;
+}
+
+void write_contact_models(const Seeds& seeds) {
+  ContactModel model = wall();
+  const auto write = [&](const std::string& name) {
+    const wire::FrameBytes frame = wire::encode_frame(wire::ContactModelMessage{0, model}, 7, 1, 2);
+    seeds.write("contact_model", name, frame.view().subspan(wire::kHeaderSize));
+  };
+  write("touching_fixed");
+  model.body.support = Support::kFloating;
+  model.state = ContactState::kHeld;
+  model.motion.angular_momentum = Vector3(0, 1e-3, 0);
+  model.free_forces.gravity = Vector3(0, -9.81, 0);
+  model.missing = 6;
+  write("held_floating");
+  model.valid = false;
+  model.standing = true;
+  write("standing");
+}
+
 void write_wire_frames(const Seeds& seeds) {
   const wire::Message messages[] = {
       wire::Hello{.name = "bridge"},
@@ -78,6 +119,9 @@ void write_wire_frames(const Seeds& seeds) {
       wire::Goodbye{},
       wire::SampleMessage{.sample = {.sequence = 3, .tip = Vector3(0.01, 0.02, 0.03)}},
       wire::ForceMessage{.force = {.force_step = 5, .force = Vector3(0.5, 0, -1)}},
+      wire::Report{.round_trip = {900.0F, 1500.0F, 3000.0F}},
+      wire::ContactModelMessage{0, wall()},
+      wire::AppliedForcesMessage{0, {.step = 102, .count = 3, .past = {}}},
       wire::Status{.steps = 9},
   };
   viewer::Bytes stream = {0};
@@ -92,6 +136,15 @@ void write_wire_frames(const Seeds& seeds) {
   seeds.write("wire_frames", "all", stream);
 }
 
+void write_model_files(const Seeds& seeds) {
+  Model model = test::synthetic_cube(1, 2, 3);
+  const std::filesystem::path path = seeds.path("model_file", "modal");
+  ModelFileWriter writer(path);
+  writer.write_description(model);
+  writer.write_modal(std::get<ModalResponse>(model.response));
+  writer.commit();
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -100,5 +153,7 @@ int main(int argc, char** argv) {
   write_client_messages(seeds);
   write_server_messages(seeds);
   write_wire_frames(seeds);
+  write_contact_models(seeds);
+  write_model_files(seeds);
   return 0;
 }

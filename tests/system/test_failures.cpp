@@ -6,6 +6,7 @@
 #include <random>
 #include <thread>
 
+#include "common/hdf5/file.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/raw_peer.hpp"
 #include "tests/system/stage.hpp"
@@ -109,6 +110,32 @@ TEST_CASE("a server is killed: the bridge shows no force meanwhile and finds the
   REQUIRE(arrived != trace.buttons.end());
   const auto k = static_cast<std::size_t>(arrived - trace.buttons.begin());
   CHECK(std::abs(radius(trace.vector("/stylus/0/tip", k)) - kCircleRadius) < 0.5 * kPulled);
+}
+
+TEST_CASE("a server that is killed while it records loses no step that it has committed", "[slow]") {
+  const Stage stage;
+  std::minstd_rand random(1);
+  for (int i = 0; i < 50; ++i) {
+    const auto path = stage.path("killed" + std::to_string(i) + ".h5");
+    Server server = stage.start_server({"--record", path.string()});
+    // Not to wait for anything: a kill comes at any moment.
+    std::this_thread::sleep_for(std::chrono::microseconds(200'000 + random() % 100'000));
+    server.process.signal(SIGKILL);
+    CHECK(server.process.wait() == -SIGKILL);
+    const hdf5::File file = hdf5::File::open(path);
+    const std::uint64_t rows = file.read<std::uint64_t>("/committed", {1})[0];
+    CHECK(rows > 0);
+    REQUIRE(file.shape("/step/force_step")[0] >= rows);
+    REQUIRE(file.shape("/stylus/0/buttons")[0] >= rows);
+    std::vector<std::uint64_t> steps(rows);
+    std::vector<double> orientations(4 * rows);
+    file.read_slab<std::uint64_t>("/step/force_step", {0}, {rows}, steps.data());
+    file.read_slab<double>("/step/body_orientation", {0, 0}, {rows, 4}, orientations.data());
+    for (std::size_t k = 0; k < rows; ++k) {
+      REQUIRE(steps[k] == k);
+      REQUIRE(Eigen::Vector4d(orientations.data() + 4 * k).norm() == Approx(1.0));
+    }
+  }
 }
 
 TEST_CASE("a peer of another version is refused with a reason and both versions") {

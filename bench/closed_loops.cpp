@@ -1,0 +1,88 @@
+// Hands, objects and links of any kind, closed over the link and the safety filter: bench_closed_loops
+// [RUNS]. For the contact at the bridge and for held forces: the lowest energy that the device's port has
+// taken from the hand, whether the hand comes to rest when what it wants does, compared with the same loop
+// without delay, and how far the force is off it. A line for each of the worst.
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "bench/statistics.hpp"
+#include "tests/prediction/random_loop.hpp"
+
+using namespace irdm;
+using namespace irdm::test;
+
+namespace {
+
+struct Outcome {
+  std::uint64_t seed = 0;
+  double energy = 0.0;        ///< lowest [J]
+  double speed = 0.0;         ///< of the hand at the end [m/s]
+  double direct_speed = 0.0;  ///< the same without delay
+  double error = 0.0;         ///< of the force, as a share of the peak
+};
+
+// Still moving at the end, and much more so than without delay.
+bool unstable(const Outcome& outcome) {
+  return outcome.speed > 0.02 && outcome.speed > 3.0 * outcome.direct_speed;
+}
+
+void report(const char* name, std::vector<Outcome> outcomes) {
+  std::vector<double> energies;
+  std::vector<double> errors;
+  int shaking = 0;
+  int below = 0;
+  for (const Outcome& outcome : outcomes) {
+    energies.push_back(-1e3 * outcome.energy);
+    errors.push_back(outcome.error);
+    shaking += unstable(outcome) ? 1 : 0;
+    below += outcome.energy < -0.02 ? 1 : 0;
+  }
+  std::printf("%s: %zu runs, %d unstable, %d below -20 mJ; energy given by the port [mJ]: p50 %.3f, p99 %.3f, "
+              "p99.9 %.3f, max %.3f; error of the force, share of the peak: p50 %.3f, p99 %.3f\n",
+              name, outcomes.size(), shaking, below, bench::percentile(energies, 0.5),
+              bench::percentile(energies, 0.99), bench::percentile(energies, 0.999),
+              bench::percentile(energies, 1.0), bench::percentile(errors, 0.5),
+              bench::percentile(errors, 0.99));
+  std::sort(outcomes.begin(), outcomes.end(),
+            [](const Outcome& a, const Outcome& b) { return a.energy < b.energy; });
+  for (std::size_t i = 0; i < std::min<std::size_t>(3, outcomes.size()); ++i) {
+    std::printf("  %.2f mJ: %s\n", 1e3 * outcomes[i].energy,
+                RandomLoop(outcomes[i].seed).words.c_str());
+  }
+  for (const Outcome& outcome : outcomes) {
+    if (!unstable(outcome)) continue;
+    std::printf("  %.3f m/s at the end (%.3f without delay): %s\n", outcome.speed,
+                outcome.direct_speed, RandomLoop(outcome.seed).words.c_str());
+    if (--shaking < 0 || &outcome - outcomes.data() > 400) break;
+  }
+}
+
+Outcome outcome_of(std::uint64_t seed, const RandomLoop& loop, const LoopRun& direct,
+                   LoopMode mode) {
+  const LoopRun run = run_loop(loop.setup, mode, loop.link);
+  return {seed, run.lowest_energy[0], unrest(run, 0.002).speed, unrest(direct, 0.002).speed,
+          largest_error(run, direct)};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const int runs = argc > 1 ? std::atoi(argv[1]) : 1000;
+  std::vector<Outcome> predicted(static_cast<std::size_t>(runs));
+  std::vector<Outcome> held(predicted.size());
+#pragma omp parallel for schedule(dynamic, 16)
+  for (int i = 0; i < runs; ++i) {
+    const auto seed = static_cast<std::uint64_t>(i);
+    const auto index = static_cast<std::size_t>(i);
+    const RandomLoop loop(seed);
+    const LoopRun direct = run_loop(loop.setup, LoopMode::kDirect);
+    predicted[index] = outcome_of(seed, loop, direct, LoopMode::kPredict);
+    held[index] = outcome_of(seed, loop, direct, LoopMode::kHold);
+  }
+  report("contact at the bridge", predicted);
+  report("forces held", held);
+}

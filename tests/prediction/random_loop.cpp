@@ -1,0 +1,117 @@
+#include "tests/prediction/random_loop.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <mutex>
+#include <random>
+#include <sstream>
+
+#include "tests/support/fem_cube.hpp"
+
+namespace irdm::test {
+namespace {
+
+constexpr double kHalfEdge = 0.06;
+constexpr double kRest = 1.2;  // when the hand's wish comes to rest [s]
+constexpr double kEnd = 1.8;   // [s]
+
+class Dice {
+ public:
+  explicit Dice(std::uint64_t seed) : random_(seed) {}
+  double between(double low, double high) {
+    return low + (high - low) * static_cast<double>(random_() >> 11) * 0x1p-53;
+  }
+  /// Evenly over the orders of magnitude.
+  double over(double low, double high) {
+    return low * std::pow(high / low, between(0.0, 1.0));
+  }
+  bool coin() { return between(0.0, 1.0) < 0.5; }
+
+ private:
+  std::mt19937_64 random_;
+};
+
+// Models of a few stiffnesses serve all loops.
+std::shared_ptr<const Model> cube_of(std::size_t which) {
+  constexpr std::array kStiffnesses{1e3, 3e3, 1e4, 3e4, 1e5, 3e5, 1e6};
+  static std::mutex mutex;
+  static std::map<std::size_t, std::shared_ptr<const Model>> made;
+  const std::lock_guard lock(mutex);
+  auto& model = made[which % kStiffnesses.size()];
+  if (!model) {
+    model = fem_cube({.cells = 3, .youngs_modulus = kStiffnesses[which % kStiffnesses.size()]},
+                     ResponseKind::kModal);
+  }
+  return model;
+}
+
+double smooth(double t, double from, double to) {
+  const double s = std::clamp((t - from) / (to - from), 0.0, 1.0);
+  return s * s * (3 - 2 * s);
+}
+
+// Held: goes aside and to and fro. Touching: presses down, and perhaps goes aside.
+std::function<Vector3(double)> motion(bool held, Dice& dice) {
+  const Vector3 at(dice.between(-0.03, 0.03), kHalfEdge, dice.between(-0.03, 0.03));
+  const Vector3 aside(dice.between(-0.03, 0.03), 0.0, dice.between(-0.03, 0.03));
+  const double rate = dice.between(0.5, 2.5);
+  const double depth = dice.between(0.002, 0.03);
+  const double share = dice.coin() ? 1.0 : 0.0;
+  if (held) {
+    return [=](double t) -> Vector3 {
+      const double sway = smooth(t, 0.1, 0.4) - smooth(t, kRest - 0.3, kRest);
+      return at + sway * std::sin(2 * M_PI * rate * (t - 0.1)) * aside;
+    };
+  }
+  return [=](double t) -> Vector3 {
+    const double down = depth * smooth(t, 0.1, 0.3 + 0.2 / rate);
+    return at + Vector3(0, 0.004 - down, 0) + share * smooth(t, 0.5, kRest) * aside;
+  };
+}
+
+}  // namespace
+
+RandomLoop::RandomLoop(std::uint64_t seed) {
+  Dice dice(seed);
+  const double mass = dice.between(0.05, 0.3);
+  const double stiffness = dice.over(30.0, 1000.0);
+  const double damping = dice.between(0.2, 1.0) * 2.0 * std::sqrt(mass * stiffness);
+  const bool held = dice.coin();
+  const bool tethered = dice.coin() || !held;
+  setup.config.objects.resize(1);
+  setup.config.objects[0].model = cube_of(seed);
+  setup.config.objects[0].friction = {0.6, 0.5};
+  if (tethered) {
+    setup.config.objects[0].tether = {dice.over(50.0, 1000.0), dice.over(0.5, 10.0)};
+    setup.config.objects[0].damping = {dice.between(2.0, 20.0), dice.between(2.0, 20.0)};
+  }
+  const double coupling = dice.over(300.0, 2000.0);
+  setup.config.styluses = {{0.0, coupling, 0.005}};
+  setup.hands.push_back({{mass, damping, stiffness}, motion(held, dice), held});
+  setup.steps = static_cast<int>(kEnd / 0.002);
+  setup.filtered = true;
+  link = {.delay = dice.between(0.0, 0.01),
+          .jitter = dice.coin() ? dice.between(0.0, 0.01) : 0.0,
+          .loss = dice.coin() ? dice.between(0.0, 0.05) : 0.0};
+  std::ostringstream text;
+  text << "seed " << seed << ": E " << setup.config.objects[0].model->material.youngs_modulus
+       << " N/m^2, " << (held ? "held" : "touching") << (tethered ? ", tethered" : "") << ", k_vc "
+       << coupling << " N/m; hand " << mass << " kg, " << damping << " N s/m, " << stiffness
+       << " N/m; one way " << 1e3 * link.delay << " ms, jitter " << 1e3 * link.jitter
+       << " ms, loss " << 100 * link.loss << " %";
+  words = text.str();
+}
+
+Unrest unrest(const LoopRun& run, double dt) {
+  const auto count = static_cast<std::size_t>(0.2 / dt);
+  const auto& tip = run.tip[0];
+  double sum = 0.0;
+  for (std::size_t k = tip.size() - count; k < tip.size(); ++k) {
+    sum += ((tip[k] - tip[k - 1]) / dt).squaredNorm();
+  }
+  return {std::sqrt(sum / static_cast<double>(count))};
+}
+
+}  // namespace irdm::test

@@ -1,7 +1,8 @@
-// Hands, objects and links of any kind, closed over the link and the safety filter: bench_closed_loops
-// [RUNS]. For the contact at the bridge and for held forces: the lowest energy that the device's port has
-// taken from the hand, whether the hand comes to rest when what it wants does, compared with the same loop
-// without delay, and how far the force is off it. A line for each of the worst.
+// Hands, objects and links of any kind, closed over the link and the safety filter:
+// bench_closed_loops [RUNS]. For the contact at the bridge and for held forces: the lowest energy
+// that the device's port has taken from the hand, whether the hand comes to rest when what it wants
+// does, compared with the same loop without delay, and how far the force is off it. A line for each
+// of the worst.
 
 #include <algorithm>
 #include <cstdio>
@@ -41,12 +42,14 @@ void report(const char* name, std::vector<Outcome> outcomes) {
     shaking += unstable(outcome) ? 1 : 0;
     below += outcome.energy < -0.02 ? 1 : 0;
   }
-  std::printf("%s: %zu runs, %d unstable, %d below -20 mJ; energy given by the port [mJ]: p50 %.3f, p99 %.3f, "
-              "p99.9 %.3f, max %.3f; error of the force, share of the peak: p50 %.3f, p99 %.3f\n",
-              name, outcomes.size(), shaking, below, bench::percentile(energies, 0.5),
-              bench::percentile(energies, 0.99), bench::percentile(energies, 0.999),
-              bench::percentile(energies, 1.0), bench::percentile(errors, 0.5),
-              bench::percentile(errors, 0.99));
+  std::printf(
+      "%s: %zu runs, %d unstable, %d below -20 mJ; energy given by the port [mJ]: p50 %.3f, p99 "
+      "%.3f, "
+      "p99.9 %.3f, max %.3f; error of the force, share of the peak: p50 %.3f, p99 %.3f\n",
+      name, outcomes.size(), shaking, below, bench::percentile(energies, 0.5),
+      bench::percentile(energies, 0.99), bench::percentile(energies, 0.999),
+      bench::percentile(energies, 1.0), bench::percentile(errors, 0.5),
+      bench::percentile(errors, 0.99));
   std::sort(outcomes.begin(), outcomes.end(),
             [](const Outcome& a, const Outcome& b) { return a.energy < b.energy; });
   for (std::size_t i = 0; i < std::min<std::size_t>(3, outcomes.size()); ++i) {

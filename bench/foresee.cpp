@@ -38,8 +38,9 @@ int main() {
       step.push_back(1e6 * bench::seconds([&] { simulation.step({&command, 1}, record); }));
       ahead.push_back(1e6 *
                       bench::seconds([&] { simulation.foresee(0, command.tip, kHorizon, model); }));
-      late.push_back(1e6 *
-                     bench::seconds([&] { simulation.enter_late(0, {Vector3(0, -1e-6, 0), command.tip}, 3); }));
+      late.push_back(1e6 * bench::seconds([&] {
+                       simulation.enter_late(0, {Vector3(0, -1e-6, 0), command.tip}, 3);
+                     }));
     }
     std::printf("| %d | %d |", 6 * cells * cells + 2, modes);
     for (auto* times : {&step, &ahead, &late}) {

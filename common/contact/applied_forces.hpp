@@ -11,6 +11,7 @@ namespace irdm {
 struct AppliedForce {
   Vector3 force = Vector3::Zero();  ///< on the object [N], W
   Vector3 tip = Vector3::Zero();    ///< at the end of the step [m], W
+  Vector3 arm = Vector3::Zero();    ///< from the centre of mass to where it acted [m], B
 };
 
 /// The last steps of such a stylus: each is told several times, so that what is lost on the way
@@ -18,8 +19,8 @@ struct AppliedForce {
 struct AppliedForces {
   static constexpr int kSteps = 16;
 
-  std::uint64_t step = 0;  ///< the newest
-  std::uint64_t base = 0;  ///< step of the contact model that the newest rests on
+  std::uint64_t step = 0;                 ///< the newest
+  std::uint64_t base = 0;                 ///< step of the contact model that the newest rests on
   int count = 0;                          ///< how many there are, 0 to kSteps, at most step + 1
   std::array<AppliedForce, kSteps> past;  ///< past[i] of step - i; the first `count`
 };

@@ -189,11 +189,13 @@ void encode(const AppliedForcesMessage& message, ByteWriter& out) {
   out.put(applied.base);
   for (int i = 0; i < AppliedForces::kSteps; ++i) {
     if (i >= applied.count) {
-      out.put_zeros(48);
+      out.put_zeros(72);
       continue;
     }
-    out.put(applied.past[static_cast<std::size_t>(i)].force);
-    out.put(applied.past[static_cast<std::size_t>(i)].tip);
+    const AppliedForce& each = applied.past[static_cast<std::size_t>(i)];
+    out.put(each.force);
+    out.put(each.tip);
+    out.put(each.arm);
   }
 }
 
@@ -216,7 +218,9 @@ AppliedForcesMessage decode_applied_forces(ByteReader& in) {
     each.force = get_finite_vector(in, "a force");
     each.tip = get_finite_vector(in, "the tip");
     if (each.force.cwiseAbs().maxCoeff() > kMaxForce) bad_value("a force is too large");
+    each.arm = get_finite_vector(in, "the arm");
     if (each.tip.cwiseAbs().maxCoeff() > kMaxCoordinate) bad_value("the tip is too far");
+    if (each.arm.cwiseAbs().maxCoeff() > kMaxCoordinate) bad_value("the arm is too long");
   }
   return message;
 }

@@ -9,7 +9,7 @@
 namespace irdm::wire {
 
 inline constexpr std::size_t kContactModelSize = 4072;
-inline constexpr std::size_t kAppliedForcesSize = 24 + 48 * AppliedForces::kSteps;
+inline constexpr std::size_t kAppliedForcesSize = 24 + 72 * AppliedForces::kSteps;
 
 void encode(const ContactModelMessage& message, ByteWriter& out);
 ContactModelMessage decode_contact_model(ByteReader& in);

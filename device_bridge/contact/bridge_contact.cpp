@@ -37,8 +37,8 @@ bool BridgeContact::tick(std::int64_t now_ns, const Vector3& tip) noexcept {
 void BridgeContact::solve(std::uint64_t k, std::int64_t now_ns, const Vector3& tip) noexcept {
   const ContactPredictor::Answer answer = predictor_.solve(k, tip);
   remember(k, tip);
-  in_contact_ = answer.known && answer.state != ContactState::kFree;
   if (!answer.known) return;  // what was wanted last grows old
+  in_contact_ = answer.state != ContactState::kFree;
   wanted_ = {.any = true,
              .content_ns = std::max(wanted_.content_ns, pacer_.end_of(newest_model_, now_ns)),
              .horizon_ns = horizon_ns_,
@@ -51,7 +51,7 @@ void BridgeContact::remember(std::uint64_t k, const Vector3& tip) noexcept {
   auto& past = applied_.past;
   const bool follows = applied_.count > 0 && k == applied_.step + 1;
   std::shift_right(past.begin(), past.end(), 1);
-  past[0] = {predictor_.applied(k), tip};
+  past[0] = {predictor_.applied(k), tip, predictor_.arm(k)};
   applied_.step = k;
   applied_.base = newest_model_;
   applied_.count = follows ? std::min(applied_.count + 1, AppliedForces::kSteps) : 1;

@@ -37,14 +37,16 @@ bool ContactPredictor::missing(std::uint64_t step) const noexcept {
 void ContactPredictor::start_motion() noexcept {
   motion_ = model_.motion;
   moved_to_ = model_.step;
+  const Vector3 spin = body_->angular_velocity(model_.motion);
   for (std::uint64_t age = 0; age < kKept && age <= model_.step; ++age) {
     const std::uint64_t i = model_.step - age;
     if (!missing(i) || past(i).step != i) continue;
     Past& late = past(i);
-    late.force_B = motion_.orientation.conjugate() * late.force;
-    motion_ =
-        body_->with_past(motion_, late.force, motion_.orientation * late.arm.cross(late.force_B),
-                         static_cast<int>(age));
+    const double ago = model_.dt * static_cast<double>(age + 1);
+    const Quaternion Q = rotation_from_vector(-ago * spin) * model_.motion.orientation;
+    late.force_B = Q.conjugate() * late.force;
+    motion_ = body_->with_past(motion_, late.force, Q * late.arm.cross(late.force_B),
+                               static_cast<int>(age));
   }
 }
 
@@ -97,7 +99,10 @@ void ContactPredictor::place_anew() noexcept {
     offset_ = sideways(last_place_ - model_.place, model_.normal);
     return;
   }
-  for (std::uint64_t i = model_.step + 1; i <= last_step_ && i - model_.step < kKept; ++i) {
+  // The server knows how far the tip had come in the last step that it has heard of.
+  std::uint64_t heard = model_.step;
+  while (heard > 0 && model_.step - heard < kMaxHorizon && missing(heard)) --heard;
+  for (std::uint64_t i = heard + 1; i <= last_step_ && i - heard < kKept; ++i) {
     if (past(i).step == i) offset_ += past(i).slip;
   }
 }
@@ -162,6 +167,10 @@ ContactPredictor::Answer ContactPredictor::solve(std::uint64_t k, const Vector3&
   answer.normal = end.orientation * model_.normal;
   past(k) = {k, answer.force, bounded(found.force), arm, found.slip};
   return answer;
+}
+
+Vector3 ContactPredictor::arm(std::uint64_t step) const noexcept {
+  return past(step).step == step ? past(step).arm : Vector3::Zero();
 }
 
 Vector3 ContactPredictor::applied(std::uint64_t step) const noexcept {

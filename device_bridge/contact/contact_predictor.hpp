@@ -37,6 +37,8 @@ class ContactPredictor {
 
   /// The force that was answered for a step [N], W; zero when that is too long ago.
   Vector3 applied(std::uint64_t step) const noexcept;
+  /// Where it acted, from the centre of mass [m], B.
+  Vector3 arm(std::uint64_t step) const noexcept;
 
   /// Forgets everything.
   void reset() noexcept { *this = ContactPredictor{}; }
@@ -75,7 +77,7 @@ class ContactPredictor {
   std::uint64_t began_ = 0;           ///< in this step
   Vector3 offset_ = Vector3::Zero();  ///< from the model's place to ours, along the surface [m]
   std::uint64_t last_step_ = 0;
-  std::optional<Vector3> last_tip_;  ///< W
+  std::optional<Vector3> last_tip_;       ///< W
   Vector3 last_place_ = Vector3::Zero();  ///< of a touching contact, object at rest [m]
 };
 

@@ -9,9 +9,9 @@ namespace irdm {
 
 /// What the force thread knows of one stylus.
 struct StylusInput {
-  bool present = false;      ///< false: no bridge, or one that has fallen silent; touch nothing
-  StylusSample sample = {};  ///< the newest one; meaningless when not present
-  bool predicts = false;     ///< its bridge can solve the contact itself
+  bool present = false;       ///< false: no bridge, or one that has fallen silent; touch nothing
+  StylusSample sample = {};   ///< the newest one; meaningless when not present
+  bool predicts = false;      ///< its bridge can solve the contact itself
   std::uint64_t session = 0;  ///< changes with the bridge
 };
 

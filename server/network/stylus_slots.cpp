@@ -38,7 +38,8 @@ bool StylusSlots::put(int slot, const StylusSample& sample, std::int64_t now_ns)
   owner.present = true;
   owner.newest_sequence = sample.sequence;
   owner.arrived_ns = now_ns;
-  port(slot).in.put({.present = true, .sample = sample, .predicts = owner.predicts, .session = owner.session});
+  port(slot).in.put(
+      {.present = true, .sample = sample, .predicts = owner.predicts, .session = owner.session});
   arrived_.signal();
   return true;
 }

@@ -34,8 +34,7 @@ class RowReader {
   template <typename T>
   std::vector<T> read(const std::string& set, hsize_t width = 1) const {
     const hdf5::Shape shape = file_.shape(set);
-    const hdf5::Shape wanted =
-        width == 1 ? hdf5::Shape{rows_} : hdf5::Shape{rows_, width};
+    const hdf5::Shape wanted = width == 1 ? hdf5::Shape{rows_} : hdf5::Shape{rows_, width};
     if (shape.size() != wanted.size() || shape[0] < rows_ || (width > 1 && shape[1] != width)) {
       throw Error(file_.name(), set + " does not have a row for each step", "record it again");
     }
@@ -165,6 +164,8 @@ SettingsRows read_settings(const hdf5::File& file, const SimulationConfig& confi
 struct LateRows {
   std::vector<std::uint64_t> force_step;
   std::vector<LateForce> late;
+  // Of the object, before the step, with all of them.
+  std::vector<double> position, orientation, velocity, angular_momentum;
 };
 
 void check_late(const LateForce& late, const SimulationConfig& config, const std::string& file) {
@@ -197,6 +198,10 @@ LateRows read_late(const hdf5::File& file, const SimulationConfig& config) {
   const auto weights = file.read<double>("/late/contact_weights", {count, 3});
   const auto force = file.read<double>("/late/force", {count, 3});
   const auto arm = file.read<double>("/late/arm", {count, 3});
+  rows.position = file.read<double>("/late/body_position", {count, 3});
+  rows.orientation = file.read<double>("/late/body_orientation", {count, 4});
+  rows.velocity = file.read<double>("/late/body_velocity", {count, 3});
+  rows.angular_momentum = file.read<double>("/late/body_angular_momentum", {count, 3});
   for (std::size_t e = 0; e < count; ++e) {
     LateForce late{object[e], stylus[e], age[e], {}, vector_of(force, e), vector_of(arm, e)};
     for (std::size_t i = 0; i < 3; ++i) {
@@ -352,8 +357,14 @@ RigidState Recording::Data::before(std::size_t i, std::size_t k) const {
     angular_velocity = vector_of(rows.angular_velocity, k - 1);
   }
   state.angular_momentum = bodies[i].angular_momentum(state.orientation, angular_velocity);
-  for (const LateForce& each : late_of[k]) {
-    if (each.object == static_cast<int>(i)) state = with_late(bodies[i], state, each);
+  for (std::size_t e = 0; e < late_of[k].size(); ++e) {
+    if (late_of[k][e].object != static_cast<int>(i)) continue;
+    const auto row = static_cast<std::size_t>(&late_of[k][e] - late.late.data());
+    const double* q = late.orientation.data() + at(row, 4);
+    state.position = vector_of(late.position, row);
+    state.orientation = Quaternion(q[0], q[1], q[2], q[3]);
+    state.velocity = vector_of(late.velocity, row);
+    state.angular_momentum = vector_of(late.angular_momentum, row);
   }
   return state;
 }

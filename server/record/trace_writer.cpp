@@ -127,9 +127,12 @@ void TraceWriter::create_late() {
     file_.create_growing<std::int32_t>(name, {}, kChunkRows);
   }
   file_.create_growing<std::int32_t>("/late/contact_nodes", {3}, kChunkRows);
-  for (const char* name : {"/late/contact_weights", "/late/force", "/late/arm"}) {
+  for (const char* name :
+       {"/late/contact_weights", "/late/force", "/late/arm", "/late/body_position",
+        "/late/body_velocity", "/late/body_angular_momentum"}) {
     file_.create_growing<double>(name, {3}, kChunkRows);
   }
+  file_.create_growing<double>("/late/body_orientation", {4}, kChunkRows);
 }
 
 void TraceWriter::append_late(std::span<const StepRecord> records) {
@@ -143,6 +146,13 @@ void TraceWriter::append_late(std::span<const StepRecord> records) {
       file_.append<double>("/late/contact_weights", 1, late.point.weights.data());
       file_.append<double>("/late/force", 1, late.force.data());
       file_.append<double>("/late/arm", 1, late.arm.data());
+      const RigidState& body = record.object[static_cast<std::size_t>(late.object)].start;
+      const Quaternion& Q = body.orientation;
+      const std::array<double, 4> wxyz{Q.w(), Q.x(), Q.y(), Q.z()};
+      file_.append<double>("/late/body_position", 1, body.position.data());
+      file_.append<double>("/late/body_orientation", 1, wxyz.data());
+      file_.append<double>("/late/body_velocity", 1, body.velocity.data());
+      file_.append<double>("/late/body_angular_momentum", 1, body.angular_momentum.data());
     }
   }
 }

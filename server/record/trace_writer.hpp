@@ -68,7 +68,7 @@ class TraceWriter {
   std::vector<TraceObject> objects_;
   int stylus_count_;
   bool floor_;
-  std::uint64_t rows_ = 0;  ///< appended
+  std::uint64_t rows_ = 0;                        ///< appended
   std::optional<std::uint32_t> settings_change_;  ///< that was written last
 };
 

@@ -42,7 +42,10 @@ StylusCommand BridgedStylus::next(const StylusCommand& command, std::uint64_t se
     next.bridged = BridgedForce{};
     return next;
   }
-  reset_ = simulation_.reset_step();
+  if (reset_ != simulation_.reset_step()) {
+    reset_ = simulation_.reset_step();
+    first_ = history.newest();  // the only one that surely rests on a model from after it
+  }
   const bool any = history.newest() != kNoStep && history.newest() >= first_;
   if (any && !bridged_) begin(command, history);
   newest_ = any ? history.newest() : kNoStep;
@@ -55,8 +58,11 @@ StylusCommand BridgedStylus::next(const StylusCommand& command, std::uint64_t se
   known_ = known_ << 1 | (applied != nullptr || k < first_ ? 1 : 0);
   if (applied != nullptr) tip_ = applied->tip;
   next.tip = tip_;
-  next.bridged = {applied != nullptr ? bounded(applied->force) : Vector3::Zero(),
-                  simulation_.foreseen_object(s_)};
+  next.bridged = BridgedForce{.object = simulation_.foreseen_object(s_)};
+  if (applied != nullptr) {
+    next.bridged->force = bounded(applied->force);
+    next.bridged->arm = applied->arm;
+  }
   return next;
 }
 
@@ -83,7 +89,7 @@ void BridgedStylus::enter_late(const AppliedHistory& history, std::uint64_t k) n
     }
     known_ |= std::uint64_t{1} << i;
     if (applied->force.isZero(0.0)) continue;
-    const AppliedForce late{bounded(applied->force), applied->tip};
+    const AppliedForce late{bounded(applied->force), applied->tip, applied->arm};
     ++(simulation_.enter_late(s_, late, static_cast<int>(i)) ? late_ : lost_);
   }
 }

@@ -40,7 +40,7 @@ class BridgedStylus {
   Simulation& simulation_;
   std::size_t s_;
   std::uint64_t session_ = 0;
-  std::uint64_t reset_ = 0;  ///< step of the last reset that was heeded
+  std::uint64_t reset_ = 0;                  ///< step of the last reset that was heeded
   std::uint64_t known_ = ~std::uint64_t{0};  ///< bit i: the force of the last step less i is in
   std::uint64_t first_ = 0;                  ///< forces of steps before it are of no use
   std::uint64_t newest_ = kNoStep;           ///< step of the newest force at the last step

@@ -69,13 +69,16 @@ void Simulation::step(std::span<const StylusCommand> commands, StepRecord& recor
   std::copy_n(late_.force.begin(), record.late.count, record.late.force.begin());
   record.object_count = object_count();
   record.stylus_count = static_cast<int>(stylus_count_);
-  std::array<Quaternion, kMaxObjects> orientations;  // that turned the forces
-  for (std::size_t i = 0; i < objects_.size(); ++i) {
-    orientations[i] = objects_[i]->state().orientation;
-    objects_[i]->step(commands, record.object[i]);
+  if (record.reset) {
+    std::copy_n(commands.begin(), stylus_count_, commands_.begin());
+    for (StylusCommand& command : commands_) {
+      if (command.bridged) command.bridged = BridgedForce{};  // for the object as it was before
+    }
+    commands = commands_;
   }
+  for (std::size_t i = 0; i < objects_.size(); ++i) objects_[i]->step(commands, record.object[i]);
   for (std::size_t s = 0; s < stylus_count_; ++s) {
-    write_stylus(s, commands[s], orientations, record);
+    write_stylus(s, commands[s], record);
   }
 }
 
@@ -122,7 +125,6 @@ bool Simulation::enter_late(std::size_t s, const AppliedForce& applied, int age)
 
 // Step 6: -Q f.
 void Simulation::write_stylus(std::size_t s, const StylusCommand& command,
-                              std::span<const Quaternion> orientations,
                               StepRecord& record) const noexcept {
   StylusRecord& stylus = record.stylus[s];
   stylus = StylusRecord{};
@@ -133,7 +135,7 @@ void Simulation::write_stylus(std::size_t s, const StylusCommand& command,
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     const ContactRecord& contact = record.object[i].contact[s];
     if (contact.state == ContactState::kFree) continue;
-    stylus.force -= orientations[i] * contact.force;
+    stylus.force -= record.object[i].start.orientation * contact.force;
     if (contact.force.norm() <= largest) continue;
     largest = contact.force.norm();
     stylus.object = static_cast<int>(i);

@@ -65,8 +65,7 @@ class Simulation {
  private:
   int touched_by(std::size_t s, const Vector3& tip) noexcept;
   bool reset_pressed(std::span<const StylusCommand> commands) noexcept;
-  void write_stylus(std::size_t s, const StylusCommand& command,
-                    std::span<const Quaternion> orientations, StepRecord& record) const noexcept;
+  void write_stylus(std::size_t s, const StylusCommand& command, StepRecord& record) const noexcept;
 
   double dt_ = 0.0;
   Settings settings_;
@@ -78,8 +77,9 @@ class Simulation {
   std::array<bool, kMaxStyluses> reset_down_;
   std::size_t stylus_count_;
   std::vector<std::unique_ptr<SoftObject>> objects_;
-  std::array<int, kMaxStyluses> foreseen_;  ///< object, -1: none
-  LateForces late_;  ///< entered since the last step
+  std::array<int, kMaxStyluses> foreseen_;            ///< object, -1: none
+  std::array<StylusCommand, kMaxStyluses> commands_;  ///< of a step that begins with a reset
+  LateForces late_;                                   ///< entered since the last step
 };
 
 }  // namespace irdm

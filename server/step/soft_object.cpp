@@ -24,6 +24,8 @@ bool pushes(const ContactUnknown& contact) noexcept {
 
 // From the surface, within which a force that comes from elsewhere acts on it [m].
 constexpr double kNear = 0.002;
+// How far the surface may be from where the bridge knows it to be, as a share of the object's size.
+constexpr double kFarFromOwn = 1.0;
 // Over which the force of a stylus is averaged for what the bridges of others foresee [s].
 constexpr double kAverageTime = 0.2;
 // In which a contact catches up with a tip that has passed an edge [s].
@@ -74,6 +76,9 @@ SoftObject::SoftObject(const SimulationObject& object, const SimulationConfig& c
     masks_.emplace_back(rest_, stylus.radius);
     rounded_.emplace_back(rest_, stylus.radius);
   }
+  for (int i = 0; i < model_->mesh.surface_node_count(); ++i) {
+    size_ = std::max(size_, rest_.node(i).norm());
+  }
   if (config.floor && body_.moves()) {
     floor_ = std::make_unique<FloorContacts>(*config.floor, rest_, *engine_);
   }
@@ -81,6 +86,7 @@ SoftObject::SoftObject(const SimulationObject& object, const SimulationConfig& c
 
 void SoftObject::reset() noexcept {
   state_ = start_;
+  past_.clear();
   engine_->reset();
   for (GodObject& stylus : styluses_) stylus.forget();
   for (LastContact& last : last_) {
@@ -100,6 +106,8 @@ void SoftObject::set(const Vector3& gravity, const ObjectSettings& settings) noe
 }
 
 void SoftObject::step(std::span<const StylusCommand> commands, ObjectRecord& record) noexcept {
+  state_ = past_.replay(body_, free_forces_, state_);
+  record.start = state_;
   spin(record);
   surface_.begin_step(*engine_);
   motion_ = free_motion(body_, free_forces_, state_);
@@ -252,8 +260,16 @@ void SoftObject::pose_problem(std::span<const StylusCommand> commands) noexcept 
       contacts_[static_cast<std::size_t>(a)].law = unknown.law;
       unknown.law = ContactLaw::kGiven;
       unknown.force = state_.orientation.conjugate() * commands[s].bridged->force;
+      if (!unknown.force.isZero(0.0)) {
+        unknown.arm = believed(commands[s].bridged->arm, unknown.arm);
+      }
     }
   }
+}
+
+// The bridge knows best where it pushed: the surface here may lack forces that are still under way.
+Vector3 SoftObject::believed(const Vector3& arm, const Vector3& own) const noexcept {
+  return (arm - own).norm() < kFarFromOwn * size_ ? arm : own;
 }
 
 // The floor's contacts come first; what it has in common with the styluses follows.
@@ -371,8 +387,8 @@ void SoftObject::advance() noexcept {
   const double share = model_->dt / kAverageTime;
   for (LastContact& last : last_) last.average *= 1.0 - share;
   nodal_.clear();
-  Vector3 force = Vector3::Zero();
-  Vector3 torque = Vector3::Zero();
+  const Quaternion Q = state_.orientation;
+  RigidPast::Forces forces;
   for (int a = 0; a < contact_count_; ++a) {
     const ContactUnknown& solved = problem_.contact(floor_count_ + a);
     if (solved.mode == ContactMode::kOpen) continue;
@@ -384,21 +400,19 @@ void SoftObject::advance() noexcept {
     last.any = true;
     last.point = points_[index];
     last.patch = patches_[index];
-    last.arm = solved.arm;
+    last.arm = contacts_[index].arm;
     last.average += share * solved.force;
-    force += solved.force;
-    torque += solved.arm.cross(solved.force);
+    forces.add(Q * solved.force, solved.arm);
   }
   for (int i = 0; i < floor_count_; ++i) {
     const ContactUnknown& solved = problem_.contact(i);
     if (solved.mode == ContactMode::kOpen) continue;
     nodal_.add(floor_->node(i), solved.force);
-    force += solved.force;
-    torque += solved.arm.cross(solved.force);
+    forces.add(Q * solved.force, solved.arm);
   }
   engine_->advance(nodal_.view());
-  const Quaternion Q = state_.orientation;
-  state_ = body_.advance(state_, motion_.force + Q * force, motion_.torque + Q * torque);
+  past_.remember(state_, forces);
+  state_ = body_.advance(state_, motion_.force + forces.sum, motion_.torque + forces.torque(Q));
   ++steps_;
 }
 

@@ -9,6 +9,7 @@
 #include "common/contact/contact_model.hpp"
 #include "common/motion/free_motion.hpp"
 #include "common/motion/rigid_body.hpp"
+#include "common/motion/rigid_past.hpp"
 #include "server/collision/deformed_surface.hpp"
 #include "server/contact/pressure_mask.hpp"
 #include "server/contact/rounded_surface.hpp"
@@ -46,8 +47,8 @@ class SoftObject {
   /// @param horizon steps to look ahead, 1 to kMaxHorizon
   void foresee(std::size_t s, const Vector3& tip, int horizon, ContactModel& model) noexcept;
   /// What stylus s exerted, besides what is known, in the step `age` steps before the last one: at
-  /// the contact that it had then, or else where the tip was near the surface. Between steps. False:
-  /// neither.
+  /// the contact that it had then, or else where the tip was near the surface. Between steps.
+  /// False: neither.
   /// @param entry knows its age; the rest of it is written
   bool enter_late(std::size_t s, const AppliedForce& applied, LateForce& entry) noexcept;
   /// From the surface to a point of W, positive outside [m]. Between steps.
@@ -80,6 +81,7 @@ class SoftObject {
     Vector3 average = Vector3::Zero();  ///< of its force over the last while [N], B
   };
   void take_over(std::size_t s, const StylusCommand& command) noexcept;
+  Vector3 believed(const Vector3& arm, const Vector3& own) const noexcept;
   bool place_late(std::size_t s, const Vector3& tip, LateForce& entry) noexcept;
   void collect_others(std::size_t s, ContactModel& model) noexcept;
   void follow_bridged(std::span<const StylusCommand> commands) noexcept;
@@ -105,10 +107,12 @@ class SoftObject {
   RigidBody body_;
   double material_damping_ = 1.0;
   bool feels_spin_;
+  double size_ = 0.0;  ///< largest distance of the surface from the centre of mass [m]
   FreeForces free_forces_;
   std::uint64_t steps_ = 0;  ///< made so far
   RigidState start_;
   RigidState state_;
+  RigidPast past_;
   std::vector<GodObject> styluses_;
   std::vector<PressureMask> masks_;
   std::vector<RoundedSurface> rounded_;   ///< as each stylus feels it
@@ -128,9 +132,4 @@ class SoftObject {
   ContactSolver solver_;
   NodalForces nodal_;
 };
-
-/// The state of an object as it is with a late force in it.
-RigidState with_late(const RigidBody& body, const RigidState& state,
-                     const LateForce& late) noexcept;
-
 }  // namespace irdm

@@ -78,7 +78,7 @@ bool SoftObject::place_late(std::size_t s, const Vector3& tip, LateForce& entry)
   const LastContact& last = last_[s];
   const auto age = static_cast<std::uint64_t>(entry.age);
   const std::uint64_t step = steps_ - 1 - age;
-  if (age >= steps_) return false;
+  if (entry.age >= past_.count()) return false;
   if (last.any && last.first_step <= step && step <= last.last_step) {
     entry.point = last.point;
     entry.arm = last.arm;
@@ -87,8 +87,7 @@ bool SoftObject::place_late(std::size_t s, const Vector3& tip, LateForce& entry)
   }
   constexpr double kNear = 0.005;  // the tip may have gone on since [m]
   surface_.begin_step(*engine_);
-  const SurfaceHit hit =
-      surface_.closest(free_motion(body_, free_forces_, state_).to_body(tip));
+  const SurfaceHit hit = surface_.closest(free_motion(body_, free_forces_, state_).to_body(tip));
   if (std::abs(hit.signed_distance) > kNear) return false;
   entry.point = hit.point;
   masks_[s].spread(entry.point, foreseen_patch_);
@@ -96,21 +95,15 @@ bool SoftObject::place_late(std::size_t s, const Vector3& tip, LateForce& entry)
   return true;
 }
 
-bool SoftObject::enter_late(std::size_t s, const AppliedForce& applied,
-                            LateForce& entry) noexcept {
+bool SoftObject::enter_late(std::size_t s, const AppliedForce& applied, LateForce& entry) noexcept {
   if (!place_late(s, applied.tip, entry)) return false;
-  entry.force = state_.orientation.conjugate() * applied.force;
+  entry.force = past_.orientation(entry.age).conjugate() * applied.force;
   nodal_.clear();
   nodal_.add(foreseen_patch_, entry.force);
   engine_->add_past(nodal_.view(), entry.age);
-  state_ = with_late(body_, state_, entry);
+  entry.arm = believed(applied.arm, entry.arm);
+  past_.add(entry.age, applied.force, entry.arm);
   return true;
-}
-
-RigidState with_late(const RigidBody& body, const RigidState& state,
-                     const LateForce& late) noexcept {
-  return body.with_past(state, state.orientation * late.force,
-                        state.orientation * late.arm.cross(late.force), late.age);
 }
 
 double SoftObject::distance(const Vector3& tip) noexcept {

@@ -7,6 +7,7 @@
 
 #include "common/contact/contact_problem.hpp"
 #include "common/geometry.hpp"
+#include "common/motion/rigid_body.hpp"
 #include "common/stylus.hpp"
 #include "server/step/settings.hpp"
 
@@ -27,6 +28,7 @@ struct GivenForce {
 /// the contact is, how it slips and when it ends is found here from the tip.
 struct BridgedForce {
   Vector3 force = Vector3::Zero();  ///< on the object [N], W
+  Vector3 arm = Vector3::Zero();    ///< from the centre of mass to where it acts [m], B
   int object = -1;                  ///< the only one that the stylus touches; -1: none
 };
 
@@ -36,7 +38,7 @@ struct StylusCommand {
   std::uint32_t buttons = 0;
   Vector3 tip =
       Vector3::Zero();  ///< at the end of the step [m], W; the step solves for the force ...
-  std::optional<GivenForce> given;  ///< ... unless it is given
+  std::optional<GivenForce> given;           ///< ... unless it is given
   std::optional<BridgedForce> bridged = {};  ///< the bridge solves the contact
 };
 
@@ -63,6 +65,7 @@ struct FloorForce {
 
 /// What became of one object in one step.
 struct ObjectRecord {
+  RigidState start;  ///< before the step, with the late forces that were entered by then
   Vector3 position = Vector3::Zero();               ///< of the body at the end of the step [m], W
   Quaternion orientation = Quaternion::Identity();  ///< B to W
   Vector3 velocity = Vector3::Zero();               ///< [m/s], W

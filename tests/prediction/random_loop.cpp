@@ -24,9 +24,7 @@ class Dice {
     return low + (high - low) * static_cast<double>(random_() >> 11) * 0x1p-53;
   }
   /// Evenly over the orders of magnitude.
-  double over(double low, double high) {
-    return low * std::pow(high / low, between(0.0, 1.0));
-  }
+  double over(double low, double high) { return low * std::pow(high / low, between(0.0, 1.0)); }
   bool coin() { return between(0.0, 1.0) < 0.5; }
 
  private:

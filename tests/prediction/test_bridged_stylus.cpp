@@ -36,7 +36,7 @@ class Served {
     applied.step = simulation.next_step();
     applied.count = 1;
     applied.base = base.value_or(applied.step);
-    applied.past[0] = {force, tip};
+    applied.past[0] = {force, tip, tip};
     if (told) history.take(applied);
     const std::array commands{bridged.next({true, 0, tip, {}}, session, history)};
     simulation.step(commands, record, put_back);
@@ -44,14 +44,16 @@ class Served {
   }
   void tell_now(std::uint64_t step, const Vector3& tip, const Vector3& force) {
     applied.step = step;
-    applied.past[0] = {force, tip};
+    applied.past[0] = {force, tip, tip};
     history.take(applied);
   }
   void begin_session(std::uint64_t number) {
     session = number;
     history = AppliedHistory(number);
   }
-  Vector3 moved(int object) const { return record.object[static_cast<std::size_t>(object)].velocity; }
+  Vector3 moved(int object) const {
+    return record.object[static_cast<std::size_t>(object)].velocity;
+  }
 
   Simulation simulation;
   BridgedStylus bridged;
@@ -108,7 +110,9 @@ TEST_CASE("bridged stylus: numbers of steps that no bridge counts harm its own s
   CHECK(served.moved(0).y() < -1e-4);
 }
 
-TEST_CASE("bridged stylus: the late force of a new touch acts where the tip was, not where it touched last") {
+TEST_CASE(
+    "bridged stylus: the late force of a new touch acts where the tip was, not where it touched "
+    "last") {
   Served served(1);
   for (int k = 0; k < 5; ++k) served.step(kAbove, Vector3::Zero());
   for (int k = 0; k < 5; ++k) served.step(kAbove, kPush);

@@ -114,7 +114,7 @@ TEST_CASE("prediction: a held point that is swung feels as without delay") {
       // At the start, before the way is known, it may jump over more steps than a message tells of.
       CHECK(predict.run.lost <= (delay > 0.01 ? 20 - irdm::AppliedForces::kSteps : 0));
     }
-    CHECK(error(setup, direct, LoopMode::kPredict, kBad) < 0.05);
+    CHECK(error(setup, direct, LoopMode::kPredict, kBad) < 0.005);
     // What the prediction is there for.
     CHECK(error(setup, direct, LoopMode::kHold, {.delay = 0.01}) > (E < 2e4 ? 0.5 : 1e3));
   }
@@ -124,9 +124,9 @@ TEST_CASE("prediction: forces that come late are entered at their own step") {
   const LoopSetup setup = swung(2e3);
   const LoopRun direct = run_loop(setup, LoopMode::kDirect);
   const Compared predict = compare(setup, direct, LoopMode::kPredict, kBad);
-  CHECK(predict.run.late > 10);
+  CHECK(predict.run.late > 500);
   CHECK(predict.run.lost == 0);
-  CHECK(predict.error < 0.05);
+  CHECK(predict.error < 0.005);
 }
 
 TEST_CASE("prediction: the same with the dense engine") {
@@ -135,7 +135,7 @@ TEST_CASE("prediction: the same with the dense engine") {
   CHECK(error(setup, direct, LoopMode::kPredict, {.delay = 0.01}) < 1e-6);
   const Compared late = compare(setup, direct, LoopMode::kPredict, kBad);
   CHECK(late.run.late > 10);
-  CHECK(late.error < 0.05);
+  CHECK(late.error < 0.005);
 }
 
 TEST_CASE("prediction: a surface that is pressed feels as without delay") {
@@ -151,7 +151,8 @@ TEST_CASE("prediction: a surface that is pressed feels as without delay") {
 }
 
 // Where the tip slips, the step in which it begins to makes a difference of a sixth of the
-// friction.
+// friction; on a very soft surface and a bad link, of more, since the tip goes on from another
+// place.
 TEST_CASE("prediction: a tip that slides on a surface") {
   for (const double E : kStiffnesses) {
     const LoopSetup setup = pressed(E, 0.03);
@@ -161,7 +162,7 @@ TEST_CASE("prediction: a tip that slides on a surface") {
       CHECK(error(setup, direct, LoopMode::kPredict, {.delay = delay}) <
             (delay > 0.01 ? 0.2 : 0.1));
     }
-    CHECK(error(setup, direct, LoopMode::kPredict, kBad) < 0.25);
+    CHECK(error(setup, direct, LoopMode::kPredict, kBad) < 0.3);
   }
 }
 

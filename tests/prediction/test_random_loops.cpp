@@ -6,7 +6,8 @@
 
 using namespace irdm::test;
 
-TEST_CASE("random loops: with the contact at the bridge none shakes, and the port gives no energy") {
+TEST_CASE(
+    "random loops: with the contact at the bridge none shakes, and the port gives no energy") {
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     const RandomLoop loop(seed);
     CAPTURE(loop.words);

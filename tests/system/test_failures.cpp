@@ -112,7 +112,8 @@ TEST_CASE("a server is killed: the bridge shows no force meanwhile and finds the
   CHECK(std::abs(radius(trace.vector("/stylus/0/tip", k)) - kCircleRadius) < 0.5 * kPulled);
 }
 
-TEST_CASE("a server that is killed while it records loses no step that it has committed", "[slow]") {
+TEST_CASE("a server that is killed while it records loses no step that it has committed",
+          "[slow]") {
   const Stage stage;
   std::minstd_rand random(1);
   for (int i = 0; i < 50; ++i) {

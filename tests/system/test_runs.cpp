@@ -74,6 +74,8 @@ TEST_CASE("a run in real time: both end in order, and the trace says what they s
 
 TEST_CASE("a run in real time whose bridge holds the server's forces") {
   const Stage stage;
+  stage.write("bridge.toml",
+              file_content(stage.path("bridge.toml")) + "[bridge]\nmode = \"hold\"\n");
   Server server = stage.start_server({});
   ChildProcess bridge = stage.start_bridge(server);
   check_ended_well(bridge);

@@ -117,7 +117,8 @@ AppliedForcesMessage forces(int count) {
   message.applied.base = 95;
   message.applied.count = count;
   for (int i = 0; i < count; ++i) {
-    message.applied.past[static_cast<std::size_t>(i)] = {Vector3(i, 2, 3), Vector3(4, 5, i)};
+    message.applied.past[static_cast<std::size_t>(i)] = {Vector3(i, 2, 3), Vector3(4, 5, i),
+                                                         Vector3(6, i, 7)};
   }
   return message;
 }
@@ -182,17 +183,19 @@ TEST_CASE("a contact model is refused for each number that is not finite, and fo
 
 TEST_CASE("applied forces have their documented fields, and those that are there come back") {
   const Bytes payload = payload_of(forces(3));
-  REQUIRE(payload.size() == 792);
+  REQUIRE(payload.size() == 1176);
   const Bytes head{2, 0, 3, 0, 0, 0, 0, 0, 100, 0, 0, 0, 0, 0, 0, 0};
   CHECK(std::equal(head.begin(), head.end(), payload.begin()));
-  CHECK(number_at(payload, 24 + 48 * 2) == 2.0);
-  CHECK(number_at(payload, 24 + 48 * 2 + 24) == 4.0);
-  CHECK(number_at(payload, 24 + 48 * 3) == 0.0);
+  CHECK(number_at(payload, 24 + 72 * 2) == 2.0);
+  CHECK(number_at(payload, 24 + 72 * 2 + 24) == 4.0);
+  CHECK(number_at(payload, 24 + 72 * 2 + 48) == 6.0);
+  CHECK(number_at(payload, 24 + 72 * 3) == 0.0);
   const AppliedForces back = read_back<AppliedForcesMessage>(payload).applied;
   CHECK(back.count == 3);
   CHECK(back.step == 100);
   CHECK(back.base == 95);
   CHECK(back.past[2].tip == Vector3(4, 5, 2));
+  CHECK(back.past[2].arm == Vector3(6, 2, 7));
 }
 
 TEST_CASE("applied forces are refused that are none, too many, of no step, too large or too far") {

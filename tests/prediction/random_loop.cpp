@@ -71,7 +71,7 @@ std::function<Vector3(double)> motion(bool held, Dice& dice) {
 
 }  // namespace
 
-RandomLoop::RandomLoop(std::uint64_t seed) {
+RandomLoop::RandomLoop(std::uint64_t seed, bool near) {
   Dice dice(seed);
   const double mass = dice.between(0.05, 0.3);
   const double stiffness = dice.over(30.0, 1000.0);
@@ -85,7 +85,7 @@ RandomLoop::RandomLoop(std::uint64_t seed) {
     setup.config.objects[0].tether = {dice.over(50.0, 1000.0), dice.over(0.5, 10.0)};
     setup.config.objects[0].damping = {dice.between(2.0, 20.0), dice.between(2.0, 20.0)};
   }
-  const double coupling = dice.over(300.0, 2000.0);
+  const double coupling = near ? dice.over(100.0, 400.0) : dice.over(300.0, 2000.0);
   setup.config.styluses = {{0.0, coupling, 0.005}};
   setup.hands.push_back({{mass, damping, stiffness}, motion(held, dice), held});
   setup.steps = static_cast<int>(kEnd / 0.002);
@@ -93,6 +93,10 @@ RandomLoop::RandomLoop(std::uint64_t seed) {
   link = {.delay = dice.between(0.0, 0.01),
           .jitter = dice.coin() ? dice.between(0.0, 0.01) : 0.0,
           .loss = dice.coin() ? dice.between(0.0, 0.05) : 0.0};
+  if (near) {
+    link.delay *= 0.05;
+    link.jitter *= 0.05;
+  }
   std::ostringstream text;
   text << "seed " << seed << ": E " << setup.config.objects[0].model->material.youngs_modulus
        << " N/m^2, " << (held ? "held" : "touching") << (tethered ? ", tethered" : "") << ", k_vc "

@@ -11,7 +11,8 @@ namespace irdm::test {
 /// 0.05 to 0.3 kg, loose to firm; E from 1e3 to 1e6 N/m^2, touching or grabbed, free or tethered;
 /// round trip 0 to 20 ms, jitter to 10 ms, loss to 5 %. Behind the safety filter.
 struct RandomLoop {
-  explicit RandomLoop(std::uint64_t seed);
+  /// @param near round trip of at most 2 ms, jitter included, and a coupling of at most 400 N/m
+  explicit RandomLoop(std::uint64_t seed, bool near = false);
 
   LoopSetup setup;
   LoopLink link;

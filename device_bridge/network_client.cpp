@@ -174,7 +174,7 @@ void NetworkClient::Impl::connect() {
 
 void NetworkClient::Impl::greet(tcp::socket socket) {
   session_ = std::make_unique<ServerSession>(
-      std::make_shared<wire::Connection>(make_stream(std::move(socket))),
+      std::make_shared<wire::Connection>(make_stream(std::move(socket)), settings_.tap),
       ServerSession::Shared{link_, settings_, server_, report_});
   session_->start([this](const SessionEnd& end) { ended(end); });
 }

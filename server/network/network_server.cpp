@@ -175,7 +175,8 @@ void NetworkServer::Impl::admit(tcp::socket socket) {
   }
   const bool full = sessions_.size() >= limit;
   Session& session = sessions_.emplace_back(
-      new_session(), std::make_shared<wire::Connection>(make_stream(std::move(socket))),
+      new_session(),
+      std::make_shared<wire::Connection>(make_stream(std::move(socket)), settings_.tap),
       Session::Shared{settings_, slots_, stats_, complaints_, [this] { make_room(); }});
   session.start();
   if (full) session.refuse(wire::RefuseReason::kTooManyConnections, "too many connections");

@@ -9,6 +9,7 @@
 #include "common/blackbox/frame_log.hpp"
 #include "common/error.hpp"
 #include "common/realtime/clock.hpp"
+#include "common/realtime/memory_lock.hpp"
 #include "device_bridge/blackbox/tick_log.hpp"
 #include "device_bridge/device_registry.hpp"
 #include "device_bridge/device_watch.hpp"
@@ -141,6 +142,7 @@ BridgeReport run_bridge(const BridgeConfig& config, StopSignal& stop_signal, dou
                      .duration = std::min(duration, longest),
                      .log = black_box.ticks()},
                     done);
+  const std::string memory = lock_memory(config.realtime);
   black_box.start();
   client.start();
   servo.start();
@@ -153,7 +155,7 @@ BridgeReport run_bridge(const BridgeConfig& config, StopSignal& stop_signal, dou
 
   BridgeReport report{.servo = servo.report(),
                       .client = client.report(),
-                      .scheduling = servo.scheduling(),
+                      .scheduling = servo.scheduling() + ", memory " + memory,
                       .styluses = static_cast<int>(loops.size())};
   for (const ServoLoop& loop : loops) {
     report.peak_force = std::max(report.peak_force, loop.peak_force());

@@ -1,5 +1,6 @@
 #include "device_bridge/network_client.hpp"
 
+#include <pthread.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
@@ -98,6 +99,7 @@ void NetworkClient::Impl::start() {
   await_tick();
   connect();
   thread_ = std::thread([this] { run(); });
+  ::pthread_setname_np(thread_.native_handle(), "network");
   apply_scheduling(settings_.scheduling, thread_, kNetworkPriority);
 }
 

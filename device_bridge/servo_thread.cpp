@@ -5,6 +5,7 @@
 
 #include "common/error.hpp"
 #include "common/realtime/clock.hpp"
+#include "common/realtime/real_time_scope.hpp"
 
 namespace irdm {
 namespace {
@@ -79,6 +80,7 @@ bool ServoThread::driver_silent(std::int64_t now_ns) const noexcept {
 
 // The driver's clock is not ours: how late a tick is, is told from the one before.
 bool ServoThread::source_tick() noexcept {
+  const NoDenormals here;  // the thread is the driver's, and so is how it computes
   const std::int64_t now_ns = monotonic_ns();
   const std::int64_t period_ns = to_ns(1.0 / settings_.rate);
   late_ns_ = now_ns - last_tick_ns_ - period_ns;
@@ -94,6 +96,7 @@ bool ServoThread::source_tick() noexcept {
 }
 
 void ServoThread::run() noexcept {
+  const RealTimeScope scope("servo", settings_.scheduling);
   run_real_time();
   for (ServoLoop& loop : loops_) loop.rest();
   done_.signal();

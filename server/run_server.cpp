@@ -11,6 +11,7 @@
 #include "common/checksum.hpp"
 #include "common/error.hpp"
 #include "common/program/stop_signal.hpp"
+#include "common/realtime/memory_lock.hpp"
 #include "server/blackbox/step_log.hpp"
 #include "server/config/scene.hpp"
 #include "server/report.hpp"
@@ -209,12 +210,13 @@ int run_server(const ServerOptions& options) {
 
   StatusThread status({force, network, deformation, recorder.get()}, scene.server.status_period);
 
+  const std::string memory = lock_memory(scheduling(scene, options));
   black_box.start(force);
   network.start();
   say_where(network.endpoint());
   if (viewers) viewers->start();
   if (recorder) recorder->start();
-  deformation.start();
+  deformation.start(scheduling(scene, options) != RealTimeScheduling::kIgnore);
   force.start(scheduling(scene, options));
   if (!options.lockstep) status.start();
   stop.wait(force.finished().descriptor());
@@ -227,9 +229,9 @@ int run_server(const ServerOptions& options) {
   if (viewers) viewers->stop();
   end_recording(recordings);
   if (recorder) recorder->finish();
-  return print_report(
-      {force, network, deformation, recorder.get(), dynamic_cast<RealTimeClock*>(clock.get())},
-      options);
+  return print_report({force, network, deformation, recorder.get(),
+                       dynamic_cast<RealTimeClock*>(clock.get()), memory},
+                      options);
 }
 
 }  // namespace irdm

@@ -1,5 +1,6 @@
 #include "common/blackbox/black_box.hpp"
 
+#include <pthread.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -32,6 +33,7 @@ BlackBox::~BlackBox() {
 
 void BlackBox::start() {
   thread_ = std::thread([this] { run(); });
+  ::pthread_setname_np(thread_.native_handle(), "black box");
 }
 
 void BlackBox::report(const std::string& kind, const std::string& detail) {

@@ -1,5 +1,6 @@
 #include "server/network/network_server.hpp"
 
+#include <pthread.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
@@ -130,6 +131,7 @@ void NetworkServer::Impl::start() {
   await_forces();
   await_tick();
   thread_ = std::thread([this] { run(); });
+  ::pthread_setname_np(thread_.native_handle(), "network");
   apply_scheduling(settings_.scheduling, thread_, kNetworkPriority);
 }
 

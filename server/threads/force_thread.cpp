@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/realtime/clock.hpp"
+#include "common/realtime/real_time_scope.hpp"
 
 namespace irdm {
 namespace {
@@ -41,7 +42,10 @@ ForceThread::~ForceThread() {
 }
 
 void ForceThread::start(RealTimeScheduling scheduling) {
-  thread_ = std::thread([this] { run(); });
+  thread_ = std::thread([this, scheduling] {
+    const RealTimeScope scope("force", scheduling);
+    run();
+  });
   scheduling_ = apply_scheduling(scheduling, thread_, kForcePriority);
 }
 

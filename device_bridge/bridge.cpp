@@ -3,10 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "common/blackbox/frame_log.hpp"
 #include "common/error.hpp"
 #include "common/realtime/clock.hpp"
+#include "common/realtime/memory_lock.hpp"
+#include "device_bridge/blackbox/tick_log.hpp"
 #include "device_bridge/device_registry.hpp"
 #include "device_bridge/device_watch.hpp"
 #include "device_bridge/network_client.hpp"
@@ -37,6 +41,33 @@ class OpenDevices {
  private:
   std::vector<std::unique_ptr<HapticDevice>> made_;
   std::size_t open_ = 0;
+};
+
+/// What a bridge leaves when something went wrong.
+class BridgeBlackBox {
+ public:
+  explicit BridgeBlackBox(const BlackBoxSettings& settings) {
+    if (!settings.folder.empty()) box_.emplace(settings, "irdm-bridge", parts());
+  }
+  TickLog* ticks() noexcept { return box_ ? &ticks_ : nullptr; }
+  FrameLog* frames() noexcept { return box_ ? &frames_ : nullptr; }
+  void start() {
+    if (box_) box_->start();
+  }
+  void report(const std::string& fault) {
+    if (box_) box_->report(fault, "");
+  }
+  /// When servo and network thread have ended.
+  void finish() {
+    if (box_) box_->finish();
+  }
+
+ private:
+  std::vector<BlackBoxPart*> parts() { return {&ticks_, &frames_}; }
+
+  TickLog ticks_;
+  FrameLog frames_;
+  std::optional<BlackBox> box_;
 };
 
 FilterLimits limits_for(const HapticDevice& device, const BridgeConfig& config) {
@@ -102,21 +133,29 @@ BridgeReport run_bridge(const BridgeConfig& config, StopSignal& stop_signal, dou
   ServoLink link(loops.size());
   ClientSettings settings = client_settings(config);
   settings.lockstep = simulated;
+  BridgeBlackBox black_box(config.black_box);
+  settings.tap = black_box.frames();
   NetworkClient client(link, settings, done);
-  ServoThread servo(
-      link, loops,
-      {.rate = config.rate, .scheduling = config.realtime, .duration = std::min(duration, longest)},
-      done);
+  ServoThread servo(link, loops,
+                    {.rate = config.rate,
+                     .scheduling = config.realtime,
+                     .duration = std::min(duration, longest),
+                     .log = black_box.ticks()},
+                    done);
+  const std::string memory = lock_memory(config.realtime);
+  black_box.start();
   client.start();
   servo.start();
   DeviceWatch watch(devices.all());
   await_end(stop_signal, done, servo, watch);
+  if (servo.driver_silent(monotonic_ns())) black_box.report("the device's driver makes no ticks");
   servo.stop();
   client.stop(servo.report().end == ServoEnd::kFinished);
+  black_box.finish();
 
   BridgeReport report{.servo = servo.report(),
                       .client = client.report(),
-                      .scheduling = servo.scheduling(),
+                      .scheduling = servo.scheduling() + ", memory " + memory,
                       .styluses = static_cast<int>(loops.size())};
   for (const ServoLoop& loop : loops) {
     report.peak_force = std::max(report.peak_force, loop.peak_force());

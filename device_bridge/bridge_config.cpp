@@ -5,6 +5,7 @@
 #include <set>
 #include <utility>
 
+#include "common/blackbox/read_black_box.hpp"
 #include "common/error.hpp"
 #include "device_bridge/device_registry.hpp"
 
@@ -120,6 +121,7 @@ void read_bridge(TomlTable table, const std::string& file, BridgeConfig& config)
   if (table.has("key_file")) config.key_file = table.path("key_file");
   config.realtime =
       scheduling_from_word(table.choice("realtime", {"require", "prefer", "ignore"}, "prefer"));
+  config.black_box = read_black_box(table);
   table.finish();
 }
 

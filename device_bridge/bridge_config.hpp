@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "common/blackbox/black_box.hpp"
 #include "common/config/toml_reader.hpp"
 #include "common/realtime/scheduling.hpp"
 #include "device_bridge/servo_loop.hpp"
@@ -60,6 +61,8 @@ struct BridgeConfig {
   std::optional<std::filesystem::path> key_file;
   /// key `bridge.realtime`: "require" | "prefer" | "ignore"; scheduling of the servo loop
   RealTimeScheduling realtime = RealTimeScheduling::kPrefer;
+  /// keys `bridge.black_box`, a folder, "" for none, and `bridge.black_box_files`, 1 to 1000
+  BlackBoxSettings black_box = {};
   std::vector<DeviceConfig> devices;  ///< [[device]], one or more, one a stylus
 };
 

@@ -12,7 +12,7 @@ namespace irdm {
 struct BridgeReport {
   ServoReport servo;
   ClientReport client;
-  std::string scheduling;  ///< of the servo thread
+  std::string scheduling;  ///< of the servo thread, and whether memory is locked
   int styluses = 0;
   double peak_force = 0.0;   ///< shown on any stylus [N]
   FilterCounts filter = {};  ///< of all styluses

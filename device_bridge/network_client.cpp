@@ -1,5 +1,6 @@
 #include "device_bridge/network_client.hpp"
 
+#include <pthread.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
@@ -98,6 +99,7 @@ void NetworkClient::Impl::start() {
   await_tick();
   connect();
   thread_ = std::thread([this] { run(); });
+  ::pthread_setname_np(thread_.native_handle(), "network");
   apply_scheduling(settings_.scheduling, thread_, kNetworkPriority);
 }
 
@@ -174,7 +176,7 @@ void NetworkClient::Impl::connect() {
 
 void NetworkClient::Impl::greet(tcp::socket socket) {
   session_ = std::make_unique<ServerSession>(
-      std::make_shared<wire::Connection>(make_stream(std::move(socket))),
+      std::make_shared<wire::Connection>(make_stream(std::move(socket)), settings_.tap),
       ServerSession::Shared{link_, settings_, server_, report_});
   session_->start([this](const SessionEnd& end) { ended(end); });
 }

@@ -20,6 +20,7 @@ void ServoLoop::restart(bool link_matters) noexcept {
   clutch_ = Clutch{};
   contact_.reset();
   reading_.reset();
+  demanded_ = ForceDemand{};
   was_ready_ = true;
   next_sequence_ = 0;
 }
@@ -36,11 +37,12 @@ void ServoLoop::read(double device_time) noexcept {
 }
 
 StylusSample ServoLoop::take_sample(std::int64_t now_ns) noexcept {
-  return {.sequence = next_sequence_++,
-          .time_ns = now_ns,
-          .buttons = pose_.buttons,
-          .tip = pose_.tip,
-          .orientation = pose_.orientation};
+  sample_ = {.sequence = next_sequence_++,
+             .time_ns = now_ns,
+             .buttons = pose_.buttons,
+             .tip = pose_.tip,
+             .orientation = pose_.orientation};
+  return sample_;
 }
 
 void ServoLoop::receive(const ContactModel& model, std::int64_t now_ns) noexcept {
@@ -94,8 +96,9 @@ void ServoLoop::apply(std::int64_t now_ns, const ServoInput& input) noexcept {
   wanted.normal = mapping_.workspace.direction_to_device(wanted.normal);
   const Vector3 force =
       filter_.step(now_ns, {.tip = *reading_, .motor_warmth = device_state_.motor_warmth}, wanted);
+  demanded_ = wanted;
   peak_force_ = std::max(peak_force_, force.norm());
-  device_.write(force);
+  show(force);
 }
 
 FilterCounts ServoLoop::counts() const noexcept {

@@ -45,6 +45,8 @@ class ServoLoop {
   /// What was read last, as a sample with the next number.
   /// @param now_ns goes into the sample, and comes back with the force that answers it
   StylusSample take_sample(std::int64_t now_ns) noexcept;
+  /// The one that was taken last.
+  const StylusSample& sample() const noexcept { return sample_; }
 
   /// Where the contact is solved here, else nothing happens.
   /// @param model has passed check()
@@ -57,7 +59,7 @@ class ServoLoop {
   /// @param now_ns the clock that samples are stamped with
   void apply(std::int64_t now_ns, const ServoInput& input) noexcept;
   /// Shows no force.
-  void rest() noexcept { device_.write(Vector3::Zero()); }
+  void rest() noexcept { show(Vector3::Zero()); }
 
   /// A tick without a session: reads the device, so that its driver and its state go on, and shows
   /// no force.
@@ -72,12 +74,21 @@ class ServoLoop {
   /// Of all sessions.
   FilterCounts counts() const noexcept;
   HapticDevice& device() noexcept { return device_; }
+  /// Tip as it was read last, not a number if of no use [m], D.
+  Vector3 reading() const noexcept { return reading_.value_or(pose_.tip); }
+  /// The force that was asked for last, and the one that was shown [N], D.
+  const ForceDemand& demanded() const noexcept { return demanded_; }
+  const Vector3& shown() const noexcept { return shown_; }
   /// As of the last read().
   const DeviceState& device_state() const noexcept { return device_state_; }
 
  private:
   ForceDemand demand(std::int64_t now_ns, const ServoInput& input) noexcept;
   void heed_device() noexcept;
+  void show(const Vector3& force) noexcept {
+    shown_ = force;
+    device_.write(force);
+  }
 
   HapticDevice& device_;
   FilterLimits limits_;
@@ -88,9 +99,12 @@ class ServoLoop {
   StylusPose pose_;                       ///< the last good one, W; buttons as on the wire
   /// Tip as it was read last, not a number if of no use; none since restart() [m], D.
   std::optional<Vector3> reading_;
+  ForceDemand demanded_;
+  Vector3 shown_ = Vector3::Zero();
   DeviceState device_state_;
   bool was_ready_ = true;
   std::uint64_t next_sequence_ = 0;
+  StylusSample sample_;  ///< that was taken last
   double peak_force_ = 0.0;
   FilterCounts counts_;  ///< of the sessions before
 };

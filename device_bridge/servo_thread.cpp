@@ -5,6 +5,7 @@
 
 #include "common/error.hpp"
 #include "common/realtime/clock.hpp"
+#include "common/realtime/real_time_scope.hpp"
 
 namespace irdm {
 namespace {
@@ -79,13 +80,14 @@ bool ServoThread::driver_silent(std::int64_t now_ns) const noexcept {
 
 // The driver's clock is not ours: how late a tick is, is told from the one before.
 bool ServoThread::source_tick() noexcept {
+  const NoDenormals here;  // the thread is the driver's, and so is how it computes
   const std::int64_t now_ns = monotonic_ns();
   const std::int64_t period_ns = to_ns(1.0 / settings_.rate);
-  const std::int64_t late_ns = now_ns - last_tick_ns_ - period_ns;
+  late_ns_ = now_ns - last_tick_ns_ - period_ns;
   last_tick_ns_ = now_ns;
   if (phase_ == Phase::kRunning) {
-    report_.wakeup.add(late_ns);
-    if (late_ns > 0) report_.missed += static_cast<std::uint64_t>(late_ns / period_ns);
+    report_.wakeup.add(late_ns_);
+    if (late_ns_ > 0) report_.missed += static_cast<std::uint64_t>(late_ns_ / period_ns);
   }
   if (beat(now_ns)) return true;
   source_ended_.signal();
@@ -94,6 +96,7 @@ bool ServoThread::source_tick() noexcept {
 }
 
 void ServoThread::run() noexcept {
+  const RealTimeScope scope("servo", settings_.scheduling);
   run_real_time();
   for (ServoLoop& loop : loops_) loop.rest();
   done_.signal();
@@ -106,7 +109,8 @@ void ServoThread::run_real_time() noexcept {
     const std::int64_t deadline_ns = schedule.next(monotonic_ns());
     sleep_until(deadline_ns);
     const std::int64_t now_ns = monotonic_ns();
-    report_.wakeup.add(now_ns - deadline_ns);
+    late_ns_ = now_ns - deadline_ns;
+    report_.wakeup.add(late_ns_);
     report_.missed = schedule.missed();
     if (!beat(now_ns)) return;
     if (report_.lockstep) {
@@ -160,6 +164,7 @@ void ServoThread::tick(std::int64_t now_ns) noexcept {
     end_steps(i, now_ns);
     link_.styluses[i].input.receive();
     loops_[i].apply(now_ns, link_.styluses[i].input.front());
+    write_down(i, now_ns);
     lost = lost || loops_[i].device_state().lost;
     const SafetyFilter& filter = loops_[i].filter();
     link_.styluses[i].armed = filter.state() != FilterState::kDisarmed;
@@ -169,6 +174,32 @@ void ServoThread::tick(std::int64_t now_ns) noexcept {
   if (lost) return end(ServoEnd::kDeviceLost, now_ns);
   if (report_.session_time >= settings_.duration) return end(ServoEnd::kFinished, now_ns);
   if (stop_) end(ServoEnd::kStopped, now_ns);
+}
+
+// For the black box.
+void ServoThread::write_down(std::size_t i, std::int64_t now_ns) noexcept {
+  if (settings_.log == nullptr) return;
+  const ServoLoop& loop = loops_[i];
+  const SafetyFilter& filter = loop.filter();
+  const LinkState& state = link_.state.front();
+  settings_.log->put({.time_ns = now_ns,
+                      .stylus = static_cast<int>(i),
+                      .late_ns = late_ns_,
+                      .linked = state.linked,
+                      .server_ended = state.server_ended,
+                      .session = state.sessions,
+                      .reading = loop.reading(),
+                      .device = loop.device_state(),
+                      .sample = loop.sample(),
+                      .predicts = state.predict,
+                      .force_step = link_.styluses[i].input.front().force.force_step,
+                      .demand = loop.demanded(),
+                      .state = filter.state(),
+                      .counts = loop.counts(),
+                      .success_rate = filter.success_rate(),
+                      .port_energy = filter.port_energy(),
+                      .warmth = filter.warmth(),
+                      .force = loop.shown()});
 }
 
 void ServoThread::begin_session(const LinkState& state) noexcept {
@@ -205,13 +236,14 @@ void ServoThread::fade(std::int64_t now_ns) noexcept {
   const double time = static_cast<double>(now_ns - start_ns_) / kNanosecondsPerSecond;
   const std::int64_t fade_ns = loops_.empty() ? 0 : loops_.front().limits().fade_ns;
   const bool over = now_ns - fade_from_ns_ > fade_ns;
-  for (ServoLoop& loop : loops_) {
+  for (std::size_t i = 0; i < loops_.size(); ++i) {
     if (over) {
-      loop.idle(time);
+      loops_[i].idle(time);
     } else {
-      loop.read(time);
-      loop.apply(now_ns, ServoInput{});
+      loops_[i].read(time);
+      loops_[i].apply(now_ns, ServoInput{});
     }
+    write_down(i, now_ns);
   }
   if (over) phase_ = Phase::kOver;
 }

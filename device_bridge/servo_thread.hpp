@@ -9,6 +9,7 @@
 #include "common/realtime/histogram.hpp"
 #include "common/realtime/scheduling.hpp"
 #include "common/realtime/wakeup.hpp"
+#include "device_bridge/blackbox/tick_log.hpp"
 #include "device_bridge/servo_link.hpp"
 #include "device_bridge/servo_loop.hpp"
 
@@ -18,6 +19,7 @@ struct ServoSettings {
   double rate = 1000.0;  ///< ticks a second, > 0
   RealTimeScheduling scheduling = RealTimeScheduling::kIgnore;
   double duration = 0.0;  ///< of a session's time, after which the thread ends [s]; infinity: never
+  TickLog* log = nullptr;  ///< is told of every tick in real time; null: nobody is
 };
 
 enum class ServoEnd {
@@ -79,6 +81,7 @@ class ServoThread {
   void wait_for_session(std::int64_t now_ns) noexcept;
   void tick(std::int64_t now_ns) noexcept;
   void fade(std::int64_t now_ns) noexcept;
+  void write_down(std::size_t i, std::int64_t now_ns) noexcept;
   void end(ServoEnd end, std::int64_t now_ns) noexcept;
   void begin_session(const LinkState& state) noexcept;
   void end_steps(std::size_t i, std::int64_t now_ns) noexcept;
@@ -95,6 +98,7 @@ class ServoThread {
   Phase phase_ = Phase::kWaiting;
   std::int64_t start_ns_ = 0;                  ///< of the session's time
   std::int64_t fade_from_ns_ = 0;              ///< when the fading began
+  std::int64_t late_ns_ = 0;                   ///< by how much this tick began too late
   TickSource* source_ = nullptr;               ///< whose ticks they are; none: our own thread's
   std::atomic<std::int64_t> last_tick_ns_{0};  ///< of the source
   Wakeup source_ended_;                        ///< the source's last tick is over

@@ -1,8 +1,10 @@
+#include "common/program/passive_openmp.hpp"
 #include "common/program/program.hpp"
 #include "server/run_playback.hpp"
 #include "server/run_server.hpp"
 
 int main(int argc, char** argv) {
+  irdm::wait_passively_in_openmp(argv);
   irdm::ServerOptions options;
   CLI::App app("Renders a soft, free-floating object to force-feedback styluses.", "irdm-server");
   app.add_option("scene", options.scene, "Scene file (TOML)")->required();

@@ -22,7 +22,8 @@ int print_report(const FinishedRun& run, const ServerOptions& options) {
   const ForceThreadReport& force = run.force.report();
   std::cout << "steps: " << force.steps << '\n';
   if (run.clock != nullptr) {
-    std::cout << "real-time scheduling: " << run.force.scheduling() << '\n'
+    std::cout << "real-time scheduling: " << run.force.scheduling() << ", memory " << run.memory
+              << '\n'
               << "missed deadlines: " << run.clock->missed() << '\n'
               << "wake-up delay: " << microseconds(run.clock->wakeup_delay()) << '\n';
   }

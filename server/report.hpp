@@ -15,6 +15,7 @@ struct FinishedRun {
   const DeformationThread& deformation;
   const RecorderThread* recorder;  ///< null: not recorded
   const RealTimeClock* clock;      ///< null: lockstep
+  std::string memory;              ///< whether it is locked, in words
 };
 
 /// Prints how the run went and returns the exit status: 1 when the recording is not whole.

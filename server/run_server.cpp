@@ -7,9 +7,12 @@
 #include <iostream>
 #include <memory>
 
+#include "common/blackbox/frame_log.hpp"
 #include "common/checksum.hpp"
 #include "common/error.hpp"
 #include "common/program/stop_signal.hpp"
+#include "common/realtime/memory_lock.hpp"
+#include "server/blackbox/step_log.hpp"
 #include "server/config/scene.hpp"
 #include "server/report.hpp"
 #include "server/scene_simulation.hpp"
@@ -47,8 +50,34 @@ RealTimeScheduling scheduling(const SceneConfig& scene, const ServerOptions& opt
   return options.lockstep ? RealTimeScheduling::kIgnore : scene.server.realtime;
 }
 
-NetworkSettings network_settings(const SceneConfig& scene, const ServerOptions& options,
-                                 double dt) {
+/// What a server leaves when something went wrong. Not in lockstep: there is no hand to be felt
+/// for.
+class ServerBlackBox {
+ public:
+  ServerBlackBox(const BlackBoxSettings& settings, bool lockstep) {
+    if (!settings.folder.empty() && !lockstep) box_.emplace(settings, "irdm-server", parts());
+  }
+  FrameLog* frames() noexcept { return box_ ? &frames_ : nullptr; }
+  void start(ForceThread& force) {
+    if (!box_) return;
+    force.write_down_in(steps_);
+    box_->start();
+  }
+  /// When force and network thread have ended.
+  void finish() {
+    if (box_) box_->finish();
+  }
+
+ private:
+  std::vector<BlackBoxPart*> parts() { return {&steps_, &frames_}; }
+
+  StepLog steps_;
+  FrameLog frames_;
+  std::optional<BlackBox> box_;
+};
+
+NetworkSettings network_settings(const SceneConfig& scene, const ServerOptions& options, double dt,
+                                 wire::FrameTap* tap) {
   NetworkSettings settings;
   settings.address = scene.server.address;
   settings.port = static_cast<std::uint16_t>(options.port.value_or(scene.server.port));
@@ -56,6 +85,7 @@ NetworkSettings network_settings(const SceneConfig& scene, const ServerOptions& 
   settings.lockstep = options.lockstep;
   settings.styluses = static_cast<int>(scene.styluses.size());
   settings.scheduling = scheduling(scene, options);
+  settings.tap = tap;
   if (scene.server.key_file) settings.key = wire::read_key_file(*scene.server.key_file);
   return settings;
 }
@@ -150,7 +180,8 @@ int run_server(const ServerOptions& options) {
   check_coupling(scene, config, options.scene.string());
   Simulation simulation(config);
   const double dt = simulation.dt();
-  NetworkServer network(network_settings(scene, options, dt));
+  ServerBlackBox black_box(scene.server.black_box, options.lockstep);
+  NetworkServer network(network_settings(scene, options, dt, black_box.frames()));
   RunControl control(simulation.settings());
   DeformationThread deformation(config, scene.server.deformation_rate,
                                 deformation_threads(scene.server));
@@ -179,11 +210,13 @@ int run_server(const ServerOptions& options) {
 
   StatusThread status({force, network, deformation, recorder.get()}, scene.server.status_period);
 
+  const std::string memory = lock_memory(scheduling(scene, options));
+  black_box.start(force);
   network.start();
   say_where(network.endpoint());
   if (viewers) viewers->start();
   if (recorder) recorder->start();
-  deformation.start();
+  deformation.start(scheduling(scene, options) != RealTimeScheduling::kIgnore);
   force.start(scheduling(scene, options));
   if (!options.lockstep) status.start();
   stop.wait(force.finished().descriptor());
@@ -191,13 +224,14 @@ int run_server(const ServerOptions& options) {
   status.finish();
   force.finish();
   network.stop();
+  black_box.finish();
   deformation.finish();
   if (viewers) viewers->stop();
   end_recording(recordings);
   if (recorder) recorder->finish();
-  return print_report(
-      {force, network, deformation, recorder.get(), dynamic_cast<RealTimeClock*>(clock.get())},
-      options);
+  return print_report({force, network, deformation, recorder.get(),
+                       dynamic_cast<RealTimeClock*>(clock.get()), memory},
+                      options);
 }
 
 }  // namespace irdm

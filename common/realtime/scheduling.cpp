@@ -27,9 +27,7 @@ std::string apply_scheduling(RealTimeScheduling wanted, std::thread& thread, int
   if (error == 0) return "SCHED_FIFO " + std::to_string(priority);
   const std::string reason = std::generic_category().message(error);
   if (wanted == RealTimeScheduling::kRequire) {
-    throw Error(
-        "real-time scheduling", reason,
-        "allow rtprio for this user in /etc/security/limits.d, or set realtime = \"prefer\"");
+    throw Error("real-time scheduling", reason, std::string(kRealTimeRemedy));
   }
   return "none (" + reason + ")";
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <thread>
 
 namespace irdm {
@@ -17,6 +18,11 @@ enum class RealTimeScheduling {
 inline constexpr int kServoPriority = 70;
 inline constexpr int kForcePriority = 60;
 inline constexpr int kNetworkPriority = 50;
+
+/// What to do where the system permits neither it nor locked memory.
+inline constexpr std::string_view kRealTimeRemedy =
+    "add `@GROUP - rtprio 90` and `@GROUP - memlock unlimited` for a group of yours to "
+    "/etc/security/limits.d and log in again, or set realtime = \"prefer\"";
 
 /// "require", "prefer" or "ignore". Throws std::out_of_range for other words.
 RealTimeScheduling scheduling_from_word(const std::string& word);

@@ -24,7 +24,8 @@ using NotSentLimit = boost::asio::detail::socket_option::integer<IPPROTO_TCP, TC
 
 }  // namespace
 
-Connection::Connection(std::unique_ptr<Stream> stream) : stream_(std::move(stream)) {
+Connection::Connection(std::unique_ptr<Stream> stream, FrameTap* tap)
+    : stream_(std::move(stream)), tap_(tap) {
   tcp::socket& socket = stream_->socket();
   error_code ignored;
   socket.set_option(tcp::no_delay(true), ignored);
@@ -33,6 +34,7 @@ Connection::Connection(std::unique_ptr<Stream> stream) : stream_(std::move(strea
   std::ostringstream name;
   name << socket.remote_endpoint(ignored);
   peer_ = name.str();
+  if (tap_ != nullptr) number_ = tap_->open(peer_);
 }
 
 void Connection::start(Handlers handlers) {
@@ -67,10 +69,12 @@ void Connection::take(std::span<const std::uint8_t> bytes) {
       const std::optional<Frame> frame = reader_.read(bytes);
       if (!frame) break;
       partial_since_ns_.reset();
+      tell(TapKind::kReceived, reader_.bytes());
       check_order(frame->header.sequence);
       handlers_.received(*frame);
     }
   } catch (const ProtocolError& error) {
+    if (reader_.partial()) tell(TapKind::kSpoilt, reader_.bytes());
     if (open_ && !finishing_) handlers_.violated(error);
   }
   if (finishing_ || !reader_.partial()) {
@@ -89,8 +93,21 @@ void Connection::check_order(std::uint64_t sequence) {
   received_sequence_ = sequence;
 }
 
+void Connection::tell_violation(const ProtocolError& error) noexcept {
+  tell(TapKind::kViolation, error.what());
+}
+
+void Connection::tell(TapKind kind, std::span<const std::uint8_t> bytes) noexcept {
+  if (tap_ != nullptr) tap_->see(kind, number_, bytes);
+}
+
+void Connection::tell(TapKind kind, std::string_view text) noexcept {
+  tell(kind, std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
+}
+
 void Connection::append(const Message& message) {
   const FrameBytes frame = encode_frame(message, session_, sequence_++, monotonic_ns());
+  tell(TapKind::kSent, frame.view());
   writing_.insert(writing_.end(), frame.view().begin(), frame.view().end());
 }
 
@@ -151,6 +168,7 @@ void Connection::close(const std::string& reason) {
   open_ = false;
   error_code ignored;
   stream_->socket().close(ignored);
+  tell(TapKind::kClosed, reason);
   if (handlers_.closed) handlers_.closed(reason);
 }
 

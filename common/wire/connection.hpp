@@ -6,10 +6,12 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/wire/asio.hpp"
 #include "common/wire/frame.hpp"
+#include "common/wire/frame_tap.hpp"
 #include "common/wire/protocol_error.hpp"
 #include "common/wire/stream.hpp"
 
@@ -33,7 +35,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
   };
 
   /// Takes over a stream that is connected and turns no-delay on.
-  explicit Connection(std::unique_ptr<Stream> stream);
+  /// @param tap listens in; null: nobody. Outlives the connection
+  explicit Connection(std::unique_ptr<Stream> stream, FrameTap* tap = nullptr);
   /// What is sent before the handshake of the stream is done waits for it.
   void start(Handlers handlers);
 
@@ -51,7 +54,9 @@ class Connection : public std::enable_shared_from_this<Connection> {
   void finish();
   /// Ends it at once; `closed` is called.
   void close(const std::string& reason);
-  /// The same, and what the kernel has not sent yet is thrown away: it must not arrive late.
+  /// Tells whoever listens in that the peer broke the protocol.
+  void tell_violation(const ProtocolError& error) noexcept;
+  /// As close(), and what the kernel has not sent yet is thrown away: it must not arrive late.
   void drop(const std::string& reason);
 
   const std::string& peer() const noexcept { return peer_; }
@@ -75,8 +80,12 @@ class Connection : public std::enable_shared_from_this<Connection> {
   void check_order(std::uint64_t sequence);
   void append(const Message& message);
   void write();
+  void tell(TapKind kind, std::span<const std::uint8_t> bytes) noexcept;
+  void tell(TapKind kind, std::string_view text) noexcept;
 
   std::unique_ptr<Stream> stream_;
+  FrameTap* tap_;
+  std::uint32_t number_ = 0;  ///< for whoever listens in
   std::string peer_;
   Handlers handlers_;
   FrameReader reader_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include "common/wire/bytes.hpp"
 #include "common/wire/crc32c.hpp"
@@ -88,8 +89,9 @@ std::optional<Frame> FrameReader::read(std::span<const std::uint8_t>& bytes) {
   if (crc32c(frame.first(kChecked), payload) != checksum_) {
     throw ProtocolError(ProtocolFault::kChecksum, "the checksum of a message is wrong");
   }
-  filled_ = 0;
-  return Frame{header_, decode_payload(header_.type, payload)};
+  const Frame whole{header_, decode_payload(header_.type, payload)};
+  last_size_ = std::exchange(filled_, 0);
+  return whole;
 }
 
 }  // namespace irdm::wire

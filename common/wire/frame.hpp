@@ -34,6 +34,11 @@ class FrameReader {
 
   /// Whether a frame has begun and is not complete.
   bool partial() const noexcept { return filled_ > 0; }
+  /// The bytes of the last frame, or, when one has begun or was not valid, what there is of it;
+  /// until the next read().
+  std::span<const std::uint8_t> bytes() const noexcept {
+    return std::span(frame_).first(partial() ? filled_ : last_size_);
+  }
 
  private:
   bool fill(std::span<const std::uint8_t>& bytes, std::size_t wanted) noexcept;
@@ -41,6 +46,7 @@ class FrameReader {
 
   std::array<std::uint8_t, kHeaderSize + kLargestPayload> frame_;
   std::size_t filled_ = 0;
+  std::size_t last_size_ = 0;
   Header header_;
   std::uint32_t checksum_ = 0;
 };

@@ -97,7 +97,8 @@ Finding judge_locked_memory(const Permission& permission, RealTimeScheduling wan
   if (wanted == RealTimeScheduling::kIgnore) {
     return {Grade::kOk, subject, "not permitted, and not asked for", ""};
   }
-  return {Grade::kWarning, subject, size + " cannot be locked: " + permission.refusal,
+  return {missing(wanted == RealTimeScheduling::kRequire), subject,
+          size + " cannot be locked: " + permission.refusal,
           "add `@GROUP - memlock unlimited` for a group of yours to /etc/security/limits.d, log in "
           "again"};
 }

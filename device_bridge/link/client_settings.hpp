@@ -4,6 +4,7 @@
 #include <string>
 
 #include "common/realtime/scheduling.hpp"
+#include "common/wire/frame_tap.hpp"
 #include "common/wire/secret_key.hpp"
 #include "device_bridge/bridge_config.hpp"
 
@@ -23,6 +24,7 @@ struct ClientSettings {
   int silence_timeout_ms = 100;
   /// The server's, for TLS; nothing: no TLS, and the server has to be on this machine.
   std::optional<wire::SecretKey> key = {};
+  wire::FrameTap* tap = nullptr;  ///< listens in, in the network thread; null: nobody
 };
 
 }  // namespace irdm

@@ -249,6 +249,7 @@ void ServerSession::violated(const ProtocolError& error) {
     return leave();
   }
   ++shared_.report.protocol_errors;
+  connection_->tell_violation(error);
   spdlog::error("server {}: {}; connection closed", shared_.server, error.what());
   connection_->send(wire::Goodbye{wire::GoodbyeReason::kProtocolError});
   leave();

@@ -5,6 +5,7 @@
 #include <set>
 #include <sstream>
 
+#include "common/blackbox/read_black_box.hpp"
 #include "common/error.hpp"
 
 namespace irdm {
@@ -30,6 +31,7 @@ ServerConfig read_server(TomlTable table, int styluses) {
       table.integer("deformation_threads", 0, 64, config.deformation_threads);
   config.realtime =
       scheduling_from_word(table.choice("realtime", {"require", "prefer", "ignore"}, "prefer"));
+  config.black_box = read_black_box(table);
   table.finish();
   return config;
 }

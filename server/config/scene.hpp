@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "common/blackbox/black_box.hpp"
 #include "common/config/toml_reader.hpp"
 #include "common/realtime/scheduling.hpp"
 #include "server/engine/response_engine.hpp"
@@ -23,6 +24,8 @@ struct ServerConfig {
   RealTimeScheduling realtime = RealTimeScheduling::kPrefer;  ///< "require" | "prefer" | "ignore"
   double status_period = 10.0;  ///< of status lines in the log, 0..3600 [s]; 0: none
   std::optional<std::filesystem::path> key_file;  ///< none: the address is a loopback one
+  /// black_box: a folder, "" for none; black_box_files: 1..1000
+  BlackBoxSettings black_box = {};
   int deformation_threads = 0;  ///< OpenMP threads for them, 0..64; 0: all cores but one
 };
 

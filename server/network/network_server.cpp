@@ -1,5 +1,6 @@
 #include "server/network/network_server.hpp"
 
+#include <pthread.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
@@ -130,6 +131,7 @@ void NetworkServer::Impl::start() {
   await_forces();
   await_tick();
   thread_ = std::thread([this] { run(); });
+  ::pthread_setname_np(thread_.native_handle(), "network");
   apply_scheduling(settings_.scheduling, thread_, kNetworkPriority);
 }
 
@@ -175,7 +177,8 @@ void NetworkServer::Impl::admit(tcp::socket socket) {
   }
   const bool full = sessions_.size() >= limit;
   Session& session = sessions_.emplace_back(
-      new_session(), std::make_shared<wire::Connection>(make_stream(std::move(socket))),
+      new_session(),
+      std::make_shared<wire::Connection>(make_stream(std::move(socket)), settings_.tap),
       Session::Shared{settings_, slots_, stats_, complaints_, [this] { make_room(); }});
   session.start();
   if (full) session.refuse(wire::RefuseReason::kTooManyConnections, "too many connections");

@@ -8,6 +8,7 @@
 
 #include "common/realtime/scheduling.hpp"
 #include "common/realtime/wakeup.hpp"
+#include "common/wire/frame_tap.hpp"
 #include "common/wire/secret_key.hpp"
 #include "server/network/stylus_port.hpp"
 
@@ -29,6 +30,7 @@ struct NetworkSettings {
   int silence_timeout_ms = 500;  ///< without a byte the session ends; not in lockstep
   /// What bridges have to know, in TLS; nothing: no TLS, and the address has to be a loopback one.
   std::optional<wire::SecretKey> key = {};
+  wire::FrameTap* tap = nullptr;  ///< listens in, in the network thread; null: nobody
 };
 
 /// Counters of the network thread; read from any thread.

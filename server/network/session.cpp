@@ -72,6 +72,7 @@ void Session::receive(const wire::Frame& frame) {
     spdlog::info("bridge {}: goodbye", connection_->peer());
     // Counted before the styluses go, so that whoever sees them absent knows why.
     shared_.stats.goodbyes.fetch_add(1);
+    left_ = true;
     end(wire::GoodbyeReason::kFinished);
   } else {
     unexpected("a message that only a server sends");
@@ -153,6 +154,7 @@ void Session::violated(const ProtocolError& error) {
   if (error.fault() == ProtocolFault::kWrongVersion) {
     return refuse(wire::RefuseReason::kVersion, error.what());
   }
+  connection_->tell_violation(error);
   complain(std::string(error.what()) + "; connection closed");
   shared_.stats.protocol_errors.fetch_add(1);
   end(wire::GoodbyeReason::kProtocolError);
@@ -176,7 +178,7 @@ void Session::end(wire::GoodbyeReason reason) {
 }
 
 void Session::release() {
-  shared_.slots.release(first_, count_);
+  shared_.slots.release(first_, count_, left_);
   count_ = 0;
 }
 

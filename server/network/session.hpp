@@ -70,6 +70,7 @@ class Session {
   bool welcomed_ = false;
   bool predicts_ = false;  ///< contact models go out, applied forces come in
   bool over_ = false;
+  bool left_ = false;  ///< its bridge said goodbye
   bool wants_status_ = false;
   int first_ = 0;  ///< its slots
   int count_ = 0;

@@ -11,6 +11,7 @@ namespace irdm {
 struct StylusInput {
   bool present = false;       ///< false: no bridge, or one that has fallen silent; touch nothing
   StylusSample sample = {};   ///< the newest one; meaningless when not present
+  bool left = false;          ///< not present because its bridge said goodbye
   bool predicts = false;      ///< its bridge can solve the contact itself
   std::uint64_t session = 0;  ///< changes with the bridge
 };

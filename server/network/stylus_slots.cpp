@@ -21,9 +21,9 @@ std::optional<int> StylusSlots::claim(int count, bool predicts) {
   return static_cast<int>(first - owners_.begin());
 }
 
-void StylusSlots::release(int first, int count) {
+void StylusSlots::release(int first, int count, bool in_order) {
   for (int slot = first; slot < first + count; ++slot) {
-    make_absent(slot);
+    make_absent(slot, in_order);
     port(slot).link.put({});
     port(slot).applied.put(AppliedHistory());
     owners_[static_cast<std::size_t>(slot)] = Owner{};
@@ -63,11 +63,11 @@ void StylusSlots::expire(std::int64_t now_ns, std::int64_t limit_ns) {
   }
 }
 
-void StylusSlots::make_absent(int slot) {
+void StylusSlots::make_absent(int slot, bool in_order) {
   Owner& owner = owners_[static_cast<std::size_t>(slot)];
   if (!owner.present) return;
   owner.present = false;
-  port(slot).in.put({});
+  port(slot).in.put({.left = in_order});
   arrived_.signal();
 }
 

@@ -23,7 +23,8 @@ class StylusSlots {
   /// @param predicts the bridge can solve the contact itself
   std::optional<int> claim(int count, bool predicts = false);
   /// Gives them back; their styluses are absent from here on.
-  void release(int first, int count);
+  /// @param in_order their bridge said goodbye
+  void release(int first, int count, bool in_order = false);
 
   /// Hands a sample over; false when it is not newer than the last one of this session.
   bool put(int slot, const StylusSample& sample, std::int64_t now_ns);
@@ -51,7 +52,7 @@ class StylusSlots {
     std::int64_t first_time_ns = 0;  ///< bridge's clock
     std::int64_t arrived_ns = 0;     ///< our clock
   };
-  void make_absent(int slot);
+  void make_absent(int slot, bool in_order = false);
 
   Wakeup& arrived_;
   std::vector<StylusPort> ports_;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/error.hpp"
+#include "common/realtime/no_denormals.hpp"
 
 namespace irdm {
 Simulation::Simulation(const SimulationConfig& config)
@@ -58,6 +59,7 @@ bool Simulation::reset_pressed(std::span<const StylusCommand> commands) noexcept
 
 void Simulation::step(std::span<const StylusCommand> commands, StepRecord& record,
                       bool put_back) noexcept {
+  const NoDenormals here;  // in whatever thread: the same bits
   if (reset_pressed(commands) || put_back) reset();
   record.reset = std::exchange(was_reset_, false);
   record.reset_step = reset_step_;
@@ -98,6 +100,7 @@ int Simulation::touched_by(std::size_t s, const Vector3& tip) noexcept {
 
 void Simulation::foresee(std::size_t s, const Vector3& tip, int horizon,
                          ContactModel& model) noexcept {
+  const NoDenormals here;
   model.valid = false;
   model.step = next_step_ - 1;
   model.dt = dt_;
@@ -109,8 +112,11 @@ void Simulation::foresee(std::size_t s, const Vector3& tip, int horizon,
 }
 
 bool Simulation::enter_late(std::size_t s, const AppliedForce& applied, int age) noexcept {
+  const NoDenormals here;
   if (age < 0 || age >= kMaxHorizon) return false;
-  if (!applied.force.allFinite() || !applied.tip.allFinite()) return false;
+  if (!applied.force.allFinite() || !applied.tip.allFinite() || !applied.arm.allFinite()) {
+    return false;
+  }
   if (late_.count == LateForces::kMost) return false;
   LateForce& entry = late_.force[late_.count];
   entry.stylus = static_cast<int>(s);

@@ -1,8 +1,10 @@
 #include "server/threads/deformation_thread.hpp"
 
 #include <omp.h>
+#include <pthread.h>
 
 #include "common/realtime/clock.hpp"
+#include "common/realtime/spared_cpu.hpp"
 
 namespace irdm {
 namespace {
@@ -23,8 +25,8 @@ DeformationThread::~DeformationThread() {
   finish();
 }
 
-void DeformationThread::start() {
-  thread_ = std::thread([this] { run(); });
+void DeformationThread::start(bool beside_real_time) {
+  thread_ = std::thread([this, beside_real_time] { run(beside_real_time); });
 }
 
 void DeformationThread::finish() {
@@ -33,7 +35,9 @@ void DeformationThread::finish() {
   thread_.join();
 }
 
-void DeformationThread::run() {
+void DeformationThread::run(bool beside_real_time) {
+  ::pthread_setname_np(::pthread_self(), "deformation");
+  if (beside_real_time) spare_last_cpu();  // before there is a team, which inherits it
   omp_set_num_threads(threads_);
   PeriodicSchedule schedule(monotonic_ns(), period_ns_);
   for (bool stopped = false; !stopped;) {

@@ -29,7 +29,8 @@ class DeformationThread {
   /// Signalled whenever there is a new one.
   Wakeup& surface_ready() noexcept { return surface_ready_; }
 
-  void start();
+  /// @param beside_real_time leave a processor to the real-time threads
+  void start(bool beside_real_time = false);
   /// After a last surface, of the last step.
   void finish();
 
@@ -40,7 +41,7 @@ class DeformationThread {
   const Histogram& compute_time() const noexcept { return compute_time_; }
 
  private:
-  void run();
+  void run(bool beside_real_time);
   void follow_and_compute();
 
   Deformation deformation_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/realtime/clock.hpp"
+#include "common/realtime/real_time_scope.hpp"
 
 namespace irdm {
 namespace {
@@ -41,7 +42,10 @@ ForceThread::~ForceThread() {
 }
 
 void ForceThread::start(RealTimeScheduling scheduling) {
-  thread_ = std::thread([this] { run(); });
+  thread_ = std::thread([this, scheduling] {
+    const RealTimeScope scope("force", scheduling);
+    run();
+  });
   scheduling_ = apply_scheduling(scheduling, thread_, kForcePriority);
 }
 
@@ -63,12 +67,52 @@ void ForceThread::run() noexcept {
     report_.step_time.add(end - begin);
     ++report_.steps;
     watch_health(begin, end);
+    write_down(begin, end);
   }
   for (const BridgedStylus& stylus : bridged_) {
     report_.late += stylus.late();
     report_.lost += stylus.lost();
   }
   finished_.signal();
+}
+
+// For the black box.
+void ForceThread::write_down(std::int64_t begin_ns, std::int64_t end_ns) noexcept {
+  if (log_ == nullptr) return;
+  StepRow row{.time_ns = begin_ns,
+              .late_ns = std::max<std::int64_t>(clock_.last_delay(), 0),
+              .duration_ns = end_ns - begin_ns,
+              .force_step = record_.force_step,
+              .missed = clock_.missed(),
+              .continued = continued_,
+              .reset = record_.reset,
+              .stylus_count = static_cast<int>(commands_.size())};
+  for (int i = 0; i < record_.object_count; ++i) {
+    const ObjectRecord& object = record_.object[static_cast<std::size_t>(i)];
+    row.solved = row.solved && object.solved;
+    row.residual = std::max(row.residual, object.residual);
+  }
+  for (std::size_t s = 0; s < commands_.size(); ++s) {
+    const StylusRecord& stylus = record_.stylus[s];
+    StepRow::Stylus& kept = row.stylus[s];
+    kept.present = stylus.present;
+    kept.buttons = stylus.buttons;
+    kept.object = stylus.object;
+    kept.contact = stylus.contact;
+    kept.tip = stylus.tip;
+    kept.proxy = stylus.proxy;
+    kept.force = stylus.force;
+    if (s >= bridged_.size()) {
+      kept.left = !stylus.present;  // a viewer's mouse comes and goes
+      continue;
+    }
+    const StylusInput& input = network_.port(static_cast<int>(s)).in.front();
+    kept.left = input.left;
+    kept.predicts = input.predicts;
+    kept.sequence = input.sample.sequence;
+    kept.sample_time_ns = input.sample.time_ns;
+  }
+  log_->put(row);
 }
 
 void ForceThread::watch_health(std::int64_t begin_ns, std::int64_t end_ns) noexcept {
@@ -127,6 +171,7 @@ void ForceThread::take_commands() noexcept {
     const std::uint64_t session = port.in.front().predicts ? port.in.front().session : 0;
     commands_[s] = bridged_[s].next(commands_[s], session, port.applied.front());
   }
+  continued_ = stood_still_;
   if (!control_.paused()) stood_still_ = false;
   if (!viewer_stylus_) return;
   control_.stylus().receive();

@@ -10,6 +10,7 @@
 #include "common/realtime/mailbox.hpp"
 #include "common/realtime/scheduling.hpp"
 #include "common/realtime/wakeup.hpp"
+#include "server/blackbox/step_log.hpp"
 #include "server/network/network_server.hpp"
 #include "server/step/bridged_stylus.hpp"
 #include "server/step/simulation.hpp"
@@ -56,6 +57,8 @@ class ForceThread {
   /// The simulation's last stylus, beyond those of the network, is that of the viewers. Before
   /// start().
   void add_viewer_stylus(const ViewerStylus& stylus);
+  /// Tells it of every step. Before start(); outlives the thread.
+  void write_down_in(StepLog& log) noexcept { log_ = &log; }
   /// Becomes readable when the thread has made its last step.
   Wakeup& finished() noexcept { return finished_; }
   const ForceThreadReport& report() const noexcept { return report_; }
@@ -74,6 +77,7 @@ class ForceThread {
   void stand_still() noexcept;
   void foresee() noexcept;
   void take_commands() noexcept;
+  void write_down(std::int64_t begin_ns, std::int64_t end_ns) noexcept;
   void watch_health(std::int64_t begin_ns, std::int64_t end_ns) noexcept;
 
   Simulation& simulation_;
@@ -81,8 +85,10 @@ class ForceThread {
   RunControl& control_;
   StepClock& clock_;
   std::vector<StepSink*> sinks_;
+  StepLog* log_ = nullptr;  ///< null: nobody
   std::uint64_t steps_;
   bool stood_still_ = false;
+  bool continued_ = false;         ///< it stood still before this step
   std::uint64_t still_steps_ = 0;  ///< since it stands still
   std::optional<ViewerStylus> viewer_stylus_;
   std::vector<BridgedStylus> bridged_;   ///< of the network's styluses

@@ -81,7 +81,8 @@ TEST_CASE("doctor: real time that is not permitted weighs as the configuration w
   CHECK_THAT(judge_real_time(refused, RealTimeScheduling::kPrefer).remedy, Contains("rtprio"));
   CHECK(judge_locked_memory({.given = true}, RealTimeScheduling::kRequire).grade == Grade::kOk);
   const Finding memory = judge_locked_memory(refused, RealTimeScheduling::kRequire);
-  CHECK(memory.grade == Grade::kWarning);
+  CHECK(memory.grade == Grade::kProblem);
+  CHECK(judge_locked_memory(refused, RealTimeScheduling::kPrefer).grade == Grade::kWarning);
   CHECK_THAT(memory.what, Contains("64 MiB cannot be locked: Operation not permitted"));
   CHECK(judge_locked_memory(refused, RealTimeScheduling::kIgnore).grade == Grade::kOk);
 }

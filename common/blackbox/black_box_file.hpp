@@ -1,0 +1,18 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "common/blackbox/black_box_part.hpp"
+
+namespace irdm {
+
+/// Writes one black box into a folder, which is made when needed; the oldest ones of the same
+/// program go, so that there are never more than `files`. It gets its name when it is whole.
+/// Holds hdf5::library_mutex(). Throws Error.
+std::filesystem::path write_black_box(const std::filesystem::path& folder, int files,
+                                      const std::string& program, const Fault& fault,
+                                      const std::vector<BlackBoxPart*>& parts);
+
+}  // namespace irdm

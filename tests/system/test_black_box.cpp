@@ -1,0 +1,192 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "common/geometry.hpp"
+#include "common/hdf5/file.hpp"
+#include "tests/support/eventually.hpp"
+#include "tests/support/raw_peer.hpp"
+#include "tests/system/device_stage.hpp"
+#include "tests/system/stage.hpp"
+
+using Catch::Matchers::Contains;
+using namespace irdm;
+using namespace irdm::test;
+
+namespace {
+
+/// The black box of a program in the folder that it ran in, once there is one.
+hdf5::File black_box(const Stage& stage, const std::string& program) {
+  std::filesystem::path found;
+  REQUIRE(eventually([&] {
+    std::error_code ignored;
+    for (const auto& entry : std::filesystem::directory_iterator(stage.path("blackbox"), ignored)) {
+      const std::string name = entry.path().filename().string();
+      if (name.starts_with(program) && name.ends_with(".h5")) found = entry.path();
+    }
+    return !found.empty();
+  }));
+  return hdf5::File::open(found);
+}
+
+std::vector<double> lengths(const std::vector<double>& vectors) {
+  std::vector<double> found;
+  for (std::size_t i = 0; i < vectors.size(); i += 3) {
+    found.push_back(Vector3(vectors.data() + i).norm());
+  }
+  return found;
+}
+
+bool any_black_box(const Stage& stage) {
+  return std::filesystem::exists(stage.path("blackbox"));
+}
+
+}  // namespace
+
+TEST_CASE("black box: a device that fails in contact leaves two seconds of ticks and frames") {
+  const DeviceStage device;
+  Server server = device.stage.start_server({}, {.folder = device.stage.path("")});
+  ChildOptions options = device.with(DeviceStage::in_contact("0x0203", 2100));
+  options.folder = device.stage.path("");
+  ChildProcess bridge = device.stage.start_bridge(server, {}, options);
+  const hdf5::File file = black_box(device.stage, "irdm-bridge-");
+  CHECK(file.read_string_attribute("/", "fault") == "device failed");
+  CHECK_THAT(bridge.line_with("the last seconds are in", true), Contains("device failed"));
+
+  const std::vector<double> time = file.read<double>("/tick/0/time", {0});
+  const hsize_t rows = time.size();
+  CHECK(time.front() < -1.9);
+  CHECK(time.front() >= -2.0);
+  CHECK(time.back() > 0.0);
+  CHECK(time.back() < 1.0);
+  CHECK(rows > 500);  // a tick may come late, and 2 s are some 2000 of them
+  CHECK(std::is_sorted(time.begin(), time.end()));
+  const std::vector<std::uint8_t> failed = file.read<std::uint8_t>("/tick/0/device_failed", {rows});
+  const std::vector<std::uint8_t> state = file.read<std::uint8_t>("/tick/0/state", {rows});
+  const std::vector<double> force = lengths(file.read<double>("/tick/0/force", {rows, 3}));
+  const auto fault =
+      static_cast<std::size_t>(std::find(time.begin(), time.end(), 0.0) - time.begin());
+  REQUIRE(fault < rows);
+  CHECK(failed[fault - 1] == 0);
+  CHECK(*std::max_element(force.begin(), force.begin() + static_cast<std::ptrdiff_t>(fault)) > 0.2);
+  for (std::size_t i = fault; i < rows; ++i) {
+    REQUIRE(failed[i] == 1);
+    REQUIRE(state[i] == 4);
+  }
+  CHECK(force.back() == 0.0);
+
+  const std::vector<double> seen = file.read<double>("/frame/time", {0});
+  const std::vector<std::int32_t> type = file.read<std::int32_t>("/frame/type", {seen.size()});
+  CHECK(seen.front() < -1.0);
+  CHECK(std::count(type.begin(), type.end(), 5) > 500);  // samples
+  CHECK(std::count(type.begin(), type.end(), 6) > 250);  // forces
+  bridge.signal(SIGTERM);
+  CHECK(bridge.wait() == 0);
+  server.process.signal(SIGTERM);
+  CHECK(server.process.wait() == 0);
+}
+
+TEST_CASE("black box: a driver that hangs leaves the ticks that it made until then") {
+  const DeviceStage device;
+  Server server = device.stage.start_server();
+  ChildOptions options = device.with(DeviceStage::in_contact("hang"));
+  options.folder = device.stage.path("");
+  ChildProcess bridge = device.stage.start_bridge(server, {}, options);
+  CHECK(bridge.wait() == 1);
+  const hdf5::File file = black_box(device.stage, "irdm-bridge-");
+  CHECK_THAT(file.read_string_attribute("/", "fault"), Contains("no ticks"));
+  CHECK(file.shape("/tick/0/time")[0] > 50);
+}
+
+TEST_CASE("black box: garbage at the server leaves its bytes and the steps meanwhile") {
+  const Stage stage;
+  Server server = stage.start_server({}, {.folder = stage.path("")});
+  RawPeer peer = RawPeer::connect(server.port);
+  const std::string garbage = "GET / HTTP/1.1\r\nHost: nobody at all here\r\n\r\n";
+  peer.send({reinterpret_cast<const std::uint8_t*>(garbage.data()), garbage.size()});
+  CHECK(peer.ends());
+  const hdf5::File file = black_box(stage, "irdm-server-");
+  CHECK(file.read_string_attribute("/", "fault") == "protocol violation");
+  const std::vector<std::uint8_t> bytes = file.read<std::uint8_t>("/frame/bytes", {0});
+  CHECK_THAT(std::string(bytes.begin(), bytes.end()), Contains("GET / HTTP/1.1"));
+  const std::vector<std::uint8_t> kind = file.read<std::uint8_t>("/frame/kind", {0});
+  CHECK(std::count(kind.begin(), kind.end(), 2) == 1);
+  CHECK(std::count(kind.begin(), kind.end(), 4) == 1);
+  CHECK(file.shape("/step/time")[0] > 0);
+  CHECK(file.read<double>("/step/time", {0}).back() > 0.0);
+  server.process.signal(SIGTERM);
+  CHECK(server.process.wait() == 0);
+}
+
+TEST_CASE("black box: a server that is killed in contact, and then the bridge: the other tells") {
+  const Stage stage;
+  stage.write("script.csv", hold_and_circle());
+  const bool server_dies = GENERATE(true, false);
+  Server server = stage.start_server({}, {.folder = stage.path("")});
+  ChildProcess bridge = stage.start_bridge(server, {}, {.folder = stage.path("")});
+  bridge.line_with("session ", true);
+  // Until the hand holds the cube the connection may be lost without a fault: then it is made anew.
+  ChildProcess& victim = server_dies ? server.process : bridge;
+  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  victim.signal(SIGKILL);
+  victim.wait();
+  if (server_dies) {
+    const hdf5::File file = black_box(stage, "irdm-bridge-");
+    CHECK(file.read_string_attribute("/", "fault") == "connection lost with a force");
+    const std::vector<double> force = lengths(file.read<double>("/tick/0/force", {0, 3}));
+    CHECK(*std::max_element(force.begin(), force.end()) > 0.0);
+    CHECK(force.back() == 0.0);
+  } else {
+    const hdf5::File file = black_box(stage, "irdm-server-");
+    CHECK(file.read_string_attribute("/", "fault") == "stylus lost in contact");
+    const std::vector<std::uint8_t> present =
+        file.read<std::uint8_t>("/step/stylus/0/present", {0});
+    CHECK(std::count(present.begin(), present.end(), 1) > 100);
+    CHECK(present.back() == 0);
+  }
+}
+
+TEST_CASE(
+    "black box: none after a run in which nothing went wrong, and none where there is no folder") {
+  const Stage stage;
+  stage.write("script.csv", hold_and_circle());
+  SECTION("all is well, and the bridge ends in contact") {
+    Server server = stage.start_server({}, {.folder = stage.path("")});
+    ChildProcess bridge =
+        stage.start_bridge(server, {"--duration", "1"}, {.folder = stage.path("")});
+    CHECK(bridge.wait() == 0);
+    server.process.signal(SIGTERM);
+    CHECK(server.process.wait() == 0);
+    CHECK_FALSE(any_black_box(stage));
+  }
+  SECTION("no folder is wanted") {
+    std::string scene = scene_text();
+    scene.replace(scene.find("port = 0"), 8, "port = 0\nblack_box = \"\"");
+    stage.write("scene.toml", scene);
+    Server server = stage.start_server({}, {.folder = stage.path("")});
+    RawPeer peer = RawPeer::connect(server.port);
+    const std::vector<std::uint8_t> garbage(100, 7);
+    peer.send(garbage);
+    CHECK(peer.ends());
+    server.process.signal(SIGTERM);
+    CHECK(server.process.wait() == 0);
+    CHECK_FALSE(any_black_box(stage));
+  }
+  SECTION("the folder cannot be made: one line, and the server goes on") {
+    stage.write("blackbox", "in the way");
+    Server server = stage.start_server({}, {.folder = stage.path("")});
+    RawPeer peer = RawPeer::connect(server.port);
+    const std::vector<std::uint8_t> garbage(100, 7);
+    peer.send(garbage);
+    CHECK(peer.ends());
+    CHECK_THAT(server.process.line_with("no black box", false), Contains("black_box"));
+    server.process.signal(SIGTERM);
+    CHECK(server.process.wait() == 0);
+  }
+}

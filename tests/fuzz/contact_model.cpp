@@ -16,10 +16,13 @@ void contact_model(Input input) {
   } catch (const wire::ProtocolError&) {
     return;
   }
-  if (check(model) != ContactModelFault::kNone) return;
+  const ContactModelFault fault = check(model);
+  expect(*word(fault) != '\0', "a fault has a name");
+  if (fault != ContactModelFault::kNone) return;
   BridgeContact contact(model.valid ? model.dt : 0.002, 1'000'000);
   const Vector3 place = model.motion.position + model.motion.orientation * model.place;
-  const Vector3 way = model.valid ? Vector3(model.motion.orientation * model.normal) : Vector3::UnitY();
+  const Vector3 way =
+      model.valid ? Vector3(model.motion.orientation * model.normal) : Vector3::UnitY();
   std::int64_t now_ns = 0;
   for (int k = 0; k < 40; ++k, now_ns += 1'000'000) {
     if (k % 8 == 0) {
@@ -28,7 +31,8 @@ void contact_model(Input input) {
     }
     const double height = 0.02 - 0.002 * (k < 20 ? k : 40 - k);
     contact.tick(now_ns, place + height * way);
-    expect(contact.wanted().force.allFinite(), "a contact model that is believed gives finite forces");
+    expect(contact.wanted().force.allFinite(),
+           "a contact model that is believed gives finite forces");
   }
 }
 

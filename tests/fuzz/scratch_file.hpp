@@ -12,7 +12,8 @@ namespace irdm::fuzz {
 inline std::filesystem::path scratch_file(const char* name, std::string_view content) {
   static const precompute::TemporaryFolder folder("irdm-fuzz");
   const std::filesystem::path path = folder.path() / name;
-  std::ofstream(path, std::ios::binary).write(content.data(), static_cast<std::streamsize>(content.size()));
+  std::ofstream(path, std::ios::binary)
+      .write(content.data(), static_cast<std::streamsize>(content.size()));
   return path;
 }
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Sets up, builds and tests everything: formatting, warnings as errors, the tests under the address and
-# undefined-behaviour sanitizers and under the thread sanitizer, and last the whole suite as it ships.
+# undefined-behaviour sanitizers and under the thread sanitizer, the fuzzers, and last the whole suite as it ships.
 #   scripts/test.sh [--quick]    --quick: without the sanitizers
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -22,6 +22,7 @@ if [ $quick = no ]; then
     scripts/build.sh "$preset"
     echo "test: preset $preset"
     ctest --preset "$preset" --label-exclude slow --parallel 2
+    [ "$preset" != asan ] || scripts/fuzz.sh
   done
 fi
 echo "test: preset ci"

@@ -1,8 +1,7 @@
 #include "common/hdf5/file.hpp"
 
 #include <algorithm>
-#include <functional>
-#include <numeric>
+#include <limits>
 
 #include "common/error.hpp"
 
@@ -50,8 +49,17 @@ Handle make_access_properties() {
 // Of the file in memory.
 constexpr std::size_t kImageGrowth = 1 << 16;
 
+/// Numbers of that shape; the largest there is when they cannot be counted.
 hsize_t product(const Shape& shape) {
-  return std::accumulate(shape.begin(), shape.end(), hsize_t{1}, std::multiplies<>());
+  if (std::ranges::find(shape, hsize_t{0}) != shape.end()) return 0;
+  hsize_t numbers = 1;
+  for (const hsize_t extent : shape) {
+    if (numbers > std::numeric_limits<hsize_t>::max() / extent) {
+      return std::numeric_limits<hsize_t>::max();
+    }
+    numbers *= extent;
+  }
+  return numbers;
 }
 
 std::string to_text(const Shape& shape) {
@@ -291,6 +299,17 @@ Shape File::shape(const std::string& dataset) const {
   return extents;
 }
 
+Shape File::stored_shape(const std::string& dataset) const {
+  constexpr hsize_t kFew = 1'000'000;   // whatever the file holds
+  constexpr hsize_t kMostAByte = 1000;  // numbers, however well they are compressed
+  Shape found = shape(dataset);
+  const hsize_t numbers = product(found);
+  if (numbers > kFew && numbers / kMostAByte > H5Dget_storage_size(open_dataset(dataset).get())) {
+    fail_read("dataset " + dataset + " has shape " + to_text(found) + ", but not the numbers");
+  }
+  return found;
+}
+
 std::size_t File::element_size(const std::string& dataset) const {
   const Handle set = open_dataset(dataset);
   const Handle type(H5Dget_type(set.get()), H5Tclose);
@@ -314,7 +333,7 @@ void File::write(const std::string& dataset, const Shape& shape, const T* values
 
 template <typename T>
 std::vector<T> File::read(const std::string& dataset, const Shape& expected) const {
-  const Shape found = shape(dataset);
+  const Shape found = stored_shape(dataset);
   const bool fits =
       found.size() == expected.size() &&
       std::equal(found.begin(), found.end(), expected.begin(),

@@ -65,6 +65,9 @@ class File {
 
   /// Shape of a dataset. Throws Error when there is none of that name.
   Shape shape(const std::string& dataset) const;
+  /// The same for who makes room for all of it: throws Error, too, when the file holds so little
+  /// of it that the shape cannot be meant. Looks at every chunk.
+  Shape stored_shape(const std::string& dataset) const;
   /// Bytes of one floating-point number of the dataset in the file: 4 or 8.
   std::size_t element_size(const std::string& dataset) const;
 

@@ -175,7 +175,7 @@ class ModelReader {
     }
     const auto dof = static_cast<hsize_t>(model_.degrees_of_freedom());
     const auto steps = static_cast<hsize_t>(model_.steps);
-    require(file_.shape(kDenseR) == hdf5::Shape({dof, steps, dof}),
+    require(file_.stored_shape(kDenseR) == hdf5::Shape({dof, steps, dof}),
             "/response/dense/R must have the shape (3n, steps, 3n)");
     DenseResponse response;
     response.degrees_of_freedom = static_cast<int>(dof);
@@ -194,7 +194,7 @@ class ModelReader {
   template <typename Scalar>
   std::vector<Scalar> read_centrifugal(hsize_t dof, hsize_t steps) const {
     if (!file_.exists(kDenseCentrifugal)) return {};
-    require(file_.shape(kDenseCentrifugal) == hdf5::Shape({kSpinProducts, steps, dof}),
+    require(file_.stored_shape(kDenseCentrifugal) == hdf5::Shape({kSpinProducts, steps, dof}),
             std::string(kDenseCentrifugal) + " must have the shape (6, steps, 3n)");
     return read_columns<Scalar>(kDenseCentrifugal, kSpinProducts, steps, dof);
   }

@@ -25,6 +25,7 @@ void ForceIntake::sent(const StylusSample& sample) noexcept {
 
 bool ForceIntake::take(const StylusForce& force, std::int64_t now_ns, ClientReport& report) {
   check_order(force);
+  check_time(force, now_ns);
   if (!news(force)) {
     ++report.forces_old;
     return false;
@@ -53,6 +54,13 @@ void ForceIntake::check_order(const StylusForce& force) const {
     throw wire::ProtocolError(wire::ProtocolFault::kBackward,
                               "a force that is older than the last");
   }
+}
+
+// It decides how old the force is. In lockstep the time is that of the simulation.
+void ForceIntake::check_time(const StylusForce& force, std::int64_t now_ns) const {
+  if (force.sample_time_ns >= 0 && (lockstep_ || force.sample_time_ns <= now_ns)) return;
+  throw wire::ProtocolError(wire::ProtocolFault::kUnexpected,
+                            "a force for a sample of the future, or of no time");
 }
 
 // A run that is paused answers newer samples in the step where it stands.

@@ -35,6 +35,7 @@ class ForceIntake {
 
  private:
   void check_order(const StylusForce& force) const;
+  void check_time(const StylusForce& force, std::int64_t now_ns) const;
   bool news(const StylusForce& force) const noexcept;
   void measure(std::int64_t round_trip_ns, ClientReport& report) noexcept;
   void count_gap(std::uint64_t step, ClientReport& report) noexcept;

@@ -25,7 +25,10 @@ Vector3 vector_of(const std::vector<double>& values, std::size_t row) {
 /// Reads sets of as many rows as the trace has steps.
 class RowReader {
  public:
-  explicit RowReader(const hdf5::File& file) : file_(file), rows_(file.shape("/step/time").at(0)) {
+  explicit RowReader(const hdf5::File& file) : file_(file) {
+    const hdf5::Shape steps = file.stored_shape("/step/time");
+    if (steps.size() != 1) throw Error(file.name(), "/step/time is no list", "record it again");
+    rows_ = steps[0];
     if (!file.exists(trace::kCommitted)) return;  // an older trace
     rows_ = std::min<hsize_t>(rows_, file.read<std::uint64_t>(trace::kCommitted, {1})[0]);
   }
@@ -33,7 +36,7 @@ class RowReader {
   hsize_t rows() const { return rows_; }
   template <typename T>
   std::vector<T> read(const std::string& set, hsize_t width = 1) const {
-    const hdf5::Shape shape = file_.shape(set);
+    const hdf5::Shape shape = file_.stored_shape(set);
     const hdf5::Shape wanted = width == 1 ? hdf5::Shape{rows_} : hdf5::Shape{rows_, width};
     if (shape.size() != wanted.size() || shape[0] < rows_ || (width > 1 && shape[1] != width)) {
       throw Error(file_.name(), set + " does not have a row for each step", "record it again");
@@ -47,7 +50,7 @@ class RowReader {
 
  private:
   const hdf5::File& file_;
-  hsize_t rows_;
+  hsize_t rows_ = 0;
 };
 
 /// What a stylus did to an object.

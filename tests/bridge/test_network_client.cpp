@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -122,6 +123,24 @@ TEST_CASE("client drops forces that are repeated or older than the session, and 
   CHECK(report.gaps == 2);
   CHECK(report.steps_missed == 8);
   CHECK(report.longest_gap == 6);
+}
+
+TEST_CASE(
+    "client does not go on with a server whose forces are for samples of the future or of no "
+    "time") {
+  for (const std::int64_t time_ns : {std::numeric_limits<std::int64_t>::max(), std::int64_t{-1},
+                                     std::numeric_limits<std::int64_t>::min()}) {
+    ScriptedServer server;
+    RawPeer peer = server.welcome();
+    server.give({.sequence = 4});
+    REQUIRE(peer.receive_as<SampleMessage>());
+    peer.send(
+        ForceMessage{.stylus = 2, .force = {.sample_sequence = 4, .sample_time_ns = time_ns}});
+    CHECK(peer.ends());
+    const ClientReport& report = server.end();
+    CHECK(report.protocol_errors == 1);
+    CHECK(report.forces == 0);
+  }
 }
 
 TEST_CASE("client keeps what the server says of its run, first and last") {

@@ -6,6 +6,7 @@
 #include "common/error.hpp"
 #include "common/model/model_file.hpp"
 #include "tests/common/one_tet_model.hpp"
+#include "tests/support/sparse_dataset.hpp"
 
 using Catch::Matchers::Contains;
 using namespace irdm;
@@ -159,5 +160,14 @@ TEST_CASE("model file that is missing, truncated, foreign or damaged is refused 
     std::get<ModalResponse>(model.response).angular_frequency(0) = -1;
     write();
     CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal), Contains("frequencies"));
+  }
+  SECTION("shapes that there is neither memory nor a number for") {
+    write();
+    // So many that their count does not fit into 64 bits, and room for none would be made.
+    irdm::test::make_sparse(path, "/mesh/tets", {hsize_t{1} << 62, 4});
+    CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal),
+                      Contains("/mesh/tets has shape") && Contains("but not the numbers"));
+    irdm::test::make_sparse(path, "/mesh/nodes", {hsize_t{1} << 40, 3});
+    CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal), Contains("but not the numbers"));
   }
 }

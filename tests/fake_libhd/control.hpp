@@ -5,8 +5,9 @@
 ///
 /// A program that is run beside a test is told by its environment: FAKE_HD_DEVICES=NAME,NAME more
 /// devices; FAKE_HD_REFUSE=CODE no device starts; FAKE_HD_MOTION=FILE rows `tick x y z buttons`
-/// [ms, mm], repeated for ever; FAKE_HD_EVENT=unplug|hang|CODE after FAKE_HD_EVENT_AFTER=N frames
-/// with a force; FAKE_HD_LOG=FILE a row `tick failed x y z fx fy fz` a frame, and the misuses.
+/// [ms, mm], repeated for ever; FAKE_HD_EVENT=unplug|hang|tell|CODE after FAKE_HD_EVENT_AFTER=N
+/// frames with a force; FAKE_HD_LOG=FILE a row `tick failed x y z fx fy fz ns` a frame, and the
+/// misuses.
 extern "C" {
 void fakehd_reset();                ///< as if just loaded
 void fakehd_add(const char* name);  ///< a device that is set up

@@ -24,12 +24,13 @@ struct FrameRecord {
   std::array<double, 3> position;  ///< [mm]
   Force force;                     ///< that was asked for [N]
   bool failed;                     ///< the device had an error in it
+  std::int64_t begun_ns;           ///< steady clock
 };
 
 /// What happens to a device that has shown a force for some frames.
 struct ContactEvent {
   unsigned long after_frames = 0;  ///< with a force; 0: nothing happens
-  std::string what;                ///< "unplug", "hang", or an error's number
+  std::string what;                ///< "unplug", "hang", "tell", or an error's number
 };
 
 /// One device of the fake driver: a stylus in a hand that nothing disturbs, and its motors.

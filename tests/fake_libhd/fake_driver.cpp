@@ -1,6 +1,7 @@
 #include "tests/fake_libhd/fake_driver.hpp"
 
 #include <chrono>
+#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
@@ -161,7 +162,8 @@ void FakeDriver::begin_frame(unsigned handle) {
     raise(kCommError, handle);
   }
   device->commanded = {};
-  device->log.push_back({ticks, device->position(), {}, failed});
+  const std::chrono::nanoseconds now = std::chrono::steady_clock::now().time_since_epoch();
+  device->log.push_back({ticks, device->position(), {}, failed, now.count()});
 }
 
 void FakeDriver::end_frame(unsigned handle) {
@@ -189,6 +191,9 @@ void FakeDriver::happen(FakeDevice& device) {
     device.plugged = false;
   } else if (device.event.what == "hang") {
     hangs = true;
+  } else if (device.event.what == "tell") {
+    std::puts("fake device: in contact");
+    std::fflush(stdout);
   } else {
     device.at_begin.push_back(static_cast<unsigned>(std::stoul(device.event.what, nullptr, 0)));
   }
@@ -272,7 +277,7 @@ void FakeDriver::write_log(const FakeDevice& device) {
     file << frame.tick << ' ' << frame.failed;
     for (const double value : frame.position) file << ' ' << value;
     for (const double value : frame.force) file << ' ' << value;
-    file << '\n';
+    file << ' ' << frame.begun_ns << '\n';
   }
   file << "misuses " << misuses << ' ' << first_misuse << '\n';
 }

@@ -16,7 +16,9 @@ void contact_model(Input input) {
   } catch (const wire::ProtocolError&) {
     return;
   }
-  if (check(model) != ContactModelFault::kNone) return;
+  const ContactModelFault fault = check(model);
+  expect(*word(fault) != '\0', "a fault has a name");
+  if (fault != ContactModelFault::kNone) return;
   BridgeContact contact(model.valid ? model.dt : 0.002, 1'000'000);
   const Vector3 place = model.motion.position + model.motion.orientation * model.place;
   const Vector3 way =

@@ -17,13 +17,9 @@ void expect(bool holds, const char* what);
 /// The bytes as text.
 std::string_view text_of(Input input);
 
-// Messages between server and viewer: what can be decoded, can be encoded and decoded again.
-void viewer_client(Input input);
-void viewer_scene(Input input);
-/// One byte: number of objects; as many bytes: their nodes; the message.
-void viewer_frame(Input input);
-void viewer_health(Input input);
-void viewer_state(Input input);
+/// One byte: which message between server and viewer (those of a viewer, scene, health, state,
+/// frame); the message. What can be decoded, can be encoded and decoded again.
+void viewer_message(Input input);
 
 /// Lines: Origin, Host, token given, token wanted, list of codings or entity tags.
 void request_rules(Input input);
@@ -33,6 +29,11 @@ void http_connection(Input input);
 /// One byte: 0 puts the right checksums into the frames first, and how many bytes come at a time;
 /// then the stream.
 void wire_frames(Input input);
+/// All that a bridge sends in a session, with mended checksums.
+void bridge_session(Input input);
+/// One byte: odd, the bridge can do lockstep; above 1, it stops, else it waits too long; then all
+/// that a server sends in a session.
+void server_session(Input input);
 /// The payload of a contact model, and what a bridge makes of it.
 void contact_model(Input input);
 
@@ -40,6 +41,7 @@ void scene_config(Input input);
 void precompute_config(Input input);
 void bridge_config(Input input);
 void stylus_script(Input input);
+void key_file(Input input);
 
 void mesh_msh(Input input);
 /// Nodes, a percent sign, elements.
@@ -50,26 +52,27 @@ void mesh_medit(Input input);
 void mesh_stl(Input input);
 void mesh_obj(Input input);
 void mesh_ply(Input input);
+/// Edits of a valid file.
 void model_file(Input input);
+void trace_file(Input input);
 
 struct Harness {
   std::string_view name;
   void (*run)(Input input);
 };
 inline constexpr std::array kHarnesses = {
-    Harness{"viewer_client", viewer_client},
-    Harness{"viewer_scene", viewer_scene},
-    Harness{"viewer_frame", viewer_frame},
-    Harness{"viewer_health", viewer_health},
-    Harness{"viewer_state", viewer_state},
+    Harness{"viewer_message", viewer_message},
     Harness{"request_rules", request_rules},
     Harness{"http_connection", http_connection},
     Harness{"wire_frames", wire_frames},
+    Harness{"contact_model", contact_model},
+    Harness{"bridge_session", bridge_session},
+    Harness{"server_session", server_session},
     Harness{"scene_config", scene_config},
     Harness{"precompute_config", precompute_config},
     Harness{"bridge_config", bridge_config},
     Harness{"stylus_script", stylus_script},
-    Harness{"contact_model", contact_model},
+    Harness{"key_file", key_file},
     Harness{"mesh_msh", mesh_msh},
     Harness{"mesh_tetgen", mesh_tetgen},
     Harness{"mesh_vtk", mesh_vtk},
@@ -79,6 +82,7 @@ inline constexpr std::array kHarnesses = {
     Harness{"mesh_obj", mesh_obj},
     Harness{"mesh_ply", mesh_ply},
     Harness{"model_file", model_file},
+    Harness{"trace_file", trace_file},
 };
 
 }  // namespace irdm::fuzz

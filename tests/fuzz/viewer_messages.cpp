@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -21,9 +22,7 @@ void check_again(const Bytes& bytes, const Decode& decode, const Encode& encode)
   }
 }
 
-}  // namespace
-
-void viewer_client(Input input) {
+void client(Input input) {
   try {
     const ClientMessage message = decode_client(input);
     check_again(encode(message), decode_client, [](const auto& it) { return encode(it); });
@@ -31,7 +30,7 @@ void viewer_client(Input input) {
   }
 }
 
-void viewer_scene(Input input) {
+void scene(Input input) {
   try {
     const Scene scene = decode_scene(input);
     check_again(encode(scene), decode_scene, [](const auto& it) { return encode(it); });
@@ -39,7 +38,7 @@ void viewer_scene(Input input) {
   }
 }
 
-void viewer_health(Input input) {
+void health(Input input) {
   try {
     const Health health = decode_health(input);
     check_again(encode(health), decode_health, [](const auto& it) { return encode(it); });
@@ -47,7 +46,7 @@ void viewer_health(Input input) {
   }
 }
 
-void viewer_state(Input input) {
+void state(Input input) {
   const auto decode = [](Input bytes) { return decode_state(bytes, 2); };
   try {
     const State state = decode(input);
@@ -56,17 +55,14 @@ void viewer_state(Input input) {
   }
 }
 
-namespace {
-
 /// Whether all of it is within what 4-byte numbers hold.
 bool in_reach(const Points& displacement) {
   constexpr double kFarthest = 20'000.0;
   return displacement.allFinite() && displacement.cwiseAbs().maxCoeff() < kFarthest;
 }
 
-}  // namespace
-
-void viewer_frame(Input input) {
+/// One byte: number of objects; as many bytes: their nodes; the message.
+void frame(Input input) {
   if (input.empty() || input[0] > 4 || input.size() <= input[0]) return;
   const std::vector<std::size_t> nodes(input.begin() + 1, input.begin() + 1 + input[0]);
   try {
@@ -82,6 +78,13 @@ void viewer_frame(Input input) {
     }
   } catch (const MessageError&) {
   }
+}
+
+}  // namespace
+
+void viewer_message(Input input) {
+  constexpr std::array kKinds = {client, scene, health, state, frame};
+  if (!input.empty()) kKinds[input[0] % kKinds.size()](input.subspan(1));
 }
 
 }  // namespace irdm::fuzz

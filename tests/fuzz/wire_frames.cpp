@@ -6,6 +6,7 @@
 #include "common/wire/frame.hpp"
 #include "common/wire/protocol_error.hpp"
 #include "tests/fuzz/harness.hpp"
+#include "tests/fuzz/mended_frames.hpp"
 
 namespace irdm::fuzz {
 
@@ -16,7 +17,8 @@ namespace {
 constexpr std::size_t kSizeOffset = 8;
 constexpr std::size_t kChecksumOffset = kHeaderSize - 4;
 
-/// Puts the right checksum into every frame: the fuzzer would not guess it.
+}  // namespace
+
 void mend(std::span<std::uint8_t> stream) {
   while (stream.size() >= kHeaderSize) {
     const auto size = ByteReader(stream.subspan(kSizeOffset, 4)).get<std::uint32_t>();
@@ -27,6 +29,8 @@ void mend(std::span<std::uint8_t> stream) {
     stream = stream.subspan(kHeaderSize + size);
   }
 }
+
+namespace {
 
 void check_again(const Frame& frame) {
   const auto encode = [](const Frame& it) {

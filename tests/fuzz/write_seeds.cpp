@@ -3,11 +3,11 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <vector>
 
-#include "common/model/model_writer.hpp"
 #include "common/wire/frame.hpp"
 #include "server/viewer/message.hpp"
-#include "tests/support/synthetic_model.hpp"
+#include "tests/fuzz/mended_frames.hpp"
 #include "tests/viewer/frames.hpp"
 
 using namespace irdm;
@@ -23,6 +23,11 @@ class Seeds {
     std::filesystem::create_directories(folder_ / harness);
     return folder_ / harness / name;
   }
+  /// A message between server and viewer; `kind` as viewer_message() counts them.
+  void write_viewer(std::uint8_t kind, const std::string& name, viewer::Bytes bytes) const {
+    bytes.insert(bytes.begin(), kind);
+    write("viewer_message", name, bytes);
+  }
   template <typename Bytes>
   void write(const std::string& harness, const std::string& name, const Bytes& bytes) const {
     std::ofstream file(path(harness, name), std::ios::binary);
@@ -36,15 +41,16 @@ class Seeds {
 void write_client_messages(const Seeds& seeds) {
   const auto hello = encode(viewer::ClientMessage(viewer::Hello{"0123456789abcdef"}));
   const auto put_back = encode(viewer::ClientMessage(viewer::Command{}));
-  seeds.write("viewer_client", "hello", hello);
-  seeds.write("viewer_client", "no_token", encode(viewer::ClientMessage(viewer::Hello{})));
-  seeds.write("viewer_client", "put_back", put_back);
-  seeds.write("viewer_client", "seek",
-              encode(viewer::ClientMessage(viewer::Command{viewer::CommandKind::kSeek, 0, 1.5})));
-  seeds.write("viewer_client", "stylus",
-              encode(viewer::ClientMessage(viewer::StylusRequest{true, 1, Vector3(1, 2, 3)})));
-  seeds.write(
-      "viewer_client", "settings",
+  seeds.write_viewer(0, "hello", hello);
+  seeds.write_viewer(0, "no_token", encode(viewer::ClientMessage(viewer::Hello{})));
+  seeds.write_viewer(0, "put_back", put_back);
+  seeds.write_viewer(
+      0, "seek",
+      encode(viewer::ClientMessage(viewer::Command{viewer::CommandKind::kSeek, 0, 1.5})));
+  seeds.write_viewer(
+      0, "stylus", encode(viewer::ClientMessage(viewer::StylusRequest{true, 1, Vector3(1, 2, 3)})));
+  seeds.write_viewer(
+      0, "settings",
       encode(viewer::ClientMessage(viewer::SettingsRequest{test::example_state().settings, 2})));
   // A browser's whole connection, with a mask that changes nothing.
   std::string bytes =
@@ -61,9 +67,9 @@ void write_client_messages(const Seeds& seeds) {
 
 void write_server_messages(const Seeds& seeds) {
   const viewer::Scene scene = test::example_scene();
-  seeds.write("viewer_scene", "scene", encode(scene));
-  seeds.write("viewer_health", "health", encode(viewer::Health{.links = {{}, {true}}}));
-  seeds.write("viewer_state", "state", encode(test::example_state()));
+  seeds.write_viewer(1, "scene", encode(scene));
+  seeds.write_viewer(2, "health", encode(viewer::Health{.links = {{}, {true}}}));
+  seeds.write_viewer(3, "state", encode(test::example_state()));
   for (const double size : {0.01, 2.0}) {
     viewer::Bytes message;
     viewer::encode(test::example_frame(scene, size), message);
@@ -72,7 +78,7 @@ void write_server_messages(const Seeds& seeds) {
       bytes.push_back(static_cast<std::uint8_t>(count));
     }
     bytes.insert(bytes.end(), message.begin(), message.end());
-    seeds.write("viewer_frame", size < 1.0 ? "small" : "large", bytes);
+    seeds.write_viewer(4, size < 1.0 ? "small" : "large", bytes);
   }
 }
 
@@ -93,6 +99,26 @@ ContactModel wall() {
   return model;
 }
 
+using Change = void (*)(ContactModel&);
+
+/// Models that cannot be true, one for each reason.
+std::vector<ContactModel> untrue() {
+  const Change changes[] = {
+      [](ContactModel& it) { it.body.mass = 1e-9; },
+      [](ContactModel& it) { it.body.inertia(0, 0) = -1.0; },
+      [](ContactModel& it) { it.motion.position.x() = 1e6; },
+      [](ContactModel& it) { it.normal *= 2.0; },
+      [](ContactModel& it) { it.friction.kinetic = 7.0; },
+      [](ContactModel& it) { it.response[0] *= -1.0; },
+      [](ContactModel& it) { it.response[0] *= 1e9; },
+      [](ContactModel& it) { it.response[3] *= 1e3; },
+      [](ContactModel& it) { it.path[2].x() = 1e6; },
+  };
+  std::vector<ContactModel> models;
+  for (const Change change : changes) change(models.emplace_back(wall()));
+  return models;
+}
+
 void write_contact_models(const Seeds& seeds) {
   ContactModel model = wall();
   const auto write = [&](const std::string& name) {
@@ -109,6 +135,11 @@ void write_contact_models(const Seeds& seeds) {
   model.valid = false;
   model.standing = true;
   write("standing");
+  int number = 0;
+  for (const ContactModel& each : untrue()) {
+    model = each;
+    write("untrue_" + std::to_string(number++));
+  }
 }
 
 void write_wire_frames(const Seeds& seeds) {
@@ -136,13 +167,69 @@ void write_wire_frames(const Seeds& seeds) {
   seeds.write("wire_frames", "all", stream);
 }
 
-void write_model_files(const Seeds& seeds) {
-  Model model = test::synthetic_cube(1, 2, 3);
-  const std::filesystem::path path = seeds.path("model_file", "modal");
-  ModelFileWriter writer(path);
-  writer.write_description(model);
-  writer.write_modal(std::get<ModalResponse>(model.response));
-  writer.commit();
+/// Of one end of a connection: frames in their order.
+viewer::Bytes said(const std::vector<wire::Message>& messages, std::uint32_t session) {
+  viewer::Bytes stream;
+  std::uint64_t sequence = 0;
+  for (const wire::Message& message : messages) {
+    const bool greets = std::holds_alternative<wire::Hello>(message);
+    const wire::FrameBytes frame =
+        wire::encode_frame(message, greets ? 0 : session, sequence++, 1000);
+    stream.insert(stream.end(), frame.view().begin(), frame.view().end());
+  }
+  return stream;
+}
+
+void write_sessions(const Seeds& seeds) {
+  const wire::Hello hello{.capabilities = 0xF, .name = "bridge"};
+  const StylusSample sample{.sequence = 3, .tip = Vector3(0.01, 0.02, 0.03)};
+  seeds.write(
+      "bridge_session", "whole",
+      said({hello, wire::SampleMessage{.sample = sample}, wire::Report{},
+            wire::AppliedForcesMessage{0, {.step = 102, .count = 3, .past = {}}}, wire::Goodbye{}},
+           fuzz::kFuzzedSession));
+  const auto bridge_says = [&](const std::string& name, std::vector<wire::Message> messages) {
+    messages.insert(messages.begin(), hello);
+    seeds.write("bridge_session", name, said(messages, fuzz::kFuzzedSession));
+  };
+  bridge_says("twice",
+              {wire::SampleMessage{.sample = sample}, wire::SampleMessage{.sample = sample}});
+  bridge_says("silent", {wire::SampleMessage{.sample = sample}});
+  bridge_says("yields", {wire::SampleMessage{.sample = sample}, wire::Report{}});
+  bridge_says("fast", std::vector<wire::Message>(30, wire::Report{}));
+  bridge_says("hello_again", {hello});
+  bridge_says("status", {wire::Status{}});
+  bridge_says("others_sample", {wire::SampleMessage{.stylus = 3, .sample = sample}});
+  bridge_says("others_forces",
+              {wire::AppliedForcesMessage{3, {.step = 1, .count = 1, .past = {}}}});
+  bridge_says("others_report", {wire::Report{.stylus = 3}});
+  seeds.write("bridge_session", "no_hello", said({wire::Report{}}, 0));
+  seeds.write("bridge_session", "many", said({wire::Hello{.styluses = 9}}, 0));
+  const wire::Welcome welcome{.capabilities = 0xF, .session = 9, .dt = 0.002};
+  const auto force = [](std::uint64_t step) {
+    return wire::ForceMessage{
+        .force = {.force_step = step, .sample_sequence = 5, .force = Vector3(0.5, 0, -1)}};
+  };
+  viewer::Bytes whole = {0};
+  const viewer::Bytes stream =
+      said({welcome, force(5), force(9), wire::ContactModelMessage{0, wall()},
+            wire::Status{.steps = 9}, wire::Goodbye{}},
+           9);
+  whole.insert(whole.end(), stream.begin(), stream.end());
+  seeds.write("server_session", "whole", whole);
+  viewer::Bytes unended(whole.begin(), whole.end() - wire::kHeaderSize - 4);  // no Goodbye
+  seeds.write("server_session", "silent", unended);
+  unended[0] = 2;
+  seeds.write("server_session", "stopped", unended);
+  viewer::Bytes untrue_model = {0};
+  const viewer::Bytes models = said({welcome, wire::ContactModelMessage{0, untrue()[0]}, hello}, 9);
+  untrue_model.insert(untrue_model.end(), models.begin(), models.end());
+  seeds.write("server_session", "untrue_model", untrue_model);
+  viewer::Bytes refused = {1};
+  const viewer::Bytes refusal =
+      said({wire::Refuse{.reason = wire::RefuseReason::kTooManyStyluses, .text = "no"}}, 0);
+  refused.insert(refused.end(), refusal.begin(), refusal.end());
+  seeds.write("server_session", "refused", refused);
 }
 
 }  // namespace
@@ -154,6 +241,6 @@ int main(int argc, char** argv) {
   write_server_messages(seeds);
   write_wire_frames(seeds);
   write_contact_models(seeds);
-  write_model_files(seeds);
+  write_sessions(seeds);
   return 0;
 }

@@ -5,6 +5,7 @@
 #include "server/viewed_run/player.hpp"
 #include "tests/server/recorded_fall.hpp"
 #include "tests/support/eventually.hpp"
+#include "tests/support/sparse_dataset.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using Catch::Matchers::Contains;
@@ -133,4 +134,25 @@ TEST_CASE("a recording of another model is refused") {
   run.config.objects[0].model = std::make_shared<const Model>(synthetic_cube(1, 5, 10));
   CHECK_THROWS_WITH(Recording(folder.path() / "trace.h5", run.config, run.names),
                     Contains("does not have"));
+}
+
+TEST_CASE("a recording whose shapes cannot be meant is refused before there is room for it") {
+  const TemporaryFolder folder;
+  RecordedFall run(folder.path() / "trace.h5", 1);
+  const auto replace = [&](const std::string& set, const std::vector<hsize_t>& shape) {
+    make_sparse(folder.path() / "trace.h5", set, shape);
+  };
+  const auto read = [&] { Recording(folder.path() / "trace.h5", run.config, run.names); };
+  SECTION("more steps than there is memory for") {
+    replace("/step/time", {hsize_t{1} << 40});
+    CHECK_THROWS_WITH(read(), Contains("/step/time has shape") && Contains("but not the numbers"));
+  }
+  SECTION("more nodes of the floor's than there is memory for") {
+    replace("/floor/node", {hsize_t{1} << 40});
+    CHECK_THROWS_WITH(read(), Contains("/floor/node has shape") && Contains("but not the numbers"));
+  }
+  SECTION("steps that are no list") {
+    replace("/step/time", {4, 2});
+    CHECK_THROWS_WITH(read(), Contains("is no list"));
+  }
 }

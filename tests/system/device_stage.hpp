@@ -45,8 +45,8 @@ class DeviceStage {
     std::istringstream text(file_content(stage.path("frames.txt")));
     double ignored = 0.0;
     Frame frame;
-    for (double x = 0, y = 0, z = 0;
-         text >> frame.tick >> frame.failed >> ignored >> frame.height >> ignored >> x >> y >> z;) {
+    for (double x = 0, y = 0, z = 0; text >> frame.tick >> frame.failed >> ignored >>
+                                     frame.height >> ignored >> x >> y >> z >> ignored;) {
       frame.force = std::sqrt(x * x + y * y + z * z);
       found.push_back(frame);
     }

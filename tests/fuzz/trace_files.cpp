@@ -1,0 +1,55 @@
+// Traces of two objects and two styluses, with edits of the fuzzer's choice.
+#include "common/error.hpp"
+#include "server/record/recording.hpp"
+#include "tests/fuzz/edited_file.hpp"
+#include "tests/fuzz/harness.hpp"
+#include "tests/fuzz/scratch_file.hpp"
+#include "tests/server/two_cubes.hpp"
+
+namespace irdm::fuzz {
+namespace {
+
+constexpr int kSteps = 120;
+const std::vector<std::string> kNames = {"one", "two"};
+
+const SimulationConfig& scene() {
+  static const SimulationConfig config = test::two_cubes();
+  return config;
+}
+
+std::filesystem::path valid_trace() {
+  const std::filesystem::path path = scratch_file("valid_trace.h5", "");
+  std::filesystem::remove(path);
+  Simulation simulation(scene());
+  std::vector<StepRecord> records(kSteps);
+  for (int k = 0; k < kSteps; ++k)
+    test::play_step(simulation, k, records[static_cast<std::size_t>(k)]);
+  TraceWriter writer(
+      path, {{{kNames[0], "a.h5", "1"}, {kNames[1], "b.h5", "2"}}, "scene", 0.002, 2, true});
+  writer.append(records);
+  writer.close();
+  return path;
+}
+
+}  // namespace
+
+void trace_file(Input input) {
+  static const EditedFile file(valid_trace());
+  const std::filesystem::path path = file.edited(input);
+  try {
+    read_trace_header(path);
+    const Recording recording(path, scene(), kNames);
+    StepRecord record;
+    for (std::size_t k = 0; k < recording.steps(); ++k) {
+      recording.step(k, record);
+      for (std::size_t i = 0; i < scene().objects.size(); ++i) {
+        expect(record.object[i].floor_count <= kMaxFloorContacts,
+               "the floor's forces fit into a step");
+      }
+    }
+  } catch (const Error&) {
+    expect(!input.empty(), "a trace can be read as it was written");
+  }
+}
+
+}  // namespace irdm::fuzz

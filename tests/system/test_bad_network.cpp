@@ -1,0 +1,181 @@
+// Server and bridge in network namespaces of their own, and between them a path that delays, loses,
+// doubles, reorders and spoils packets, or takes them all and gives nothing back. All of it is done
+// by a relay of our own between two TUN devices, loss too: it needs neither tc nor nftables, and
+// traffic stays in the namespaces. Left out where the kernel does not allow such namespaces.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <csignal>
+#include <iostream>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "common/error.hpp"
+#include "common/realtime/clock.hpp"
+#include "tests/network_namespace/packet_relay.hpp"
+#include "tests/network_namespace/two_namespaces.hpp"
+#include "tests/support/eventually.hpp"
+#include "tests/system/stage.hpp"
+
+using Catch::Matchers::Contains;
+using namespace irdm;
+using namespace irdm::test;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kServerSide = 0;
+constexpr std::size_t kBridgeSide = 1;
+constexpr double kDeviceLimit = 3.3;  // [N], of the fake driver
+constexpr std::int64_t kMillisecond = 1'000'000;
+
+/// What the fake driver wrote down of one frame.
+struct Frame {
+  std::int64_t begun_ns = 0;  ///< monotonic clock
+  double force = 0.0;         ///< asked for [N]
+};
+
+/// Nothing, and a word on stdout that ctest looks for, where there are no namespaces to be had.
+std::optional<TwoNamespaces>& namespaces() {
+  static std::optional<TwoNamespaces> both;
+  if (both) return both;
+  try {
+    both.emplace();
+  } catch (const Error& error) {
+    std::cout << "test left out: " << error.what() << std::endl;
+  }
+  return both;
+}
+
+/// A person who presses on the cube with a device of the fake driver, three seconds at a time.
+class DistantStage : public Stage {
+ public:
+  DistantStage(const TwoNamespaces& both, const std::string& mode) : both_(both) {
+    write("key", std::string(64, 'a') + "\n");
+    fs::permissions(path("key"), fs::perms::owner_read | fs::perms::owner_write);
+    write("scene.toml", "[server]\naddress = \"" + both.address(kServerSide) +
+                            "\"\nkey_file = \"key\"\n" + scene_text().substr(9) +
+                            "tether = { stiffness = 200, angular_stiffness = 1 }\n");
+    write("bridge.toml", "[bridge]\nkey_file = \"key\"\nmode = \"" + mode +
+                             "\"\n[[device]]\ntype = \"openhaptics\"\n");
+    write("motion.txt", "0 0 70 0 0\n500 0 50 0 0\n3500 0 50 0 0\n4000 0 70 0 0\n4200 0 70 0 0\n");
+  }
+  Server start_far_server() const {
+    ChildProcess process(
+        both_.inside(kServerSide, {IRDM_SERVER, path("scene.toml").string(), "--no-viewer"}));
+    const std::string line = process.line_with("listening on ");
+    return {std::move(process),
+            static_cast<std::uint16_t>(std::stoi(line.substr(line.rfind(':') + 1)))};
+  }
+  ChildProcess start_near_bridge(const Server& server, std::vector<std::string> more = {}) const {
+    std::vector<std::string> command = {
+        IRDM_BRIDGE, path("bridge.toml").string(), "--server",
+        both_.address(kServerSide) + ":" + std::to_string(server.port)};
+    command.insert(command.end(), more.begin(), more.end());
+    return ChildProcess(both_.inside(kBridgeSide, command),
+                        {.environment = {"HD_LIBRARY=" IRDM_FAKE_LIBHD,
+                                         "FAKE_HD_MOTION=" + path("motion.txt").string(),
+                                         "FAKE_HD_LOG=" + path("frames.txt").string(),
+                                         "FAKE_HD_EVENT=tell", "FAKE_HD_EVENT_AFTER=100"}});
+  }
+  /// Of the bridge that has ended.
+  std::vector<Frame> frames() const {
+    std::vector<Frame> found;
+    std::istringstream text(file_content(path("frames.txt")));
+    Frame frame;
+    double ignored = 0.0;
+    for (double x = 0, y = 0, z = 0; text >> ignored >> ignored >> ignored >> ignored >> ignored >>
+                                     x >> y >> z >> frame.begun_ns;) {
+      frame.force = std::sqrt(x * x + y * y + z * z);
+      found.push_back(frame);
+    }
+    return found;
+  }
+
+ private:
+  const TwoNamespaces& both_;
+};
+
+double largest_force(const std::vector<Frame>& frames) {
+  double largest = 0.0;
+  for (const Frame& frame : frames) largest = std::max(largest, frame.force);
+  return largest;
+}
+
+std::size_t sessions(const ChildProcess& bridge) {
+  const std::string log = bridge.err();
+  std::size_t count = 0;
+  for (std::size_t at = 0; (at = log.find(": session ", at)) != std::string::npos; ++at) ++count;
+  return count;
+}
+
+void check_end(Server& server) {
+  server.process.signal(SIGTERM);
+  CHECK(server.process.wait() == 0);
+  CHECK_THAT(server.process.out(),
+             Contains(" 0 closed for protocol errors") && !Contains("without the server's key"));
+}
+
+/// The time from the last that can arrive to no force [ns]: docs/protocol.md, age.
+std::int64_t longest_force_ns(const std::string& mode) {
+  return (mode == "hold" ? 50 : 80) * kMillisecond;
+}
+
+}  // namespace
+
+TEST_CASE("a path that becomes a black hole: no force in time, and the session is made anew") {
+  if (!namespaces()) return;
+  const std::string mode = GENERATE(as<std::string>(), "hold", "predict");
+  CAPTURE(mode);
+  const DistantStage stage(*namespaces(), mode);
+  PacketRelay path(namespaces()->devices(), {});
+  Server server = stage.start_far_server();
+  ChildProcess bridge = stage.start_near_bridge(server);
+  bridge.line_with("in contact");
+  const std::int64_t cut_ns = path.cut();
+  constexpr std::int64_t kCut = 300 * kMillisecond;
+  REQUIRE(eventually([&] { return monotonic_ns() > cut_ns + kCut; }));
+  path.mend();
+  REQUIRE(eventually([&] { return sessions(bridge) >= 2; }));
+  bridge.signal(SIGTERM);
+  CHECK(bridge.wait() == 0);
+  CHECK_THAT(bridge.out(), Contains("protocol errors 0"));
+
+  const std::vector<Frame> frames = stage.frames();
+  CHECK(largest_force(frames) > 0.2);
+  CHECK(largest_force(frames) < kDeviceLimit * (1.0 + 1e-9));
+  std::size_t without = 0;
+  for (const Frame& frame : frames) {
+    const std::int64_t since_ns = frame.begun_ns - cut_ns;
+    if (since_ns <= longest_force_ns(mode) || since_ns > kCut) continue;
+    REQUIRE(frame.force == 0.0);
+    ++without;
+  }
+  CHECK(without > 0);
+  check_end(server);
+}
+
+TEST_CASE("a bad path: forces within limits, or the bridge says why there are none", "[slow]") {
+  if (!namespaces()) return;
+  const std::string mode = GENERATE(as<std::string>(), "hold", "predict");
+  const DistantStage stage(*namespaces(), mode);
+  PacketRelay path(
+      namespaces()->devices(),
+      {.delay_ms = 5.0, .jitter_ms = 10.0, .loss = 0.05, .duplicates = 0.01, .corrupt = 0.01});
+  Server server = stage.start_far_server();
+  ChildProcess bridge = stage.start_near_bridge(server, {"--duration", "8"});
+  CHECK(bridge.wait() == 0);
+  CAPTURE(mode, bridge.out(), bridge.err());
+  CHECK(path.corrupted() > 0);
+  CHECK_THAT(bridge.out(), Contains("protocol errors 0"));
+  CHECK(number_after(bridge.out(), "forces: ") > 0);
+  const double largest = largest_force(stage.frames());
+  CHECK(largest < kDeviceLimit * (1.0 + 1e-9));
+  const bool told = bridge.err().find("no force yet: ") != std::string::npos ||
+                    bridge.err().find("connection lost: no answers any more") != std::string::npos;
+  CHECK((largest > 0.2 || told));
+  check_end(server);
+}

@@ -93,7 +93,7 @@ void edit_dataset(hid_t file, const std::string& name, Choices& choices) {
   const Handle space(H5Dget_space(set.get()), H5Sclose);
   const Handle type(H5Dget_type(set.get()), H5Tclose);
   const hssize_t size = H5Sget_simple_extent_npoints(space.get());
-  if (set.get() < 0 || size < 0 || (size > kMostElements && what != kRemove)) return;
+  if (set.get() < 0 || size < 0 || size > kMostElements) return;
   std::vector<double> values(static_cast<std::size_t>(size));
   const bool numbers =
       H5Dread(set.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0;

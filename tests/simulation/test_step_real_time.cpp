@@ -31,6 +31,7 @@ TEST_CASE("a million force steps touch neither heap, locks, exceptions nor files
   std::uint64_t touching = 0;
   std::uint64_t held = 0;
   std::uint64_t foreseen = 0;
+  std::uint64_t late = 0;
   const RealTimeGuard guard;
   for (int k = 0; k < kSteps; ++k) {
     const double t = 0.002 * (k % 2000);
@@ -42,8 +43,9 @@ TEST_CASE("a million force steps touch neither heap, locks, exceptions nor files
                       {}},
         StylusCommand{k % 500 < 400, 0u, Vector3(0.061 - depth, 0.01, 0.002), {}}};
     // Every now and then what a bridge decided, and what it says too late.
-    if (k % 100 >= 98) commands[0].bridged = Vector3(0, -0.1, 0);
-    if (k % 100 == 99) simulation.enter_late(0, Vector3(0, -0.1, 0), 1);
+    const AppliedForce bridged{Vector3(0, -0.1, 0), commands[0].tip, Vector3(0, 0.06, 0)};
+    if (k % 100 >= 98) commands[0].bridged = BridgedForce{bridged.force, bridged.arm, 0};
+    if (k % 100 == 99) late += simulation.enter_late(0, bridged, 1) ? 1 : 0;
     simulation.step({commands.data(), styluses}, record, k % 2000 == 1999);
     if (k % 10 == 0) {
       simulation.foresee(0, commands[0].tip, kMaxHorizon, model);
@@ -57,6 +59,7 @@ TEST_CASE("a million force steps touch neither heap, locks, exceptions nor files
   const std::string violations = guard.violations();
   INFO(violations);
   CHECK(violations.empty());
+  CHECK(late > kSteps / 200);
   CHECK(touching > kSteps / 20);
   CHECK(held > kSteps / 3);
   CHECK(foreseen > kSteps / 20);

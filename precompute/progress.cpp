@@ -13,11 +13,9 @@ double seconds_between(std::chrono::steady_clock::time_point from,
 }
 
 std::string bar_text(double fraction) {
-  constexpr int kWidth = 30;
+  constexpr std::size_t kWidth = 30;
   const auto filled = static_cast<std::size_t>(std::lround(fraction * kWidth));
-  std::string bar(kWidth, '.');
-  bar.replace(0, filled, filled, '#');
-  return '[' + bar + ']';
+  return '[' + std::string(filled, '#') + std::string(kWidth - filled, '.') + ']';
 }
 
 }  // namespace

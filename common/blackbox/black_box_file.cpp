@@ -54,6 +54,11 @@ void make_room(const fs::path& folder, const std::string& program, std::size_t r
   }
 }
 
+void remove_quietly(const fs::path& path) {
+  std::error_code ignored;
+  fs::remove(path, ignored);
+}
+
 void fill(const fs::path& path, const std::string& program, const Fault& fault,
           const std::vector<BlackBoxPart*>& parts) {
   hdf5::File file = hdf5::File::create(path);
@@ -81,11 +86,11 @@ fs::path write_black_box(const fs::path& folder, int files, const std::string& p
     fill(unfinished, program, fault, parts);
     fs::rename(unfinished, folder / (name + kEnding));
   } catch (const fs::filesystem_error& error) {
+    remove_quietly(unfinished);
     throw Error(folder.string(), error.code().message(),
                 "check permissions and free space, or set black_box to another folder");
-  } catch (const Error&) {
-    std::error_code ignored;
-    fs::remove(unfinished, ignored);
+  } catch (...) {
+    remove_quietly(unfinished);
     throw;
   }
   return folder / (name + kEnding);

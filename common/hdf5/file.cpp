@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <system_error>
 
 #include "common/error.hpp"
 
@@ -101,7 +102,9 @@ File File::create(const std::filesystem::path& path) {
   if (file.get() < 0) {
     throw Error(path.string(), "cannot be created", "check that the folder exists and is writable");
   }
-  return {std::move(file), path.string()};
+  File made(std::move(file), path.string());
+  made.room_.emplace();
+  return made;
 }
 
 File File::open(const std::filesystem::path& path) {
@@ -168,6 +171,7 @@ void File::flush() {
 
 void File::close() {
   flush();
+  if (room_) room_->give_back(file_.get());
   file_ = Handle();
 }
 
@@ -390,7 +394,17 @@ void File::create_growing(const std::string& dataset, const Shape& row, hsize_t 
     chunk.push_back(extent);
   }
   const Handle creation = dataset_properties({.chunk = chunk}, name_);
+  // All that a dataset takes in the file it takes when it is extended.
+  H5Pset_alloc_time(creation.get(), H5D_ALLOC_TIME_EARLY);
   make_dataset(dataset, native_type<T>(), make_space(shape, maximum.data()).get(), creation);
+}
+
+void File::reserve_for(const Handle& dataset, hsize_t rows, hsize_t more) {
+  if (!room_) return;
+  const hsize_t bytes = growth(dataset, rows, more);
+  if (bytes == 0) return;
+  const int error = room_->reserve(file_.get(), bytes);
+  if (error != 0) fail_write("cannot grow: " + std::generic_category().message(error));
 }
 
 template <typename T>
@@ -403,6 +417,7 @@ void File::append(const std::string& dataset, hsize_t rows, const T* values) {
   extents[0] += rows;
   {
     const Handle set = open_dataset(dataset);
+    reserve_for(set, start[0], rows);
     if (H5Dset_extent(set.get(), extents.data()) < 0) fail_write("cannot extend " + dataset);
   }
   write_slab(dataset, start, count, values);

@@ -5,12 +5,14 @@
 #include <cstdint>
 #include <filesystem>
 #include <initializer_list>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "common/hdf5/handle.hpp"
 #include "common/hdf5/layout.hpp"
+#include "common/hdf5/room.hpp"
 
 /// Thin RAII over HDF5's C interface: what the model and the trace file need, nothing more. Every
 /// failure is an irdm::Error that names the file and the object. The library is not thread safe:
@@ -93,11 +95,15 @@ class File {
   /// its shape (empty for a plain list).
   template <typename T>
   void create_growing(const std::string& dataset, const Shape& row, hsize_t chunk_rows);
+  /// Throws Error when there is no room for the rows; then the file is as it was, can be flushed
+  /// and closed, and needs no more room for that. Where the file system cannot keep room free this
+  /// holds as far as HDF5 itself can do without.
   template <typename T>
   void append(const std::string& dataset, hsize_t rows, const T* values);
 
  private:
   File(Handle file, std::string name) : file_(std::move(file)), name_(std::move(name)) {}
+  void reserve_for(const Handle& dataset, hsize_t rows, hsize_t more);
   [[noreturn]] void fail_read(const std::string& what) const;
   [[noreturn]] void fail_write(const std::string& what) const;
   Handle open_object(const std::string& path) const;
@@ -112,6 +118,7 @@ class File {
 
   Handle file_;
   std::string name_;
+  std::optional<Room> room_ = {};  ///< of a new file on the disk
 };
 
 }  // namespace irdm::hdf5

@@ -13,6 +13,7 @@ namespace irdm {
 
 StopSignal::StopSignal() {
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);  // what does not fit is an error of the write
   sigset_t signals;
   sigemptyset(&signals);
   sigaddset(&signals, SIGINT);

@@ -205,7 +205,6 @@ void TraceWriter::close() {
 
 void TraceWriter::append(std::span<const StepRecord> records) {
   if (records.empty()) return;
-  rows_ += records.size();
   append_rows<std::uint64_t>("/step/force_step", 1, records,
                              [](const StepRecord& r, std::uint64_t* row) { *row = r.force_step; });
   append_rows<std::uint8_t>("/step/reset", 1, records,
@@ -218,6 +217,7 @@ void TraceWriter::append(std::span<const StepRecord> records) {
   for (std::size_t s = 0; s < static_cast<std::size_t>(stylus_count_); ++s) {
     append_stylus(records, s);
   }
+  rows_ += records.size();
 }
 
 void TraceWriter::append_object(std::span<const StepRecord> records, std::size_t i) {

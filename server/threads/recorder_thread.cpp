@@ -49,11 +49,21 @@ void RecorderThread::run() {
     writer_->close();
   } catch (const std::exception& error) {
     error_ = error.what();
+    keep_what_counts();
     // Keep taking, so that the queue does not report what the disk did.
     while (!stopped) {
       stopped = stop_.wait(kPeriodMs);
       discard();
     }
+  }
+}
+
+void RecorderThread::keep_what_counts() {
+  try {
+    const std::lock_guard lock(hdf5::library_mutex());
+    writer_->close();
+  } catch (const std::exception&) {
+    // Of the same cause. What was flushed before counts.
   }
 }
 

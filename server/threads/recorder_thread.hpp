@@ -41,6 +41,7 @@ class RecorderThread {
  private:
   void run();
   void drain();
+  void keep_what_counts();
   void discard();
 
   std::optional<TraceWriter> writer_;  ///< always there, until the end

@@ -1,7 +1,12 @@
+#include <spdlog/sinks/ostream_sink.h>
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
 #include <fstream>
+#include <memory>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -15,6 +20,8 @@
 #include "common/realtime/clock.hpp"
 #include "common/wire/frame.hpp"
 #include "tests/support/eventually.hpp"
+#include "tests/support/file_size_limit.hpp"
+#include "tests/support/small_disk.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using namespace irdm;
@@ -59,6 +66,25 @@ std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder)
   }
   std::sort(found.begin(), found.end());
   return found;
+}
+
+/// A black box of 1 MB that does not fit there.
+void check_no_room(const std::filesystem::path& folder) {
+  std::ostringstream lines;
+  const auto before = spdlog::default_logger();
+  spdlog::set_default_logger(std::make_shared<spdlog::logger>(
+      "", std::make_shared<spdlog::sinks::ostream_sink_mt>(lines)));
+  FrameLog frames;
+  frames.see(TapKind::kReceived, 1, std::vector<std::uint8_t>(1 << 20, 1));
+  BlackBox box({.folder = folder}, "program", {&frames});
+  box.start();
+  box.report("a fault", "");
+  box.finish();
+  spdlog::set_default_logger(before);
+  const std::string text = lines.str();
+  CHECK(std::count(text.begin(), text.end(), '\n') == 1);
+  CHECK_THAT(text, Contains("a fault: no black box: ") && Contains("; check "));
+  CHECK(files_in(folder).empty());
 }
 
 std::span<const std::uint8_t> bytes_of(const std::string& text) {
@@ -133,6 +159,18 @@ TEST_CASE("a black box that cannot be written disturbs nobody") {
   CHECK(files_in(folder.path()).size() == 1);
   CHECK_THROWS_WITH(write_black_box(folder.path() / "file", 1, "program", {}, {}),
                     Contains("black_box"));
+}
+
+TEST_CASE("a black box on a full disk: one line, and nothing is left of it") {
+  const auto disk = small_disk("tmpfs", "size=64k");
+  if (!disk) return;
+  check_no_room(disk->path());
+}
+
+TEST_CASE("a black box beyond the limit of a file's size: one line, and nothing is left of it") {
+  const TemporaryFolder folder;
+  const FileSizeLimit limit(GENERATE(0, 700, 10'000, 500'000));
+  check_no_room(folder.path());
 }
 
 TEST_CASE("black boxes: the oldest of the same program go, and nothing else does") {

@@ -1,40 +1,14 @@
-#include <sys/resource.h>
-
 #include <catch2/catch.hpp>
-#include <csignal>
 
 #include "server/threads/recorder_thread.hpp"
 #include "tests/server/records.hpp"
 #include "tests/support/eventually.hpp"
+#include "tests/support/file_size_limit.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using Catch::Matchers::Contains;
 using namespace irdm;
 using namespace irdm::test;
-
-namespace {
-
-/// As long as it lives, no file of this process can grow beyond `bytes`: a disk that is full.
-class FullDisk {
- public:
-  explicit FullDisk(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
-    ::getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit limit{bytes, before_.rlim_max};
-    REQUIRE(::setrlimit(RLIMIT_FSIZE, &limit) == 0);
-  }
-  FullDisk(const FullDisk&) = delete;
-  FullDisk& operator=(const FullDisk&) = delete;
-  ~FullDisk() {
-    ::setrlimit(RLIMIT_FSIZE, &before_);
-    std::signal(SIGXFSZ, handler_);
-  }
-
- private:
-  void (*handler_)(int);
-  rlimit before_{};
-};
-
-}  // namespace
 
 TEST_CASE("after finish() a recording has every row, in order") {
   const TemporaryFolder folder;
@@ -78,7 +52,7 @@ TEST_CASE("a full disk ends the recording with an error, and disturbs nobody") {
   StepSink sink(RecorderThread::kQueueCapacity);
   RecorderThread recorder(path, header(1), sink);
   constexpr rlim_t kRoom = 200'000;
-  const FullDisk full(kRoom);
+  const FileSizeLimit full(kRoom);
   SECTION("while it runs") {
     recorder.start();
     for (std::size_t k = 0; k < 20'000; ++k) {

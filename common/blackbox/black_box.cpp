@@ -48,7 +48,7 @@ void BlackBox::finish() {
 }
 
 void BlackBox::run() {
-  hdf5::silence_this_thread();
+  hdf5::prepare_library();
   for (bool stopped = false; !stopped;) {
     stopped = stop_.wait(kPeriodMs);
     const std::int64_t now_ns = monotonic_ns();

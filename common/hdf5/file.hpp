@@ -23,10 +23,6 @@ namespace irdm::hdf5 {
 template <typename T>
 hid_t native_type();
 
-/// Keeps HDF5 from printing errors of its own, in the calling thread only. File::create() and
-/// File::open() do it for theirs; another thread that uses a file calls it first.
-void silence_this_thread();
-
 /// An open HDF5 file. Paths inside it are absolute ("/mesh/nodes"); missing groups are made on
 /// write.
 class File {

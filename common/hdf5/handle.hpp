@@ -6,7 +6,9 @@
 
 namespace irdm::hdf5 {
 
-/// To be called before every other use of the library in this process; does nothing the next time.
+/// Keeps HDF5 from printing errors of its own, in the calling thread only, and from closing files
+/// at the end of the program. File::create() and File::open() do it for theirs; another thread that
+/// uses a file calls it first.
 void prepare_library();
 
 /// Owns one HDF5 identifier and closes it with the function that its kind asks for.

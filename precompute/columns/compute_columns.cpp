@@ -12,7 +12,7 @@ namespace {
 
 void store_block(const Columns& columns, const ColumnRange& block, const ColumnRange& wanted,
                  ColumnStore& store) {
-  hdf5::silence_this_thread();
+  hdf5::prepare_library();
   std::visit(
       [&](const auto& values) {
         const Eigen::Index steps = values.rows() / block.count();

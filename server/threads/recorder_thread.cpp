@@ -36,7 +36,7 @@ void RecorderThread::finish() {
 }
 
 void RecorderThread::run() {
-  hdf5::silence_this_thread();
+  hdf5::prepare_library();
   bool stopped = false;
   try {
     while (!(stopped = stop_.wait(kPeriodMs))) {

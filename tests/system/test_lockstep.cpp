@@ -1,3 +1,5 @@
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -6,6 +8,7 @@
 #include <thread>
 #include <vector>
 
+#include "common/hdf5/file.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/system/stage.hpp"
 #include "tests/system/trace.hpp"
@@ -91,6 +94,38 @@ TEST_CASE("lockstep: the same script leaves the same bits with 1 or 2 threads, i
     check_same_bits(first, play(engine, 2));
   }
 }
+
+// Sanitizers write files of their own.
+#ifndef IRDM_SANITIZED
+TEST_CASE("lockstep: a disk that gets full changes no step and keeps what was committed") {
+  const Trace whole = play("modal", 1);
+  const Stage stage;
+  stage.write("scene.toml", scene_text("[world]\ngravity = [0, -0.02, 0.01]\n", "modal"));
+  const auto path = stage.path("trace.h5");
+  Server server = stage.start_server({"--lockstep", "--record", path.string()});
+  constexpr rlimit kFull{340'000, 340'000};  // room for the first 512 steps
+  REQUIRE(::prlimit(server.process.pid(), RLIMIT_FSIZE, &kFull, nullptr) == 0);
+  ChildProcess bridge = stage.start_bridge(server);
+  REQUIRE(bridge.wait() == 0);
+  CHECK(server.process.wait() == 1);
+  CHECK_THAT(bridge.out(), Contains(" 0 gaps"));
+  CHECK(number_after(server.process.out(), "steps: ") == static_cast<double>(whole.rows()));
+  CHECK_THAT(server.process.err(), Contains("recording ended early: " + path.string()));
+  const hdf5::File file = hdf5::File::open(path);
+  const hsize_t rows = file.read<std::uint64_t>("/committed", {1})[0];
+  REQUIRE(rows > 0);
+  REQUIRE(rows < whole.rows());
+  for (const auto& [set, values] : whole.numbers) {
+    CAPTURE(set);
+    const hsize_t width = values.size() / whole.rows();
+    hdf5::Shape count{rows};
+    if (file.shape(set).size() > 1) count.push_back(width);
+    std::vector<double> kept(rows * width);
+    file.read_slab<double>(set, hdf5::Shape(count.size(), 0), count, kept.data());
+    CHECK(std::memcmp(kept.data(), values.data(), kept.size() * sizeof(double)) == 0);
+  }
+}
+#endif
 
 TEST_CASE("lockstep: another script leaves other bits") {
   // What the comparison above is worth: the least change of the input shows.

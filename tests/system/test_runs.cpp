@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "common/checksum.hpp"
+#include "common/hdf5/file.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/system/stage.hpp"
 #include "tests/system/trace.hpp"
@@ -168,5 +169,6 @@ TEST_CASE("a disk that gets full is told in one line at the end, with status 1")
   CHECK_THAT(server.err, Catch::StartsWith("irdm-server: error: recording ended early: ") &&
                              Contains("trace.h5") && Contains("check free space"));
   CHECK(number_after(server.out, "steps: ") == 1000);
+  CHECK(hdf5::File::open(stage.path("trace.h5")).exists("/committed"));
 }
 #endif

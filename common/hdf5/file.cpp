@@ -74,8 +74,8 @@ std::string to_text(const Shape& shape) {
 }  // namespace
 
 // Files are closed by their owners; the library's own closing at exit would crash on a file whose
-// closing failed because the disk is full. It has to be told before anything else. And it prints its
-// own error stack to stderr by default; our errors are one line.
+// closing failed because the disk is full. It has to be told before anything else. And it prints
+// its own error stack to stderr by default; our errors are one line.
 void prepare_library() {
   [[maybe_unused]] static const herr_t once = H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);

@@ -89,6 +89,10 @@ void Stage::write(const std::string& name, const std::string& text) const {
   std::ofstream(path(name), std::ios::binary) << text;
 }
 
+void Stage::hold_forces() const {
+  std::ofstream(path("bridge.toml"), std::ios::app) << "[bridge]\nmode = \"hold\"\n";
+}
+
 Server Stage::start_server(std::vector<std::string> arguments, const ChildOptions& options) const {
   ChildProcess process(joined({IRDM_SERVER, path("scene.toml").string()}, arguments), options);
   const std::string line = process.line_with("listening on ");

@@ -28,6 +28,9 @@ class Stage {
 
   std::filesystem::path path(const std::string& name) const { return folder_.path() / name; }
   void write(const std::string& name, const std::string& text) const;
+  /// Has the bridge hold the server's forces. Foreseeing contacts is more than a server can do in
+  /// time that a sanitizer makes ten times slower.
+  void hold_forces() const;
 
   /// Starts irdm-server on scene.toml and waits until it listens.
   Server start_server(std::vector<std::string> arguments = {},

@@ -21,18 +21,40 @@ using namespace irdm::test;
 
 namespace {
 
-/// The black box of a program in the folder that it ran in, once there is one.
-hdf5::File black_box(const Stage& stage, const std::string& program) {
+/// The black box of a program in the folder that it ran in; empty when there is none in time.
+std::filesystem::path find_black_box(const Stage& stage, const std::string& program,
+                                     int deadline_ms = kDeadlineMs) {
   std::filesystem::path found;
-  REQUIRE(eventually([&] {
+  const auto there = [&] {
     std::error_code ignored;
     for (const auto& entry : std::filesystem::directory_iterator(stage.path("blackbox"), ignored)) {
       const std::string name = entry.path().filename().string();
       if (name.starts_with(program) && name.ends_with(".h5")) found = entry.path();
     }
     return !found.empty();
-  }));
+  };
+  eventually(there, deadline_ms);
+  return found;
+}
+
+hdf5::File black_box(const Stage& stage, const std::string& program) {
+  const std::filesystem::path found = find_black_box(stage, program);
+  REQUIRE_FALSE(found.empty());
   return hdf5::File::open(found);
+}
+
+/// Kills the server or the bridge a while after the hand has begun to reach for the cube, and tells
+/// what the other leaves. Nothing when the hand did not hold it yet: then nothing has gone wrong.
+std::filesystem::path kill_in_contact(const Stage& stage, bool server_dies, int after_ms) {
+  constexpr int kSoonMs = 3000;
+  Server server = stage.start_server({}, {.folder = stage.path("")});
+  ChildProcess bridge = stage.start_bridge(server, {}, {.folder = stage.path("")});
+  bridge.line_with("session ", true);
+  ChildProcess& victim = server_dies ? server.process : bridge;
+  std::this_thread::sleep_for(std::chrono::milliseconds(after_ms));
+  victim.signal(SIGKILL);
+  victim.wait();
+  return find_black_box(stage, server_dies ? "irdm-bridge-" : "irdm-server-", kSoonMs);
 }
 
 std::vector<double> lengths(const std::vector<double>& vectors) {
@@ -126,24 +148,21 @@ TEST_CASE("black box: garbage at the server leaves its bytes and the steps meanw
 
 TEST_CASE("black box: a server that is killed in contact, and then the bridge: the other tells") {
   const Stage stage;
+  stage.hold_forces();
   stage.write("script.csv", hold_and_circle());
   const bool server_dies = GENERATE(true, false);
-  Server server = stage.start_server({}, {.folder = stage.path("")});
-  ChildProcess bridge = stage.start_bridge(server, {}, {.folder = stage.path("")});
-  bridge.line_with("session ", true);
-  // Until the hand holds the cube the connection may be lost without a fault: then it is made anew.
-  ChildProcess& victim = server_dies ? server.process : bridge;
-  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
-  victim.signal(SIGKILL);
-  victim.wait();
+  std::filesystem::path path;
+  for (int after_ms = 1500; path.empty() && after_ms < 10'000; after_ms += 1500) {
+    path = kill_in_contact(stage, server_dies, after_ms);
+  }
+  REQUIRE_FALSE(path.empty());
+  const hdf5::File file = hdf5::File::open(path);
   if (server_dies) {
-    const hdf5::File file = black_box(stage, "irdm-bridge-");
     CHECK(file.read_string_attribute("/", "fault") == "connection lost with a force");
     const std::vector<double> force = lengths(file.read<double>("/tick/0/force", {0, 3}));
     CHECK(*std::max_element(force.begin(), force.end()) > 0.0);
     CHECK(force.back() == 0.0);
   } else {
-    const hdf5::File file = black_box(stage, "irdm-server-");
     CHECK(file.read_string_attribute("/", "fault") == "stylus lost in contact");
     const std::vector<std::uint8_t> present =
         file.read<std::uint8_t>("/step/stylus/0/present", {0});

@@ -197,6 +197,8 @@ TEST_CASE("real time: a program that requires what it may not have says what to 
     CHECK(program.out.empty());
     CHECK_THAT(program.err, Contains(": error: ") && Contains("memlock unlimited") &&
                                 Contains("rtprio 90") && Contains("realtime = \"prefer\""));
+#ifndef IRDM_SANITIZED  // whose runtime has lines of its own
     CHECK(std::count(program.err.begin(), program.err.end(), '\n') == 1);
+#endif
   }
 }

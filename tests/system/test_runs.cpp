@@ -75,8 +75,7 @@ TEST_CASE("a run in real time: both end in order, and the trace says what they s
 
 TEST_CASE("a run in real time whose bridge holds the server's forces") {
   const Stage stage;
-  stage.write("bridge.toml",
-              file_content(stage.path("bridge.toml")) + "[bridge]\nmode = \"hold\"\n");
+  stage.hold_forces();
   Server server = stage.start_server({});
   ChildProcess bridge = stage.start_bridge(server);
   check_ended_well(bridge);
@@ -107,6 +106,7 @@ TEST_CASE("a server runs for its duration, to the step, and tells the bridge whe
 
 TEST_CASE("SIGINT and SIGTERM, to either of them first, leave a whole trace and status 0") {
   const Stage stage;
+  stage.hold_forces();
   stage.write("script.csv", hold_and_circle());
   const std::filesystem::path path = stage.path("trace.h5");
   const int number = GENERATE(SIGINT, SIGTERM);

@@ -1,6 +1,6 @@
 #include "server/engine/kernels.hpp"
 
-#include <cmath>
+#include <cstring>
 
 // One copy of a function for each instruction set, chosen when the program is loaded. The
 // sanitizers' run-time libraries are not ready that early.
@@ -14,7 +14,12 @@ namespace irdm {
 namespace {
 
 constexpr std::size_t kLanes = 8;
-constexpr double kNothing = 1e-100;
+
+template <typename Lanes>
+[[gnu::always_inline]] inline double sum_of(const Lanes& lanes) noexcept {
+  return ((lanes[0] + lanes[4]) + (lanes[1] + lanes[5])) +
+         ((lanes[2] + lanes[6]) + (lanes[3] + lanes[7]));
+}
 
 template <typename Scalar>
 [[gnu::always_inline]] inline double dot_of(const Scalar* a, const double* b,
@@ -24,10 +29,32 @@ template <typename Scalar>
   for (; i + kLanes <= n; i += kLanes) {
     for (std::size_t l = 0; l < kLanes; ++l) lanes[l] += static_cast<double>(a[i + l]) * b[i + l];
   }
-  double sum = ((lanes[0] + lanes[4]) + (lanes[1] + lanes[5])) +
-               ((lanes[2] + lanes[6]) + (lanes[3] + lanes[7]));
+  double sum = sum_of(lanes);
   for (; i < n; ++i) sum += static_cast<double>(a[i]) * b[i];
   return sum;
+}
+
+template <std::size_t K>
+[[gnu::always_inline]] inline Sums<K> dots_of(const double* a, const double* b,
+                                              std::size_t n) noexcept {
+  using Lanes [[gnu::vector_size(kLanes * sizeof(double))]] = double;
+  Lanes lanes[K] = {};
+  std::size_t i = 0;
+  for (; i + kLanes <= n; i += kLanes) {
+    Lanes x;
+    std::memcpy(&x, a + i, sizeof x);
+    for (std::size_t k = 0; k < K; ++k) {
+      Lanes y;
+      std::memcpy(&y, b + k * n + i, sizeof y);
+      lanes[k] += x * y;
+    }
+  }
+  Sums<K> sums;
+  for (std::size_t k = 0; k < K; ++k) {
+    sums[k] = sum_of(lanes[k]);
+    for (std::size_t j = i; j < n; ++j) sums[k] += a[j] * b[k * n + j];
+  }
+  return sums;
 }
 
 template <typename Scalar>
@@ -51,10 +78,6 @@ template <typename Scalar>
   for (std::size_t i = 0; i < n; ++i) y[i] += weighted(w, a[i], b[i], c[i]);
 }
 
-[[gnu::always_inline]] inline double put_to_rest(double x) noexcept {
-  return std::abs(x) < kNothing ? 0.0 : x;
-}
-
 }  // namespace
 
 IRDM_KERNEL double dot(const float* a, const double* b, std::size_t n) noexcept {
@@ -62,6 +85,13 @@ IRDM_KERNEL double dot(const float* a, const double* b, std::size_t n) noexcept 
 }
 IRDM_KERNEL double dot(const double* a, const double* b, std::size_t n) noexcept {
   return dot_of(a, b, n);
+}
+
+IRDM_KERNEL Sums<3> dot_three(const double* a, const double* b, std::size_t n) noexcept {
+  return dots_of<3>(a, b, n);
+}
+IRDM_KERNEL Sums<6> dot_six(const double* a, const double* b, std::size_t n) noexcept {
+  return dots_of<6>(a, b, n);
 }
 
 IRDM_KERNEL void combine(const std::array<double, 3>& w, const float* a, const float* b,

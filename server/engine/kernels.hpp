@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 /// Inner loops of the response engines, compiled for several instruction sets of which the best is
@@ -12,6 +13,12 @@ namespace irdm {
 /// sum_i a[i] b[i], in double precision.
 double dot(const float* a, const double* b, std::size_t n) noexcept;
 double dot(const double* a, const double* b, std::size_t n) noexcept;
+
+/// The same with each of the rows of b (K, n), K = 3 or 6: a is read once for all of them.
+template <std::size_t K>
+using Sums = std::array<double, K>;
+Sums<3> dot_three(const double* a, const double* b, std::size_t n) noexcept;
+Sums<6> dot_six(const double* a, const double* b, std::size_t n) noexcept;
 
 /// y[i] = w[0] a[i] + w[1] b[i] + w[2] c[i].
 void combine(const std::array<double, 3>& w, const float* a, const float* b, const float* c,
@@ -28,9 +35,14 @@ void accumulate(const std::array<double, 3>& w, const double* a, const double* b
 /// y[i] = a[i] b[i].
 void multiply(const double* a, const double* b, double* y, std::size_t n) noexcept;
 
+/// 0 for what is smaller than 1e-100: a decaying mode would end in denormal numbers, which cost a
+/// hundred times as much to compute with.
+[[gnu::always_inline]] inline double put_to_rest(double x) noexcept {
+  return std::abs(x) < 1e-100 ? 0.0 : x;
+}
+
 /// Exact transition of n oscillators over one step: (q, v) becomes A (q, v), with A = (a11 a12; a21
-/// a22) for each; what is smaller than 1e-100 becomes 0, because a decaying mode would end in
-/// denormal numbers, which cost a hundred times as much to compute with.
+/// a22) for each, put to rest.
 struct Transitions {
   const double* a11;
   const double* a12;

@@ -16,11 +16,15 @@ ModalEngine<Scalar>::ModalEngine(std::shared_ptr<const Model> model) : model_(st
   modes_ = static_cast<std::size_t>(response.mode_count());
   for (auto* values :
        {&a11_, &a12_, &a21_, &a22_, &b1_, &b2_, &coordinate_, &velocity_, &free_coordinate_,
-        &free_velocity_, &modal_force_, &weighted_row_, &foreseen_coordinate_, &foreseen_velocity_,
-        &next_coordinate_, &next_velocity_}) {
+        &free_velocity_, &modal_force_, &weighted_row_}) {
     values->assign(modes_, 0.0);
   }
   contact_shapes_.assign(3 * kMaxContacts * modes_, 0.0);
+  coordinate_after_.assign(kMaxHorizon * modes_, 0.0);
+  velocity_after_.assign(kMaxHorizon * modes_, 0.0);
+  coordinate_from_.assign(kMaxHorizon * 3 * modes_, 0.0);
+  shape_products_.assign(6 * modes_, 0.0);
+  state_products_.assign(9 * modes_, 0.0);
   set_transitions(1.0);
 }
 
@@ -38,15 +42,33 @@ void ModalEngine<Scalar>::set_transitions(double damping) noexcept {
     b1_[i] = step.b1;
     b2_[i] = step.b2;
   }
-  coordinate_after_ = b1_;
-  velocity_after_ = b2_;
-  coordinate_after_.resize(kMaxHorizon * modes_);
-  velocity_after_.resize(kMaxHorizon * modes_);
-  for (std::size_t from = 0; from + modes_ < coordinate_after_.size(); from += modes_) {
-    const std::size_t to = from + modes_;
-    transit({a11_.data(), a12_.data(), a21_.data(), a22_.data()}, coordinate_after_.data() + from,
-            velocity_after_.data() + from, coordinate_after_.data() + to,
-            velocity_after_.data() + to, modes_);
+  tabulate_horizon();
+}
+
+template <typename Scalar>
+void ModalEngine<Scalar>::tabulate_horizon() noexcept {
+  for (std::size_t i = 0; i < modes_; ++i) {
+    double from_coordinate[2] = {1.0, 0.0};
+    double from_velocity[2] = {0.0, 1.0};
+    double after[2] = {b1_[i], b2_[i]};
+    double held = b1_[i];
+    const auto go_on = [&](double (&state)[2]) {
+      const double coordinate = put_to_rest(a11_[i] * state[0] + a12_[i] * state[1]);
+      state[1] = put_to_rest(a21_[i] * state[0] + a22_[i] * state[1]);
+      state[0] = coordinate;
+    };
+    for (std::size_t n = 0; n < kMaxHorizon; ++n) {
+      coordinate_after_[n * modes_ + i] = after[0];
+      velocity_after_[n * modes_ + i] = after[1];
+      double* from = coordinate_from_.data() + 3 * n * modes_ + i;
+      from[0] = from_coordinate[0];
+      from[modes_] = from_velocity[0];
+      from[2 * modes_] = held;
+      go_on(from_coordinate);
+      go_on(from_velocity);
+      go_on(after);
+      held += after[0];
+    }
   }
 }
 
@@ -137,45 +159,36 @@ void ModalEngine<Scalar>::collect_modal_forces(std::span<const NodalForce> force
   }
 }
 
+// Both are sums over the modes of what the horizon's tables hold, times products that are the same
+// for all of its steps.
 template <typename Scalar>
 void ModalEngine<Scalar>::foresee(const ContactPatch& patch, std::span<const NodalForce> held,
                                   std::span<Vector3> path, std::span<Matrix3> response) noexcept {
-  std::array<double*, 3> rows{};
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto index = static_cast<std::size_t>(axis);
-    rows[index] = contact_shapes_.data() + index * modes_;
-    mean_shape(patch, axis, rows[index]);
+  collect_modal_forces(held);
+  for (std::size_t i = 0; i < 3; ++i) {
+    double* shape = contact_shapes_.data() + i * modes_;
+    mean_shape(patch, static_cast<int>(i), shape);
+    double* products = state_products_.data() + 3 * i * modes_;
+    multiply(shape, free_coordinate_.data(), products, modes_);
+    multiply(shape, free_velocity_.data(), products + modes_, modes_);
+    multiply(shape, modal_force_.data(), products + 2 * modes_, modes_);
+  }
+  constexpr std::array<std::array<std::size_t, 2>, 6> kPairs{
+      {{0, 0}, {1, 0}, {1, 1}, {2, 0}, {2, 1}, {2, 2}}};
+  for (std::size_t k = 0; k < kPairs.size(); ++k) {
+    multiply(contact_shapes_.data() + kPairs[k][0] * modes_,
+             contact_shapes_.data() + kPairs[k][1] * modes_, shape_products_.data() + k * modes_,
+             modes_);
   }
   for (std::size_t n = 0; n < response.size(); ++n) {
-    for (int j = 0; j < 3; ++j) {
-      multiply(coordinate_after_.data() + n * modes_, rows[static_cast<std::size_t>(j)],
-               weighted_row_.data(), modes_);
-      for (int i = 0; i <= j; ++i) {
-        response[n](i, j) = response[n](j, i) =
-            dot(weighted_row_.data(), rows[static_cast<std::size_t>(i)], modes_);
-      }
-    }
+    const Sums<6> r =
+        dot_six(coordinate_after_.data() + n * modes_, shape_products_.data(), modes_);
+    response[n] << r[0], r[1], r[3], r[1], r[2], r[4], r[3], r[4], r[5];
   }
-  collect_modal_forces(held);
-  foreseen_coordinate_ = free_coordinate_;
-  foreseen_velocity_ = free_velocity_;
   for (std::size_t n = 0; n < path.size(); ++n) {
-    if (n > 0) {
-      transit({a11_.data(), a12_.data(), a21_.data(), a22_.data()}, foreseen_coordinate_.data(),
-              foreseen_velocity_.data(), next_coordinate_.data(), next_velocity_.data(), modes_);
-      foreseen_coordinate_.swap(next_coordinate_);
-      foreseen_velocity_.swap(next_velocity_);
-    }
-    if (!held.empty()) {
-      for (std::size_t i = 0; i < modes_; ++i) {
-        foreseen_coordinate_[i] += b1_[i] * modal_force_[i];
-        foreseen_velocity_[i] += b2_[i] * modal_force_[i];
-      }
-    }
-    for (int axis = 0; axis < 3; ++axis) {
-      path[n][axis] =
-          dot(rows[static_cast<std::size_t>(axis)], foreseen_coordinate_.data(), modes_);
-    }
+    const Sums<3> moved =
+        dot_three(coordinate_from_.data() + 3 * n * modes_, state_products_.data(), 3 * modes_);
+    path[n] = Vector3(moved[0], moved[1], moved[2]);
   }
 }
 

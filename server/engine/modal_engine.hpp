@@ -32,6 +32,7 @@ class ModalEngine final : public ResponseEngine {
 
  private:
   void set_transitions(double damping) noexcept;
+  void tabulate_horizon() noexcept;
   void move_on() noexcept;
   void mean_shape(const ContactPatch& patch, int axis, double* shape) const noexcept;
   void collect_modal_forces(std::span<const NodalForce> forces) noexcept;
@@ -54,8 +55,11 @@ class ModalEngine final : public ResponseEngine {
   /// (kMaxHorizon, r): coordinate and velocity of each mode at the end of the n-th step after the
   /// one in which a modal force of 1 acted.
   std::vector<double> coordinate_after_, velocity_after_;
-  std::vector<double> foreseen_coordinate_, foreseen_velocity_;
-  std::vector<double> next_coordinate_, next_velocity_;
+  /// (kMaxHorizon, 3, r): the coordinate n steps on from a coordinate of 1, from a velocity of 1
+  /// (both without force), and from a modal force of 1 held for n + 1 steps.
+  std::vector<double> coordinate_from_;
+  /// What these are multiplied with: (6, r) and (3, 3, r).
+  std::vector<double> shape_products_, state_products_;
 };
 
 }  // namespace irdm

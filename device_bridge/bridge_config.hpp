@@ -55,7 +55,7 @@ struct BridgeConfig {
   double continuous_force = 0.88;       ///< key `bridge.continuous_force`: for long [N], (0, 40]
   /// key `bridge.mode`: "predict": the contact is solved here, so that delay is not felt | "hold":
   /// the server's forces are held. In lockstep there is no delay, and forces are held.
-  bool predict = false;
+  bool predict = true;
   double connect_timeout = 0.075;  ///< key `bridge.connect_timeout`: an attempt [s], 0.01 to 0.1
   /// key `bridge.key_file`: the server's key; none: the server is on this machine
   std::optional<std::filesystem::path> key_file;

@@ -14,6 +14,19 @@ struct AppliedForce {
   Vector3 arm = Vector3::Zero();    ///< from the centre of mass to where it acted [m], B
 };
 
+/// No hand pushes harder [N].
+inline constexpr double kMostAppliedForce = 100.0;
+
+/// A force [N], no larger than that, whatever was found or told.
+inline Vector3 bounded_force(const Vector3& force) noexcept {
+  const double norm = force.norm();
+  return norm > kMostAppliedForce ? Vector3(kMostAppliedForce / norm * force) : force;
+}
+
+/// A touch begins no deeper below the surface than this, beyond the way of the tip in the step [m]:
+/// a tip that is deeper was inside all along, and there is no telling how it got there.
+inline constexpr double kDeepestStart = 2e-3;
+
 /// The last steps of such a stylus: each is told several times, so that what is lost on the way
 /// comes with the next.
 struct AppliedForces {

@@ -43,7 +43,7 @@ class RigidPast {
   /// Whether there is anything that replay() has to do.
   bool changed() const noexcept { return changed_ >= 0; }
   /// The state after the last step with all that was added.
-  /// @param state as it is without
+  /// @param free as they are now, all along  @param state as it is without
   RigidState replay(const RigidBody& body, const FreeForces& free,
                     const RigidState& state) noexcept;
 

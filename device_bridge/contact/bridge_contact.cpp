@@ -13,7 +13,10 @@ void BridgeContact::receive(const ContactModel& model, std::int64_t now_ns) noex
   }
   if (pacer_.running() && model.step <= newest_model_) return;
   wanted_.standing = false;
-  if (!pacer_.running()) predictor_.reset();
+  if (!pacer_.running()) {
+    predictor_.reset();
+    in_contact_ = false;
+  }
   newest_model_ = model.step;
   horizon_ns_ = std::llround(1e9 * dt_ * (model.valid ? model.horizon : kMaxHorizon));
   pacer_.hear(model.step, model.newest == kNoStep ? std::nullopt : std::optional(model.newest),

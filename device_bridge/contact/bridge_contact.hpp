@@ -51,7 +51,7 @@ class BridgeContact {
   std::uint64_t newest_model_ = 0;  ///< step of the newest model; while the pacer runs
   std::int64_t horizon_ns_ = 0;     ///< of that model
   Wanted wanted_;
-  bool in_contact_ = false;  ///< in the last step
+  bool in_contact_ = false;  ///< in the last step that anything is known of
   AppliedForces applied_;
   std::optional<Vector3> last_tip_;
 };

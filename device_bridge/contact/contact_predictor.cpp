@@ -1,5 +1,8 @@
 #include "device_bridge/contact/contact_predictor.hpp"
 
+#include <utility>
+
+#include "common/contact/applied_forces.hpp"
 #include "common/contact/single_contact.hpp"
 
 namespace irdm {
@@ -7,16 +10,6 @@ namespace {
 
 Vector3 sideways(const Vector3& v, const Vector3& normal) noexcept {
   return v - v.dot(normal) * normal;
-}
-
-// Below the surface, besides the tip's way in the step [m].
-constexpr double kDeepStart = 0.002;
-// No hand pushes harder [N].
-constexpr double kMostForce = 100.0;
-
-Vector3 bounded(const Vector3& force) noexcept {
-  const double norm = force.norm();
-  return norm > kMostForce ? Vector3(kMostForce / norm * force) : force;
 }
 
 }  // namespace
@@ -121,7 +114,7 @@ bool ContactPredictor::touch(std::uint64_t k, const Vector3& from_surface, doubl
     if (depth <= 0.0) return false;
     // What the server touches already has a place.
     const bool known = model_.state == ContactState::kTouching;
-    if (!known && depth > way + kDeepStart) return false;
+    if (!known && depth > way + kDeepestStart) return false;
     touching_ = true;
     began_ = known ? 0 : k;
     slipping_ = known && model_.slipping;
@@ -134,6 +127,7 @@ ContactPredictor::Answer ContactPredictor::solve(std::uint64_t k, const Vector3&
   Answer answer;
   past(k) = {.step = k};
   last_step_ = k;
+  const Vector3 tip_before = std::exchange(last_tip_, tip).value_or(tip);
   if (!reaches(k)) return answer;
   answer.known = true;
   if (!model_.valid) return answer;
@@ -145,8 +139,7 @@ ContactPredictor::Answer ContactPredictor::solve(std::uint64_t k, const Vector3&
   const Vector3 tip_B = end.orientation.conjugate() * (tip - end.position);
   const bool held = model_.state == ContactState::kHeld;
   const Vector3 surface = surface_at(k);
-  const double way = (tip - last_tip_.value_or(tip) - model_.dt * motion_.velocity).norm();
-  last_tip_ = tip;
+  const double way = (tip - tip_before - model_.dt * motion_.velocity).norm();
   if (!held && !touch(k, tip_B - surface, way)) return answer;
   Friction friction = model_.friction;
   if (slipping_) friction.static_ = friction.kinetic;
@@ -162,10 +155,11 @@ ContactPredictor::Answer ContactPredictor::solve(std::uint64_t k, const Vector3&
   slipping_ = found.mode == ContactMode::kSlipping;
   offset_ += found.slip;
   last_place_ = model_.place + offset_;
-  answer.force = Q * bounded(found.force);
+  const Vector3 force = bounded_force(found.force);
+  answer.force = Q * force;
   answer.state = held ? ContactState::kHeld : ContactState::kTouching;
   answer.normal = end.orientation * model_.normal;
-  past(k) = {k, answer.force, bounded(found.force), arm, found.slip};
+  past(k) = {k, answer.force, force, arm, found.slip};
   return answer;
 }
 

@@ -11,9 +11,8 @@ constexpr std::uint64_t kFirstLead = 2;
 // A force that is there when its step is made came early enough; one step more is kept in reserve.
 constexpr std::int64_t kLeast = 0;
 constexpr std::int64_t kReserve = 1;
-// What is borne while in contact of being late, and of being early.
-constexpr std::int64_t kLateTolerance = 8;
-constexpr std::int64_t kEarlyTolerance = 8;
+// What is borne of either while in contact.
+constexpr std::int64_t kTolerance = 8;
 // Ahead of the server, beyond which nothing fits together any more [steps].
 constexpr std::uint64_t kFarthest = 200;
 // For how many steps all forces have to be early before some of that is given up.
@@ -41,14 +40,15 @@ void StepPacer::begin(std::uint64_t step, std::int64_t now_ns) noexcept {
 }
 
 void StepPacer::keep_pace(std::int64_t lead, bool in_contact) noexcept {
+  const std::int64_t tolerance = in_contact ? kTolerance : 0;
   least_lead_ = heard_ == 0 ? lead : std::min(least_lead_, lead);
   ++heard_;
   std::int64_t change = 0;
-  if (lead < kLeast - (in_contact ? kLateTolerance : 0)) {
+  if (lead < kLeast - tolerance) {
     change = std::min<std::int64_t>(kLeast - lead, kMost);
   } else if (heard_ >= kPatience) {
     const std::int64_t wanted = kLeast + kReserve;
-    if (least_lead_ > wanted + (in_contact ? kEarlyTolerance : 0)) change = wanted - least_lead_;
+    if (least_lead_ > wanted + tolerance) change = wanted - least_lead_;
     heard_ = 0;
   }
   if (change == 0) return;

@@ -25,7 +25,8 @@ class AppliedHistory {
       if (entry.step != kNoStep && entry.step > step) continue;
       entry = {step, applied.past[static_cast<std::size_t>(i)]};
     }
-    if (applied.count > 0 && (newest_ == kNoStep || applied.step > newest_)) newest_ = applied.step;
+    if (applied.count == 0) return;
+    if (newest_ == kNoStep || applied.step > newest_) newest_ = applied.step;
     base_ = std::max(base_, applied.base);
   }
 

@@ -7,13 +7,6 @@ namespace {
 
 // No contact model is good for longer [s].
 constexpr double kLongestHorizon = 0.05;
-// No hand pushes harder [N].
-constexpr double kMostForce = 100.0;
-
-Vector3 bounded(const Vector3& force) noexcept {
-  const double norm = force.norm();
-  return norm > kMostForce ? Vector3(kMostForce / norm * force) : force;
-}
 
 }  // namespace
 
@@ -60,7 +53,7 @@ StylusCommand BridgedStylus::next(const StylusCommand& command, std::uint64_t se
   next.tip = tip_;
   next.bridged = BridgedForce{.object = simulation_.foreseen_object(s_)};
   if (applied != nullptr) {
-    next.bridged->force = bounded(applied->force);
+    next.bridged->force = bounded_force(applied->force);
     next.bridged->arm = applied->arm;
   }
   return next;
@@ -89,7 +82,7 @@ void BridgedStylus::enter_late(const AppliedHistory& history, std::uint64_t k) n
     }
     known_ |= std::uint64_t{1} << i;
     if (applied->force.isZero(0.0)) continue;
-    const AppliedForce late{bounded(applied->force), applied->tip, applied->arm};
+    const AppliedForce late{bounded_force(applied->force), applied->tip, applied->arm};
     ++(simulation_.enter_late(s_, late, static_cast<int>(i)) ? late_ : lost_);
   }
 }

@@ -34,8 +34,6 @@ constexpr double kEdgeTime = 0.06;
 // Rounds of finding where a contact begins, and when it is found [m].
 constexpr int kSettlingRounds = 8;
 constexpr double kSettled = 1e-6;
-// How deep below the surface a contact may begin, beyond the way of the tip in the step [m].
-constexpr double kDeepest = 2e-3;
 
 // The iteration goes on in the next step from where it was left, so a few sweeps are enough.
 constexpr SolverLimits kFloorLimits{40, 1e-10, 8, 1e-6, 1e-3};
@@ -203,7 +201,7 @@ bool SoftObject::settle_down(std::size_t s, const Vector3& tip) noexcept {
     if (aside.norm() < kSettled) break;
     stylus.slide(aside, aside.norm(), rest_);
   }
-  return depth <= stylus.tip_moved() + kDeepest;
+  return depth <= stylus.tip_moved() + kDeepestStart;
 }
 
 // Steps 1 and 3: where the contacts' points would be without force, and the elastic compliance
@@ -337,7 +335,7 @@ void SoftObject::write(ObjectRecord& record) const noexcept {
     out.point = points_[static_cast<std::size_t>(a)];
     out.force = solved.force;
     out.normal = solved.normal;
-    out.offset = stylus.offset();
+    out.offset = solved.arm - contact.arm;
     out.proxy = contact.arm;
     for (int b = 0; b < contact_count_; ++b) {
       out.proxy += elastic_.block<3, 3>(row(a), row(b)) * problem_.contact(floor_count_ + b).force;

@@ -132,4 +132,5 @@ class SoftObject {
   ContactSolver solver_;
   NodalForces nodal_;
 };
+
 }  // namespace irdm

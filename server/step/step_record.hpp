@@ -49,7 +49,7 @@ struct ContactRecord {
   SurfacePoint point;  ///< middle of the contact; this and what follows means nothing when free
   Vector3 force = Vector3::Zero();   ///< on the object [N], B
   Vector3 normal = Vector3::Zero();  ///< outward, of the surface at rest under the tip; unit, B
-  Vector3 offset = Vector3::Zero();  ///< from the held point to the tip [m], B
+  Vector3 offset = Vector3::Zero();  ///< from the point to where the force acts [m], B
   Vector3 proxy = Vector3::Zero();   ///< god-object: the point at the end of the step [m], W
 };
 

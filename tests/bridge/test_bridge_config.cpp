@@ -48,6 +48,8 @@ TEST_CASE("bridge configuration has defaults for all but the script") {
   CHECK(config.rate == 1000.0);
   CHECK(config.max_force == 3.3);
   CHECK(config.connect_timeout == 0.075);
+  CHECK(config.predict);
+  CHECK(BridgeConfig().predict == config.predict);
   REQUIRE(config.devices.size() == 1);
   CHECK(config.devices[0].type == "virtual");
   CHECK(config.devices[0].script == file.path().parent_path() / "a.csv");

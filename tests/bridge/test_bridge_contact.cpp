@@ -145,6 +145,21 @@ TEST_CASE("contact at the bridge: no touch begins deeper than the tip can have c
   CHECK(bench.contact.wanted().force.y() > 0.9);
 }
 
+TEST_CASE("contact at the bridge: the way of a tip counts while nothing can be touched") {
+  Bench bench;
+  bench.ticks(100, 0.001);
+  for (int i = 0; i < 20; ++i) {
+    ContactModel none;
+    none.step = bench.server_step++;
+    none.dt = kDt;
+    bench.contact.receive(none, bench.now_ns);
+    bench.ticks(2, -0.05, false);
+  }
+  bench.ticks(100, -0.05);
+  CHECK(bench.contact.wanted().any);
+  CHECK(bench.contact.wanted().force.isZero(0.0));
+}
+
 TEST_CASE("contact at the bridge: no force is larger than a hand's") {
   Bench bench;
   bench.ticks(100, 0.001);

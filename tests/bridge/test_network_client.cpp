@@ -87,6 +87,24 @@ TEST_CASE("client says hello, sends samples of its slot and takes their forces")
   CHECK(server.input().force.force == Vector3(1, 0, 0));
 }
 
+TEST_CASE("client solves the contact only where it is asked to and the server can") {
+  for (const bool wanted : {true, false}) {
+    for (const bool offered : {true, false}) {
+      CAPTURE(wanted, offered);
+      ScriptedServer server({.predict = wanted});
+      RawPeer peer = server.listener.accept();
+      const auto hello = peer.receive_as<Hello>();
+      REQUIRE(hello);
+      CHECK(((hello->capabilities & wire::kCapabilityContactModel) != 0) == wanted);
+      peer.session = 1;
+      peer.send(Welcome{
+          .capabilities = offered ? wire::kCapabilityContactModel : 0, .session = 1, .dt = 0.002});
+      REQUIRE(server.wait_for([&] { return server.link.state.front().linked; }));
+      CHECK(server.link.state.front().predict == (wanted && offered));
+    }
+  }
+}
+
 TEST_CASE("client takes answers to newer samples from a run that stands still") {
   ScriptedServer server;
   RawPeer peer = server.welcome();

@@ -22,7 +22,10 @@ class ProbeDevice : public HapticDevice {
   bool simulated() const noexcept override { return true; }
   double duration() const noexcept override { return 1.0; }
 
+  DeviceState state() const noexcept override { return said; }
+
   StylusPose pose;
+  DeviceState said;
   Vector3 force = Vector3::Constant(7.0);
 };
 
@@ -89,6 +92,23 @@ TEST_CASE("servo loop shows the filtered force and remembers the largest") {
   now_ns = show(loop, now_ns, 3, Vector3::Zero());
   show(loop, now_ns, 10, Vector3(0, 1, 0));
   CHECK(device.force.isApprox(Vector3(0, 1, 0)));
+  CHECK(loop.counts().faults == 1);
+}
+
+TEST_CASE("servo loop: a device that fails before its stylus is armed stays without force") {
+  ProbeDevice device;
+  ServoLoop loop(device, {.needed_success = 0.9});
+  loop.restart(true);
+  std::int64_t now_ns = show(loop, 0, 10, Vector3(0, 1, 0));
+  CHECK(loop.filter().state() == FilterState::kDisarmed);
+  CHECK(loop.filter().waits());
+  device.said.failed = true;
+  now_ns = show(loop, now_ns, 1, Vector3(0, 1, 0));
+  CHECK(loop.filter().state() == FilterState::kFault);
+  device.said.failed = false;
+  show(loop, now_ns, 1000, Vector3(0, 1, 0));
+  CHECK(loop.filter().state() == FilterState::kFault);
+  CHECK(device.force == Vector3::Zero());
   CHECK(loop.counts().faults == 1);
 }
 

@@ -36,7 +36,7 @@ class Served {
     applied.step = simulation.next_step();
     applied.count = 1;
     applied.base = base.value_or(applied.step);
-    applied.past[0] = {force, tip, tip};
+    applied.past[0] = {force, tip, told_arm.value_or(tip)};
     if (told) history.take(applied);
     const std::array commands{bridged.next({true, 0, tip, {}}, session, history)};
     simulation.step(commands, record, put_back);
@@ -61,6 +61,7 @@ class Served {
   AppliedHistory history{kSession};
   AppliedForces applied;
   std::optional<std::uint64_t> base;  ///< that the bridge tells of; none: the newest
+  std::optional<Vector3> told_arm;    ///< none: where the tip is
   StepRecord record;
   ContactModel model;
 };
@@ -77,6 +78,39 @@ TEST_CASE("bridged stylus: its force acts on the object that the model spoke of,
   CHECK(served.moved(0).y() < -1e-4);
   CHECK(served.moved(1).isZero(0.0));
   CHECK((served.record.stylus[0].force + kPush).norm() < 1e-12);
+}
+
+// The lever arm that the bridge tells is what acts, and what a trace says.
+TEST_CASE("bridged stylus: its force turns the object by the arm that the bridge tells") {
+  Served served(1);
+  for (int k = 0; k < 5; ++k) served.step(kAbove, Vector3::Zero());
+  served.told_arm = kAbove + Vector3(0.004, -0.002, 0.003);
+  served.step(kAbove, kPush);
+  const ObjectRecord& object = served.record.object[0];
+  const ContactRecord& contact = object.contact[0];
+  REQUIRE(contact.state == ContactState::kTouching);
+  const Model& model = *cubes(1).objects[0].model;
+  const Vector3 moment = served.simulation.dt() * served.told_arm->cross(kPush);
+  const Vector3 turned = model.body.inertia * object.angular_velocity;
+  // But for the gyroscopic moment of what it has begun to turn.
+  const double gyroscopic = served.simulation.dt() * object.angular_velocity.norm();
+  CHECK((turned - moment).norm() < gyroscopic * moment.norm());
+  // Nothing has deformed it yet.
+  Vector3 point = Vector3::Zero();
+  for (std::size_t i = 0; i < 3; ++i) {
+    point += contact.point.weights[i] * model.mesh.rest_position(contact.point.nodes[i]);
+  }
+  CHECK((point + contact.offset - *served.told_arm).norm() < 1e-12);
+}
+
+TEST_CASE("bridged stylus: an arm that is nowhere near the object is not believed") {
+  Served served(1);
+  for (int k = 0; k < 5; ++k) served.step(kAbove, Vector3::Zero());
+  served.told_arm = Vector3(3.0, 0, 0);
+  served.step(kAbove, kPush);
+  const ContactRecord& contact = served.record.object[0].contact[0];
+  REQUIRE(contact.state == ContactState::kTouching);
+  CHECK(contact.offset.norm() < 0.01);
 }
 
 TEST_CASE("bridged stylus: a force from far away acts on nothing") {

@@ -14,9 +14,8 @@ ModalEngine<Scalar>::ModalEngine(std::shared_ptr<const Model> model) : model_(st
   shapes_ = &std::get<RowMatrix<Scalar>>(response.shapes);
   if (response.centrifugal.rows() > 0) centrifugal_ = response.centrifugal.data();
   modes_ = static_cast<std::size_t>(response.mode_count());
-  for (auto* values :
-       {&a11_, &a12_, &a21_, &a22_, &b1_, &b2_, &coordinate_, &velocity_, &free_coordinate_,
-        &free_velocity_, &modal_force_, &weighted_row_}) {
+  for (auto* values : {&a11_, &a12_, &a21_, &a22_, &b1_, &b2_, &coordinate_, &velocity_,
+                       &free_coordinate_, &free_velocity_, &modal_force_, &weighted_row_}) {
     values->assign(modes_, 0.0);
   }
   contact_shapes_.assign(3 * kMaxContacts * modes_, 0.0);
@@ -52,7 +51,7 @@ void ModalEngine<Scalar>::tabulate_horizon() noexcept {
     double from_velocity[2] = {0.0, 1.0};
     double after[2] = {b1_[i], b2_[i]};
     double held = b1_[i];
-    const auto go_on = [&](double (&state)[2]) {
+    const auto go_on = [&](double(&state)[2]) {
       const double coordinate = put_to_rest(a11_[i] * state[0] + a12_[i] * state[1]);
       state[1] = put_to_rest(a21_[i] * state[0] + a22_[i] * state[1]);
       state[0] = coordinate;

@@ -77,7 +77,7 @@ int columns_kept(const std::string& out) {
 
 }  // namespace
 
-TEST_CASE("slices join to the file of a whole run, bit for bit, by both methods") {
+TEST_CASE("slices join to the file of a whole run, bit for bit, by both methods", "[slow]") {
   for (const std::string& config : {kStepping, modal()}) {
     Run run(config);
     // The modes themselves may differ in their last bits with the number of threads.
@@ -97,7 +97,7 @@ TEST_CASE("slices join to the file of a whole run, bit for bit, by both methods"
   }
 }
 
-TEST_CASE("merge refuses slices that do not fit together, one by one") {
+TEST_CASE("merge refuses slices that do not fit together, one by one", "[slow]") {
   Run run;
   run.write("other.toml", std::string(kStepping).replace(kStepping.find("2000"), 4, "2001"));
   run.write("linear.toml", kStepping + "[time_stepping]\nmodel = \"linear\"\n");

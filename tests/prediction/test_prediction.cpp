@@ -102,7 +102,7 @@ constexpr LoopLink kBad{.delay = 0.005, .jitter = 0.01, .loss = 0.05};
 
 }  // namespace
 
-TEST_CASE("prediction: a held point that is swung feels as without delay") {
+TEST_CASE("prediction: a held point that is swung feels as without delay", "[slow]") {
   for (const double E : kStiffnesses) {
     const LoopSetup setup = swung(E);
     const LoopRun direct = run_loop(setup, LoopMode::kDirect);
@@ -138,7 +138,7 @@ TEST_CASE("prediction: the same with the dense engine") {
   CHECK(late.error < 0.005);
 }
 
-TEST_CASE("prediction: a surface that is pressed feels as without delay") {
+TEST_CASE("prediction: a surface that is pressed feels as without delay", "[slow]") {
   for (const double E : kStiffnesses) {
     const LoopSetup setup = pressed(E, 0.0);
     const LoopRun direct = run_loop(setup, LoopMode::kDirect);
@@ -153,7 +153,7 @@ TEST_CASE("prediction: a surface that is pressed feels as without delay") {
 // Where the tip slips, the step in which it begins to makes a difference of a sixth of the
 // friction; on a very soft surface and a bad link, of more, since the tip goes on from another
 // place.
-TEST_CASE("prediction: a tip that slides on a surface") {
+TEST_CASE("prediction: a tip that slides on a surface", "[slow]") {
   for (const double E : kStiffnesses) {
     const LoopSetup setup = pressed(E, 0.03);
     const LoopRun direct = run_loop(setup, LoopMode::kDirect);
@@ -168,7 +168,7 @@ TEST_CASE("prediction: a tip that slides on a surface") {
 
 // Each hand learns of the other's forces by the link only. A stiff object between two hands that
 // hold it is beyond that from 5 ms one way on.
-TEST_CASE("prediction: two hands on one object") {
+TEST_CASE("prediction: two hands on one object", "[slow]") {
   for (const double E : {1e3, 2e3}) {
     const LoopSetup setup = by_two(E);
     const LoopRun direct = run_loop(setup, LoopMode::kDirect);
@@ -187,7 +187,7 @@ TEST_CASE("prediction: two hands on one object") {
 }
 
 // The hand feels what the filter makes of the force; the object gets the force itself.
-TEST_CASE("prediction: behind the safety filter the device's port gives no energy") {
+TEST_CASE("prediction: behind the safety filter the device's port gives no energy", "[slow]") {
   for (const double aside : {0.0, 0.03}) {
     for (const double E : kStiffnesses) {
       LoopSetup setup = pressed(E, aside);

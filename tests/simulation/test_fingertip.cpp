@@ -29,7 +29,8 @@ double largest_over_least(const std::vector<double>& values) {
 
 }  // namespace
 
-TEST_CASE("fingertip: the mask of a fingertip sums to one, is symmetric, and moves smoothly") {
+TEST_CASE("fingertip: the mask of a fingertip sums to one, is symmetric, and moves smoothly",
+          "[slow]") {
   const auto model = fem_cube({8});
   const RestSurface surface(model->mesh);
   PressureMask mask(surface, 0.015);
@@ -83,7 +84,7 @@ TEST_CASE("fingertip: the force spreads as wide as asked on any mesh that is fin
   }
 }
 
-TEST_CASE("fingertip: at rest the force is that of a static solve on the whole mesh") {
+TEST_CASE("fingertip: at rest the force is that of a static solve on the whole mesh", "[slow]") {
   const double radius = GENERATE(0.0, 0.015);
   FemCube cube;
   cube.cells = 4;

@@ -34,7 +34,7 @@ void step(Simulation& simulation, StepRecord& record) {
 
 }  // namespace
 
-TEST_CASE("floor: at rest it carries the weight, and nothing moves") {
+TEST_CASE("floor: at rest it carries the weight, and nothing moves", "[slow]") {
   Simulation simulation(standing(2000.0, {0.5, 0.5}));
   const double weight = simulation.object().model().body.mass * kGravity;
   StepRecord record;

@@ -26,6 +26,7 @@ class DeviceStage {
     stage.write("scene.toml",
                 scene_text() + "tether = { stiffness = 200, angular_stiffness = 1 }\n");
     stage.write("bridge.toml", "[[device]]\ntype = \"openhaptics\"\n");
+    if (!kKeepsPace) stage.hold_forces();
     stage.write("motion.txt",
                 "0 0 70 0 0\n500 0 50 0 0\n1500 0 50 0 0\n2000 0 70 0 0\n2200 0 70 0 0\n");
   }

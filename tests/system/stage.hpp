@@ -15,6 +15,14 @@ namespace irdm::test {
 /// there.
 std::filesystem::path cube_model();
 
+/// Whether bridge and server keep the pace of real time on any machine, so that a hand feels forces
+/// in `predict`. A sanitizer makes them ten times slower.
+#ifdef IRDM_SANITIZED
+inline constexpr bool kKeepsPace = false;
+#else
+inline constexpr bool kKeepsPace = true;
+#endif
+
 /// A server that listens.
 struct Server {
   ChildProcess process;
@@ -28,8 +36,7 @@ class Stage {
 
   std::filesystem::path path(const std::string& name) const { return folder_.path() / name; }
   void write(const std::string& name, const std::string& text) const;
-  /// Has the bridge hold the server's forces. Foreseeing contacts is more than a server can do in
-  /// time that a sanitizer makes ten times slower.
+  /// Has the bridge hold the server's forces, which takes less of both.
   void hold_forces() const;
 
   /// Starts irdm-server on scene.toml and waits until it listens.

@@ -43,6 +43,7 @@ std::vector<std::uint8_t> noise(unsigned seed, std::size_t size) {
 
 TEST_CASE("a bridge is killed: its contact ends, the server goes on and takes the next one") {
   const Stage stage;
+  if (!kKeepsPace) stage.hold_forces();
   stage.write("script.csv", hold_and_circle());
   const std::filesystem::path path = stage.path("trace.h5");
   Server server = stage.start_server({"--record", path.string()});
@@ -75,7 +76,8 @@ TEST_CASE("a bridge is killed: its contact ends, the server goes on and takes th
   CHECK(next_seen);
 }
 
-TEST_CASE("a server is killed: the bridge shows no force meanwhile and finds the next one") {
+TEST_CASE("a server is killed: the bridge shows no force meanwhile and finds the next one",
+          "[slow]") {
   const Stage stage;
   stage.write("script.csv", hold_and_circle());
   // A hand that forgets within a few hundredths of a second, so that the place where it is when the
@@ -176,6 +178,7 @@ TEST_CASE("a bridge that is refused for its version says both and ends with stat
 
 TEST_CASE("garbage to the server disturbs neither it nor the bridge that plays") {
   const Stage stage;
+  if (!kKeepsPace) stage.hold_forces();
   stage.write("script.csv", hold_and_circle());
   const std::filesystem::path path = stage.path("trace.h5");
   Server server = stage.start_server({"--record", path.string()});

@@ -27,7 +27,10 @@ double largest_force(const std::vector<Frame>& frames) {
 TEST_CASE("a device of OpenHaptics feels the server's cube, one frame a tick") {
   const DeviceStage device;
   Server server = device.stage.start_server();
-  ChildProcess bridge = device.stage.start_bridge(server, {"--duration", "3"}, device.with());
+  ChildProcess bridge =
+      device.stage.start_bridge(server, {}, device.with(DeviceStage::in_contact("tell", 500)));
+  bridge.line_with("in contact");
+  bridge.signal(SIGTERM);
   CHECK(bridge.wait() == 0);
   CHECK_THAT(bridge.err(), Contains("Touch, serial number fake-1, at most 3.3 N, 0.88 N for long"));
   CHECK_THAT(bridge.out(), Contains("scheduling the driver's own") && Contains("faults 0"));

@@ -82,7 +82,7 @@ Vector3 contact_force(const Model& model, const SceneConfig& scene, const Body& 
   Matrix3 Q_free = Q;
   if (w_free.norm() > 0) Q_free = Eigen::AngleAxisd(dt * w_free.norm(), w_free.normalized()) * Q;
   const Vector3 p = Q_free.transpose() * (tip - body.position - dt * v_free) - offset;
-  const Matrix3 cross = skew(r);
+  const Matrix3 cross = skew(r + offset);
   const Matrix3 W =
       Matrix3(elastic) +
       dt * dt *

@@ -2,6 +2,7 @@
 # Gives every parser bytes of the fuzzer's choice (docs/fuzzing.md), as many parsers at a time as there are processors,
 # and fails when one does not stand them. What was found worth keeping, and what brought a parser down, is in out/fuzz.
 #   scripts/fuzz.sh [SECONDS [PARSER ...]]    SECONDS for each parser, 60 unless given
+# IRDM_FUZZ_SEED=N makes every run begin with the same inputs; else no two do.
 #   scripts/fuzz.sh --keep [PARSER ...]       adds to the seeds what reaches more of the program than they do
 #   scripts/fuzz.sh --coverage                which lines of the decoders the seeds reach; fails below 95 %
 set -euo pipefail
@@ -43,7 +44,8 @@ fuzz() {
   mkdir -p "$out/corpus"
   mapfile -t seeds <"$lists/$parser.seeds"
   set_options "$parser"
-  if IRDM_FUZZ_HARNESS=$parser build/asan/bin/fuzzer "${options[@]}" -max_total_time="$seconds" -max_len=8192 -print_final_stats=1 \
+  if IRDM_FUZZ_HARNESS=$parser build/asan/bin/fuzzer "${options[@]}" -max_total_time="$seconds" -max_len=8192 -seed="${IRDM_FUZZ_SEED:-0}" \
+      -print_final_stats=1 \
       "$out/corpus" "${seeds[@]}" >"$out/log" 2>&1; then
     runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$out/log")
     echo "fuzz: $parser stood $runs inputs; $(find "$out/corpus" -type f | wc -l) kept"

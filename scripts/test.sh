@@ -22,7 +22,7 @@ if [ $quick = no ]; then
     scripts/build.sh "$preset"
     echo "test: preset $preset"
     ctest --preset "$preset" --label-exclude slow --parallel 2
-    [ "$preset" != asan ] || scripts/fuzz.sh 10
+    [ "$preset" != asan ] || IRDM_FUZZ_SEED=1 scripts/fuzz.sh 10
   done
 fi
 echo "test: preset ci"

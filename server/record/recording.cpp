@@ -141,6 +141,7 @@ SettingsRows read_settings(const hdf5::File& file, const SimulationConfig& confi
   }
   rows.force_step = file.read<std::uint64_t>("/settings/force_step", {0});
   const hsize_t count = rows.force_step.size();
+  if (count == 0) throw Error(file.name(), "/settings has no row", "record it again");
   rows.settings.resize(count);
   const auto gravity = file.read<double>("/settings/gravity", {count, 3});
   for (std::size_t e = 0; e < count; ++e) rows.settings[e].gravity = vector_of(gravity, e);

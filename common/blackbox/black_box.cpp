@@ -37,8 +37,8 @@ void BlackBox::start() {
 }
 
 void BlackBox::report(const std::string& kind, const std::string& detail) {
-  const std::lock_guard lock(reported_mutex_);
-  reported_.push_back({monotonic_ns(), kind, detail});
+  const Fault fault{monotonic_ns(), kind, detail};
+  if (!reported_.push(fault)) spdlog::warn("{}: no black box: too many at a time", words(fault));
 }
 
 void BlackBox::finish() {
@@ -59,10 +59,7 @@ void BlackBox::run() {
 
 void BlackBox::look(std::int64_t now_ns) {
   std::vector<Fault> faults;
-  {
-    const std::lock_guard lock(reported_mutex_);
-    std::swap(faults, reported_);
-  }
+  for (Fault fault; reported_.pop(fault);) faults.push_back(fault);
   for (BlackBoxPart* part : parts_) {
     if (const std::optional<Fault> fault = part->take()) faults.push_back(*fault);
   }

@@ -3,13 +3,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "common/blackbox/black_box_part.hpp"
+#include "common/realtime/bounded_queue.hpp"
 #include "common/realtime/wakeup.hpp"
 
 namespace irdm {
@@ -38,7 +38,7 @@ class BlackBox {
   ~BlackBox();  ///< finishes
 
   void start();
-  /// A fault that no part can see. Any thread that may wait.
+  /// A fault that no part can see. One thread, which may allocate memory.
   void report(const std::string& kind, const std::string& detail);
   /// Writes what is due, and ends the thread. When nobody tells the parts anything any more.
   void finish();
@@ -55,8 +55,7 @@ class BlackBox {
   std::vector<BlackBoxPart*> parts_;
   std::optional<Fault> due_;                     ///< that is to be written soon
   std::map<std::string, std::int64_t> written_;  ///< when, by kind
-  std::mutex reported_mutex_;
-  std::vector<Fault> reported_;
+  BoundedQueue<Fault> reported_{8};
   Wakeup stop_;
   std::thread thread_;
 };

@@ -64,12 +64,12 @@ struct FrameRelay::Pair {
   }
 };
 
-FrameRelay::FrameRelay(std::uint16_t target)
+FrameRelay::FrameRelay(std::uint16_t target, int waiting)
     : target_(target), listener_(::socket(AF_INET, SOCK_STREAM, 0)) {
   sockaddr_in address = loopback(0);
   socklen_t size = sizeof address;
   auto* generic = reinterpret_cast<sockaddr*>(&address);
-  if (::bind(listener_, generic, size) != 0 || ::listen(listener_, 4) != 0 ||
+  if (::bind(listener_, generic, size) != 0 || ::listen(listener_, waiting) != 0 ||
       ::getsockname(listener_, generic, &size) != 0) {
     throw std::runtime_error("cannot listen");
   }

@@ -12,7 +12,7 @@ namespace irdm {
 enum class RelayFault {
   kNone,
   kReset,         ///< closes both connections, and refuses new ones
-  kBlackHole,     ///< takes nothing from either side
+  kBlackHole,     ///< takes nothing from either side, and no connection
   kSilentServer,  ///< takes nothing from the server
   kSilentBridge,  ///< takes nothing from the bridge
   kCorrupted,     ///< a bit of each frame from the server is wrong
@@ -25,7 +25,8 @@ enum class RelayFault {
 /// Between a bridge and a server, without TLS: passes frames on as they come, or not.
 class FrameRelay {
  public:
-  explicit FrameRelay(std::uint16_t target);
+  /// @param waiting connections that are asked for and not taken, at most
+  explicit FrameRelay(std::uint16_t target, int waiting = 4);
   FrameRelay(const FrameRelay&) = delete;
   FrameRelay& operator=(const FrameRelay&) = delete;
   ~FrameRelay();

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/tcp_relay.hpp"
+#include "bench/frame_relay.hpp"
 #include "common/error.hpp"
 #include "common/program/stop_signal.hpp"
 #include "common/realtime/clock.hpp"
@@ -131,11 +131,22 @@ Histogram cut_and_mend(Bridge& bridge, Path& relay, int cuts, int longest) {
   return times;
 }
 
-/// Bytes wait until the path is mended.
+/// Takes nothing while it is cut; bytes wait until it is mended.
+class CutPath {
+ public:
+  explicit CutPath(std::uint16_t port) : relay_(port, 0) {}
+  std::uint16_t port() const noexcept { return relay_.port(); }
+  void cut() noexcept { relay_.set(RelayFault::kBlackHole); }
+  void mend() noexcept { relay_.set(RelayFault::kNone); }
+
+ private:
+  FrameRelay relay_;
+};
+
 Histogram cut_path(const char* self, int cuts, int longest) {
   std::uint16_t port = 0;
   const test::ChildProcess server = start_server(serve_command(self, 0), port);
-  TcpRelay relay(port);
+  CutPath relay(port);
   Bridge bridge(relay.port());
   return cut_and_mend(bridge, relay, cuts, longest);
 }

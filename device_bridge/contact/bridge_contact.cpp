@@ -16,6 +16,7 @@ void BridgeContact::receive(const ContactModel& model, std::int64_t now_ns) noex
   if (!pacer_.running()) {
     predictor_.reset();
     in_contact_ = false;
+    last_tip_.reset();
   }
   newest_model_ = model.step;
   horizon_ns_ = std::llround(1e9 * dt_ * (model.valid ? model.horizon : kMaxHorizon));

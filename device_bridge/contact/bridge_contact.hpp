@@ -53,7 +53,7 @@ class BridgeContact {
   Wanted wanted_;
   bool in_contact_ = false;  ///< in the last step that anything is known of
   AppliedForces applied_;
-  std::optional<Vector3> last_tip_;
+  std::optional<Vector3> last_tip_;  ///< at the end of the last step; none: it begins anew
 };
 
 }  // namespace irdm

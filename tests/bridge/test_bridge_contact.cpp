@@ -160,6 +160,23 @@ TEST_CASE("contact at the bridge: the way of a tip counts while nothing can be t
   CHECK(bench.contact.wanted().force.isZero(0.0));
 }
 
+TEST_CASE("contact at the bridge: the way of a tip while the run stood still does not count") {
+  Bench bench;
+  bench.ticks(100, 0.05);
+  ContactModel standing;
+  standing.standing = true;
+  standing.step = bench.server_step - 1;
+  bench.contact.receive(standing, bench.now_ns);
+  bench.ticks(100, -0.05, false);
+  bench.contact.receive(wall(bench.server_step++), bench.now_ns);
+  // The first tick is late, so that two steps are due at once.
+  bench.now_ns += 4 * kMs;
+  CHECK(bench.contact.tick(bench.now_ns, Vector3(0, -0.05, 0)));
+  CHECK(bench.contact.lookahead() == 3);
+  CHECK(bench.contact.wanted().any);
+  CHECK(bench.contact.wanted().force.isZero(0.0));
+}
+
 TEST_CASE("contact at the bridge: no force is larger than a hand's") {
   Bench bench;
   bench.ticks(100, 0.001);

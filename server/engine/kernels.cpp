@@ -1,5 +1,6 @@
 #include "server/engine/kernels.hpp"
 
+#include <cmath>
 #include <cstring>
 
 // One copy of a function for each instruction set, chosen when the program is loaded. The
@@ -14,6 +15,7 @@ namespace irdm {
 namespace {
 
 constexpr std::size_t kLanes = 8;
+constexpr double kNothing = 1e-100;
 
 template <typename Lanes>
 [[gnu::always_inline]] inline double sum_of(const Lanes& lanes) noexcept {
@@ -76,6 +78,10 @@ template <typename Scalar>
                                                  const Scalar* b, const Scalar* c, double* y,
                                                  std::size_t n) noexcept {
   for (std::size_t i = 0; i < n; ++i) y[i] += weighted(w, a[i], b[i], c[i]);
+}
+
+[[gnu::always_inline]] inline double put_to_rest(double x) noexcept {
+  return std::abs(x) < kNothing ? 0.0 : x;
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <cstddef>
 
 /// Inner loops of the response engines, compiled for several instruction sets of which the best is
@@ -14,9 +13,9 @@ namespace irdm {
 double dot(const float* a, const double* b, std::size_t n) noexcept;
 double dot(const double* a, const double* b, std::size_t n) noexcept;
 
-/// The same with each of the rows of b (K, n), K = 3 or 6: a is read once for all of them.
 template <std::size_t K>
 using Sums = std::array<double, K>;
+/// The same with each of the rows of b, (3, n) or (6, n): a is read once for all of them.
 Sums<3> dot_three(const double* a, const double* b, std::size_t n) noexcept;
 Sums<6> dot_six(const double* a, const double* b, std::size_t n) noexcept;
 
@@ -35,14 +34,9 @@ void accumulate(const std::array<double, 3>& w, const double* a, const double* b
 /// y[i] = a[i] b[i].
 void multiply(const double* a, const double* b, double* y, std::size_t n) noexcept;
 
-/// 0 for what is smaller than 1e-100: a decaying mode would end in denormal numbers, which cost a
-/// hundred times as much to compute with.
-[[gnu::always_inline]] inline double put_to_rest(double x) noexcept {
-  return std::abs(x) < 1e-100 ? 0.0 : x;
-}
-
 /// Exact transition of n oscillators over one step: (q, v) becomes A (q, v), with A = (a11 a12; a21
-/// a22) for each, put to rest.
+/// a22) for each; what is smaller than 1e-100 becomes 0, because a decaying mode would end in
+/// denormal numbers, which cost a hundred times as much to compute with. May be done in place.
 struct Transitions {
   const double* a11;
   const double* a12;

@@ -1,6 +1,7 @@
 #include "server/engine/modal_engine.hpp"
 
 #include <algorithm>
+#include <functional>
 
 #include "common/response/oscillator.hpp"
 #include "common/response/spin_products.hpp"
@@ -44,30 +45,31 @@ void ModalEngine<Scalar>::set_transitions(double damping) noexcept {
   tabulate_horizon();
 }
 
+// Step by step from unit forces, coordinates and velocities. Of the latter two only the coordinates
+// that come of them are kept; how fast they move is in what foresee() fills later on.
 template <typename Scalar>
 void ModalEngine<Scalar>::tabulate_horizon() noexcept {
-  for (std::size_t i = 0; i < modes_; ++i) {
-    double from_coordinate[2] = {1.0, 0.0};
-    double from_velocity[2] = {0.0, 1.0};
-    double after[2] = {b1_[i], b2_[i]};
-    double held = b1_[i];
-    const auto go_on = [&](double(&state)[2]) {
-      const double coordinate = put_to_rest(a11_[i] * state[0] + a12_[i] * state[1]);
-      state[1] = put_to_rest(a21_[i] * state[0] + a22_[i] * state[1]);
-      state[0] = coordinate;
-    };
-    for (std::size_t n = 0; n < kMaxHorizon; ++n) {
-      coordinate_after_[n * modes_ + i] = after[0];
-      velocity_after_[n * modes_ + i] = after[1];
-      double* from = coordinate_from_.data() + 3 * n * modes_ + i;
-      from[0] = from_coordinate[0];
-      from[modes_] = from_velocity[0];
-      from[2 * modes_] = held;
-      go_on(from_coordinate);
-      go_on(from_velocity);
-      go_on(after);
-      held += after[0];
+  const Transitions A{a11_.data(), a12_.data(), a21_.data(), a22_.data()};
+  const auto after = [&](std::size_t n) { return coordinate_after_.data() + n * modes_; };
+  const auto speed_after = [&](std::size_t n) { return velocity_after_.data() + n * modes_; };
+  const auto from = [&](std::size_t n, std::size_t what) {
+    return coordinate_from_.data() + (3 * n + what) * modes_;
+  };
+  double* const speeds = state_products_.data();
+  std::copy_n(b1_.data(), modes_, after(0));
+  std::copy_n(b2_.data(), modes_, speed_after(0));
+  std::copy_n(b1_.data(), modes_, from(0, 2));
+  for (std::size_t what = 0; what < 2; ++what) {
+    std::fill_n(from(0, what), modes_, what == 0 ? 1.0 : 0.0);
+    std::fill_n(speeds + what * modes_, modes_, what == 0 ? 0.0 : 1.0);
+  }
+  for (std::size_t n = 0; n + 1 < kMaxHorizon; ++n) {
+    transit(A, after(n), speed_after(n), after(n + 1), speed_after(n + 1), modes_);
+    for (std::size_t what = 0; what < 2; ++what) {
+      double* const speed = speeds + what * modes_;
+      transit(A, from(n, what), speed, from(n + 1, what), speed, modes_);
     }
+    std::transform(from(n, 2), from(n, 2) + modes_, after(n + 1), from(n + 1, 2), std::plus{});
   }
 }
 

@@ -15,8 +15,8 @@ namespace irdm::test {
 /// there.
 std::filesystem::path cube_model();
 
-/// Whether bridge and server keep the pace of real time on any machine, so that a hand feels forces
-/// in `predict`. A sanitizer makes them ten times slower.
+/// Whether bridge and server can be expected to keep the pace of real time, so that a hand feels
+/// forces. A sanitizer makes them ten times slower.
 #ifdef IRDM_SANITIZED
 inline constexpr bool kKeepsPace = false;
 #else
@@ -36,7 +36,7 @@ class Stage {
 
   std::filesystem::path path(const std::string& name) const { return folder_.path() / name; }
   void write(const std::string& name, const std::string& text) const;
-  /// Has the bridge hold the server's forces, which takes less of both.
+  /// Has the bridge hold the server's forces, which costs bridge and server less than `predict`.
   void hold_forces() const;
 
   /// Starts irdm-server on scene.toml and waits until it listens.

@@ -42,6 +42,7 @@ int print_report(const FinishedRun& run, const ServerOptions& options) {
     if (count > 0) std::cout << what << ": " << count << '\n';
   };
   faults("forces that were not finite, sent as zero", run.network.stats().forces_not_finite);
+  faults("connections cut before their Hello, for another", run.network.stats().displaced);
   faults("connections without the server's key", run.network.stats().wrong_keys);
   faults("connections closed for being silent", run.network.stats().timeouts);
   faults("connections closed for too many messages", run.network.stats().too_fast);

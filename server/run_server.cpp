@@ -9,6 +9,7 @@
 
 #include "common/blackbox/frame_log.hpp"
 #include "common/checksum.hpp"
+#include "common/contact/contact_model.hpp"
 #include "common/error.hpp"
 #include "common/program/stop_signal.hpp"
 #include "common/realtime/memory_lock.hpp"
@@ -43,6 +44,15 @@ void check_coupling(const SceneConfig& scene, const SimulationConfig& config,
             "is clamped",
         "set contact.coupling_stiffness, for instance to 2000 (N/m)");
   }
+}
+
+// Such a run can be looked at, and played in lockstep.
+void warn_of_long_steps(double dt, bool lockstep, const std::string& name) {
+  if (lockstep || dt <= kLongestForceStep) return;
+  std::cerr << "irdm-server: warning: " << name << ": the model's dt of " << dt
+            << " s is too long for a hand: above " << kLongestForceStep
+            << " s bridges predict no contact and let held forces fade between steps; compute the "
+               "model with a shorter response.dt\n";
 }
 
 // In lockstep nobody waits for the machine's clock.
@@ -180,6 +190,7 @@ int run_server(const ServerOptions& options) {
   check_coupling(scene, config, options.scene.string());
   Simulation simulation(config);
   const double dt = simulation.dt();
+  warn_of_long_steps(dt, options.lockstep, options.scene.string());
   ServerBlackBox black_box(scene.server.black_box, options.lockstep);
   NetworkServer network(network_settings(scene, options, dt, black_box.frames()));
   RunControl control(simulation.settings());

@@ -58,6 +58,9 @@ struct ContactModel {
   std::array<Matrix3, kMaxHorizon> response = zeros<Matrix3>();
 };
 
+/// The longest dt of a model that a bridge renders [s].
+inline constexpr double kLongestForceStep = 0.02;
+
 /// Bounds of what a bridge believes of a contact model.
 struct ContactModelLimits {
   double farthest = 1000.0;      ///< of any place from the origin [m]
@@ -65,9 +68,9 @@ struct ContactModelLimits {
   double fastest_spin = 1000.0;  ///< [rad/s]
   double lightest = 1e-6;        ///< object [kg]
   double dt = 0.0;               ///< that a step must have [s]; 0: any
-  double longest_step = 0.02;    ///< [s]
-  double stiffest = 2e5;         ///< contact within a step [N/m]
-  double softest = 1.0;          ///< the same
+  double longest_step = kLongestForceStep;
+  double stiffest = 2e5;  ///< contact within a step [N/m]
+  double softest = 1.0;   ///< the same
 };
 
 /// What is wrong with a model.

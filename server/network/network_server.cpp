@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 #include <exception>
+#include <functional>
 #include <list>
 #include <random>
 #include <sstream>
@@ -67,6 +68,7 @@ class NetworkServer::Impl {
   void admit(tcp::socket socket);
   std::unique_ptr<wire::Stream> make_stream(tcp::socket socket);
   void remove_ended();
+  bool make_room_for_connection();
   std::uint32_t new_session();
   void make_room();
   void await_forces();
@@ -169,19 +171,31 @@ void NetworkServer::Impl::accept() {
 }
 
 void NetworkServer::Impl::admit(tcp::socket socket) {
-  remove_ended();
-  const auto limit = static_cast<std::size_t>(settings_.max_connections);
-  if (sessions_.size() >= 2 * limit) {  // those beyond the limit wait for nothing but their end
-    stats_.refused.fetch_add(1);
-    return;
-  }
-  const bool full = sessions_.size() >= limit;
+  const bool room = make_room_for_connection();
   Session& session = sessions_.emplace_back(
       new_session(),
       std::make_shared<wire::Connection>(make_stream(std::move(socket)), settings_.tap),
       Session::Shared{settings_, slots_, stats_, complaints_, [this] { make_room(); }});
   session.start();
-  if (full) session.refuse(wire::RefuseReason::kTooManyConnections, "too many connections");
+  if (!room) session.refuse(wire::RefuseReason::kTooManyConnections, "too many connections");
+}
+
+/// Whether a further connection fits: peers that say nothing keep no bridge away, the oldest
+/// without a Hello goes. Nor do those that do not hang up once their session has ended.
+bool NetworkServer::Impl::make_room_for_connection() {
+  remove_ended();
+  const auto limit = static_cast<std::size_t>(settings_.max_connections);
+  const auto first = [this](bool (Session::*is)() const noexcept) {
+    return std::find_if(sessions_.begin(), sessions_.end(), std::mem_fn(is));
+  };
+  const auto ending = static_cast<std::size_t>(
+      std::count_if(sessions_.begin(), sessions_.end(), std::mem_fn(&Session::ending)));
+  if (ending >= limit) first(&Session::ending)->drop();
+  if (sessions_.size() - ending < limit) return true;
+  const auto silent = first(&Session::unwelcomed);
+  if (silent == sessions_.end()) return false;
+  silent->displace();
+  return true;
 }
 
 std::unique_ptr<wire::Stream> NetworkServer::Impl::make_stream(tcp::socket socket) {

@@ -37,6 +37,7 @@ struct NetworkSettings {
 struct NetworkStats {
   std::atomic<std::uint64_t> accepted{0};         ///< sessions welcomed
   std::atomic<std::uint64_t> refused{0};          ///< connections refused
+  std::atomic<std::uint64_t> displaced{0};        ///< cut before Hello, for another to come in
   std::atomic<std::uint64_t> wrong_keys{0};       ///< connections without the server's key
   std::atomic<std::uint64_t> protocol_errors{0};  ///< connections closed for breaking the protocol
   std::atomic<std::uint64_t> timeouts{0};         ///< connections closed for being silent

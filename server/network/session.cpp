@@ -218,6 +218,16 @@ void Session::yield(std::int64_t now_ns) {
   time_out("silent, and another bridge asks for a stylus");
 }
 
+void Session::displace() {
+  complain("no Hello yet, and another peer asks; connection closed");
+  shared_.stats.displaced.fetch_add(1);
+  connection_->drop("displaced");
+}
+
+void Session::drop() {
+  connection_->drop("the peer does not hang up");
+}
+
 void Session::time_out(const std::string& what) {
   complain(what + "; connection closed");
   shared_.stats.timeouts.fetch_add(1);
@@ -246,7 +256,7 @@ void Session::check_time(std::int64_t now_ns) {
   };
   if (over_) return;
   if (ending_since_ns_) {
-    if (now_ns - *ending_since_ns_ > kHangUpNs) connection_->drop("the peer does not hang up");
+    if (now_ns - *ending_since_ns_ > kHangUpNs) drop();
   } else if (older(connection_->partial_since_ns(), settings.frame_timeout_ms)) {
     violated(ProtocolError(ProtocolFault::kTruncated, "a message is not complete in time"));
   } else if (!welcomed_) {

@@ -39,6 +39,10 @@ class Session {
   void end(wire::GoodbyeReason reason);
   /// Ends it when its bridge is silent: another one asks for a stylus.
   void yield(std::int64_t now_ns);
+  /// Cuts a connection whose peer has not said Hello: another one has come.
+  void displace();
+  /// Cuts a connection that has ended without waiting for its peer.
+  void drop();
   /// Sends the forces that are ready.
   void send_forces();
   /// Where the bridge wants it.
@@ -48,6 +52,10 @@ class Session {
 
   /// True once the connection has ended and the session may be removed.
   bool over() const noexcept { return over_; }
+  /// True until its peer's Hello was answered.
+  bool unwelcomed() const noexcept { return !welcomed_ && !over_ && !ending_since_ns_; }
+  /// True from its end until its peer has hung up.
+  bool ending() const noexcept { return ending_since_ns_ && !over_; }
 
  private:
   void receive(const wire::Frame& frame);

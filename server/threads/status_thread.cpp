@@ -95,6 +95,7 @@ std::string status_line(const wire::Status& status, const NetworkStats& network)
     if (value > 0) text << ", " << name << ' ' << value;
   };
   count("refused", network.refused);
+  count("cut before Hello", network.displaced);
   count("without the key", network.wrong_keys);
   count("protocol errors", network.protocol_errors);
   count("silent", network.timeouts);

@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 #include <string>
+#include <vector>
 
 #include "common/error.hpp"
 #include "tests/server_network/running_server.hpp"
@@ -237,6 +238,28 @@ TEST_CASE("server refuses more connections than its limit") {
   REQUIRE(refuse);
   CHECK(refuse->reason == RefuseReason::kTooManyConnections);
   CHECK(third.ends());
+}
+
+TEST_CASE("peers that say nothing keep no bridge away") {
+  RunningServer running({.max_connections = 3, .handshake_timeout_ms = 60'000});
+  RawPeer bridge = running.join();
+  RawPeer silent = running.connect();
+  RawPeer other = running.connect();
+  RawPeer late = running.join();
+  CHECK(silent.ends());
+  CHECK(running.server.stats().displaced == 1);
+  CHECK(running.server.stats().refused == 0);
+}
+
+TEST_CASE("peers that do not hang up once their session has ended keep no bridge away") {
+  RunningServer running({.max_connections = 2});
+  std::vector<RawPeer> refused;
+  for (int i = 0; i < 10; ++i) {
+    RawPeer& peer = refused.emplace_back(running.connect());
+    peer.send(Hello{.styluses = 60});
+    REQUIRE(peer.receive_as<Refuse>());
+  }
+  running.join();
 }
 
 TEST_CASE("a bridge that does not read gets the newest forces when it does") {

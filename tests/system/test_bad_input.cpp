@@ -143,6 +143,16 @@ TEST_CASE("model file with wrong content: one line, status 1, no trace") {
           "needs; precompute it again with method = \"modal\"");
 }
 
+TEST_CASE("a model whose steps are too long for a hand is played with a warning") {
+  const Stage stage;
+  stage.write("scene.toml", replaced(scene_text(), cube_model().string(), "cube.h5"));
+  write_model(stage.path("cube.h5"), [](Model& model) { model.dt = 0.05; });
+  const FinishedProgram server = run_to_end(
+      {IRDM_SERVER, stage.path("scene.toml").string(), "--no-viewer", "--duration", "0.1"});
+  CHECK(server.status == 0);
+  CHECK_THAT(server.err, Contains("the model's dt of 0.05 s is too long for a hand"));
+}
+
 TEST_CASE("a fixed object without a coupling spring: one line, status 1, no trace") {
   const Stage stage;
   write_model(stage.path("cube.h5"), [](Model& model) { model.body.support = Support::kFixed; });

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <limits>
 #include <sstream>
 
 namespace fake_hd {
@@ -273,6 +274,7 @@ void FakeDriver::finish_tick() {
 void FakeDriver::write_log(const FakeDevice& device) {
   if (log_file.empty()) return;
   std::ofstream file(log_file, std::ios::app);
+  file.precision(std::numeric_limits<double>::max_digits10);
   for (const FrameRecord& frame : device.log) {
     file << frame.tick << ' ' << frame.failed;
     for (const double value : frame.position) file << ' ' << value;

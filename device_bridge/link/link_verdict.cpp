@@ -130,6 +130,10 @@ std::string to_text(const LinkMeasurement& link) {
   text << std::fixed << std::setprecision(1);
   text << "link: " << link.duration << " s, " << link.ticks << " ticks, " << client.sessions
        << " sessions, server's step " << 1e3 * link.dt << " ms\n";
+  if (client.datagram_sessions > 0) {
+    text << "datagrams: " << client.datagrams << " received in " << client.datagram_sessions
+         << " sessions, " << client.datagrams_dropped << " dropped\n";
+  }
   text << "success: " << percent(link.hold_success())
        << " of the ticks have a force of at most 20 ms (" << percent(link.predict_success())
        << " of at most 50 ms)\n";

@@ -124,7 +124,7 @@ class ScriptedServer {
   }
   /// Gives samples until one comes by datagram.
   SampleMessage await_sample(RawDatagrams& socket) {
-    give(++sequence);
+    give(++given);
     const std::optional<Frame> frame = channel->receive(socket);
     REQUIRE(frame);
     REQUIRE(std::holds_alternative<SampleMessage>(frame->message));
@@ -136,7 +136,7 @@ class ScriptedServer {
   Wakeup gave_up;
   std::optional<NetworkClient> client;
   std::unique_ptr<RawChannel> channel;
-  std::uint64_t sequence = 0;
+  std::uint64_t given = 0;
 };
 
 }  // namespace

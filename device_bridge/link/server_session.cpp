@@ -16,7 +16,6 @@ using wire::ProtocolFault;
 
 constexpr std::int64_t kNanosecondsPerMillisecond = 1'000'000;
 constexpr std::int64_t kReportPeriodNs = 1000 * kNanosecondsPerMillisecond;
-constexpr std::int64_t kArmingPatienceNs = 5000 * kNanosecondsPerMillisecond;
 constexpr int kFrameTimeoutMs = 1000;
 constexpr int kHangUpMs = 500;
 constexpr double kSilentSteps = 5;  // a server of long steps may be silent for so many of them
@@ -101,7 +100,6 @@ void ServerSession::welcomed(const wire::Welcome& welcome) {
   silence_ns_ = std::max(shared_.settings.silence_timeout_ms * kNanosecondsPerMillisecond,
                          static_cast<std::int64_t>(kSilentSteps * 1e9 * welcome.dt));
   next_report_ns_ = answered_ns_ + kReportPeriodNs;
-  arming_due_ns_ = answered_ns_ + kArmingPatienceNs;
   link_state_ = {.linked = true,
                  .sessions = ++shared_.report.sessions,
                  .lockstep = welcome.lockstep,
@@ -214,8 +212,9 @@ void ServerSession::send_reports(std::int64_t now_ns) {
 
 // A person who feels nothing should know why.
 void ServerSession::tell_of_arming(std::int64_t now_ns) {
-  if (link_state_.lockstep || now_ns < arming_due_ns_) return;
-  arming_due_ns_ = now_ns + kArmingPatienceNs;
+  const bool armed = std::all_of(shared_.link.styluses.begin(), shared_.link.styluses.end(),
+                                 [](const ServoLink::Stylus& each) { return each.armed.load(); });
+  if (link_state_.lockstep || !shared_.patience.lost(now_ns, armed)) return;
   for (std::size_t i = 0; i < shared_.link.styluses.size(); ++i) {
     const ServoLink::Stylus& stylus = shared_.link.styluses[i];
     if (stylus.armed) continue;
@@ -285,6 +284,7 @@ void ServerSession::leave() {
 void ServerSession::closed(const std::string& reason) {
   state_ = State::kEnding;
   if (datagrams_) datagrams_->close();
+  shared_.patience.pause();
   publish();
   end_.reason = reason;
   if (connection_->refused()) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/wire/connection.hpp"
+#include "device_bridge/link/arming_patience.hpp"
 #include "device_bridge/link/client_report.hpp"
 #include "device_bridge/link/client_settings.hpp"
 #include "device_bridge/link/force_intake.hpp"
@@ -36,6 +37,7 @@ class ServerSession {
     const ClientSettings& settings;
     const std::string& server;  ///< for messages
     ClientReport& report;
+    ArmingPatience& patience;
   };
 
   ServerSession(std::shared_ptr<wire::Connection> connection, const Shared& shared);
@@ -86,7 +88,6 @@ class ServerSession {
   std::unique_ptr<ServerDatagrams> datagrams_;
   bool reports_ = false;  ///< the server takes them
   std::int64_t next_report_ns_ = 0;
-  std::int64_t arming_due_ns_ = 0;    ///< when it is said that a stylus is not armed
   std::vector<ForceIntake> intakes_;  ///< one a stylus, from Welcome on
 };
 

@@ -122,8 +122,9 @@ void server_session(Input input) {
   const ClientSettings settings{.lockstep = !input.empty() && input[0] % 2 == 1};
   const std::string name = "it";
   ClientReport report;
+  ArmingPatience patience;
   int ends = 0;
-  ServerSession session(line.connection(), {link, settings, name, report});
+  ServerSession session(line.connection(), {link, settings, name, report, patience});
   session.start([&ends](const SessionEnd&) { ++ends; });
   const std::vector<std::uint8_t> stream =
       mended(input.subspan(std::min<std::size_t>(1, input.size())));

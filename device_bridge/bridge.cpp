@@ -107,6 +107,7 @@ ClientSettings client_settings(const BridgeConfig& config) {
   ClientSettings settings{
       .server = *config.server,
       .predict = config.predict,
+      .udp = config.udp,
       .connect_timeout_ms = static_cast<int>(std::ceil(1e3 * config.connect_timeout)),
       .scheduling = config.realtime};
   if (config.key_file) settings.key = wire::read_key_file(*config.key_file);

@@ -116,6 +116,7 @@ void read_bridge(TomlTable table, const std::string& file, BridgeConfig& config)
       table.number("continuous_force", {.lowest = 0.0, .highest = 40.0, .lowest_included = false},
                    config.continuous_force);
   config.predict = table.choice("mode", {"predict", "hold"}, "predict") == "predict";
+  config.udp = table.choice("stream", {"tcp", "udp"}, "tcp") == "udp";
   config.connect_timeout =
       table.number("connect_timeout", between(0.01, 0.1), config.connect_timeout);
   if (table.has("key_file")) config.key_file = table.path("key_file");

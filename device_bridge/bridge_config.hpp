@@ -56,6 +56,9 @@ struct BridgeConfig {
   /// key `bridge.mode`: "predict": the contact is solved here, so that delay is not felt | "hold":
   /// the server's forces are held. In lockstep there is no delay, and forces are held.
   bool predict = true;
+  /// key `bridge.stream`: "tcp" | "udp"; how samples, forces and contact models go. Where UDP does
+  /// not get through, by TCP.
+  bool udp = false;
   double connect_timeout = 0.075;  ///< key `bridge.connect_timeout`: an attempt [s], 0.01 to 0.1
   /// key `bridge.key_file`: the server's key; none: the server is on this machine
   std::optional<std::filesystem::path> key_file;

@@ -39,6 +39,10 @@ std::string to_text(const BridgeReport& report) {
     text << "contact models: " << client.models << " taken, " << client.models_refused
          << " not believed\n";
   }
+  if (client.datagram_sessions > 0) {
+    text << "datagrams: " << client.datagrams << " received in " << client.datagram_sessions
+         << " sessions, " << client.datagrams_dropped << " dropped\n";
+  }
   text << "round trip: " << percentiles(servo.lockstep ? servo.round_trip : client.round_trip)
        << '\n';
   if (servo.lockstep) {

@@ -53,6 +53,7 @@ class NetworkClient::Impl {
   const ClientSettings settings_;
   Wakeup& gave_up_;
   const std::string server_;  ///< for messages
+  ArmingPatience patience_;
   std::optional<wire::Tls> tls_;
   boost::asio::io_context io_{1};
   tcp::resolver::results_type endpoints_;
@@ -177,7 +178,7 @@ void NetworkClient::Impl::connect() {
 void NetworkClient::Impl::greet(tcp::socket socket) {
   session_ = std::make_unique<ServerSession>(
       std::make_shared<wire::Connection>(make_stream(std::move(socket)), settings_.tap),
-      ServerSession::Shared{link_, settings_, server_, report_});
+      ServerSession::Shared{link_, settings_, server_, report_, patience_});
   session_->start([this](const SessionEnd& end) { ended(end); });
 }
 

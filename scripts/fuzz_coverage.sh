@@ -8,6 +8,7 @@ needed=95
 # What makes something of bytes that come from elsewhere.
 decoders=(
   common/wire/frame.cpp common/wire/payload.cpp common/wire/contact_payload.cpp common/wire/secret_key.cpp
+  common/wire/datagram_channel.cpp common/wire/frame_parts.cpp common/wire/stream_order.cpp
   common/contact/contact_model.cpp common/config/toml_reader.cpp common/model/model_file.cpp
   server/network/session.cpp server/config/scene.cpp server/record/recording.cpp
   server/viewer/message_parts.cpp server/viewer/client_message.cpp server/viewer/scene_message.cpp

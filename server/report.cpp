@@ -46,6 +46,10 @@ int print_report(const FinishedRun& run, const ServerOptions& options) {
   faults("connections without the server's key", run.network.stats().wrong_keys);
   faults("connections closed for being silent", run.network.stats().timeouts);
   faults("connections closed for too many messages", run.network.stats().too_fast);
+  faults("datagrams that were spoilt, foreign or came twice, dropped",
+         run.network.stats().datagrams_foreign + run.network.stats().datagrams_forged +
+             run.network.stats().datagrams_replayed);
+  faults("messages that a newer one had overtaken, dropped", run.network.stats().messages_late);
   faults("lines about bridges that were not logged", run.network.stats().unlogged);
   faults("errors inside the network thread", run.network.stats().internal_errors);
   faults("forces of bridges that came late, entered at their own step", force.late);

@@ -95,6 +95,7 @@ NetworkSettings network_settings(const SceneConfig& scene, const ServerOptions& 
   settings.lockstep = options.lockstep;
   settings.styluses = static_cast<int>(scene.styluses.size());
   settings.scheduling = scheduling(scene, options);
+  settings.udp = scene.server.udp;
   settings.tap = tap;
   if (scene.server.key_file) settings.key = wire::read_key_file(*scene.server.key_file);
   return settings;

@@ -3,6 +3,7 @@
 #include <netinet/tcp.h>
 
 #include <sstream>
+#include <string_view>
 #include <utility>
 
 #include "common/realtime/clock.hpp"
@@ -21,6 +22,8 @@ namespace {
 constexpr int kSendBuffer = 65536;
 constexpr int kNotSent = 2048;
 using NotSentLimit = boost::asio::detail::socket_option::integer<IPPROTO_TCP, TCP_NOTSENT_LOWAT>;
+// The label that TLS's exporter wants (RFC 8446, section 7.5).
+constexpr std::string_view kDatagramLabel = "EXPERIMENTAL irdm datagrams";
 
 }  // namespace
 
@@ -31,8 +34,9 @@ Connection::Connection(std::unique_ptr<Stream> stream, FrameTap* tap)
   socket.set_option(tcp::no_delay(true), ignored);
   socket.set_option(tcp::socket::send_buffer_size(kSendBuffer), ignored);
   socket.set_option(NotSentLimit(kNotSent), ignored);
+  remote_ = socket.remote_endpoint(ignored);
   std::ostringstream name;
-  name << socket.remote_endpoint(ignored);
+  name << remote_;
   peer_ = name.str();
   if (tap_ != nullptr) number_ = tap_->open(peer_);
 }
@@ -71,7 +75,7 @@ void Connection::take(std::span<const std::uint8_t> bytes) {
       partial_since_ns_.reset();
       tell(TapKind::kReceived, reader_.bytes());
       check_order(frame->header.sequence);
-      handlers_.received(*frame);
+      hand_on(*frame);
     }
   } catch (const ProtocolError& error) {
     if (reader_.partial()) tell(TapKind::kSpoilt, reader_.bytes());
@@ -91,6 +95,41 @@ void Connection::check_order(std::uint64_t sequence) {
                                                       std::to_string(*received_sequence_));
   }
   received_sequence_ = sequence;
+}
+
+// What went by TCP may be overtaken by a datagram.
+void Connection::hand_on(const Frame& frame) {
+  if (order_.take(frame)) return handlers_.received(frame);
+  ++late_;
+}
+
+DatagramKeys Connection::derive_keys(const KeyMaterial& random) const {
+  return keys_of(stream_->derive(kDatagramLabel, random));
+}
+
+tcp::endpoint Connection::local_endpoint() const {
+  error_code ignored;
+  return stream_->socket().local_endpoint(ignored);
+}
+
+void Connection::probe() noexcept {
+  if (open_ && !finishing_ && datagrams_) datagrams_->probe();
+}
+
+DatagramVerdict Connection::take_datagram(std::span<const std::uint8_t> datagram,
+                                          const DatagramSocket::Endpoint& from) {
+  if (!open_ || finishing_ || !datagrams_) return DatagramVerdict::kForeign;
+  try {
+    const DatagramVerdict verdict = datagrams_->receive(datagram, from);
+    const bool message = verdict == DatagramVerdict::kMessage;
+    if (message || verdict == DatagramVerdict::kOpened) received_ns_ = monotonic_ns();
+    if (message) tell(TapKind::kReceived, datagrams_->bytes());
+    if (message) hand_on(datagrams_->frame());
+    return verdict;
+  } catch (const ProtocolError& error) {
+    if (open_ && !finishing_) handlers_.violated(error);
+    return DatagramVerdict::kOpened;
+  }
 }
 
 void Connection::tell_violation(const ProtocolError& error) noexcept {
@@ -121,6 +160,13 @@ bool Connection::send_newest(std::size_t stream, const Message& message) {
   if (!open_ || finishing_) return false;
   if (newest_.size() <= stream) newest_.resize(stream + 1);
   const bool replaces = newest_[stream].has_value();
+  if (by_datagrams() && is_of_stream(message)) {
+    newest_[stream].reset();
+    const FrameBytes frame = encode_frame(message, session_, sequence_++, monotonic_ns());
+    tell(TapKind::kSent, frame.view());
+    datagrams_->send(frame.view());
+    return replaces;
+  }
   newest_[stream] = message;
   write();
   return replaces;

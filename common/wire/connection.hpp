@@ -10,17 +10,19 @@
 #include <vector>
 
 #include "common/wire/asio.hpp"
+#include "common/wire/datagram_link.hpp"
 #include "common/wire/frame.hpp"
 #include "common/wire/frame_tap.hpp"
 #include "common/wire/protocol_error.hpp"
 #include "common/wire/stream.hpp"
+#include "common/wire/stream_order.hpp"
 
 namespace irdm::wire {
 
 /// A TCP connection, perhaps with TLS, that carries frames, on the thread of its io_context.
 /// Control messages go out in order and all of them; of the messages of one stream (a stylus, say)
-/// only the newest goes out when the peer or the network cannot keep up. It knows no time-out: its
-/// owner looks at the ages.
+/// only the newest goes out when the peer or the network cannot keep up. Beside it those messages
+/// may go by datagrams. It knows no time-out: its owner looks at the ages.
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
   /// Called on the thread of the io_context; what they refer to must live until `closed` returns.
@@ -49,6 +51,29 @@ class Connection : public std::enable_shared_from_this<Connection> {
   /// Sends the newest message of a stream; true when it replaced one that still waited.
   /// @param stream small number >= 0
   bool send_newest(std::size_t stream, const Message& message);
+  /// The keys of datagrams that belong to this connection, made from what its ends agreed on.
+  /// After the handshake. Throws std::runtime_error.
+  /// @param random of the message Datagrams
+  DatagramKeys derive_keys(const KeyMaterial& random) const;
+  /// From here on messages of the stream (is_of_stream()) go this way once it is established, each
+  /// at once.
+  void use(std::unique_ptr<DatagramLink> datagrams) { datagrams_ = std::move(datagrams); }
+  /// Not again. Not to be called out of a handler.
+  void use_no_datagrams() noexcept { datagrams_.reset(); }
+  /// Whether messages of the stream go by datagrams.
+  bool by_datagrams() const noexcept { return datagrams_ && datagrams_->established(); }
+  /// Asks for a datagram back.
+  void probe() noexcept;
+  /// A datagram that says it is of this session. What it holds is received like any other message.
+  DatagramVerdict take_datagram(std::span<const std::uint8_t> datagram,
+                                const DatagramSocket::Endpoint& from);
+  /// Messages that came too late, after a newer one of their kind.
+  std::uint64_t late() const noexcept { return late_; }
+  /// Both ends of the connection.
+  boost::asio::ip::tcp::endpoint local_endpoint() const;
+  boost::asio::ip::tcp::endpoint remote_endpoint() const { return remote_; }
+  boost::asio::any_io_executor executor() const { return stream_->socket().get_executor(); }
+
   /// Sends what waits, then ends the sending half and waits for the peer to close; what still
   /// comes is ignored. Before the handshake is done: closes.
   void finish();
@@ -67,7 +92,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   bool refused() const noexcept { return refused_; }
   std::int64_t received_ns() const noexcept {
     return received_ns_;
-  }  ///< of the last bytes, or start
+  }  ///< of the peer's last bytes, or start
   /// When the frame began that is not complete; nothing when there is none.
   std::optional<std::int64_t> partial_since_ns() const noexcept { return partial_since_ns_; }
   /// When the write began that is not complete; nothing when there is none.
@@ -78,6 +103,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   void read();
   void take(std::span<const std::uint8_t> bytes);
   void check_order(std::uint64_t sequence);
+  void hand_on(const Frame& frame);
   void append(const Message& message);
   void write();
   void tell(TapKind kind, std::span<const std::uint8_t> bytes) noexcept;
@@ -86,9 +112,13 @@ class Connection : public std::enable_shared_from_this<Connection> {
   std::unique_ptr<Stream> stream_;
   FrameTap* tap_;
   std::uint32_t number_ = 0;  ///< for whoever listens in
+  boost::asio::ip::tcp::endpoint remote_;
   std::string peer_;
   Handlers handlers_;
   FrameReader reader_;
+  std::unique_ptr<DatagramLink> datagrams_;
+  StreamOrder order_;
+  std::uint64_t late_ = 0;
   std::array<std::uint8_t, 4096> incoming_;
   std::vector<Message> control_;                // wait, in order
   std::vector<std::optional<Message>> newest_;  // wait, by stream

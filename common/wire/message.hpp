@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -42,6 +43,7 @@ enum class MessageType : std::uint16_t {
   kContactModel = 16,
   kAppliedForces = 17,
   kStatus = 18,
+  kDatagrams = 20,
 };
 
 /// Bits of Hello::capabilities and Welcome::capabilities.
@@ -49,6 +51,7 @@ inline constexpr std::uint32_t kCapabilityContactModel = 1u << 0;  ///< types 16
 inline constexpr std::uint32_t kCapabilityStatus = 1u << 1;        ///< type 18
 inline constexpr std::uint32_t kCapabilityCommand = 1u << 2;       ///< reserved: type 19
 inline constexpr std::uint32_t kCapabilityReport = 1u << 3;        ///< type 7
+inline constexpr std::uint32_t kCapabilityDatagrams = 1u << 4;     ///< type 20
 
 /// What goes before every payload. The CRC32C that ends it is the codec's business.
 struct Header {
@@ -162,8 +165,15 @@ struct Status {
   float surface_rate = 0;       ///< deformed surfaces [1/s], not below 0
 };
 
+/// Server to bridge, after Welcome, where both sides are capable of it and not in lockstep: where
+/// samples, applied forces, forces and contact models may go by datagrams.
+struct Datagrams {
+  std::uint16_t port = 0;                    ///< of UDP, at the server's address, > 0
+  std::array<std::uint8_t, 32> random = {};  ///< what the keys are made from, see Stream::derive()
+};
+
 using Message = std::variant<Hello, Welcome, Refuse, Goodbye, SampleMessage, ForceMessage, Report,
-                             ContactModelMessage, AppliedForcesMessage, Status>;
+                             ContactModelMessage, AppliedForcesMessage, Status, Datagrams>;
 
 struct Frame {
   Header header;

@@ -225,15 +225,30 @@ Status decode_status(ByteReader& in) {
   return status;
 }
 
+void encode(const Datagrams& datagrams, ByteWriter& out) {
+  out.put(datagrams.port);
+  out.put_zeros(6);
+  for (const std::uint8_t byte : datagrams.random) out.put(byte);
+}
+
+Datagrams decode_datagrams(ByteReader& in) {
+  Datagrams datagrams;
+  datagrams.port = in.get<std::uint16_t>();
+  if (datagrams.port == 0) bad_value("the port for datagrams is 0");
+  in.skip(6);
+  for (std::uint8_t& byte : datagrams.random) byte = in.get<std::uint8_t>();
+  return datagrams;
+}
+
 }  // namespace
 
 MessageType type_of(const Message& message) noexcept {
   // In the order of the variant's alternatives.
-  constexpr std::array kTypes{MessageType::kHello,         MessageType::kWelcome,
-                              MessageType::kRefuse,        MessageType::kGoodbye,
-                              MessageType::kSample,        MessageType::kForce,
-                              MessageType::kReport,        MessageType::kContactModel,
-                              MessageType::kAppliedForces, MessageType::kStatus};
+  constexpr std::array kTypes{
+      MessageType::kHello,   MessageType::kWelcome,      MessageType::kRefuse,
+      MessageType::kGoodbye, MessageType::kSample,       MessageType::kForce,
+      MessageType::kReport,  MessageType::kContactModel, MessageType::kAppliedForces,
+      MessageType::kStatus,  MessageType::kDatagrams};
   static_assert(kTypes.size() == std::variant_size_v<Message>);
   return kTypes[message.index()];
 }
@@ -260,6 +275,8 @@ std::optional<std::size_t> payload_size(MessageType type) noexcept {
       return kAppliedForcesSize;
     case MessageType::kStatus:
       return 64;
+    case MessageType::kDatagrams:
+      return 40;
   }
   return std::nullopt;
 }
@@ -292,6 +309,8 @@ Message decode_payload(MessageType type, std::span<const std::uint8_t> payload) 
       return decode_applied_forces(in);
     case MessageType::kStatus:
       return decode_status(in);
+    case MessageType::kDatagrams:
+      return decode_datagrams(in);
   }
   throw ProtocolError(ProtocolFault::kUnknownType,
                       "unknown message type " + std::to_string(static_cast<int>(type)));

@@ -3,8 +3,10 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <string_view>
 
 #include "common/wire/asio.hpp"
+#include "common/wire/key_material.hpp"
 
 namespace irdm::wire {
 
@@ -25,6 +27,11 @@ class Stream {
   virtual void read_some(boost::asio::mutable_buffer bytes,
                          std::function<void(Error, std::size_t)> done) = 0;
   virtual void write(boost::asio::const_buffer bytes, std::function<void(Error)> done) = 0;
+  /// Keys for something beside these bytes, the same at both ends: in TLS by its exporter, so that
+  /// nobody else has them; of bytes as they are, `random` itself. After the handshake. Throws
+  /// std::runtime_error when OpenSSL does not play along.
+  /// @param random of this session, sent over the stream
+  virtual KeyMaterial derive(std::string_view label, const KeyMaterial& random) = 0;
 };
 
 /// Bytes as they are; the handshake is done at once.

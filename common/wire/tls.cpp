@@ -81,6 +81,15 @@ class TlsStream final : public Stream {
         stream_, boost::asio::buffer(bytes),
         [done = std::move(done)](const Error& error, std::size_t) { done(error); });
   }
+  KeyMaterial derive(std::string_view label, const KeyMaterial& random) override {
+    KeyMaterial keys;
+    constexpr int kWithContext = 1;
+    if (SSL_export_keying_material(stream_.native_handle(), keys.data(), keys.size(), label.data(),
+                                   label.size(), random.data(), random.size(), kWithContext) != 1) {
+      throw std::runtime_error("OpenSSL exports no keys");
+    }
+    return keys;
+  }
 
  private:
   ssl::stream<tcp::socket> stream_;

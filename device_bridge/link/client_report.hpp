@@ -22,8 +22,11 @@ struct ClientReport {
   std::uint64_t models = 0;          ///< contact models received and taken
   std::uint64_t models_refused = 0;  ///< contact models that could not be true
   std::uint64_t stalls = 0;  ///< connections closed because samples were not answered any more
-  Histogram round_trip;      ///< sample taken to its first force received [ns]; real time only
-  Histogram jitter;          ///< how much a round trip differs from the one before [ns]
+  std::uint64_t datagram_sessions = 0;  ///< sessions whose stream went by datagrams
+  std::uint64_t datagrams = 0;          ///< received, and the server's
+  std::uint64_t datagrams_dropped = 0;  ///< received, and not, or for the second time
+  Histogram round_trip;  ///< sample taken to its first force received [ns]; real time only
+  Histogram jitter;      ///< how much a round trip differs from the one before [ns]
   std::optional<wire::Status> server_at_first;  ///< what the server said of its run, first
   std::optional<wire::Status> server;           ///< and last
   std::string failure;                          ///< why it gave up, one line; empty: it did not

@@ -1,5 +1,10 @@
 #include "device_bridge/link/link_measurement.hpp"
 
+#include <algorithm>
+#include <cmath>
+
+#include "common/contact/contact_model.hpp"
+
 namespace irdm {
 
 void LinkMeasurement::tick(std::int64_t now_ns, std::int64_t late_ns,
@@ -10,7 +15,13 @@ void LinkMeasurement::tick(std::int64_t now_ns, std::int64_t late_ns,
   const std::int64_t age_ns = now_ns - input.force.sample_time_ns;
   age.add(age_ns);
   if (age_ns <= kHoldNs) ++young_for_hold;
-  if (age_ns <= kPredictNs) ++young_for_predict;
+  if (age_ns <= predict_limit_ns()) ++young_for_predict;
+}
+
+std::int64_t LinkMeasurement::predict_limit_ns() const noexcept {
+  constexpr double kNanosecondsPerSecond = 1e9;
+  if (!(dt > 0.0)) return kPredictNs;
+  return std::min<std::int64_t>(kPredictNs, std::llround(kNanosecondsPerSecond * kMaxHorizon * dt));
 }
 
 double LinkMeasurement::share(std::uint64_t count) const noexcept {

@@ -74,9 +74,10 @@ void ProbeLoop::run() noexcept {
       missed_before = schedule.missed();
       continue;
     }
+    measured_.dt = link_.state.front().dt;
+    measured_.predict = link_.state.front().predict;
     measured_.tick(now_ns, now_ns - deadline_ns, link_.styluses[0].input.front());
     measured_.missed = schedule.missed() - missed_before;
-    measured_.dt = link_.state.front().dt;
     measured_.duration = static_cast<double>(now_ns - from_ns) / kNanosecondsPerSecond;
     if (measured_.duration >= duration_) break;
   }

@@ -95,18 +95,22 @@ const char* word(LinkGrade grade) {
 }  // namespace
 
 LinkVerdict judge(const LinkMeasurement& link) {
-  LinkVerdict verdict{.grade = grade_of(link.hold_success())};
+  LinkVerdict verdict{.grade = grade_of(link.success())};
   const auto advise = [&](bool when, const char* what) {
     if (when) verdict.advice.emplace_back(what);
   };
   const std::int64_t round_trip = link.client.round_trip.percentile(0.5);
   advise(link.client.round_trip.count() == 0,
          "The server answers nothing: look at its log, and whether its run is paused or ended.");
-  advise(round_trip > LinkMeasurement::kHoldNs,
-         "The round trip alone is longer than a held force is shown: run the server nearer to the "
+  advise(round_trip > link.limit_ns(),
+         "The round trip alone is longer than a force is shown: run the server nearer to the "
          "device, in the same network best.");
   advise(link.client.jitter.percentile(0.99) > kLongJitterNs,
          "The delay varies much: use a cable instead of radio, and keep other traffic off it.");
+  advise(
+      !link.predict && link.hold_success() < kGoodSuccess && link.predict_success() >= kGoodSuccess,
+      "Forces are held, and come too late for that: set bridge.mode = \"predict\", which looks "
+      "ahead.");
   advise(link.loss() > kNoticeableLoss,
          "Steps get lost on the way: look for a slow or crowded piece of the network, and whether "
          "the server says that it replaces forces.");
@@ -118,7 +122,7 @@ LinkVerdict judge(const LinkMeasurement& link) {
   advise(server_overruns(link.client) > kNoticeableOverruns,
          "The server skips steps: give it a faster machine, a smaller model, or real-time "
          "scheduling.");
-  advise(2e9 * link.dt > static_cast<double>(LinkMeasurement::kHoldNs),
+  advise(!link.predict && 2e9 * link.dt > static_cast<double>(LinkMeasurement::kHoldNs),
          "The server's step is too long for a held force: use a model with a shorter dt.");
   return verdict;
 }
@@ -130,9 +134,16 @@ std::string to_text(const LinkMeasurement& link) {
   text << std::fixed << std::setprecision(1);
   text << "link: " << link.duration << " s, " << link.ticks << " ticks, " << client.sessions
        << " sessions, server's step " << 1e3 * link.dt << " ms\n";
-  text << "success: " << percent(link.hold_success())
-       << " of the ticks have a force of at most 20 ms (" << percent(link.predict_success())
-       << " of at most 50 ms)\n";
+  if (client.datagram_sessions > 0) {
+    text << "datagrams: " << client.datagrams << " received in " << client.datagram_sessions
+         << " sessions, " << client.datagrams_dropped << " dropped\n";
+  }
+  text << "success: " << percent(link.success()) << " of the ticks have a force of at most "
+       << to_ms(link.limit_ns()) << " ms, as "
+       << (link.predict ? "solving the contact at the bridge needs ("
+                        : "holding the server's forces needs (")
+       << percent(link.predict ? link.hold_success() : link.predict_success()) << " of at most "
+       << to_ms(link.predict ? LinkMeasurement::kHoldNs : link.predict_limit_ns()) << " ms)\n";
   text << "round trip: " << percentiles(client.round_trip) << '\n';
   text << "age: " << percentiles(link.age) << '\n';
   text << "loss: " << percent(link.loss()) << " of the server's steps, in " << client.gaps

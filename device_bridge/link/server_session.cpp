@@ -16,7 +16,6 @@ using wire::ProtocolFault;
 
 constexpr std::int64_t kNanosecondsPerMillisecond = 1'000'000;
 constexpr std::int64_t kReportPeriodNs = 1000 * kNanosecondsPerMillisecond;
-constexpr std::int64_t kArmingPatienceNs = 5000 * kNanosecondsPerMillisecond;
 constexpr int kFrameTimeoutMs = 1000;
 constexpr int kHangUpMs = 500;
 constexpr double kSilentSteps = 5;  // a server of long steps may be silent for so many of them
@@ -46,6 +45,7 @@ void ServerSession::start(std::function<void(const SessionEnd&)> ended) {
   });
   std::uint32_t capabilities = wire::kCapabilityReport | wire::kCapabilityStatus;
   if (shared_.settings.predict) capabilities |= wire::kCapabilityContactModel;
+  if (shared_.settings.udp) capabilities |= wire::kCapabilityDatagrams;
   connection_->send(
       wire::Hello{.capabilities = capabilities,
                   .styluses = static_cast<std::uint16_t>(shared_.link.styluses.size()),
@@ -76,6 +76,9 @@ void ServerSession::receive(const wire::Frame& frame) {
   } else if (const auto* status = std::get_if<wire::Status>(&frame.message)) {
     if (!linked) unexpected("a status before Welcome");
     take(*status);
+  } else if (const auto* offer = std::get_if<wire::Datagrams>(&frame.message)) {
+    if (!linked || !wants_datagrams_ || datagrams_) unexpected("a port that was not asked for");
+    take(*offer);
   } else {
     unexpected("a message that only a bridge sends");
   }
@@ -91,11 +94,12 @@ void ServerSession::welcomed(const wire::Welcome& welcome) {
   connection_->set_session(welcome.session);
   first_stylus_ = welcome.first_stylus;
   reports_ = (welcome.capabilities & wire::kCapabilityReport) != 0;
+  const bool datagrams = (welcome.capabilities & wire::kCapabilityDatagrams) != 0;
+  wants_datagrams_ = shared_.settings.udp && datagrams && !welcome.lockstep;
   answered_ns_ = monotonic_ns();
   silence_ns_ = std::max(shared_.settings.silence_timeout_ms * kNanosecondsPerMillisecond,
                          static_cast<std::int64_t>(kSilentSteps * 1e9 * welcome.dt));
   next_report_ns_ = answered_ns_ + kReportPeriodNs;
-  arming_due_ns_ = answered_ns_ + kArmingPatienceNs;
   link_state_ = {.linked = true,
                  .sessions = ++shared_.report.sessions,
                  .lockstep = welcome.lockstep,
@@ -111,6 +115,10 @@ void ServerSession::welcomed(const wire::Welcome& welcome) {
                welcome.lockstep      ? ", lockstep"
                : link_state_.predict ? ", contact solved here"
                                      : ", forces held");
+  if (shared_.settings.udp && !datagrams && !welcome.lockstep) {
+    spdlog::warn("server {}: it has no datagrams (server.udp); the stream goes by TCP",
+                 shared_.server);
+  }
   publish();
 }
 
@@ -167,6 +175,11 @@ void ServerSession::take(const wire::Status& status) {
   shared_.report.server = status;
 }
 
+void ServerSession::take(const wire::Datagrams& offer) {
+  datagrams_ = std::make_unique<ServerDatagrams>(connection_, offer, shared_.server, shared_.report,
+                                                 monotonic_ns());
+}
+
 void ServerSession::send_samples() {
   for (std::size_t i = 0; i < intakes_.size(); ++i) {
     Mailbox<StylusSample>& box = shared_.link.styluses[i].sample;
@@ -179,8 +192,11 @@ void ServerSession::send_samples() {
     Mailbox<LinkedForces>& box = shared_.link.styluses[i].applied;
     if (!box.receive() || state_ != State::kLinked || !link_state_.predict) continue;
     if (box.front().session != link_state_.sessions) continue;
-    connection_->send_newest(2 * intakes_.size() + i,
-                             wire::AppliedForcesMessage{slot(i), box.front().applied});
+    wire::AppliedForcesMessage message{slot(i), box.front().applied};
+    if (connection_->by_datagrams()) {
+      message.applied.count = std::min(message.applied.count, wire::kForcesInDatagram);
+    }
+    connection_->send_newest(2 * intakes_.size() + i, message);
   }
 }
 
@@ -196,8 +212,9 @@ void ServerSession::send_reports(std::int64_t now_ns) {
 
 // A person who feels nothing should know why.
 void ServerSession::tell_of_arming(std::int64_t now_ns) {
-  if (link_state_.lockstep || now_ns < arming_due_ns_) return;
-  arming_due_ns_ = now_ns + kArmingPatienceNs;
+  const bool armed = std::all_of(shared_.link.styluses.begin(), shared_.link.styluses.end(),
+                                 [](const ServoLink::Stylus& each) { return each.armed.load(); });
+  if (link_state_.lockstep || !shared_.patience.lost(now_ns, armed)) return;
   for (std::size_t i = 0; i < shared_.link.styluses.size(); ++i) {
     const ServoLink::Stylus& stylus = shared_.link.styluses[i];
     if (stylus.armed) continue;
@@ -223,6 +240,7 @@ void ServerSession::check_time(std::int64_t now_ns) {
     case State::kLinked:
       send_reports(now_ns);
       tell_of_arming(now_ns);
+      if (datagrams_) datagrams_->check_time(now_ns);
       if (!link_state_.lockstep && now_ns - answered_ns_ > silence_ns_) {
         ++shared_.report.stalls;
         connection_->drop("no answers any more");
@@ -265,6 +283,8 @@ void ServerSession::leave() {
 
 void ServerSession::closed(const std::string& reason) {
   state_ = State::kEnding;
+  if (datagrams_) datagrams_->close();
+  shared_.patience.pause();
   publish();
   end_.reason = reason;
   if (connection_->refused()) {

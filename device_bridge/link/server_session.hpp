@@ -8,9 +8,11 @@
 #include <vector>
 
 #include "common/wire/connection.hpp"
+#include "device_bridge/link/arming_patience.hpp"
 #include "device_bridge/link/client_report.hpp"
 #include "device_bridge/link/client_settings.hpp"
 #include "device_bridge/link/force_intake.hpp"
+#include "device_bridge/link/server_datagrams.hpp"
 #include "device_bridge/servo_link.hpp"
 
 namespace irdm {
@@ -35,6 +37,7 @@ class ServerSession {
     const ClientSettings& settings;
     const std::string& server;  ///< for messages
     ClientReport& report;
+    ArmingPatience& patience;
   };
 
   ServerSession(std::shared_ptr<wire::Connection> connection, const Shared& shared);
@@ -61,6 +64,7 @@ class ServerSession {
   void take(const wire::ContactModelMessage& message);
   std::size_t ours(std::uint16_t slot) const;
   void take(const wire::Status& status);
+  void take(const wire::Datagrams& offer);
   void violated(const wire::ProtocolError& error);
   void closed(const std::string& reason);
   void leave();
@@ -80,9 +84,10 @@ class ServerSession {
   std::int64_t answered_ns_ = 0;  ///< when a sample was answered last, or the session began
   std::int64_t silence_ns_ = 0;   ///< longest time without
   std::uint16_t first_stylus_ = 0;
+  bool wants_datagrams_ = false;  ///< asked for, and the server has them
+  std::unique_ptr<ServerDatagrams> datagrams_;
   bool reports_ = false;  ///< the server takes them
   std::int64_t next_report_ns_ = 0;
-  std::int64_t arming_due_ns_ = 0;    ///< when it is said that a stylus is not armed
   std::vector<ForceIntake> intakes_;  ///< one a stylus, from Welcome on
 };
 

@@ -27,6 +27,7 @@ ServerConfig read_server(TomlTable table, int styluses) {
       table.number("deformation_rate", between(1.0, 1000.0), config.deformation_rate);
   config.status_period = table.number("status_period", between(0.0, 3600.0), config.status_period);
   if (table.has("key_file")) config.key_file = table.path("key_file");
+  config.udp = table.boolean("udp", config.udp);
   config.deformation_threads =
       table.integer("deformation_threads", 0, 64, config.deformation_threads);
   config.realtime =

@@ -24,6 +24,7 @@ struct ServerConfig {
   RealTimeScheduling realtime = RealTimeScheduling::kPrefer;  ///< "require" | "prefer" | "ignore"
   double status_period = 10.0;  ///< of status lines in the log, 0..3600 [s]; 0: none
   std::optional<std::filesystem::path> key_file;  ///< none: the address is a loopback one
+  bool udp = true;  ///< bridges that want to may send and take their stream by datagrams
   /// black_box: a folder, "" for none; black_box_files: 1..1000
   BlackBoxSettings black_box = {};
   int deformation_threads = 0;  ///< OpenMP threads for them, 0..64; 0: all cores but one

@@ -44,6 +44,7 @@ class NetworkServer::Impl {
     spdlog::default_logger();
     if (settings_.key) tls_.emplace(wire::TlsRole::kServer, *settings_.key);
     listen();
+    if (settings_.udp && !settings_.lockstep) listen_for_datagrams();
     forces_descriptor_.assign(::dup(forces_ready_.descriptor()));
   }
   ~Impl() { stop(); }
@@ -63,6 +64,7 @@ class NetworkServer::Impl {
  private:
   static const NetworkSettings& checked(const NetworkSettings& settings);
   void listen();
+  void listen_for_datagrams();
   void run() noexcept;
   void accept();
   void admit(tcp::socket socket);
@@ -71,6 +73,8 @@ class NetworkServer::Impl {
   bool make_room_for_connection();
   std::uint32_t new_session();
   void make_room();
+  void take_datagram(std::uint32_t id, std::span<const std::uint8_t> datagram,
+                     const DatagramPort::Endpoint& from);
   void await_forces();
   void await_tick();
   void shut_down();
@@ -80,6 +84,7 @@ class NetworkServer::Impl {
   tcp::acceptor acceptor_;
   boost::asio::posix::stream_descriptor forces_descriptor_;
   boost::asio::steady_timer timer_;
+  std::optional<DatagramPort> datagrams_;
   std::list<Session> sessions_;
   std::random_device random_;
   Allowance complaints_{kComplaintRate, kComplaintBurst};
@@ -122,6 +127,27 @@ void NetworkServer::Impl::listen() {
   }
 }
 
+/// At the same port as TCP, so that a firewall needs one number.
+void NetworkServer::Impl::listen_for_datagrams() {
+  const bool any_port = settings_.port == 0;
+  try {
+    datagrams_.emplace(
+        io_.get_executor(),
+        DatagramPort::Endpoint(boost::asio::ip::make_address(settings_.address), port_), any_port);
+  } catch (const boost::system::system_error& failure) {
+    throw Error(endpoint(), "cannot listen for datagrams: " + failure.code().message(),
+                "choose another port, end the program that uses it, or set server.udp = false");
+  }
+}
+
+void NetworkServer::Impl::take_datagram(std::uint32_t id, std::span<const std::uint8_t> datagram,
+                                        const DatagramPort::Endpoint& from) {
+  for (Session& session : sessions_) {
+    if (session.id() == id) return session.take_datagram(datagram, from);
+  }
+  stats_.datagrams_foreign.fetch_add(1);
+}
+
 std::string NetworkServer::Impl::endpoint() const {
   std::ostringstream text;
   text << tcp::endpoint(boost::asio::ip::make_address(settings_.address), port_);
@@ -130,6 +156,10 @@ std::string NetworkServer::Impl::endpoint() const {
 
 void NetworkServer::Impl::start() {
   accept();
+  if (datagrams_) {
+    datagrams_->start([this](auto&&... datagram) { take_datagram(datagram...); },
+                      [this] { stats_.datagrams_foreign.fetch_add(1); });
+  }
   await_forces();
   await_tick();
   thread_ = std::thread([this] { run(); });
@@ -175,7 +205,8 @@ void NetworkServer::Impl::admit(tcp::socket socket) {
   Session& session = sessions_.emplace_back(
       new_session(),
       std::make_shared<wire::Connection>(make_stream(std::move(socket)), settings_.tap),
-      Session::Shared{settings_, slots_, stats_, complaints_, [this] { make_room(); }});
+      Session::Shared{settings_, slots_, stats_, complaints_, [this] { make_room(); },
+                      datagrams_ ? &*datagrams_ : nullptr});
   session.start();
   if (!room) session.refuse(wire::RefuseReason::kTooManyConnections, "too many connections");
 }
@@ -256,6 +287,7 @@ void NetworkServer::Impl::shut_down() {
   error_code ignored;
   acceptor_.close(ignored);
   forces_descriptor_.close(ignored);
+  if (datagrams_) datagrams_->close();
   for (Session& session : sessions_) session.end(wire::GoodbyeReason::kStopping);
 }
 

@@ -30,6 +30,7 @@ struct NetworkSettings {
   int silence_timeout_ms = 500;  ///< without a byte the session ends; not in lockstep
   /// What bridges have to know, in TLS; nothing: no TLS, and the address has to be a loopback one.
   std::optional<wire::SecretKey> key = {};
+  bool udp = true;                ///< a bridge's stream may go by datagrams; not in lockstep
   wire::FrameTap* tap = nullptr;  ///< listens in, in the network thread; null: nobody
 };
 
@@ -48,9 +49,14 @@ struct NetworkStats {
   std::atomic<std::uint64_t> samples_old{0};      ///< not newer than the last: their sessions ended
   std::atomic<std::uint64_t> forces{0};           ///< handed to a connection
   std::atomic<std::uint64_t> forces_replaced{0};  ///< not sent because a newer one was there
-  std::atomic<std::uint64_t> forces_not_finite{0};  ///< sent as zero
-  std::atomic<std::uint64_t> internal_errors{0};    ///< caught in the network thread
-  std::atomic<std::uint64_t> unlogged{0};  ///< complaints about peers beyond what is logged
+  std::atomic<std::uint64_t> forces_not_finite{0};   ///< sent as zero
+  std::atomic<std::uint64_t> datagrams{0};           ///< that opened
+  std::atomic<std::uint64_t> datagrams_foreign{0};   ///< of no session, or not from its bridge
+  std::atomic<std::uint64_t> datagrams_forged{0};    ///< spoilt, or sealed with another key
+  std::atomic<std::uint64_t> datagrams_replayed{0};  ///< came before, or much too late
+  std::atomic<std::uint64_t> messages_late{0};    ///< dropped: a newer one of their kind had come
+  std::atomic<std::uint64_t> internal_errors{0};  ///< caught in the network thread
+  std::atomic<std::uint64_t> unlogged{0};         ///< complaints about peers beyond what is logged
 };
 
 /// Listens for bridges and relays samples and forces between them and the force thread, on a thread

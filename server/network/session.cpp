@@ -45,6 +45,7 @@ void Session::start() {
               complain("refused: not the server's key, or no TLS: " + reason);
               shared_.stats.wrong_keys.fetch_add(1);
             }
+            shared_.stats.messages_late.fetch_add(connection_->late());
             release();
             over_ = true;
           },
@@ -97,6 +98,7 @@ void Session::greet(const wire::Hello& hello) {
   std::uint32_t capabilities = wire::kCapabilityReport;
   if (!settings.lockstep) capabilities |= wire::kCapabilityContactModel;
   if (!settings.lockstep) capabilities |= wire::kCapabilityStatus;
+  if (shared_.datagrams != nullptr) capabilities |= wire::kCapabilityDatagrams;
   capabilities &= hello.capabilities;
   predicts_ = (capabilities & wire::kCapabilityContactModel) != 0;
   wants_status_ = (capabilities & wire::kCapabilityStatus) != 0;
@@ -120,8 +122,41 @@ void Session::greet(const wire::Hello& hello) {
                                   .session = id_,
                                   .lockstep = settings.lockstep,
                                   .dt = settings.dt});
+  if ((capabilities & wire::kCapabilityDatagrams) != 0) offer_datagrams();
   spdlog::info("bridge {} ({}): session {}, stylus {} to {}", connection_->peer(), hello.name, id_,
                first_, first_ + count_ - 1);
+}
+
+void Session::offer_datagrams() {
+  const wire::Datagrams offer{shared_.datagrams->number(), wire::random_material()};
+  connection_->use(shared_.datagrams->make_link(connection_->remote_endpoint().address(),
+                                                connection_->derive_keys(offer.random), id_));
+  connection_->send(offer);
+}
+
+void Session::take_datagram(std::span<const std::uint8_t> datagram,
+                            const DatagramPort::Endpoint& from) {
+  NetworkStats& stats = shared_.stats;
+  switch (connection_->take_datagram(datagram, from)) {
+    case wire::DatagramVerdict::kForeign:
+      stats.datagrams_foreign.fetch_add(1);
+      return;
+    case wire::DatagramVerdict::kForged:
+      stats.datagrams_forged.fetch_add(1);
+      return;
+    case wire::DatagramVerdict::kReplayed:
+      stats.datagrams_replayed.fetch_add(1);
+      return;
+    case wire::DatagramVerdict::kMessage:
+      break;
+    case wire::DatagramVerdict::kOpened:  // no message that would count
+      if (!ending_since_ns_ && !frames_.take(connection_->received_ns())) {
+        stats.too_fast.fetch_add(1);
+        violated(ProtocolError(ProtocolFault::kUnexpected, "too many datagrams"));
+      }
+      break;
+  }
+  stats.datagrams.fetch_add(1);
 }
 
 void Session::take(const wire::SampleMessage& message) {

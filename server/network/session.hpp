@@ -8,6 +8,7 @@
 
 #include "common/wire/connection.hpp"
 #include "server/network/allowance.hpp"
+#include "server/network/datagram_port.hpp"
 #include "server/network/network_server.hpp"
 #include "server/network/stylus_slots.hpp"
 
@@ -22,8 +23,9 @@ class Session {
     const NetworkSettings& settings;
     StylusSlots& slots;
     NetworkStats& stats;
-    Allowance& complaints;            ///< lines of the log about peers
-    std::function<void()> make_room;  ///< ends the sessions that yield
+    Allowance& complaints;              ///< lines of the log about peers
+    std::function<void()> make_room;    ///< ends the sessions that yield
+    DatagramPort* datagrams = nullptr;  ///< null: everything goes by TCP
   };
 
   Session(std::uint32_t id, std::shared_ptr<wire::Connection> connection, const Shared& shared);
@@ -31,6 +33,8 @@ class Session {
   Session& operator=(const Session&) = delete;
 
   std::uint32_t id() const noexcept { return id_; }
+  /// A datagram that says it is of this session.
+  void take_datagram(std::span<const std::uint8_t> datagram, const DatagramPort::Endpoint& from);
   /// Starts to receive.
   void start();
   /// Answers with a refusal instead of a session.
@@ -60,6 +64,7 @@ class Session {
  private:
   void receive(const wire::Frame& frame);
   void greet(const wire::Hello& hello);
+  void offer_datagrams();
   void take(const wire::SampleMessage& message);
   void take(const wire::Report& report);
   void take(const wire::AppliedForcesMessage& message);

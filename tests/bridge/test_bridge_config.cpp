@@ -48,6 +48,7 @@ TEST_CASE("bridge configuration has defaults for all but the script") {
   CHECK(config.rate == 1000.0);
   CHECK(config.max_force == 3.3);
   CHECK(config.connect_timeout == 0.075);
+  CHECK_FALSE(config.udp);
   CHECK(config.predict);
   CHECK(BridgeConfig().predict == config.predict);
   REQUIRE(config.devices.size() == 1);
@@ -105,7 +106,7 @@ TEST_CASE("bridge configuration takes every key") {
   const BridgeConfig config =
       ConfigFile(
           "[bridge]\nserver = \"[::1]:4000\"\nrate = 500\nmax_force = 2\ncontinuous_force = "
-          "1\nconnect_timeout = 0.05\nkey_file = \"/k/irdm.key\"\n"
+          "1\nstream = \"udp\"\nconnect_timeout = 0.05\nkey_file = \"/k/irdm.key\"\n"
           "[[device]]\ntype = \"virtual\"\nscript = \"/a.csv\"\nhand = { mass = 0.2 }\n"
           "[[device]]\ntype = \"openhaptics\"\n")
           .load();
@@ -116,6 +117,7 @@ TEST_CASE("bridge configuration takes every key") {
   CHECK(config.max_force == 2.0);
   CHECK(config.continuous_force == 1.0);
   CHECK(config.connect_timeout == 0.05);
+  CHECK(config.udp);
   CHECK(config.key_file == "/k/irdm.key");
   REQUIRE(config.devices.size() == 2);
   CHECK(config.devices[0].script == "/a.csv");
@@ -153,6 +155,7 @@ TEST_CASE("bridge configuration refuses what does not fit") {
   check_refused("[bridge]\nmax_force = 0\n" + kDevice, "max_force is 0");
   check_refused("[bridge]\nmax_force = 41\n" + kDevice, "max_force is 41");
   check_refused("[bridge]\ncontinuous_force = 0\n" + kDevice, "continuous_force is 0");
+  check_refused("[bridge]\nstream = \"both\"\n" + kDevice, "stream");
   check_refused("[bridge]\nconnect_timeout = 0\n" + kDevice, "connect_timeout is 0");
   check_refused("[bridge]\nconnect_timeout = 0.2\n" + kDevice, "connect_timeout is 0.2");
   check_refused("[bridge]\nserver = \"here\"\n" + kDevice, "'here' has no port");

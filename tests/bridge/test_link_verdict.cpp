@@ -68,6 +68,35 @@ TEST_CASE("a link is graded by the share of ticks that were answered in time") {
   CHECK(judge(link_with(0)).advice.empty());
 }
 
+TEST_CASE("a link is graded by what its mode needs: a bridge that predicts looks ahead") {
+  LinkMeasurement link = link_with(1000);
+  CHECK(judge(link).grade == LinkGrade::kBad);
+  CHECK_THAT(judge(link).advice.front(), Contains("bridge.mode"));
+  link.predict = true;
+  CHECK(judge(link).grade == LinkGrade::kGood);
+  CHECK(judge(link).advice.empty());
+  add(link.client.round_trip, 45 * kMs);
+  CHECK(judge(link).advice.empty());
+  add(link.client.round_trip, 55 * kMs);
+  add(link.client.round_trip, 55 * kMs);
+  CHECK_THAT(judge(link).advice.front(), Contains("nearer to the device"));
+}
+
+TEST_CASE("a contact model looks ahead 50 steps, and at most 50 ms") {
+  LinkMeasurement link;
+  CHECK(link.predict_limit_ns() == 50 * kMs);
+  link.dt = 0.002;
+  CHECK(link.predict_limit_ns() == 50 * kMs);
+  link.dt = 0.0005;
+  link.predict = true;
+  CHECK(link.limit_ns() == 25 * kMs);
+  link.tick(100 * kMs, 0,
+            {.linked = true, .any_force = true, .force = {.sample_time_ns = 76 * kMs}});
+  link.tick(100 * kMs, 0,
+            {.linked = true, .any_force = true, .force = {.sample_time_ns = 74 * kMs}});
+  CHECK(link.success() == 0.5);
+}
+
 TEST_CASE("each fault of a link has its advice") {
   CHECK_THAT(advice([](auto& link) { link.client.round_trip = Histogram{}; }),
              Contains("answers nothing"));
@@ -94,7 +123,12 @@ TEST_CASE("a link's report says what was measured, with the verdict") {
   const std::string text = to_text(link);
   CHECK_THAT(text, Contains("link: 1.0 s, 1000 ticks, 1 sessions, server's step 2.0 ms\n"));
   CHECK_THAT(text, Contains("success: 85.00 % of the ticks"));
-  CHECK_THAT(text, Contains("(100.00 % of at most 50 ms)"));
+  CHECK_THAT(text,
+             Contains("of at most 20.0 ms, as holding the server's forces needs (100.00 % of at "
+                      "most 50.0 ms)"));
+  link.predict = true;
+  CHECK_THAT(to_text(link), Contains("success: 100.00 % of the ticks have a force of at most 50.0 "
+                                     "ms, as solving the contact at the bridge needs (85.00 %"));
   CHECK_THAT(text, Contains("loss: 50.00 %"));
   CHECK_THAT(text, Contains("  up to     0.125 ms 100.00 % ###"));
   CHECK_THAT(text, Contains("server: step p50 0.0") &&

@@ -29,6 +29,10 @@ void http_connection(Input input);
 /// One byte: 0 puts the right checksums into the frames first, and how many bytes come at a time;
 /// then the stream.
 void wire_frames(Input input);
+/// Datagrams, one after the other: a byte, its remainder by 8: 0 anybody's bytes, 1 a text that the
+/// bridge seals, 2 a frame that it sends, with a mended checksum, 3 the last once more, 4 the last
+/// with another bit, else some get lost; length, bit or count as u16; of the first three the bytes.
+void datagrams(Input input);
 /// All that a bridge sends in a session, with mended checksums.
 void bridge_session(Input input);
 /// One byte: odd, the bridge can do lockstep; above 1, it stops, else it waits too long; then all
@@ -65,6 +69,7 @@ inline constexpr std::array kHarnesses = {
     Harness{"request_rules", request_rules},
     Harness{"http_connection", http_connection},
     Harness{"wire_frames", wire_frames},
+    Harness{"datagrams", datagrams},
     Harness{"contact_model", contact_model},
     Harness{"bridge_session", bridge_session},
     Harness{"server_session", server_session},

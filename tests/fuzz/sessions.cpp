@@ -37,6 +37,7 @@ class Line {
   std::shared_ptr<wire::Connection> connection() {
     return std::make_shared<wire::Connection>(wire::make_plain_stream(std::move(near_)));
   }
+  boost::asio::any_io_executor executor() { return context_.get_executor(); }
   void say(Input bytes) {
     boost::system::error_code ignored;
     boost::asio::write(far_, boost::asio::buffer(bytes.data(), bytes.size()), ignored);
@@ -87,17 +88,24 @@ void bridge_session(Input input) {
   StylusSlots slots(settings.styluses, arrived);
   NetworkStats stats;
   Allowance complaints(1.0, 1.0);
-  Session session(kFuzzedSession, line.connection(), {settings, slots, stats, complaints, [] {}});
+  DatagramPort port(line.executor(), {boost::asio::ip::address_v4::loopback(), 0}, true);
+  Session session(kFuzzedSession, line.connection(),
+                  {settings, slots, stats, complaints, [] {}, &port});
   session.start();
   line.say(mended(input));
+  session.take_datagram(input, {});
+  std::vector<std::uint8_t> forged(50);
+  forged[0] = kFuzzedSession;
+  session.take_datagram(forged, {});
+  expect(stats.datagrams == 0, "nothing opens without the session's key");
   for (int slot = 0; slot < slots.count(); ++slot) {
-    StylusPort& port = slots.port(slot);
-    const bool present = port.in.receive() && port.in.front().present;
-    expect(!present || port.in.front().sample.tip.allFinite(), "a sample's tip is finite");
-    const StylusSample& sample = port.in.front().sample;
-    port.out.put(
+    StylusPort& hand_over = slots.port(slot);
+    const bool present = hand_over.in.receive() && hand_over.in.front().present;
+    expect(!present || hand_over.in.front().sample.tip.allFinite(), "a sample's tip is finite");
+    const StylusSample& sample = hand_over.in.front().sample;
+    hand_over.out.put(
         {.force_step = 1, .sample_sequence = sample.sequence, .sample_time_ns = sample.time_ns});
-    port.model.put({});
+    hand_over.model.put({});
   }
   session.send_forces();
   session.send_status({});
@@ -114,8 +122,9 @@ void server_session(Input input) {
   const ClientSettings settings{.lockstep = !input.empty() && input[0] % 2 == 1};
   const std::string name = "it";
   ClientReport report;
+  ArmingPatience patience;
   int ends = 0;
-  ServerSession session(line.connection(), {link, settings, name, report});
+  ServerSession session(line.connection(), {link, settings, name, report, patience});
   session.start([&ends](const SessionEnd&) { ++ends; });
   const std::vector<std::uint8_t> stream =
       mended(input.subspan(std::min<std::size_t>(1, input.size())));

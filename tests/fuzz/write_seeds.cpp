@@ -2,10 +2,12 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "common/wire/frame.hpp"
+#include "common/wire/frame_parts.hpp"
 #include "server/viewer/message.hpp"
 #include "tests/fuzz/mended_frames.hpp"
 #include "tests/viewer/frames.hpp"
@@ -154,6 +156,7 @@ void write_wire_frames(const Seeds& seeds) {
       wire::ContactModelMessage{0, wall()},
       wire::AppliedForcesMessage{0, {.step = 102, .count = 3, .past = {}}},
       wire::Status{.steps = 9},
+      wire::Datagrams{.port = 4000},
   };
   viewer::Bytes stream = {0};
   for (const wire::Message& message : messages) {
@@ -165,6 +168,61 @@ void write_wire_frames(const Seeds& seeds) {
                 single);
   }
   seeds.write("wire_frames", "all", stream);
+}
+
+/// A record of the harness `datagrams`.
+void add_record(viewer::Bytes& records, std::uint8_t kind, std::size_t number,
+                std::span<const std::uint8_t> bytes = {}) {
+  records.push_back(kind);
+  records.push_back(static_cast<std::uint8_t>(number % 256));
+  records.push_back(static_cast<std::uint8_t>(number / 256));
+  records.insert(records.end(), bytes.begin(), bytes.end());
+}
+
+void write_datagrams(const Seeds& seeds) {
+  constexpr std::uint8_t kForeign = 0, kSealed = 1, kFrame = 2, kAgain = 3, kSpoilt = 4, kLost = 5;
+  viewer::Bytes all;
+  for (const wire::Message& message :
+       {wire::Message(wire::SampleMessage{.sample = {.sequence = 3}}),
+        wire::Message(wire::ContactModelMessage{0, wall()}),
+        wire::Message(wire::AppliedForcesMessage{0, {.step = 102, .count = 3, .past = {}}}),
+        wire::Message(wire::ForceMessage{.force = {.force_step = 5}}),
+        wire::Message(wire::Report{})}) {
+    const wire::FrameBytes frame = wire::encode_frame(message, fuzz::kFuzzedSession, 1, 1000);
+    add_record(all, kFrame, frame.size, frame.view());
+    add_record(all, kLost, 3);
+  }
+  const wire::PartText probe = wire::probe_text();
+  add_record(all, kSealed, probe.size, probe.view());
+  add_record(all, kAgain, 0);
+  add_record(all, kSpoilt, 100);
+  viewer::Bytes forged(28);
+  forged[0] = fuzz::kFuzzedSession;
+  add_record(all, kForeign, forged.size(), forged);
+  add_record(all, kForeign, 5, viewer::Bytes(5, 1));
+  seeds.write("datagrams", "all", all);
+  const auto text = [&](const std::string& name, std::vector<viewer::Bytes> texts) {
+    viewer::Bytes records;
+    for (const viewer::Bytes& each : texts) add_record(records, kSealed, each.size(), each);
+    seeds.write("datagrams", name, records);
+  };
+  const auto part = [](std::uint8_t number, std::uint8_t of, std::size_t size) {
+    viewer::Bytes bytes(wire::kPartHeaderSize + size, 0x49);
+    bytes[0] = number;
+    bytes[1] = of;
+    return bytes;
+  };
+  text("empty", {{}});
+  text("cut", {part(0, 3, 100)});
+  text("beyond", {part(3, 3, 100)});
+  text("misfits", {part(0, 3, wire::kLargestPart), part(1, 4, wire::kLargestPart)});
+  text("no_frame", {part(0, 1, 100)});
+  text("many", std::vector<viewer::Bytes>(20, part(0, 2, wire::kLargestPart)));
+  const wire::FrameBytes goodbye = wire::encode_frame(wire::Goodbye{}, fuzz::kFuzzedSession, 1, 0);
+  viewer::Bytes more = part(0, 1, goodbye.size + 1);
+  std::copy(goodbye.view().begin(), goodbye.view().end(),
+            more.begin() + static_cast<std::ptrdiff_t>(wire::kPartHeaderSize));
+  text("more", {more});
 }
 
 /// Of one end of a connection: frames in their order.
@@ -181,7 +239,7 @@ viewer::Bytes said(const std::vector<wire::Message>& messages, std::uint32_t ses
 }
 
 void write_sessions(const Seeds& seeds) {
-  const wire::Hello hello{.capabilities = 0xF, .name = "bridge"};
+  const wire::Hello hello{.capabilities = 0x1F, .name = "bridge"};
   const StylusSample sample{.sequence = 3, .tip = Vector3(0.01, 0.02, 0.03)};
   seeds.write(
       "bridge_session", "whole",
@@ -240,6 +298,7 @@ int main(int argc, char** argv) {
   write_client_messages(seeds);
   write_server_messages(seeds);
   write_wire_frames(seeds);
+  write_datagrams(seeds);
   write_contact_models(seeds);
   write_sessions(seeds);
   return 0;

@@ -30,7 +30,8 @@ const std::string kObject = "[[object]]\nmodel = \"cube.h5\"\n";
 TEST_CASE("every key of a scene arrives where it belongs") {
   const SceneConfig read = scene(
       "[server]\naddress = \"127.0.0.2\"\nport = 4711\nstyluses = 3\ndeformation_rate = 30\n"
-      "deformation_threads = 2\nkey_file = \"/k/irdm.key\"\nstatus_period = 5\n[world]\ngravity = "
+      "deformation_threads = 2\nkey_file = \"/k/irdm.key\"\nstatus_period = 5\nudp = "
+      "false\n[world]\ngravity = "
       "[1, 2, 3]\n"
       "[contact]\ncoupling_stiffness = 1500\nrelease_time = 0.2\n"
       "[floor]\nheight = -0.5\nnormal = [0, 0, 2]\nfriction = { static = 0.9, kinetic = 0.7 }\n"
@@ -48,6 +49,7 @@ TEST_CASE("every key of a scene arrives where it belongs") {
   CHECK(read.server.deformation_threads == 2);
   CHECK(read.server.key_file == "/k/irdm.key");
   CHECK(read.server.status_period == 5.0);
+  CHECK_FALSE(read.server.udp);
   CHECK(read.world.gravity == Vector3(1, 2, 3));
   CHECK(read.contact.coupling_stiffness == 1500.0);
   REQUIRE(read.objects.size() == 1);
@@ -92,6 +94,7 @@ TEST_CASE("a scene needs only a model, the rest has defaults") {
   CHECK(read.server.deformation_threads == 0);
   CHECK_FALSE(read.server.key_file);
   CHECK(read.server.status_period == 10.0);
+  CHECK(read.server.udp);
   CHECK(read.world.gravity.isZero(0.0));
   CHECK(read.contact.coupling_stiffness == 0.0);
   const ObjectConfig& object = read.objects.at(0);

@@ -32,6 +32,9 @@ constexpr std::size_t kBridgeSide = 1;
 constexpr double kDeviceLimit = 3.3;  // [N], of the fake driver
 constexpr std::int64_t kMillisecond = 1'000'000;
 
+constexpr PathQuality kBadPath{
+    .delay_ms = 5.0, .jitter_ms = 10.0, .loss = 0.05, .duplicates = 0.01, .corrupt = 0.01};
+
 /// What the fake driver wrote down of one frame.
 struct Frame {
   std::int64_t begun_ns = 0;  ///< monotonic clock
@@ -53,14 +56,15 @@ std::optional<TwoNamespaces>& namespaces() {
 /// A person who presses on the cube with a device of the fake driver, three seconds at a time.
 class DistantStage : public Stage {
  public:
-  DistantStage(const TwoNamespaces& both, const std::string& mode) : both_(both) {
+  DistantStage(const TwoNamespaces& both, const std::string& mode, const std::string& stream)
+      : both_(both) {
     write("key", std::string(64, 'a') + "\n");
     fs::permissions(path("key"), fs::perms::owner_read | fs::perms::owner_write);
     write("scene.toml", "[server]\naddress = \"" + both.address(kServerSide) +
                             "\"\nkey_file = \"key\"\n" + scene_text().substr(9) +
                             "tether = { stiffness = 200, angular_stiffness = 1 }\n");
-    write("bridge.toml", "[bridge]\nkey_file = \"key\"\nmode = \"" + mode +
-                             "\"\n[[device]]\ntype = \"openhaptics\"\n");
+    write("bridge.toml", "[bridge]\nkey_file = \"key\"\nmode = \"" + mode + "\"\nstream = \"" +
+                             stream + "\"\n[[device]]\ntype = \"openhaptics\"\n");
     write("motion.txt", "0 0 70 0 0\n500 0 50 0 0\n3500 0 50 0 0\n4000 0 70 0 0\n4200 0 70 0 0\n");
   }
   Server start_far_server() const {
@@ -129,9 +133,10 @@ std::int64_t longest_force_ns(const std::string& mode) {
 TEST_CASE("a path that becomes a black hole: no force in time, and the session is made anew") {
   if (!namespaces()) return;
   const std::string mode = GENERATE(as<std::string>(), "hold", "predict");
-  CAPTURE(mode);
+  const std::string stream = GENERATE(as<std::string>(), "tcp", "udp");
+  CAPTURE(mode, stream);
   if (mode == "predict" && !kKeepsPace) return;
-  const DistantStage stage(*namespaces(), mode);
+  const DistantStage stage(*namespaces(), mode, stream);
   PacketRelay path(namespaces()->devices(), {});
   Server server = stage.start_far_server();
   ChildProcess bridge = stage.start_near_bridge(server);
@@ -144,6 +149,7 @@ TEST_CASE("a path that becomes a black hole: no force in time, and the session i
   bridge.signal(SIGTERM);
   CHECK(bridge.wait() == 0);
   CHECK_THAT(bridge.out(), Contains("protocol errors 0"));
+  CHECK((bridge.out().find("datagrams: ") != std::string::npos) == (stream == "udp"));
 
   const std::vector<Frame> frames = stage.frames();
   CHECK(largest_force(frames) > 0.2);
@@ -162,10 +168,8 @@ TEST_CASE("a path that becomes a black hole: no force in time, and the session i
 TEST_CASE("a bad path: forces within limits, or the bridge says why there are none", "[slow]") {
   if (!namespaces()) return;
   const std::string mode = GENERATE(as<std::string>(), "hold", "predict");
-  const DistantStage stage(*namespaces(), mode);
-  PacketRelay path(
-      namespaces()->devices(),
-      {.delay_ms = 5.0, .jitter_ms = 10.0, .loss = 0.05, .duplicates = 0.01, .corrupt = 0.01});
+  const DistantStage stage(*namespaces(), mode, "tcp");
+  PacketRelay path(namespaces()->devices(), kBadPath);
   Server server = stage.start_far_server();
   ChildProcess bridge = stage.start_near_bridge(server, {"--duration", "8"});
   CHECK(bridge.wait() == 0);
@@ -179,4 +183,26 @@ TEST_CASE("a bad path: forces within limits, or the bridge says why there are no
                     bridge.err().find("connection lost: no answers any more") != std::string::npos;
   CHECK((largest > 0.2 || told));
   check_end(server);
+}
+
+TEST_CASE("a bad path by UDP: a bridge that predicts arms, and the cube is felt", "[slow]") {
+  if (!namespaces() || !kKeepsPace) return;
+  const DistantStage stage(*namespaces(), "predict", "udp");
+  PacketRelay path(namespaces()->devices(), kBadPath);
+  Server server = stage.start_far_server();
+  ChildProcess bridge = stage.start_near_bridge(server, {"--duration", "8"});
+  CHECK(bridge.wait() == 0);
+  CAPTURE(bridge.out(), bridge.err());
+  CHECK(path.corrupted() > 0);
+  CHECK_THAT(bridge.out(), Contains("protocol errors 0") && Contains("datagrams: "));
+  CHECK_THAT(bridge.out(), Contains("in contact"));
+  // One way takes 10 ms on average, there and back 20 ms, and a step.
+  CHECK(number_after(bridge.out(), "round trip: p50 ") < 30.0);
+  const double largest = largest_force(stage.frames());
+  CHECK(largest > 0.5);
+  CHECK(largest < kDeviceLimit * (1.0 + 1e-9));
+  server.process.signal(SIGTERM);
+  CHECK(server.process.wait() == 0);
+  CHECK_THAT(server.process.out(),
+             Contains(" 0 closed for protocol errors") && Contains("came twice, dropped: "));
 }

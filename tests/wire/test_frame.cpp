@@ -4,27 +4,16 @@
 #include <vector>
 
 #include "common/wire/frame.hpp"
+#include "common/wire/protocol_error.hpp"
+#include "tests/wire/from_hex.hpp"
 
 using namespace irdm::wire;
 using irdm::ContactState;
 using irdm::Quaternion;
 using irdm::Vector3;
+using irdm::test::from_hex;
 
 namespace {
-
-/// "49 52 .." as bytes.
-std::vector<std::uint8_t> from_hex(const std::string& text) {
-  std::vector<std::uint8_t> bytes;
-  std::string digits;
-  for (const char c : text) {
-    if (c != ' ' && c != '\n') digits += c;
-    if (digits.size() == 2) {
-      bytes.push_back(static_cast<std::uint8_t>(std::stoi(digits, nullptr, 16)));
-      digits.clear();
-    }
-  }
-  return bytes;
-}
 
 std::vector<std::uint8_t> encoded(const Message& message, std::uint32_t session = 0x01020304) {
   const FrameBytes frame = encode_frame(message, session, 0x1112131415161718, 0x2122232425262728);
@@ -205,4 +194,20 @@ TEST_CASE("status has its documented bytes") {
 TEST_CASE("text is cut to its field and cleaned of what a log should not see") {
   CHECK(round_trip(Hello{.name = std::string(100, 'x')}).name == std::string(kNameSize, 'x'));
   CHECK(round_trip(Hello{.name = "a\nb\x1b"}).name == "a?b?");
+}
+
+TEST_CASE("datagrams has its documented bytes, and a port") {
+  Datagrams offer{.port = 0x0201};
+  offer.random.fill(0xAB);
+  const std::vector<std::uint8_t> bytes = encoded(offer);
+  REQUIRE(bytes.size() == kHeaderSize + 40);
+  CHECK(bytes[6] == 20);
+  std::string payload = "01 02 00 00 00 00 00 00 ";
+  for (int i = 0; i < 32; ++i) payload += "ab ";
+  CHECK(std::vector<std::uint8_t>(bytes.begin() + kHeaderSize, bytes.end()) == from_hex(payload));
+  const Datagrams back = round_trip(offer);
+  CHECK(back.port == offer.port);
+  CHECK(back.random == offer.random);
+  offer.port = 0;
+  CHECK_THROWS_AS(round_trip(offer), ProtocolError);
 }

@@ -1,0 +1,61 @@
+#include "common/wire/datagram_socket.hpp"
+
+#include <utility>
+
+namespace irdm::wire {
+
+using boost::asio::ip::udp;
+using boost::system::error_code;
+
+namespace {
+
+constexpr int kSendBuffer = 65536;
+constexpr int kAtOnce = 64;  // then it is others' turn
+
+}  // namespace
+
+DatagramSocket::DatagramSocket(const boost::asio::any_io_executor& executor, const Endpoint& local)
+    : socket_(executor, local) {
+  error_code ignored;
+  socket_.set_option(udp::socket::send_buffer_size(kSendBuffer), ignored);
+  socket_.non_blocking(true);
+}
+
+void DatagramSocket::start(Received received) {
+  received_ = std::move(received);
+  wait();
+}
+
+void DatagramSocket::wait() {
+  socket_.async_wait(udp::socket::wait_read, [self = shared_from_this()](const error_code& error) {
+    if (error || !self->open_) return;
+    self->receive();
+    if (self->open_) self->wait();
+  });
+}
+
+// An error is word of a datagram that was sent and did not arrive: nothing to do about it.
+void DatagramSocket::receive() {
+  for (int i = 0; i < kAtOnce && open_; ++i) {
+    Endpoint from;
+    error_code error;
+    const std::size_t size = socket_.receive_from(boost::asio::buffer(incoming_), from, 0, error);
+    if (error) return;
+    received_({incoming_.data(), size}, from);
+  }
+}
+
+bool DatagramSocket::send(std::span<const std::uint8_t> datagram, const Endpoint& to) noexcept {
+  if (!open_) return false;
+  error_code error;
+  socket_.send_to(boost::asio::buffer(datagram.data(), datagram.size()), to, 0, error);
+  return !error;
+}
+
+void DatagramSocket::close() noexcept {
+  open_ = false;
+  error_code ignored;
+  socket_.close(ignored);
+}
+
+}  // namespace irdm::wire

@@ -108,10 +108,8 @@ void ModalEngine<Scalar>::hold_spin(const Vector3& w) noexcept {
 
 template <typename Scalar>
 Vector3 ModalEngine<Scalar>::free_displacement(int node) const noexcept {
-  Vector3 u;
-  for (int axis = 0; axis < 3; ++axis) {
-    u[axis] = dot(shape_row(3 * node + axis), free_coordinate_.data(), modes_);
-  }
+  Vector3 u = Vector3::Zero();
+  add_products({shape_row(3 * node), modes_, 3}, free_coordinate_.data(), modes_, 1.0, u.data());
   return u;
 }
 

@@ -7,8 +7,6 @@
 #include <fstream>
 #include <sstream>
 
-#include "bench/statistics.hpp"
-
 #if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__)
 #define IRDM_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
 #else
@@ -88,8 +86,8 @@ std::string machine_json() {
 Memory::Memory(std::size_t bytes)
     : a_(bytes / sizeof(std::uint64_t), 1), b_(bytes / sizeof(double), 1.0) {}
 
-double Memory::read_time() {
-  return seconds([&] {
+Elapsed Memory::read() {
+  return elapsed([&] {
     std::uint64_t sum = 0;
 #pragma omp parallel reduction(+ : sum)
     {

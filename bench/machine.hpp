@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "bench/statistics.hpp"
+
 namespace irdm::bench {
 
 /// What the machine is: processor, cores, caches, memory and the instruction sets that matter here,
@@ -18,8 +20,8 @@ class Memory {
   /// @param bytes of each of the two arrays
   explicit Memory(std::size_t bytes);
 
-  /// Seconds of one pass that reads all of one array, and how many bytes that are.
-  double read_time();
+  /// One pass that reads all of one array, and how many bytes that are.
+  Elapsed read();
   double read_bytes() const { return static_cast<double>(a_.size() * sizeof(std::uint64_t)); }
   /// Bytes a second of the triad a[i] = b[i] + s c[i], counted as two reads and one write.
   double triad();

@@ -28,7 +28,7 @@ void measure_memory(bench::Report& report) {
     std::vector<double> read;
     for (int i = 0; i < kRepeats; ++i) {
       triad.push_back(memory.triad() / 1e9);
-      read.push_back(memory.read_bytes() / memory.read_time() / 1e9);
+      read.push_back(memory.read_bytes() / memory.read().wall / 1e9);
     }
     report.row({double(threads), bench::percentile(triad, 0.5), bench::percentile(read, 0.5)});
   }

@@ -1,12 +1,19 @@
-// How fast the deformation thread reads the responses, beside what the machine's memory gives (the
-// triad a[i] = b[i] + s c[i], two reads and one write, with the same threads in the same run).
-
+// How fast the deformation thread reads the responses, beside what the machine's memory gives when
+// it is only read, with the same threads: the two alternate, and the share is the median of the
+// pairs. On a busy machine the share by processor time says more: it does not count waiting for a
+// processor. Contacts move on from frame to frame, so that nothing is read again out of a cache.
 #include <omp.h>
 
-#include <cstdio>
+#include <functional>
 #include <memory>
+#include <string>
+#include <vector>
 
+#include "bench/machine.hpp"
+#include "bench/report.hpp"
+#include "bench/sparse_resident.hpp"
 #include "bench/statistics.hpp"
+#include "common/program/passive_openmp.hpp"
 #include "server/engine/response_engine.hpp"
 #include "tests/support/synthetic_model.hpp"
 
@@ -15,68 +22,113 @@ using namespace irdm;
 namespace {
 
 constexpr int kSteps = 500;
-constexpr int kRepeats = 15;
+constexpr int kPairs = 9;
+constexpr std::size_t kArray = std::size_t{1} << 30;  // bytes
+constexpr double kMoved = 8e8;                        // bytes that the frames of a pair read
 
-/// Bytes a second that the triad moves, median.
-double triad() {
-  constexpr std::size_t kCount = 20'000'000;
-  static std::vector<double> a(kCount, 0.0), b(kCount, 1.0), c(kCount, 2.0);
-  std::vector<double> times;
-  for (int repeat = 0; repeat < kRepeats; ++repeat) {
-    times.push_back(bench::seconds([&] {
-      double* to = a.data();
-      const double* x = b.data();
-      const double* y = c.data();
-#pragma omp parallel for schedule(static)
-      for (std::size_t i = 0; i < kCount; ++i) to[i] = x[i] + 0.5 * y[i];
-    }));
-  }
-  return 3.0 * kCount * sizeof(double) / bench::percentile(times, 0.5);
+/// Frames that follow one another and have nothing in common.
+struct Frames {
+  std::string engine;
+  int nodes = 0;
+  double bytes = 0.0;  ///< of a frame
+  int count = 0;
+  std::function<bench::Elapsed(int)> time;  ///< of frame i
+};
+
+/// Three nodes that no other frame has.
+std::vector<int> contact(int frame) {
+  return {3 * frame, 3 * frame + 1, 3 * frame + 2};
 }
 
-/// Median seconds of one surface after a full history of forces on three nodes.
-double surface_time(ResponseEngine& engine) {
-  const std::array<NodalForce, 3> forces{NodalForce{1, Vector3(0.1, 0.2, 0.3)},
-                                         {2, Vector3(0.3, 0.1, 0.2)},
-                                         {3, Vector3(0.2, 0.3, 0.1)}};
-  for (int k = 0; k < kSteps; ++k) engine.advance(forces);
-  Points u;
-  std::vector<double> times;
-  for (int repeat = 0; repeat < kRepeats; ++repeat) {
-    times.push_back(bench::seconds([&] { engine.displacement(u); }));
-  }
-  return bench::percentile(times, 0.5);
+template <typename Scalar>
+Frames dense_frames(const std::string& name, int cells) {
+  Model model = test::synthetic_cube(cells, 1, kSteps);
+  Frames frames;
+  frames.engine = name;
+  frames.nodes = model.mesh.surface_node_count();
+  frames.bytes = 9.0 * model.degrees_of_freedom() * kSteps * sizeof(Scalar);
+  frames.count = std::min(frames.nodes / 3, static_cast<int>(kMoved / frames.bytes) + 1);
+  std::vector<int> nodes;
+  for (int i = 0; i < 3 * frames.count; ++i) nodes.push_back(i);
+  model.response = bench::sparse_resident<Scalar>(model.degrees_of_freedom(), kSteps, nodes);
+  const std::shared_ptr<ResponseEngine> engine =
+      make_engine(std::make_shared<const Model>(std::move(model)));
+  frames.time = [engine, u = Points()](int frame) mutable {
+    engine->reset();
+    std::vector<NodalForce> forces;
+    for (const int node : contact(frame)) forces.push_back({node, Vector3(0.1, 0.2, 0.3)});
+    for (int k = 0; k < kSteps; ++k) engine->advance(forces);
+    return bench::elapsed([&] { engine->displacement(u); });
+  };
+  return frames;
 }
 
-void print(const char* engine, int nodes, int threads, double bytes, double time, double memory) {
-  std::printf("| %s | %d | %d | %.1f | %.2f | %.2f | %.2f | %.2f |\n", engine, nodes, threads,
-              bytes / 1e6, 1e3 * time, bytes / time / 1e9, memory / 1e9, bytes / time / memory);
-  std::fflush(stdout);
+/// Several objects, one a frame.
+template <typename Scalar>
+Frames modal_frames(const std::string& name, int cells, int modes) {
+  const Model plain = test::synthetic_cube(cells, 1, kSteps);
+  Frames frames;
+  frames.engine = name;
+  frames.nodes = plain.mesh.surface_node_count();
+  frames.bytes = static_cast<double>(plain.degrees_of_freedom()) * modes * sizeof(Scalar);
+  frames.count = static_cast<int>(kMoved / frames.bytes) + 1;
+  std::vector<std::shared_ptr<ResponseEngine>> engines;
+  for (int i = 0; i < frames.count; ++i) {
+    Model model = plain;
+    auto& response = std::get<ModalResponse>(model.response);
+    response.angular_frequency = Eigen::VectorXd::LinSpaced(modes, 60.0, 600.0);
+    response.decay_rate = Eigen::VectorXd::Constant(modes, 4.0);
+    response.shapes.emplace<RowMatrix<Scalar>>(
+        RowMatrix<Scalar>::Constant(model.degrees_of_freedom(), modes, Scalar(0.5)));
+    engines.push_back(make_engine(std::make_shared<const Model>(std::move(model))));
+    const NodalForce force{1, Vector3(0.1, 0.2, 0.3)};
+    engines.back()->advance({&force, 1});
+  }
+  frames.time = [engines, u = Points()](int frame) mutable {
+    return bench::elapsed([&] { engines[static_cast<std::size_t>(frame)]->displacement(u); });
+  };
+  return frames;
+}
+
+void measure(bench::Report& report, bench::Memory& memory, const Frames& frames) {
+  for (const int threads : {1, 2}) {
+    omp_set_num_threads(threads);
+    std::vector<double> read;
+    std::vector<double> ours;
+    std::vector<double> share;
+    std::vector<double> share_of_cpu;
+    for (int pair = 0; pair < kPairs; ++pair) {
+      const bench::Elapsed reading = memory.read();
+      bench::Elapsed frame_times;
+      for (int i = 0; i < frames.count; ++i) frame_times += frames.time(i);
+      const double bytes = frames.count * frames.bytes;
+      read.push_back(memory.read_bytes() / reading.wall / 1e9);
+      ours.push_back(bytes / frame_times.wall / 1e9);
+      share.push_back(ours.back() / read.back());
+      share_of_cpu.push_back(bytes / frame_times.cpu * reading.cpu / memory.read_bytes());
+    }
+    const double rate = bench::percentile(ours, 0.5);
+    report.row({frames.engine, double(frames.nodes), double(threads), frames.bytes / 1e6,
+                frames.bytes / rate / 1e6, rate, bench::percentile(read, 0.5),
+                bench::percentile(share, 0.5), bench::percentile(share_of_cpu, 0.5)});
+  }
 }
 
 }  // namespace
 
-int main() {
-  std::printf(
-      "| engine | surface nodes | threads | MB of R read | ms | GB/s | triad GB/s | share |\n"
-      "|---|---|---|---|---|---|---|---|\n");
-  for (const int threads : {1, 2}) {
-    omp_set_num_threads(threads);
-    const double memory = triad();
-    for (const int cells : {5, 6, 8}) {
-      const Model modal = test::synthetic_cube(cells, 40, kSteps);
-      const auto dof = static_cast<double>(modal.degrees_of_freedom());
-      const auto dense =
-          make_engine(std::make_shared<const Model>(test::with_dense_response<float>(modal)));
-      print("dense", modal.mesh.surface_node_count(), threads, 9.0 * dof * kSteps * sizeof(float),
-            surface_time(*dense), memory);
-    }
-    // The paper's cube with all its modes; synthetic shapes are double precision.
-    constexpr int kModes = 4050;
-    const Model modal = test::synthetic_cube(12, kModes, kSteps);
-    const auto engine = make_engine(std::make_shared<const Model>(modal));
-    print("modal", modal.mesh.surface_node_count(), threads,
-          modal.degrees_of_freedom() * double{kModes} * sizeof(double), surface_time(*engine),
-          memory);
+int main(int, char** argv) {
+  wait_passively_in_openmp(argv);  // as irdm-server does
+  bench::Report report("deformation");
+  bench::Memory memory(kArray);
+  report.table(
+      "deformed surface from a full history of one contact (3 nodes), T = 500; modal: 4050 modes",
+      {"engine", "surface nodes", "threads", "read [MB]", "time [ms]", "rate [GB/s]",
+       "memory, read [GB/s]", "share", "share, by processor time"});
+  for (const int cells : {5, 8, 12, 24}) {
+    measure(report, memory, dense_frames<float>("dense, single", cells));
   }
+  for (const int cells : {12, 24})
+    measure(report, memory, dense_frames<Half>("dense, half", cells));
+  measure(report, memory, modal_frames<float>("modal, single", 12, 4050));
+  measure(report, memory, modal_frames<double>("modal, double", 12, 4050));
 }

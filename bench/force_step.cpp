@@ -1,17 +1,18 @@
 // How long one force step takes, and whether that depends on the object: cubes of growing size, one
-// stylus that holds a point between three nodes, after T steps of history.
+// stylus that holds a point between three nodes, after T steps of history; and eight styluses.
 //   modal, fixed     the same number of modes at every size
 //   modal, all       as many modes as a cube of that size has
-//   dense            R itself, as far as memory goes
+//   dense            R itself; of the largest only the columns of the nodes in contact are there,
+//                    which is all that a force step reads (bench/sparse_resident.hpp)
 // The responses are synthetic (random shapes): the time does not depend on the numbers.
-
+//   bench_force_step [LARGEST CELLS AN EDGE]      58 (20186 surface nodes) unless given
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <memory>
 
-#include "bench/statistics.hpp"
-#include "server/step/simulation.hpp"
+#include "bench/held_step.hpp"
+#include "bench/report.hpp"
+#include "bench/sparse_resident.hpp"
 #include "tests/support/synthetic_model.hpp"
 
 using namespace irdm;
@@ -22,85 +23,76 @@ constexpr int kSteps = 500;  // T
 constexpr int kFixedModes = 500;
 constexpr int kMeasured = 4000;
 
-struct Timing {
-  double median = 0.0;  ///< [us]
-  double p99 = 0.0;     ///< [us]
-};
-
-Timing measure(std::shared_ptr<const Model> model) {
-  SimulationConfig config;
-  config.objects.resize(1);
-  config.objects[0].model = std::move(model);
-  Simulation simulation(config);
-  StepRecord record;
-  std::vector<double> times;
-  for (int k = 0; k < kSteps + kMeasured; ++k) {
-    const double t = k * simulation.dt();
-    const double height = k < 2 ? 0.061 : 0.059;
-    // A place between nodes at every size, moved a little to and fro.
-    const StylusCommand command{
-        true, kGrabButton, {0.0013 + 0.001 * std::sin(9.0 * t), height, 0.0011}, {}};
-    const double time = bench::seconds([&] { simulation.step({&command, 1}, record); });
-    if (k >= kSteps) times.push_back(1e6 * time);
-  }
-  if (record.stylus[0].contact != ContactState::kHeld) {
-    std::fprintf(stderr, "bench: the stylus lost its hold; these times mean nothing\n");
-    std::exit(1);
-  }
-  return {bench::percentile(times, 0.5), bench::percentile(times, 0.99)};
+// As TetGen fills the cube.
+int all_modes(int cells) {
+  return 3 * static_cast<int>(std::pow(cells + 1, 3) * 0.615) - 6;
 }
 
-// Numbers of any kind; only their place matters.
-Model dense_model(int cells) {
+std::shared_ptr<const Model> modal(int cells, int modes) {
+  Model model = test::synthetic_cube(cells, modes, kSteps);
+  auto& response = std::get<ModalResponse>(model.response);
+  const RowMatrix<float> shapes = std::get<RowMatrix<double>>(response.shapes).cast<float>();
+  response.shapes = shapes;
+  return std::make_shared<const Model>(std::move(model));
+}
+
+template <typename Scalar>
+std::shared_ptr<const Model> dense(int cells, int styluses) {
   Model model = test::synthetic_cube(cells, 1, kSteps);
-  const auto dof = static_cast<std::size_t>(model.degrees_of_freedom());
-  std::vector<float> values(dof * dof * kSteps);
-  for (std::size_t b = 0; b < dof; ++b) {
-    for (std::size_t s = 0; s < kSteps; ++s) {
-      for (std::size_t a = 0; a < dof; ++a) {
-        const double near = a == b ? 1e-3 : 1e-6;
-        values[(b * dof + a) * kSteps + s] =
-            static_cast<float>(near * std::exp(-0.01 * static_cast<double>(s)));
-      }
-    }
-  }
-  model.response = DenseResponse{static_cast<int>(dof), kSteps, std::move(values)};
-  return model;
+  model.response = bench::sparse_resident<Scalar>(model.degrees_of_freedom(), kSteps,
+                                                  bench::held_nodes(model, styluses));
+  return std::make_shared<const Model>(std::move(model));
 }
 
-double dense_gigabytes(int nodes) {
-  return 9.0 * nodes * nodes * kSteps * sizeof(float) / 1e9;
+double gigabytes(int nodes, double number) {
+  return 9.0 * nodes * nodes * kSteps * number / 1e9;
+}
+
+void add_row(bench::Report& report, const std::string& engine, int cells, double memory,
+             const bench::StepTimes& times) {
+  report.row({engine, double(6 * cells * cells + 2), memory, times.median, times.p99, times.p999});
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  const double limit = argc > 1 ? std::atof(argv[1]) : 3.0;
-  std::printf("force step with one held contact, T = %d; dense up to %.1f GB\n\n", kSteps, limit);
-  std::printf(
-      "| surface nodes | modal, %d modes: median, p99 [us] | modal, all modes | median, p99 [us] "
-      "| dense [GB] | median, p99 [us] |\n|---|---|---|---|---|---|\n",
-      kFixedModes);
-  for (const int cells : {5, 8, 12, 16, 20, 24}) {
+  const int largest = argc > 1 ? std::atoi(argv[1]) : 58;
+  bench::Report report("force_step");
+  const std::vector<std::string> columns{"engine",      "surface nodes", "response [GB]",
+                                         "median [us]", "p99 [us]",      "p99.9 [us]"};
+  report.table("force step, one held contact, T = 500", columns);
+  for (const int cells : {5, 8, 12, 16, 20, 24, 36, 58}) {
+    if (cells > largest) break;
     const int nodes = 6 * cells * cells + 2;
-    const int all =
-        3 * static_cast<int>(std::pow(cells + 1, 3) * 0.615) - 6;  // as TetGen fills the cube
-    const Timing fixed =
-        measure(std::make_shared<const Model>(test::synthetic_cube(cells, kFixedModes, kSteps)));
-    std::printf("| %d | %.1f, %.1f |", nodes, fixed.median, fixed.p99);
+    const double dof = 3.0 * nodes;
+    const auto add = [&](const std::string& engine, double memory,
+                         const std::shared_ptr<const Model>& model) {
+      add_row(report, engine, cells, memory, bench::held_steps(model, 1, kMeasured));
+    };
+    add("modal, 500 modes", dof * kFixedModes * sizeof(float) / 1e9, modal(cells, kFixedModes));
     if (cells <= 16) {
-      const Timing whole =
-          measure(std::make_shared<const Model>(test::synthetic_cube(cells, all, kSteps)));
-      std::printf(" %d | %.1f, %.1f |", all, whole.median, whole.p99);
-    } else {
-      std::printf(" | |");
+      add("modal, all modes", dof * all_modes(cells) * sizeof(float) / 1e9,
+          modal(cells, all_modes(cells)));
     }
-    if (dense_gigabytes(nodes) <= limit) {
-      const Timing dense = measure(std::make_shared<const Model>(dense_model(cells)));
-      std::printf(" %.1f | %.1f, %.1f |\n", dense_gigabytes(nodes), dense.median, dense.p99);
-    } else {
-      std::printf(" %.1f | not measured |\n", dense_gigabytes(nodes));
-    }
-    std::fflush(stdout);
+    add("dense, single", gigabytes(nodes, sizeof(float)), dense<float>(cells, 1));
+    add("dense, half", gigabytes(nodes, sizeof(Half)), dense<Half>(cells, 1));
   }
+  constexpr int kPaper = 12;
+  constexpr int kNodes = 6 * kPaper * kPaper + 2;
+  const auto measure_several = [&](const std::string& name, int points, const auto& measure) {
+    report.table(name, columns);
+    const double dof = 3.0 * kNodes;
+    add_row(report, "modal, 500 modes", kPaper, dof * kFixedModes * sizeof(float) / 1e9,
+            measure(modal(kPaper, kFixedModes)));
+    add_row(report, "modal, all modes", kPaper, dof * all_modes(kPaper) * sizeof(float) / 1e9,
+            measure(modal(kPaper, all_modes(kPaper))));
+    add_row(report, "dense, single", kPaper, gigabytes(kNodes, sizeof(float)),
+            measure(dense<float>(kPaper, points)));
+    add_row(report, "dense, half", kPaper, gigabytes(kNodes, sizeof(Half)),
+            measure(dense<Half>(kPaper, points)));
+  };
+  measure_several("force step, four held contacts, paper's cube", 4,
+                  [](const auto& model) { return bench::held_steps(model, 4, kMeasured); });
+  measure_several("eight coupled contacts: prediction, solution, history; paper's cube", 8,
+                  [](const auto& model) { return bench::eight_contacts(model, kMeasured); });
 }

@@ -1,25 +1,33 @@
 #!/usr/bin/env bash
-# Builds and runs the benchmarks: bench/run.sh [GB of memory that dense models may take, 3 unless given]
+# Builds and runs the benchmarks: bench/run.sh [LARGEST CUBE OF THE FORCE STEP, cells an edge; 58 unless given]
+# The tables go to the terminal and to out/bench/report.md, their numbers, with what the machine is, to
+# out/bench/*.json, and the plots over the size of the object to out/bench/scaling.png.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-scripts/build.sh release
-echo "## Force step"
-build/release/bin/bench_force_step "${1:-3}"
-echo
-echo "## Contacts"
-build/release/bin/bench_contact_step
-echo
-echo "## Contact solved at the bridge"
-build/release/bin/bench_foresee
-echo
-echo "## Deformation"
-build/release/bin/bench_deformation
-echo
-echo "## Viewers"
-mkdir -p out/bench
-[ -f out/bench/paper-cube.h5 ] ||
-  build/release/bin/irdm-precompute configs/models/paper-cube.toml -o out/bench/paper-cube.h5 >out/bench/paper-cube.log
-build/release/bin/bench_viewer_load out/bench/paper-cube.h5
-echo
-echo "## Reconnects"
-build/release/bin/bench_reconnect
+preset=${IRDM_BENCH_PRESET:-release}
+scripts/build.sh "$preset"
+bin=build/$preset/bin
+export IRDM_BENCH_JSON=out/bench
+mkdir -p "$IRDM_BENCH_JSON"
+model=out/bench/paper-cube.h5
+[ -f "$model" ] || "$bin/irdm-precompute" configs/models/paper-cube.toml -o "$model" >out/bench/paper-cube.log
+
+part() {  # TITLE COMMAND...
+  echo
+  echo "## $1"
+  echo
+  "${@:2}"
+}
+
+{
+  part "Machine" "$bin/bench_machine"
+  part "Deformation" "$bin/bench_deformation"
+  part "Force step" "$bin/bench_force_step" "${1:-58}"
+  part "Implicit finite elements" "$bin/bench_implicit_fem"
+  part "Round trip" "$bin/bench_round_trip" "$model"
+  part "Contacts" "$bin/bench_contact_step"
+  part "Contact solved at the bridge" "$bin/bench_foresee"
+  part "Viewers" "$bin/bench_viewer_load" "$model"
+  part "Reconnects" "$bin/bench_reconnect"
+  part "Scaling" bench/scaling.py out/bench "$bin"
+} | tee out/bench/report.md

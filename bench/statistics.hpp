@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <vector>
 
 namespace irdm::bench {
@@ -19,6 +20,29 @@ double seconds(const Work& work) {
   const auto begin = std::chrono::steady_clock::now();
   work();
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+/// What work took: on the clock, and of all processors together.
+struct Elapsed {
+  double wall = 0.0;  ///< [s]
+  double cpu = 0.0;   ///< [s]
+  Elapsed& operator+=(const Elapsed& other) {
+    wall += other.wall;
+    cpu += other.cpu;
+    return *this;
+  }
+};
+
+template <typename Work>
+Elapsed elapsed(const Work& work) {
+  const auto cpu = [] {
+    std::timespec now{};
+    ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+  };
+  const double before = cpu();
+  const double wall = seconds(work);
+  return {wall, cpu() - before};
 }
 
 }  // namespace irdm::bench

@@ -90,10 +90,14 @@ ResponseConfig read_response(TomlTable table) {
   response.method = method_from_word(table.choice("method", {"modal", "time-stepping"}, "modal"));
   response.storage =
       storage_from_word(table.choice("storage", {"modal", "dense", "both"}, "modal"));
-  response.precision = table.choice("precision", {"single", "double"}, "single") == "single"
-                           ? Precision::kSingle
-                           : Precision::kDouble;
+  const std::string precision = table.choice("precision", {"half", "single", "double"}, "single");
+  response.precision = precision == "double" ? Precision::kDouble : Precision::kSingle;
+  response.half = precision == "half";
   response.compression_error = read_compression(table);
+  if (response.half && response.compression_error > 0.0) {
+    table.fail("precision", "is \"half\", which zfp does not compress",
+               "leave compression out or use precision = \"single\"");
+  }
   table.choice("support", {"floating", "fixed"}, "floating");  // see read_support
   table.finish();
   return response;

@@ -112,9 +112,10 @@ void check_resources(const PrecomputeConfig& config, const TetMesh& mesh, const 
                     " nodes); of a surface, with a larger mesh.edge_length");
   }
   if (config.response.storage == Storage::kModal) return;
-  const double size =
-      static_cast<double>(columns) * model.degrees_of_freedom() * model.steps *
-      (config.response.precision == Precision::kSingle ? sizeof(float) : sizeof(double));
+  const double size = static_cast<double>(columns) * model.degrees_of_freedom() * model.steps *
+                      (config.response.half                              ? sizeof(Half)
+                       : config.response.precision == Precision::kSingle ? sizeof(float)
+                                                                         : sizeof(double));
   std::error_code error;
   const auto space = std::filesystem::space(std::filesystem::absolute(output).parent_path(), error);
   if (!error && static_cast<double>(space.available) < size) {
@@ -134,6 +135,7 @@ ColumnFileHeader column_header(const PrecomputeConfig& config, const Model& mode
           config.response.precision,
           config.response.compression_error,
           centrifugal,
+          config.response.half,
           settings_text(config, clamped),
           description_of(model)};
 }

@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "common/error.hpp"
+#include "common/half.hpp"
 
 namespace irdm::hdf5 {
 
@@ -27,6 +28,19 @@ hid_t native_type<std::uint8_t>() {
 template <>
 hid_t native_type<std::uint64_t>() {
   return H5T_NATIVE_UINT64;
+}
+
+// IEEE 754 binary16, which HDF5 1.10 has no name for.
+template <>
+hid_t native_type<Half>() {
+  static const hid_t type = [] {
+    const hid_t half = H5Tcopy(H5T_NATIVE_FLOAT);
+    H5Tset_fields(half, 15, 10, 5, 0, 10);
+    H5Tset_size(half, 2);
+    H5Tset_ebias(half, 15);
+    return half;
+  }();
+  return type;
 }
 
 namespace {
@@ -429,6 +443,7 @@ void File::append(const std::string& dataset, hsize_t rows, const T* values) {
   template void File::append<T>(const std::string&, hsize_t, const T*);
 IRDM_HDF5_INSTANTIATE(double)
 IRDM_HDF5_INSTANTIATE(float)
+IRDM_HDF5_INSTANTIATE(Half)
 IRDM_HDF5_INSTANTIATE(std::int32_t)
 IRDM_HDF5_INSTANTIATE(std::uint8_t)
 IRDM_HDF5_INSTANTIATE(std::uint64_t)

@@ -19,7 +19,8 @@
 /// each process calls it from one thread at a time (library_lock.hpp).
 namespace irdm::hdf5 {
 
-/// HDF5's name for a C++ number type: double, float, std::int32_t, std::uint8_t or std::uint64_t.
+/// HDF5's name for a C++ number type: double, float, Half, std::int32_t, std::uint8_t or
+/// std::uint64_t.
 template <typename T>
 hid_t native_type();
 
@@ -66,7 +67,7 @@ class File {
   /// The same for who makes room for all of it: throws Error, too, when the file holds so little
   /// of it that the shape cannot be meant. Looks at every chunk.
   Shape stored_shape(const std::string& dataset) const;
-  /// Bytes of one floating-point number of the dataset in the file: 4 or 8.
+  /// Bytes of one floating-point number of the dataset in the file: 2, 4 or 8.
   std::size_t element_size(const std::string& dataset) const;
 
   template <typename T>

@@ -72,6 +72,7 @@ std::string content_checksum(const hdf5::File& file) {
     add_dataset<double>(sha, file, shapes);
   }
   add_dataset<double>(sha, file, kModalCentrifugal);
+  add_dataset<double>(sha, file, kDenseScale);
   if (file.exists(kDenseCentrifugal) && file.element_size(kDenseCentrifugal) == sizeof(float)) {
     add_dataset<float>(sha, file, kDenseCentrifugal);
   } else {

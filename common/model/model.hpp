@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/geometry.hpp"
+#include "common/half.hpp"
 
 namespace irdm {
 
@@ -67,11 +68,14 @@ struct ModalResponse {
 struct DenseResponse {
   int degrees_of_freedom = 0;  ///< 3n
   int steps = 0;               ///< T
-  std::variant<std::vector<float>, std::vector<double>> values;
+  std::variant<std::vector<float>, std::vector<double>, std::vector<Half>> values;
   /// Displacement after a product of angular velocity components held during one step (see
   /// SpinProducts), numbers and order as above: entry (a, p) of step s stands at
   /// (p * dof + a) * steps + s [m s^2]. Empty: the model has none.
   std::variant<std::vector<float>, std::vector<double>> centrifugal{};
+  /// Of half precision only: what the numbers of column b are multiplied with (3n) [m/N]. Else
+  /// empty.
+  std::vector<double> scales{};
 };
 
 /// What a model file holds.

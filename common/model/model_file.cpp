@@ -10,6 +10,13 @@
 namespace irdm {
 namespace {
 
+bool is_finite(double value) {
+  return std::isfinite(value);
+}
+bool is_finite(Half value) {
+  return (value.bits & 0x7C00U) != 0x7C00U;
+}
+
 class ModelReader {
  public:
   explicit ModelReader(hdf5::File file) : file_(std::move(file)) {}
@@ -180,7 +187,11 @@ class ModelReader {
     DenseResponse response;
     response.degrees_of_freedom = static_cast<int>(dof);
     response.steps = static_cast<int>(steps);
-    if (file_.element_size(kDenseR) == sizeof(float)) {
+    if (file_.element_size(kDenseR) == sizeof(Half)) {
+      response.values = read_columns<Half>(kDenseR, dof, steps, dof);
+      response.scales = read_scales(dof);
+      response.centrifugal = read_centrifugal<float>(dof, steps);
+    } else if (file_.element_size(kDenseR) == sizeof(float)) {
       response.values = read_columns<float>(kDenseR, dof, steps, dof);
       response.centrifugal = read_centrifugal<float>(dof, steps);
     } else {
@@ -199,17 +210,27 @@ class ModelReader {
     return read_columns<Scalar>(kDenseCentrifugal, kSpinProducts, steps, dof);
   }
 
+  std::vector<double> read_scales(hsize_t dof) const {
+    std::vector<double> scales = file_.read<double>(kDenseScale, {dof});
+    require(std::ranges::all_of(scales, [](double x) { return std::isfinite(x) && x > 0.0; }),
+            std::string(kDenseScale) + " must be finite and positive");
+    return scales;
+  }
+
   // The file has [b][s][a]; in memory the step runs fastest: [b][a][s].
   template <typename Scalar>
   std::vector<Scalar> read_columns(const std::string& dataset, hsize_t columns, hsize_t steps,
                                    hsize_t dof) const {
     std::vector<Scalar> values(columns * steps * dof);
-    RowMatrix<Scalar> column(static_cast<Eigen::Index>(steps), static_cast<Eigen::Index>(dof));
+    std::vector<Scalar> column(steps * dof);
     for (hsize_t b = 0; b < columns; ++b) {
       file_.read_slab<Scalar>(dataset, {b, 0, 0}, {1, steps, dof}, column.data());
-      require(column.allFinite(), dataset + " has numbers that are not finite");
-      Eigen::Map<RowMatrix<Scalar>>(values.data() + b * dof * steps, column.cols(), column.rows()) =
-          column.transpose();
+      require(std::ranges::all_of(column, [](Scalar x) { return is_finite(x); }),
+              dataset + " has numbers that are not finite");
+      Scalar* to = values.data() + b * dof * steps;
+      for (hsize_t a = 0; a < dof; ++a) {
+        for (hsize_t s = 0; s < steps; ++s) to[a * steps + s] = column[s * dof + a];
+      }
     }
     return values;
   }

@@ -45,6 +45,7 @@ StoredColumns::StoredColumns(const std::filesystem::path& path, int degrees_of_f
     throw Error(path.string(), "/response/dense/R must have the shape (3n, steps, 3n)",
                 "make the model again with irdm-precompute");
   }
+  if (file_.element_size(kDenseR) == sizeof(Half)) scales_ = file_.read<double>(kDenseScale, {dof});
 }
 
 RowMatrix<double> StoredColumns::column(int b, int steps) const {
@@ -52,6 +53,7 @@ RowMatrix<double> StoredColumns::column(int b, int steps) const {
   file_.read_slab<double>(
       kDenseR, {static_cast<hsize_t>(b), 0, 0},
       {1, static_cast<hsize_t>(steps), static_cast<hsize_t>(degrees_of_freedom_)}, values.data());
+  if (!scales_.empty()) values *= scales_[static_cast<std::size_t>(b)];
   return values;
 }
 

@@ -47,6 +47,7 @@ class StoredColumns : public Columns {
   hdf5::File file_;
   int degrees_of_freedom_;
   int steps_;
+  std::vector<double> scales_ = {};  ///< of half precision; else empty
 };
 
 /// R_ii[s] of the nodes first .. first+count-1.

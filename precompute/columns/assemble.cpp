@@ -1,7 +1,9 @@
 #include "precompute/columns/assemble.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <memory>
 
@@ -26,7 +28,7 @@ void check_same(const ColumnFileReader& first, const ColumnFileReader& part) {
       a.centrifugal != b.centrifugal) {
     differs("other settings");
   }
-  if (a.precision != b.precision || a.steps != b.steps ||
+  if (a.precision != b.precision || a.half != b.half || a.steps != b.steps ||
       a.degrees_of_freedom != b.degrees_of_freedom) {
     differs("other numbers");
   }
@@ -129,6 +131,15 @@ double zfp_accuracy(double share, double peak) {
   return share > 0.0 && peak > 0.0 ? std::exp2(std::floor(std::log2(share * peak))) : 0.0;
 }
 
+std::string half_error_text(const HalfError& error) {
+  std::array<char, 160> text{};
+  std::snprintf(text.data(), text.size(),
+                "half precision: entries of R are off by %.2g of their column's largest at most, "
+                "the answer to a lasting force by %.2g",
+                error.entry, error.compliance);
+  return text.data();
+}
+
 void check_compression(double share, const std::filesystem::path& output) {
   if (share <= 0.0 || hdf5::zfp_available()) return;
   throw Error(output.string(), "compression = \"zfp\" is asked for and HDF5 has no zfp filter here",
@@ -151,7 +162,11 @@ double assemble(const std::vector<std::filesystem::path>& paths,
                               : 0.0;
   ModelFileWriter writer(output, temporary);
   writer.write_description(model);
-  writer.begin_dense(header.degrees_of_freedom, header.steps, header.precision, accuracy);
+  if (header.half) {
+    writer.begin_dense_half(header.degrees_of_freedom, header.steps);
+  } else {
+    writer.begin_dense(header.degrees_of_freedom, header.steps, header.precision, accuracy);
+  }
   Progress progress(console, "writing R", header.degrees_of_freedom);
   double left = 0.0;
   for_each_column(parts, [&](int b, const auto* values) {
@@ -165,6 +180,7 @@ double assemble(const std::vector<std::filesystem::path>& paths,
   } else if (header.centrifugal) {
     copy_centrifugal<double>(*parts.front(), writer);
   }
+  if (header.half) console.line(half_error_text(writer.half_error()));
   writer.commit();
   return left;
 }

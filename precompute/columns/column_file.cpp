@@ -19,14 +19,20 @@ bool read_word(std::istream& text, const char* word) {
   return text >> found && found == word;
 }
 
-// Reads "centrifugal 6", which may be missing, and "settings".
-bool parse_centrifugal(std::istream& text, bool& centrifugal) {
-  std::string word;
-  if (!(text >> word)) return false;
-  centrifugal = word == "centrifugal";
-  if (!centrifugal) return word == "settings";
-  int columns = 0;
-  return text >> columns && columns == kSpinProducts && read_word(text, "settings");
+// Reads "centrifugal 6" and "half 1", both of which may be missing, and "settings".
+bool parse_options(std::istream& text, ColumnFileHeader& header) {
+  for (std::string word; text >> word;) {
+    int value = 0;
+    if (word == "settings") return true;
+    if (word == "centrifugal" && text >> value && value == kSpinProducts) {
+      header.centrifugal = true;
+    } else if (word == "half" && text >> value && value == 1) {
+      header.half = true;
+    } else {
+      return false;
+    }
+  }
+  return false;
 }
 
 // The lengths of settings and description go into the strings themselves. False: not such a text.
@@ -40,7 +46,7 @@ bool parse_text(std::istream& text, ColumnFileHeader& header) {
                     text >> header.range.begin >> header.range.end && read_word(text, "shape") &&
                     text >> header.degrees_of_freedom >> header.steps >> number_bytes &&
                     read_word(text, "compression_error") && text >> header.compression_error &&
-                    parse_centrifugal(text, header.centrifugal) && text >> settings &&
+                    parse_options(text, header) && text >> settings &&
                     read_word(text, "description") && text >> description && text.get() == '\n' &&
                     (number_bytes == 4 || number_bytes == 8) && header.steps > 0 &&
                     header.range.begin >= 0 && header.range.begin < header.range.end &&
@@ -72,6 +78,7 @@ std::string encode_header(const ColumnFileHeader& header) {
   text.precision(17);
   text << header.compression_error;
   if (header.centrifugal) text << "\ncentrifugal " << kSpinProducts;
+  if (header.half) text << "\nhalf 1";
   text << "\nsettings " << header.settings.size() << "\ndescription " << header.description.size()
        << '\n'
        << header.settings << header.description;

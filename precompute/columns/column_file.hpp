@@ -19,6 +19,7 @@
 ///     shape 3n T BYTES           of one number: 4 or 8
 ///     compression_error E        of the model file to come, as a share; 0: none
 ///     centrifugal 6              only where such columns follow those of R
+///     half 1                     only where the model file to come is of half precision
 ///     settings LENGTH
 ///     description LENGTH
 ///     (settings) (description: mesh, body and material as an HDF5 file) (CRC32C of all so far)
@@ -34,6 +35,7 @@ struct ColumnFileHeader {
   Precision precision = Precision::kSingle;
   double compression_error = 0.0;  ///< see ResponseConfig
   bool centrifugal = false;        ///< six columns more, for the SpinProducts
+  bool half = false;               ///< of the model file to come
   std::string settings;            ///< all else that R depends on, see settings_text()
   std::string description;         ///< see description_of()
 

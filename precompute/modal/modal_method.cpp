@@ -36,7 +36,11 @@ void write_dense(ModelFileWriter& writer, const ModalResponse& response, const M
       config.compression_error > 0.0
           ? zfp_accuracy(config.compression_error, driving_peak(response, model.dt, model.steps))
           : 0.0;
-  writer.begin_dense(columns->columns(), model.steps, config.precision, accuracy);
+  if (config.half) {
+    writer.begin_dense_half(columns->columns(), model.steps);
+  } else {
+    writer.begin_dense(columns->columns(), model.steps, config.precision, accuracy);
+  }
   Progress progress(console, "columns of R", columns->columns());
   ModelStore store(writer, progress);
   compute_columns(*columns, {0, columns->columns()}, threads, store);
@@ -45,6 +49,7 @@ void write_dense(ModelFileWriter& writer, const ModalResponse& response, const M
         if (values.rows() > 0) writer.write_dense_centrifugal(values.data());
       },
       columns->centrifugal());
+  if (config.half) console.line(half_error_text(writer.half_error()));
 }
 
 }  // namespace

@@ -17,12 +17,13 @@ SurfaceFrame rest_frame(const SimulationConfig& config) {
   return frame;
 }
 
-Deformation::Deformation(const SimulationConfig& config) {
+Deformation::Deformation(const SimulationConfig& config, double tolerance) {
   std::vector<double> radii;
   for (const SimulationStylus& stylus : config.styluses) radii.push_back(stylus.radius);
   for (const SimulationObject& object : config.objects) {
     Follower follower{object.model, make_engine(object.model, object.other_model), nullptr, nullptr,
                       feels_spin(*object.model, object.inertial_loading)};
+    follower.tolerance = tolerance * object.model->mesh.nodes.rowwise().norm().maxCoeff();
     follower.surface = std::make_unique<RestSurface>(object.model->mesh);
     follower.forces = std::make_unique<RecordedForces>(*follower.surface, radii);
     objects_.push_back(std::move(follower));
@@ -85,7 +86,7 @@ void Deformation::compute(SurfaceFrame& frame) const {
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     frame.objects[i].position = last_.object[i].position;
     frame.objects[i].orientation = last_.object[i].orientation;
-    objects_[i].engine->displacement(frame.objects[i].displacement);
+    objects_[i].engine->displacement(frame.objects[i].displacement, objects_[i].tolerance);
   }
   std::copy_n(last_.stylus.begin(), frame.styluses.size(), frame.styluses.begin());
   for (std::size_t s = 0; s < frame.contacts.size(); ++s) frame.contacts[s] = contact(s);

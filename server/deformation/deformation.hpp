@@ -48,7 +48,9 @@ SurfaceFrame rest_frame(const SimulationConfig& config);
 /// snapshot. Pure; one thread.
 class Deformation {
  public:
-  explicit Deformation(const SimulationConfig& config);
+  /// @param tolerance by how much a displacement component may be off, as a share of the object's
+  /// size at rest: what is only looked at needs no more modes than can be seen, >= 0
+  explicit Deformation(const SimulationConfig& config, double tolerance = 0.0);
 
   /// Takes in the next step. Steps that were lost on the way are taken to have had the forces and
   /// the spin of the one before them, or none if everything was put back to the start since then;
@@ -68,6 +70,7 @@ class Deformation {
     std::unique_ptr<RestSurface> surface;
     std::unique_ptr<RecordedForces> forces;
     bool feels_spin;
+    double tolerance = 0.0;  ///< [m]
     double material_damping = 1.0;
   };
   void follow_settings(const StepRecord& record);

@@ -32,7 +32,10 @@ class BothEngines final : public ResponseEngine {
   }
   void add_past(std::span<const NodalForce> forces, int age) noexcept override;
   void advance(std::span<const NodalForce> forces) noexcept override;
-  void displacement(Points& u) const override { engines_[answering_]->displacement(u); }
+  using ResponseEngine::displacement;
+  void displacement(Points& u, double tolerance) const override {
+    engines_[answering_]->displacement(u, tolerance);
+  }
   Eigen::MatrixXd instant_compliance() const override {
     return engines_[answering_]->instant_compliance();
   }

@@ -3,9 +3,20 @@
 #include <algorithm>
 #include <array>
 
+#include "server/engine/force_stretches.hpp"
 #include "server/engine/kernels.hpp"
 
 namespace irdm {
+namespace {
+
+// Degrees of freedom that a thread takes at a time: some 100 kB of each column.
+constexpr std::size_t kBlock = 64;
+
+double scale_of(const double* scales, std::size_t column) noexcept {
+  return scales == nullptr ? 1.0 : scales[column];
+}
+
+}  // namespace
 
 template <typename Scalar>
 DenseEngine<Scalar>::DenseEngine(std::shared_ptr<const Model> model)
@@ -14,29 +25,31 @@ DenseEngine<Scalar>::DenseEngine(std::shared_ptr<const Model> model)
       spin_history_(kSpinProducts / 3, model_->steps) {
   const auto& response = std::get<DenseResponse>(model_->response);
   values_ = std::get<std::vector<Scalar>>(response.values).data();
+  if (!response.scales.empty()) scales_ = response.scales.data();
   if (has_centrifugal(*model_)) {
-    centrifugal_ = std::get<std::vector<Scalar>>(response.centrifugal).data();
+    centrifugal_ = std::get<std::vector<SpinScalar>>(response.centrifugal).data();
   }
   dof_ = static_cast<std::size_t>(response.degrees_of_freedom);
   steps_ = static_cast<std::size_t>(response.steps);
 }
 
 template <typename Scalar>
-double DenseEngine<Scalar>::convolve(const Scalar* values, const ForceHistory& history, int a,
-                                     int shift) const noexcept {
-  double u = 0.0;
-  for (const int node : history.active()) {
+template <typename Number>
+void DenseEngine<Scalar>::convolve(const Number* values, const double* scales,
+                                   const ForceHistory& history, int node, int shift,
+                                   Vector3& u) const noexcept {
+  for (const int source : history.active()) {
     for (int axis = 0; axis < 3; ++axis) {
-      const ForceHistory::Series series = history.series(node, axis);
+      const ForceHistory::Series series = history.series(source, axis);
       const int first = series.first_age + shift;
       const int count = std::min(series.count, static_cast<int>(steps_) - first);
-      if (count > 0) {
-        u += dot(response(values, a, 3 * node + axis) + first, series.force,
-                 static_cast<std::size_t>(count));
-      }
+      if (count <= 0) continue;
+      const int b = 3 * source + axis;
+      add_products({response(values, 3 * node, b) + first, steps_, 3}, series.force,
+                   static_cast<std::size_t>(count), scale_of(scales, static_cast<std::size_t>(b)),
+                   u.data());
     }
   }
-  return u;
 }
 
 template <typename Scalar>
@@ -45,22 +58,22 @@ void DenseEngine<Scalar>::hold_spin(const Vector3& w) noexcept {
 }
 
 template <typename Scalar>
-double DenseEngine<Scalar>::free_spin_displacement(int a) const noexcept {
-  double u = convolve(centrifugal_, spin_history_, a, 1);
+Vector3 DenseEngine<Scalar>::free_displacement(int node) const noexcept {
+  Vector3 u = Vector3::Zero();
+  convolve(values_, scales_, history_, node, 1, u);
+  if (centrifugal_ == nullptr) return u;
+  convolve(centrifugal_, nullptr, spin_history_, node, 1, u);
   for (int p = 0; p < kSpinProducts; ++p) {
-    u += static_cast<double>(*response(centrifugal_, a, p)) * coming_[p];
+    for (int axis = 0; axis < 3; ++axis) {
+      u[axis] += static_cast<double>(*response(centrifugal_, 3 * node + axis, p)) * coming_[p];
+    }
   }
   return u;
 }
 
 template <typename Scalar>
-Vector3 DenseEngine<Scalar>::free_displacement(int node) const noexcept {
-  Vector3 u;
-  for (int axis = 0; axis < 3; ++axis) {
-    u[axis] = convolve(values_, history_, 3 * node + axis, 1);
-    if (centrifugal_ != nullptr) u[axis] += free_spin_displacement(3 * node + axis);
-  }
-  return u;
+double DenseEngine<Scalar>::entry(std::size_t step, int a, int b) const noexcept {
+  return scale_of(scales_, static_cast<std::size_t>(b)) * to_double(response(values_, a, b)[step]);
 }
 
 // The answer of a to b `step` steps after the one in which b acted.
@@ -73,9 +86,7 @@ Matrix3 DenseEngine<Scalar>::after(std::size_t step, const ContactPatch& a,
       const double weight = a.weights[i] * b.weights[j];
       for (int row = 0; row < 3; ++row) {
         for (int column = 0; column < 3; ++column) {
-          const Scalar entry =
-              response(values_, 3 * a.nodes[i] + row, 3 * b.nodes[j] + column)[step];
-          sum(row, column) += weight * static_cast<double>(entry);
+          sum(row, column) += weight * entry(step, 3 * a.nodes[i] + row, 3 * b.nodes[j] + column);
         }
       }
     }
@@ -104,8 +115,8 @@ Vector3 DenseEngine<Scalar>::after(std::size_t step, const ContactPatch& a,
   for (std::size_t i = 0; i < static_cast<std::size_t>(a.count); ++i) {
     for (int row = 0; row < 3; ++row) {
       for (int column = 0; column < 3; ++column) {
-        const Scalar entry = response(values_, 3 * a.nodes[i] + row, 3 * b.node + column)[step];
-        u[row] += a.weights[i] * static_cast<double>(entry) * b.force[column];
+        u[row] +=
+            a.weights[i] * entry(step, 3 * a.nodes[i] + row, 3 * b.node + column) * b.force[column];
       }
     }
   }
@@ -116,13 +127,9 @@ template <typename Scalar>
 void DenseEngine<Scalar>::foresee(const ContactPatch& patch, std::span<const NodalForce> held,
                                   std::span<Vector3> path, std::span<Matrix3> response) noexcept {
   const auto place = [&](int node, int shift) {
-    Vector3 u;
-    for (int axis = 0; axis < 3; ++axis) {
-      u[axis] = convolve(values_, history_, 3 * node + axis, shift);
-      if (centrifugal_ != nullptr) {
-        u[axis] += convolve(centrifugal_, spin_history_, 3 * node + axis, shift);
-      }
-    }
+    Vector3 u = Vector3::Zero();
+    convolve(values_, scales_, history_, node, shift, u);
+    if (centrifugal_ != nullptr) convolve(centrifugal_, nullptr, spin_history_, node, shift, u);
     return u;
   };
   Vector3 by_held = Vector3::Zero();
@@ -152,18 +159,31 @@ void DenseEngine<Scalar>::advance(std::span<const NodalForce> forces) noexcept {
   coming_.setZero();
 }
 
+// Column after column, as R stands in memory: a thread reads its part of each of them from one end
+// to the other. Each degree of freedom gets its sums in the same order, whichever thread adds them.
 template <typename Scalar>
-void DenseEngine<Scalar>::displacement(Points& u) const {
-  const int nodes = model_->mesh.surface_node_count();
-  u.resize(nodes, 3);
-#pragma omp parallel for schedule(static)
-  for (int node = 0; node < nodes; ++node) {
-    for (int axis = 0; axis < 3; ++axis) {
-      u(node, axis) = convolve(values_, history_, 3 * node + axis, 0);
-      if (centrifugal_ == nullptr) continue;
-      u(node, axis) += convolve(centrifugal_, spin_history_, 3 * node + axis, 0);
+template <typename Number>
+void DenseEngine<Scalar>::add_columns(const Number* values, const double* scales,
+                                      const ForceHistory& history, Points& u) const {
+  const std::vector<ForceStretch> stretches = force_stretches(history);
+  const auto blocks = static_cast<int>((dof_ + kBlock - 1) / kBlock);
+#pragma omp parallel for schedule(dynamic)
+  for (int block = 0; block < blocks; ++block) {
+    const std::size_t first = static_cast<std::size_t>(block) * kBlock;
+    const std::size_t count = std::min(kBlock, dof_ - first);
+    for (const ForceStretch& push : stretches) {
+      const Number* rows = values + (push.column * dof_ + first) * steps_ + push.first_age;
+      add_products({rows, steps_, count}, push.force, push.count, scale_of(scales, push.column),
+                   u.data() + first);
     }
   }
+}
+
+template <typename Scalar>
+void DenseEngine<Scalar>::displacement(Points& u, double /*tolerance*/) const {
+  u.setZero(model_->mesh.surface_node_count(), 3);
+  add_columns(values_, scales_, history_, u);
+  if (centrifugal_ != nullptr) add_columns(centrifugal_, nullptr, spin_history_, u);
 }
 
 template <typename Scalar>
@@ -171,7 +191,7 @@ Eigen::MatrixXd DenseEngine<Scalar>::instant_compliance() const {
   const auto dof = static_cast<int>(dof_);
   Eigen::MatrixXd R(dof, dof);
   for (int b = 0; b < dof; ++b) {
-    for (int a = 0; a < dof; ++a) R(a, b) = static_cast<double>(*response(values_, a, b));
+    for (int a = 0; a < dof; ++a) R(a, b) = entry(0, a, b);
   }
   return R;
 }
@@ -183,6 +203,7 @@ void DenseEngine<Scalar>::reset() noexcept {
   coming_.setZero();
 }
 
+template class DenseEngine<Half>;
 template class DenseEngine<float>;
 template class DenseEngine<double>;
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <type_traits>
+
 #include "common/response/spin_products.hpp"
 #include "server/engine/force_history.hpp"
 #include "server/engine/response_engine.hpp"
@@ -25,29 +27,42 @@ class DenseEngine final : public ResponseEngine {
                std::span<Matrix3> response) noexcept override;
   void add_past(std::span<const NodalForce> forces, int age) noexcept override;
   void advance(std::span<const NodalForce> forces) noexcept override;
-  void displacement(Points& u) const override;
+  using ResponseEngine::displacement;
+  void displacement(Points& u, double tolerance) const override;
   Eigen::MatrixXd instant_compliance() const override;
   void reset() noexcept override;
 
  private:
+  /// Of the centrifugal response, which is never of half precision.
+  using SpinScalar = std::conditional_t<std::is_same_v<Scalar, Half>, float, Scalar>;
+
   Matrix3 after(std::size_t step, const ContactPatch& a, const ContactPatch& b) const noexcept;
   Vector3 after(std::size_t step, const ContactPatch& a, const NodalForce& b) const noexcept;
   /// Of R, or of the centrifugal response: entry (a, b) for s = 0..T-1, displacement of degree of
   /// freedom a by force or product b.
-  const Scalar* response(const Scalar* values, int a, int b) const noexcept {
+  template <typename Number>
+  const Number* response(const Number* values, int a, int b) const noexcept {
     return values + (static_cast<std::size_t>(b) * dof_ + static_cast<std::size_t>(a)) * steps_;
   }
-  /// sum over the history of R_a.[age + shift] f[age]: shift 0 gives the end of the last step, 1
-  /// that of the coming one. The same for products and their response.
-  double convolve(const Scalar* values, const ForceHistory& history, int a,
-                  int shift) const noexcept;
-  double free_spin_displacement(int a) const noexcept;
+  /// R[step](a, b).
+  double entry(std::size_t step, int a, int b) const noexcept;
+  /// Adds sum over the history of R_i.[age + shift] f[age], i the three degrees of freedom of a
+  /// node: shift 0 gives the end of the last step, 1 that of the coming one. The same for products
+  /// and their response.
+  template <typename Number>
+  void convolve(const Number* values, const double* scales, const ForceHistory& history, int node,
+                int shift, Vector3& u) const noexcept;
+  /// That sum with shift 0 for all degrees of freedom, added to u.
+  template <typename Number>
+  void add_columns(const Number* values, const double* scales, const ForceHistory& history,
+                   Points& u) const;
 
   std::shared_ptr<const Model> model_;
-  const Scalar* values_;                 ///< R
-  const Scalar* centrifugal_ = nullptr;  ///< null: the model has none
-  std::size_t dof_;                      ///< 3n
-  std::size_t steps_;                    ///< T
+  const Scalar* values_;                     ///< R, or what its columns are scaled from
+  const double* scales_ = nullptr;           ///< of the columns; null: all 1
+  const SpinScalar* centrifugal_ = nullptr;  ///< null: the model has none
+  std::size_t dof_;                          ///< 3n
+  std::size_t steps_;                        ///< T
   ForceHistory history_;
   /// Products of the spin, as if they were forces on two nodes.
   ForceHistory spin_history_;

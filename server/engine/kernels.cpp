@@ -3,43 +3,19 @@
 #include <cmath>
 #include <cstring>
 
-// One copy of a function for each instruction set, chosen when the program is loaded. The
-// sanitizers' run-time libraries are not ready that early.
-#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && !defined(IRDM_SANITIZED)
-#define IRDM_KERNEL __attribute__((target_clones("avx512f", "avx2", "default")))
-#else
-#define IRDM_KERNEL
-#endif
+#include "server/engine/kernel_lanes.hpp"
 
 namespace irdm {
 namespace {
 
-constexpr std::size_t kLanes = 8;
+using namespace kernel;
+
 constexpr double kNothing = 1e-100;
-
-template <typename Lanes>
-[[gnu::always_inline]] inline double sum_of(const Lanes& lanes) noexcept {
-  return ((lanes[0] + lanes[4]) + (lanes[1] + lanes[5])) +
-         ((lanes[2] + lanes[6]) + (lanes[3] + lanes[7]));
-}
-
-template <typename Scalar>
-[[gnu::always_inline]] inline double dot_of(const Scalar* a, const double* b,
-                                            std::size_t n) noexcept {
-  double lanes[kLanes] = {};
-  std::size_t i = 0;
-  for (; i + kLanes <= n; i += kLanes) {
-    for (std::size_t l = 0; l < kLanes; ++l) lanes[l] += static_cast<double>(a[i + l]) * b[i + l];
-  }
-  double sum = sum_of(lanes);
-  for (; i < n; ++i) sum += static_cast<double>(a[i]) * b[i];
-  return sum;
-}
+using Lanes [[gnu::vector_size(kLanes * sizeof(double))]] = double;
 
 template <std::size_t K>
 [[gnu::always_inline]] inline Sums<K> dots_of(const double* a, const double* b,
                                               std::size_t n) noexcept {
-  using Lanes [[gnu::vector_size(kLanes * sizeof(double))]] = double;
   Lanes lanes[K] = {};
   std::size_t i = 0;
   for (; i + kLanes <= n; i += kLanes) {
@@ -57,6 +33,72 @@ template <std::size_t K>
     for (std::size_t j = i; j < n; ++j) sums[k] += a[j] * b[k * n + j];
   }
   return sums;
+}
+
+constexpr std::array<std::array<std::size_t, 2>, 6> kPairs{
+    {{0, 0}, {1, 0}, {1, 1}, {2, 0}, {2, 1}, {2, 2}}};
+
+[[gnu::always_inline]] inline Sums<9> moments_of(const double* a, const double* w, const double* x,
+                                                 std::size_t n) noexcept {
+  Lanes lanes[9] = {};
+  std::size_t i = 0;
+  for (; i + kLanes <= n; i += kLanes) {
+    Lanes rows[3], weights, values;
+    for (std::size_t j = 0; j < 3; ++j) std::memcpy(&rows[j], a + j * n + i, sizeof(Lanes));
+    std::memcpy(&weights, w + i, sizeof weights);
+    std::memcpy(&values, x + i, sizeof values);
+    for (std::size_t j = 0; j < 3; ++j) lanes[j] += rows[j] * values;
+    for (std::size_t p = 0; p < 6; ++p) {
+      lanes[3 + p] += rows[kPairs[p][0]] * weights * rows[kPairs[p][1]];
+    }
+  }
+  Sums<9> sums;
+  for (std::size_t p = 0; p < 9; ++p) sums[p] = sum_of(lanes[p]);
+  for (; i < n; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) sums[j] += a[j * n + i] * x[i];
+    for (std::size_t p = 0; p < 6; ++p) {
+      sums[3 + p] += a[kPairs[p][0] * n + i] * w[i] * a[kPairs[p][1] * n + i];
+    }
+  }
+  return sums;
+}
+
+[[gnu::always_inline]] inline Sums<9> cross_moments_of(const double* a, const double* b,
+                                                       const double* w, std::size_t n) noexcept {
+  Lanes lanes[9] = {};
+  std::size_t i = 0;
+  for (; i + kLanes <= n; i += kLanes) {
+    Lanes columns[3], weights;
+    for (std::size_t k = 0; k < 3; ++k) std::memcpy(&columns[k], b + k * n + i, sizeof(Lanes));
+    std::memcpy(&weights, w + i, sizeof weights);
+    for (std::size_t j = 0; j < 3; ++j) {
+      Lanes row;
+      std::memcpy(&row, a + j * n + i, sizeof row);
+      row *= weights;
+      for (std::size_t k = 0; k < 3; ++k) lanes[3 * j + k] += row * columns[k];
+    }
+  }
+  Sums<9> sums;
+  for (std::size_t p = 0; p < 9; ++p) sums[p] = sum_of(lanes[p]);
+  for (; i < n; ++i) {
+    for (std::size_t p = 0; p < 9; ++p) sums[p] += a[p / 3 * n + i] * w[i] * b[p % 3 * n + i];
+  }
+  return sums;
+}
+
+template <typename Scalar>
+[[gnu::always_inline]] inline void accumulate_nine_of(const std::array<double, 9>& w,
+                                                      const std::array<const Scalar*, 9>& a,
+                                                      double* y, std::size_t n) noexcept {
+  const auto [a0, a1, a2, a3, a4, a5, a6, a7, a8] = a;
+  const auto [w0, w1, w2, w3, w4, w5, w6, w7, w8] = w;
+#pragma GCC ivdep
+  for (std::size_t i = 0; i < n; ++i) {
+    const double x = w0 * to_double(a0[i]) + w1 * to_double(a1[i]) + w2 * to_double(a2[i]);
+    const double z = w3 * to_double(a3[i]) + w4 * to_double(a4[i]) + w5 * to_double(a5[i]);
+    const double t = w6 * to_double(a6[i]) + w7 * to_double(a7[i]) + w8 * to_double(a8[i]);
+    y[i] += (x + z) + t;
+  }
 }
 
 template <typename Scalar>
@@ -93,11 +135,40 @@ IRDM_KERNEL double dot(const double* a, const double* b, std::size_t n) noexcept
   return dot_of(a, b, n);
 }
 
+IRDM_KERNEL void add_products(const Rows<float>& rows, const double* x, std::size_t n,
+                              double weight, double* y) noexcept {
+  add_products_of(rows, x, n, weight, y);
+}
+IRDM_KERNEL void add_products(const Rows<double>& rows, const double* x, std::size_t n,
+                              double weight, double* y) noexcept {
+  add_products_of(rows, x, n, weight, y);
+}
+
 IRDM_KERNEL Sums<3> dot_three(const double* a, const double* b, std::size_t n) noexcept {
   return dots_of<3>(a, b, n);
 }
 IRDM_KERNEL Sums<6> dot_six(const double* a, const double* b, std::size_t n) noexcept {
   return dots_of<6>(a, b, n);
+}
+
+IRDM_KERNEL Sums<9> moments(const double* a, const double* w, const double* x,
+                            std::size_t n) noexcept {
+  return moments_of(a, w, x, n);
+}
+IRDM_KERNEL Sums<9> cross_moments(const double* a, const double* b, const double* w,
+                                  std::size_t n) noexcept {
+  return cross_moments_of(a, b, w, n);
+}
+
+IRDM_KERNEL void accumulate_nine(const std::array<double, 9>& w,
+                                 const std::array<const float*, 9>& a, double* y,
+                                 std::size_t n) noexcept {
+  accumulate_nine_of(w, a, y, n);
+}
+IRDM_KERNEL void accumulate_nine(const std::array<double, 9>& w,
+                                 const std::array<const double*, 9>& a, double* y,
+                                 std::size_t n) noexcept {
+  accumulate_nine_of(w, a, y, n);
 }
 
 IRDM_KERNEL void combine(const std::array<double, 3>& w, const float* a, const float* b,
@@ -129,6 +200,19 @@ IRDM_KERNEL void transit(const Transitions& A, const double* q, const double* v,
     const double changed = A.a21[i] * q[i] + A.a22[i] * v[i];
     next_q[i] = put_to_rest(moved);
     next_v[i] = put_to_rest(changed);
+  }
+}
+
+IRDM_KERNEL void push_and_transit(const Transitions& A, const HeldForce& push, double* q, double* v,
+                                  double* next_q, double* next_v, std::size_t n) noexcept {
+#pragma GCC ivdep
+  for (std::size_t i = 0; i < n; ++i) {
+    const double pushed = q[i] + push.b1[i] * push.f[i];
+    const double driven = v[i] + push.b2[i] * push.f[i];
+    q[i] = pushed;
+    v[i] = driven;
+    next_q[i] = put_to_rest(A.a11[i] * pushed + A.a12[i] * driven);
+    next_v[i] = put_to_rest(A.a21[i] * pushed + A.a22[i] * driven);
   }
 }
 

@@ -3,6 +3,8 @@
 #include <array>
 #include <cstddef>
 
+#include "common/half.hpp"
+
 /// Inner loops of the response engines, compiled for several instruction sets of which the best is
 /// chosen at start-up. Sums run over eight lanes in a fixed order and products are never
 /// contracted, so that equal inputs give equal bits on every processor and with any number of
@@ -12,12 +14,42 @@ namespace irdm {
 /// sum_i a[i] b[i], in double precision.
 double dot(const float* a, const double* b, std::size_t n) noexcept;
 double dot(const double* a, const double* b, std::size_t n) noexcept;
+/// The products and their sums of half precision are single ones.
+double dot(const Half* a, const double* b, std::size_t n) noexcept;
+
+/// y[r] += weight (row r, x) for rows r = 0..count-1 of n numbers each, `stride` numbers apart:
+/// each product as dot() computes it, but several rows at a time and with what comes next fetched
+/// ahead, so that rows which follow one another are read at the speed of memory.
+template <typename Scalar>
+struct Rows {
+  const Scalar* first;
+  std::size_t stride;
+  std::size_t count;
+};
+void add_products(const Rows<float>& rows, const double* x, std::size_t n, double weight,
+                  double* y) noexcept;
+void add_products(const Rows<double>& rows, const double* x, std::size_t n, double weight,
+                  double* y) noexcept;
+void add_products(const Rows<Half>& rows, const double* x, std::size_t n, double weight,
+                  double* y) noexcept;
 
 template <std::size_t K>
 using Sums = std::array<double, K>;
 /// The same with each of the rows of b, (3, n) or (6, n): a is read once for all of them.
 Sums<3> dot_three(const double* a, const double* b, std::size_t n) noexcept;
 Sums<6> dot_six(const double* a, const double* b, std::size_t n) noexcept;
+
+/// Of three rows a (3, n): first their products with x, then sum_i a[j][i] w[i] a[k][i] for (j, k)
+/// = (0, 0), (1, 0), (1, 1), (2, 0), (2, 1), (2, 2). All of it is read once.
+Sums<9> moments(const double* a, const double* w, const double* x, std::size_t n) noexcept;
+/// sum_i a[j][i] w[i] b[k][i] of two times three rows, row after row.
+Sums<9> cross_moments(const double* a, const double* b, const double* w, std::size_t n) noexcept;
+
+/// y[i] += sum over nine rows of w[k] a[k][i].
+void accumulate_nine(const std::array<double, 9>& w, const std::array<const float*, 9>& a,
+                     double* y, std::size_t n) noexcept;
+void accumulate_nine(const std::array<double, 9>& w, const std::array<const double*, 9>& a,
+                     double* y, std::size_t n) noexcept;
 
 /// y[i] = w[0] a[i] + w[1] b[i] + w[2] c[i].
 void combine(const std::array<double, 3>& w, const float* a, const float* b, const float* c,
@@ -45,5 +77,15 @@ struct Transitions {
 };
 void transit(const Transitions& A, const double* q, const double* v, double* next_q, double* next_v,
              std::size_t n) noexcept;
+
+/// The same after a force that was held during the step before: q[i] += b1[i] f[i],
+/// v[i] += b2[i] f[i], and then the transition.
+struct HeldForce {
+  const double* b1;
+  const double* b2;
+  const double* f;
+};
+void push_and_transit(const Transitions& A, const HeldForce& push, double* q, double* v,
+                      double* next_q, double* next_v, std::size_t n) noexcept;
 
 }  // namespace irdm

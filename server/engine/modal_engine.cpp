@@ -8,15 +8,24 @@
 #include "server/engine/kernels.hpp"
 
 namespace irdm {
+namespace {
+
+constexpr std::size_t kBlock = 16;   // rows of Phi that a thread takes at a time
+constexpr std::size_t kSlice = 512;  // modes whose shapes under a contact fill a part of the cache
+
+}  // namespace
 
 template <typename Scalar>
 ModalEngine<Scalar>::ModalEngine(std::shared_ptr<const Model> model) : model_(std::move(model)) {
   const auto& response = std::get<ModalResponse>(model_->response);
   shapes_ = &std::get<RowMatrix<Scalar>>(response.shapes);
+  const Eigen::VectorXd largest =
+      shapes_->cwiseAbs().colwise().maxCoeff().transpose().template cast<double>();
+  largest_shape_.assign(largest.data(), largest.data() + largest.size());
   if (response.centrifugal.rows() > 0) centrifugal_ = response.centrifugal.data();
   modes_ = static_cast<std::size_t>(response.mode_count());
   for (auto* values : {&a11_, &a12_, &a21_, &a22_, &b1_, &b2_, &coordinate_, &velocity_,
-                       &free_coordinate_, &free_velocity_, &modal_force_, &weighted_row_}) {
+                       &free_coordinate_, &free_velocity_, &modal_force_}) {
     values->assign(modes_, 0.0);
   }
   contact_shapes_.assign(3 * kMaxContacts * modes_, 0.0);
@@ -99,16 +108,14 @@ void ModalEngine<Scalar>::hold_spin(const Vector3& w) noexcept {
 
 template <typename Scalar>
 Vector3 ModalEngine<Scalar>::free_displacement(int node) const noexcept {
-  Vector3 u;
-  for (int axis = 0; axis < 3; ++axis) {
-    u[axis] = dot(shape_row(3 * node + axis), free_coordinate_.data(), modes_);
-  }
+  Vector3 u = Vector3::Zero();
+  add_products({shape_row(3 * node), modes_, 3}, free_coordinate_.data(), modes_, 1.0, u.data());
   return u;
 }
 
 // Three nodes at a time; where fewer are left, the last ones count with weight 0.
 template <typename Scalar>
-void ModalEngine<Scalar>::mean_shape(const ContactPatch& patch, int axis,
+void ModalEngine<Scalar>::mean_shape(const ContactPatch& patch, int axis, const ModeRange& modes,
                                      double* shape) const noexcept {
   for (int first = 0; first < patch.count; first += 3) {
     std::array<double, 3> weights{};
@@ -116,47 +123,73 @@ void ModalEngine<Scalar>::mean_shape(const ContactPatch& patch, int axis,
     for (int i = 0; i < 3; ++i) {
       const auto from = static_cast<std::size_t>(std::min(first + i, patch.count - 1));
       weights[static_cast<std::size_t>(i)] = first + i < patch.count ? patch.weights[from] : 0.0;
-      rows[static_cast<std::size_t>(i)] = shape_row(3 * patch.nodes[from] + axis);
+      rows[static_cast<std::size_t>(i)] = shape_row(3 * patch.nodes[from] + axis) + modes.first;
     }
     if (first == 0) {
-      combine(weights, rows[0], rows[1], rows[2], shape, modes_);
+      combine(weights, rows[0], rows[1], rows[2], shape, modes.count);
     } else {
-      accumulate(weights, rows[0], rows[1], rows[2], shape, modes_);
+      accumulate(weights, rows[0], rows[1], rows[2], shape, modes.count);
     }
   }
 }
 
+// R[0] = Phi diag(b1) Phi^T, symmetric. Slice after slice of the modes, so that the mean shapes
+// stay in the first level of the cache.
 template <typename Scalar>
 void ModalEngine<Scalar>::predict(std::span<const ContactPatch> patches, std::span<Vector3> h,
                                   ContactMatrix& compliance) noexcept {
-  const auto row = [&](std::size_t index) { return contact_shapes_.data() + index * modes_; };
-  for (std::size_t a = 0; a < patches.size(); ++a) {
-    for (int axis = 0; axis < 3; ++axis) {
-      double* shape = row(3 * a + static_cast<std::size_t>(axis));
-      mean_shape(patches[a], axis, shape);
-      h[a][axis] = dot(shape, free_coordinate_.data(), modes_);
-    }
+  compliance.setZero(static_cast<Eigen::Index>(3 * patches.size()),
+                     static_cast<Eigen::Index>(3 * patches.size()));
+  std::fill(h.begin(), h.begin() + static_cast<std::ptrdiff_t>(patches.size()), Vector3::Zero());
+  for (std::size_t first = 0; first < modes_; first += kSlice) {
+    add_slice(patches, {first, std::min(kSlice, modes_ - first)}, h, compliance);
   }
-  // R[0] = Phi diag(b1) Phi^T, symmetric.
-  const auto size = static_cast<Eigen::Index>(3 * patches.size());
-  compliance.resize(size, size);
-  for (Eigen::Index i = 0; i < size; ++i) {
-    const double* shape = row(static_cast<std::size_t>(i));
-    multiply(b1_.data(), shape, weighted_row_.data(), modes_);
-    for (Eigen::Index j = 0; j <= i; ++j) {
-      compliance(i, j) = dot(weighted_row_.data(), row(static_cast<std::size_t>(j)), modes_);
-      compliance(j, i) = compliance(i, j);
+  compliance.template triangularView<Eigen::StrictlyUpper>() = compliance.transpose();
+}
+
+// The lower triangle of the compliance.
+template <typename Scalar>
+void ModalEngine<Scalar>::add_slice(std::span<const ContactPatch> patches, const ModeRange& modes,
+                                    std::span<Vector3> h, ContactMatrix& compliance) noexcept {
+  const auto rows = [&](std::size_t a) { return contact_shapes_.data() + 3 * a * modes.count; };
+  const auto at = [](std::size_t a) { return static_cast<Eigen::Index>(3 * a); };
+  const double* const weights = b1_.data() + modes.first;
+  for (std::size_t a = 0; a < patches.size(); ++a) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      mean_shape(patches[a], static_cast<int>(axis), modes, rows(a) + axis * modes.count);
+    }
+    const Sums<9> own =
+        moments(rows(a), weights, free_coordinate_.data() + modes.first, modes.count);
+    h[a] += Vector3(own[0], own[1], own[2]);
+    std::size_t entry = 3;
+    for (Eigen::Index j = 0; j < 3; ++j) {
+      for (Eigen::Index k = 0; k <= j; ++k) compliance(at(a) + j, at(a) + k) += own[entry++];
+    }
+    for (std::size_t b = 0; b < a; ++b) {
+      const Sums<9> shared = cross_moments(rows(a), rows(b), weights, modes.count);
+      compliance.template block<3, 3>(at(a), at(b)) +=
+          Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(shared.data());
     }
   }
 }
 
+// Three nodes at a time; where fewer are left, the last one counts with weight 0.
 template <typename Scalar>
-void ModalEngine<Scalar>::collect_modal_forces(std::span<const NodalForce> forces) noexcept {
-  std::fill(modal_force_.begin(), modal_force_.end(), 0.0);
-  for (const NodalForce& nodal : forces) {
-    const int dof = 3 * nodal.node;
-    accumulate({nodal.force.x(), nodal.force.y(), nodal.force.z()}, shape_row(dof),
-               shape_row(dof + 1), shape_row(dof + 2), modal_force_.data(), modes_);
+void ModalEngine<Scalar>::collect_modal_forces(std::span<const NodalForce> forces,
+                                               const ModeRange& modes) noexcept {
+  double* const to = modal_force_.data() + modes.first;
+  std::fill_n(to, modes.count, 0.0);
+  for (std::size_t first = 0; first < forces.size(); first += 3) {
+    std::array<double, 9> weights{};
+    std::array<const Scalar*, 9> rows{};
+    for (std::size_t k = 0; k < 9; ++k) {
+      const std::size_t at = first + k / 3;
+      const NodalForce& nodal = forces[std::min(at, forces.size() - 1)];
+      const auto axis = static_cast<int>(k % 3);
+      if (at < forces.size()) weights[k] = nodal.force[axis];
+      rows[k] = shape_row(3 * nodal.node + axis) + modes.first;
+    }
+    accumulate_nine(weights, rows, to, modes.count);
   }
 }
 
@@ -165,10 +198,10 @@ void ModalEngine<Scalar>::collect_modal_forces(std::span<const NodalForce> force
 template <typename Scalar>
 void ModalEngine<Scalar>::foresee(const ContactPatch& patch, std::span<const NodalForce> held,
                                   std::span<Vector3> path, std::span<Matrix3> response) noexcept {
-  collect_modal_forces(held);
+  collect_modal_forces(held, {0, modes_});
   for (std::size_t i = 0; i < 3; ++i) {
     double* shape = contact_shapes_.data() + i * modes_;
-    mean_shape(patch, static_cast<int>(i), shape);
+    mean_shape(patch, static_cast<int>(i), {0, modes_}, shape);
     double* products = state_products_.data() + 3 * i * modes_;
     multiply(shape, free_coordinate_.data(), products, modes_);
     multiply(shape, free_velocity_.data(), products + modes_, modes_);
@@ -196,7 +229,7 @@ void ModalEngine<Scalar>::foresee(const ContactPatch& patch, std::span<const Nod
 template <typename Scalar>
 void ModalEngine<Scalar>::add_past(std::span<const NodalForce> forces, int age) noexcept {
   if (age < 0 || age >= kMaxHorizon) return;
-  collect_modal_forces(forces);
+  collect_modal_forces(forces, {0, modes_});
   const double* coordinate = coordinate_after_.data() + static_cast<std::size_t>(age) * modes_;
   const double* velocity = velocity_after_.data() + static_cast<std::size_t>(age) * modes_;
   for (std::size_t i = 0; i < modes_; ++i) {
@@ -210,24 +243,29 @@ template <typename Scalar>
 void ModalEngine<Scalar>::advance(std::span<const NodalForce> forces) noexcept {
   coordinate_.swap(free_coordinate_);
   velocity_.swap(free_velocity_);
-  if (!forces.empty()) {
-    collect_modal_forces(forces);
-    for (std::size_t i = 0; i < modes_; ++i) {
-      coordinate_[i] += b1_[i] * modal_force_[i];
-      velocity_[i] += b2_[i] * modal_force_[i];
-    }
+  if (forces.empty()) return move_on();
+  for (std::size_t i = 0; i < modes_; i += kSlice) {
+    const ModeRange slice{i, std::min(kSlice, modes_ - i)};
+    collect_modal_forces(forces, slice);
+    push_and_transit({&a11_[i], &a12_[i], &a21_[i], &a22_[i]}, {&b1_[i], &b2_[i], &modal_force_[i]},
+                     &coordinate_[i], &velocity_[i], &free_coordinate_[i], &free_velocity_[i],
+                     slice.count);
   }
-  move_on();
 }
 
 template <typename Scalar>
-void ModalEngine<Scalar>::displacement(Points& u) const {
-  const int nodes = model_->mesh.surface_node_count();
-  u.resize(nodes, 3);
-#pragma omp parallel for schedule(static)
-  for (int node = 0; node < nodes; ++node) {
-    for (int axis = 0; axis < 3; ++axis) {
-      u(node, axis) = dot(shape_row(3 * node + axis), coordinate_.data(), modes_);
+void ModalEngine<Scalar>::displacement(Points& u, double tolerance) const {
+  u.setZero(model_->mesh.surface_node_count(), 3);
+  const std::vector<ModeRange> kept = strong_modes(coordinate_, largest_shape_, tolerance);
+  const auto dof = static_cast<std::size_t>(u.size());
+  const auto blocks = static_cast<int>((dof + kBlock - 1) / kBlock);
+#pragma omp parallel for schedule(dynamic)
+  for (int block = 0; block < blocks; ++block) {
+    const std::size_t first = static_cast<std::size_t>(block) * kBlock;
+    const std::size_t count = std::min(kBlock, dof - first);
+    for (const ModeRange& range : kept) {
+      add_products({shape_row(static_cast<int>(first)) + range.first, modes_, count},
+                   coordinate_.data() + range.first, range.count, 1.0, u.data() + first);
     }
   }
 }

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "server/engine/response_engine.hpp"
+#include "server/engine/strong_modes.hpp"
 
 namespace irdm {
 
@@ -26,7 +27,8 @@ class ModalEngine final : public ResponseEngine {
                std::span<Matrix3> response) noexcept override;
   void add_past(std::span<const NodalForce> forces, int age) noexcept override;
   void advance(std::span<const NodalForce> forces) noexcept override;
-  void displacement(Points& u) const override;
+  using ResponseEngine::displacement;
+  void displacement(Points& u, double tolerance) const override;
   Eigen::MatrixXd instant_compliance() const override;
   void reset() noexcept override;
 
@@ -34,8 +36,11 @@ class ModalEngine final : public ResponseEngine {
   void set_transitions(double damping) noexcept;
   void tabulate_horizon() noexcept;
   void move_on() noexcept;
-  void mean_shape(const ContactPatch& patch, int axis, double* shape) const noexcept;
-  void collect_modal_forces(std::span<const NodalForce> forces) noexcept;
+  void mean_shape(const ContactPatch& patch, int axis, const ModeRange& modes,
+                  double* shape) const noexcept;
+  void add_slice(std::span<const ContactPatch> patches, const ModeRange& modes,
+                 std::span<Vector3> h, ContactMatrix& compliance) noexcept;
+  void collect_modal_forces(std::span<const NodalForce> forces, const ModeRange& modes) noexcept;
   const Scalar* shape_row(int dof) const noexcept {
     return shapes_->data() + static_cast<std::size_t>(dof) * modes_;
   }
@@ -44,6 +49,7 @@ class ModalEngine final : public ResponseEngine {
   const RowMatrix<Scalar>* shapes_;      ///< Phi (3n, r)
   const double* centrifugal_ = nullptr;  ///< g (r, 6); null: the model has none
   std::size_t modes_;                    ///< r
+  std::vector<double> largest_shape_;    ///< (r) max_a |Phi_ai|
   // Transition of each mode over one step, one array a coefficient.
   std::vector<double> a11_, a12_, a21_, a22_, b1_, b2_;
   std::vector<double> coordinate_, velocity_;  ///< at the end of the last step
@@ -51,7 +57,6 @@ class ModalEngine final : public ResponseEngine {
       free_velocity_;  ///< at the end of the coming step, no force but that of the held spin
   std::vector<double> modal_force_;
   std::vector<double> contact_shapes_;  ///< (3 kMaxContacts, r): rows sum_i w_i Phi_i
-  std::vector<double> weighted_row_;    ///< one such row times b1
   /// (kMaxHorizon, r): coordinate and velocity of each mode at the end of the n-th step after the
   /// one in which a modal force of 1 acted.
   std::vector<double> coordinate_after_, velocity_after_;

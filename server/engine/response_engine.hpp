@@ -74,7 +74,9 @@ class ResponseEngine {
 
   /// Displacement of all nodes at the end of the last step, shape (n, 3) [m]. Uses OpenMP; the
   /// result does not depend on the number of threads. Not for the force thread.
-  virtual void displacement(Points& u) const = 0;
+  /// @param tolerance by how much each component may be off, so that less has to be read [m], >= 0
+  virtual void displacement(Points& u, double tolerance) const = 0;
+  void displacement(Points& u) const { displacement(u, 0.0); }
 
   /// R[0], the displacement within the step of all nodes per force on each: (3n, 3n) [m/N]. Takes
   /// its time; not for the force thread.

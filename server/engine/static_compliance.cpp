@@ -1,7 +1,6 @@
 #include "server/engine/static_compliance.hpp"
 
 #include <limits>
-#include <numeric>
 
 namespace irdm {
 namespace {
@@ -25,7 +24,9 @@ double of_history(const DenseResponse& response, const std::vector<Scalar>& valu
   for (std::size_t b = 0; b < 3; ++b) {
     for (std::size_t a = 0; a < 3; ++a) {
       const Scalar* entry = values.data() + ((3 * node + b) * dof + 3 * node + a) * steps;
-      const double total = std::accumulate(entry, entry + steps, 0.0);
+      double total = 0.0;
+      for (std::size_t s = 0; s < steps; ++s) total += to_double(entry[s]);
+      if (!response.scales.empty()) total *= response.scales[3 * node + b];
       sum += total * d[static_cast<Eigen::Index>(a)] * d[static_cast<Eigen::Index>(b)];
     }
   }

@@ -11,11 +11,13 @@ namespace {
 
 constexpr std::size_t kQueueCapacity = 2048;  // 2 s at 1 kHz
 constexpr std::int64_t kNanosecondsPerMillisecond = 1'000'000;
+// Nobody sees a millionth of an object's size.
+constexpr double kInvisible = 1e-6;
 
 }  // namespace
 
 DeformationThread::DeformationThread(const SimulationConfig& config, double rate, int threads)
-    : deformation_(config),
+    : deformation_(config, kInvisible),
       period_ns_(static_cast<std::int64_t>(1e9 / rate)),
       threads_(threads),
       sink_(kQueueCapacity),

@@ -78,10 +78,11 @@ int columns_kept(const std::string& out) {
 }  // namespace
 
 TEST_CASE("slices join to the file of a whole run, bit for bit, by both methods", "[slow]") {
-  for (const std::string& config : {kStepping, modal()}) {
+  for (const std::string& config : {kStepping, modal(), kStepping + "precision = \"half\"\n"}) {
     Run run(config);
+    const bool stepping = config != modal();
     // The modes themselves may differ in their last bits with the number of threads.
-    const std::string one = config == kStepping ? " --threads 1" : "";
+    const std::string one = stepping ? " --threads 1" : "";
     run.good("c.toml -o whole.h5");
     run.good("c.toml -o a.part --columns 0:5");
     run.good("c.toml -o b.part --columns 5:6" + one);
@@ -91,7 +92,7 @@ TEST_CASE("slices join to the file of a whole run, bit for bit, by both methods"
     CHECK((run.content("joined.h5") == run.content("whole.h5")));
     const Model joined = read_model(run.path() / "joined.h5", ResponseKind::kDense);
     CHECK(joined.degrees_of_freedom() == kDof);
-    CHECK(has_centrifugal(joined) == (config != kStepping));
+    CHECK(has_centrifugal(joined) == !stepping);
     CHECK_FALSE(run.has("whole.h5.columns"));
     CHECK_FALSE(run.has("a.part.columns"));
   }
@@ -102,6 +103,7 @@ TEST_CASE("merge refuses slices that do not fit together, one by one", "[slow]")
   run.write("other.toml", std::string(kStepping).replace(kStepping.find("2000"), 4, "2001"));
   run.write("linear.toml", kStepping + "[time_stepping]\nmodel = \"linear\"\n");
   run.write("double.toml", kStepping + "precision = \"double\"\n");
+  run.write("half.toml", kStepping + "precision = \"half\"\n");
   run.good("c.toml -o a.part --columns 0:20");
   run.good("c.toml -o b.part --columns 20:54");
   run.good("c.toml -o tail.part --columns 21:54");
@@ -109,6 +111,7 @@ TEST_CASE("merge refuses slices that do not fit together, one by one", "[slow]")
   run.good("other.toml -o stiffer.part --columns 20:54");
   run.good("linear.toml -o linear.part --columns 20:54");
   run.good("double.toml -o double.part --columns 20:54");
+  run.good("half.toml -o half.part --columns 20:54");
   run.refused("merge a.part -o m.h5", "columns 20:54 are in no part");
   run.refused("merge b.part -o m.h5", "columns 0:20 are in no part");
   run.refused("merge a.part tail.part -o m.h5", "columns 20:21 are in no part");
@@ -117,6 +120,7 @@ TEST_CASE("merge refuses slices that do not fit together, one by one", "[slow]")
   run.refused("merge a.part stiffer.part -o m.h5", "another mesh, material or time axis");
   run.refused("merge a.part linear.part -o m.h5", "other settings");
   run.refused("merge a.part double.part -o m.h5", "other numbers");
+  run.refused("merge a.part half.part -o m.h5", "other numbers");
   run.refused("merge a.part missing.part -o m.h5", "missing.part: cannot be read");
   run.refused("merge a.part c.toml -o m.h5", "c.toml: is not a part of R");
   std::string bytes = run.content("b.part");

@@ -103,6 +103,9 @@ TEST_CASE("configuration takes every documented word") {
   CHECK(response("storage = \"dense\"").storage == Storage::kDense);
   CHECK(response("storage = \"both\"").storage == Storage::kBoth);
   CHECK(response("precision = \"double\"").precision == Precision::kDouble);
+  CHECK_FALSE(response("precision = \"double\"").half);
+  CHECK(response("precision = \"half\"").half);
+  CHECK(response("precision = \"half\"").precision == Precision::kSingle);
   CHECK(response("method = \"time-stepping\"").method == Method::kTimeStepping);
   CHECK(response("").compression_error == 0.0);
   CHECK(response("compression = \"none\"").compression_error == 0.0);
@@ -182,7 +185,8 @@ TEST_CASE("configuration refuses each bad response entry") {
   refused("steps = 1.5", "response.steps is not a whole number");
   refused("method = \"magic\"", "modal | time-stepping");
   refused("storage = \"sparse\"", "modal | dense | both");
-  refused("precision = \"half\"", "single | double");
+  refused("precision = \"quarter\"", "half | single | double");
+  refused("precision = \"half\"\ncompression = \"zfp\"", "which zfp does not compress");
   refused("compression = \"gzip\"", "none | zfp");
   refused("compression_error = 1e-5", "compression_error is there without compression");
   refused("compression = \"zfp\"\ncompression_error = 0.5", "compression_error is 0.5");

@@ -4,6 +4,7 @@
 #include <deque>
 #include <random>
 
+#include "common/model/half_column.hpp"
 #include "common/response/oscillator.hpp"
 #include "server/engine/response_engine.hpp"
 #include "tests/support/synthetic_model.hpp"
@@ -16,6 +17,23 @@ namespace {
 
 std::shared_ptr<const Model> share(Model model) {
   return std::make_shared<const Model>(std::move(model));
+}
+
+// As a file of half precision would give it.
+Model in_half_precision(const Model& modal) {
+  Model model = with_dense_response<double>(modal);
+  const auto& wide = std::get<std::vector<double>>(std::get<DenseResponse>(model.response).values);
+  const Eigen::Index dof = model.degrees_of_freedom();
+  DenseResponse response{static_cast<int>(dof), model.steps, std::vector<Half>()};
+  auto& numbers = std::get<std::vector<Half>>(response.values);
+  for (Eigen::Index b = 0; b < dof; ++b) {
+    const HalfColumn column = half_column(
+        Eigen::Map<const RowMatrix<double>>(wide.data() + b * dof * model.steps, dof, model.steps));
+    numbers.insert(numbers.end(), column.numbers.begin(), column.numbers.end());
+    response.scales.push_back(column.scale);
+  }
+  model.response = std::move(response);
+  return model;
 }
 
 // Contacts that come, move from node to node and go, with silences.
@@ -158,20 +176,63 @@ TEST_CASE("engines predict the coming step: free displacement, and R[0] between 
   }
 }
 
-TEST_CASE("engine's surface is the same to the bit with one and with two OpenMP threads") {
-  const Model modal = synthetic_cube(3, 30, 50);
-  for (const Model& model : {modal, with_dense_response<float>(modal)}) {
+TEST_CASE("engine's surface is the same to the bit with one, two and three OpenMP threads") {
+  const Model modal = synthetic_cube(5, 200, 50);
+  for (const Model& model : {modal, with_dense_response<float>(modal), in_half_precision(modal)}) {
     const auto engine = make_engine(share(model));
     RandomContacts contacts(modal.mesh.surface_node_count());
     for (int k = 0; k < 70; ++k) engine->advance(contacts.next());
-    Points one, two;
-    omp_set_num_threads(1);
-    engine->displacement(one);
-    omp_set_num_threads(2);
-    engine->displacement(two);
-    CHECK((one.array() == two.array()).all());
-    CHECK(one.norm() > 0);
+    for (const double tolerance : {0.0, 1e-4}) {
+      Points one, several;
+      omp_set_num_threads(1);
+      engine->displacement(one, tolerance);
+      CHECK(one.norm() > 0);
+      for (const int threads : {2, 3}) {
+        omp_set_num_threads(threads);
+        engine->displacement(several, tolerance);
+        CHECK((one.array() == several.array()).all());
+      }
+    }
   }
+  omp_set_num_threads(omp_get_num_procs());
+}
+
+TEST_CASE("modal surface is within the tolerance of the whole one, with fewer modes") {
+  const Model modal = synthetic_cube(3, 300, 50);
+  const auto engine = make_engine(share(modal));
+  RandomContacts contacts(modal.mesh.surface_node_count());
+  for (int k = 0; k < 70; ++k) engine->advance(contacts.next());
+  for (int k = 0; k < 200; ++k) engine->advance({});  // the higher modes die down first
+  Points whole, less;
+  engine->displacement(whole);
+  for (const double share : {1e-6, 1e-3, 0.1}) {
+    const double tolerance = share * whole.cwiseAbs().maxCoeff();
+    engine->displacement(less, tolerance);
+    CHECK((whole - less).cwiseAbs().maxCoeff() <= tolerance);
+  }
+  CHECK((whole - less).norm() > 0.0);
+}
+
+TEST_CASE("dense engine of half precision is off by what its numbers are rounded by") {
+  const Model modal = synthetic_cube(3, 40, 60);
+  const auto exact = make_engine(share(with_dense_response<double>(modal)));
+  const auto half = make_engine(share(in_half_precision(modal)));
+  RandomContacts contacts(modal.mesh.surface_node_count());
+  Points u, v;
+  double peak = 0.0;
+  for (int k = 0; k < 100; ++k) {
+    const std::vector<NodalForce> forces = contacts.next();
+    for (const auto* engine : {&exact, &half}) (*engine)->advance(forces);
+    exact->displacement(u);
+    half->displacement(v);
+    peak = std::max(peak, u.cwiseAbs().maxCoeff());
+    REQUIRE((u - v).cwiseAbs().maxCoeff() <= 1e-3 * peak);
+    REQUIRE((exact->free_displacement(5) - half->free_displacement(5)).norm() <=
+            1e-3 * peak + 1e-30);
+  }
+  CHECK((u - v).norm() > 0.0);
+  CHECK((exact->instant_compliance() - half->instant_compliance()).norm() <
+        1e-3 * exact->instant_compliance().norm());
 }
 
 TEST_CASE("engine forgets everything on reset") {

@@ -29,7 +29,7 @@ class FakeEngine final : public ResponseEngine {
                std::span<Matrix3>) noexcept override {}
   void add_past(std::span<const NodalForce>, int) noexcept override {}
   void advance(std::span<const NodalForce>) noexcept override {}
-  void displacement(Points&) const override {}
+  void displacement(Points&, double) const override {}
   Eigen::MatrixXd instant_compliance() const override { return {}; }
   void reset() noexcept override {}
   mutable int evaluations = 0;

@@ -1,0 +1,148 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
+
+#include "server/engine/force_stretches.hpp"
+#include "server/engine/kernels.hpp"
+#include "server/engine/strong_modes.hpp"
+
+using namespace irdm;
+
+namespace {
+
+std::vector<double> random_numbers(std::size_t count, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  std::vector<double> numbers(count);
+  for (double& number : numbers) number = uniform(random);
+  return numbers;
+}
+
+template <typename Scalar>
+Scalar stored(double value) {
+  if constexpr (std::is_same_v<Scalar, Half>) {
+    return to_half(static_cast<float>(value));
+  } else {
+    return static_cast<Scalar>(value);
+  }
+}
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("products of rows are those of each row, to the bit, whatever is left over", "",
+                   float, double, Half) {
+  constexpr std::size_t kStride = 71;
+  constexpr std::size_t kCount = 11;
+  std::vector<TestType> rows;
+  for (const double number : random_numbers(kStride * kCount, 1)) {
+    rows.push_back(stored<TestType>(number));
+  }
+  const std::vector<double> x = random_numbers(kStride, 2);
+  for (const std::size_t n : {0UL, 1UL, 7UL, 8UL, 33UL, 64UL, 71UL}) {
+    for (const std::size_t count : {1UL, 3UL, 4UL, 11UL}) {
+      std::vector<double> y(kCount, 0.25);
+      add_products({rows.data(), kStride, count}, x.data(), n, 0.5, y.data());
+      for (std::size_t r = 0; r < kCount; ++r) {
+        const double product = dot(rows.data() + r * kStride, x.data(), n);
+        REQUIRE(y[r] == (r < count ? 0.25 + 0.5 * product : 0.25));
+        double direct = 0.0;
+        for (std::size_t i = 0; i < n; ++i) direct += to_double(rows[r * kStride + i]) * x[i];
+        REQUIRE(product == Approx(direct).margin(std::is_same_v<TestType, Half> ? 1e-5 : 1e-13));
+      }
+    }
+  }
+}
+
+TEST_CASE("moments of three rows, and of two times three, are the sums that they stand for") {
+  constexpr std::size_t kModes = 43;
+  const std::vector<double> a = random_numbers(3 * kModes, 3);
+  const std::vector<double> b = random_numbers(3 * kModes, 4);
+  const std::vector<double> w = random_numbers(kModes, 5);
+  const std::vector<double> x = random_numbers(kModes, 6);
+  using Rows3 = Eigen::Map<const Eigen::Matrix<double, 3, kModes, Eigen::RowMajor>>;
+  using Row = Eigen::Map<const Eigen::Matrix<double, kModes, 1>>;
+  const Eigen::Matrix3d own =
+      Rows3(a.data()) * Row(w.data()).asDiagonal() * Rows3(a.data()).transpose();
+  const Eigen::Matrix3d cross =
+      Rows3(a.data()) * Row(w.data()).asDiagonal() * Rows3(b.data()).transpose();
+  const Eigen::Vector3d products = Rows3(a.data()) * Row(x.data());
+  const Sums<9> m = moments(a.data(), w.data(), x.data(), kModes);
+  const Sums<9> c = cross_moments(a.data(), b.data(), w.data(), kModes);
+  std::size_t p = 3;
+  for (Eigen::Index j = 0; j < 3; ++j) {
+    CHECK(m[static_cast<std::size_t>(j)] == Approx(products(j)));
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      CHECK(c[static_cast<std::size_t>(3 * j + k)] == Approx(cross(j, k)));
+      if (k <= j) CHECK(m[p++] == Approx(own(j, k)));
+    }
+  }
+}
+
+TEST_CASE("silences and directions without force are left out of what is convolved") {
+  constexpr int kSteps = 400;
+  ForceHistory history(5, kSteps);
+  const NodalForce both{2, Vector3(0, 1, 2)};
+  const NodalForce one{4, Vector3(3, 0, 0)};
+  // Ages at the end: 0..9 both; 90..99 both; 95 one, 200 one, both within 64 steps of nothing else.
+  std::vector<std::vector<double>> expected(15, std::vector<double>(kSteps, 0.0));
+  for (int age = 300; age >= 0; --age) {
+    std::vector<NodalForce> now;
+    const auto at = static_cast<std::size_t>(age);
+    if (age < 10 || (age >= 90 && age < 100)) {
+      now.push_back(both);
+      expected[7][at] = 1.0;
+      expected[8][at] = 2.0;
+    }
+    if (age == 95 || age == 120 || age == 200) {
+      now.push_back(one);
+      expected[12][at] = 3.0;
+    }
+    history.push(now);
+  }
+  std::vector<std::vector<double>> seen(15, std::vector<double>(kSteps, 0.0));
+  std::size_t read = 0;
+  for (const ForceStretch& stretch : force_stretches(history)) {
+    read += stretch.count;
+    CHECK(stretch.force[0] != 0.0);
+    CHECK(stretch.force[stretch.count - 1] != 0.0);
+    for (std::size_t i = 0; i < stretch.count; ++i) {
+      seen[stretch.column][stretch.first_age + i] += stretch.force[i];
+    }
+  }
+  CHECK(seen == expected);
+  // Two directions of two touches of 10 steps; 95 to 120 in one go, and 200 alone.
+  CHECK(read == 2 * 2 * 10 + 26 + 1);
+}
+
+TEST_CASE("modes that are left out move no node by more than the tolerance") {
+  constexpr std::size_t kModes = 1000;
+  constexpr std::size_t kRows = 30;
+  const std::vector<double> shapes = random_numbers(kRows * kModes, 8);
+  std::vector<double> q = random_numbers(kModes, 9);
+  for (std::size_t i = 0; i < kModes; ++i) q[i] *= std::exp(-0.01 * static_cast<double>(i));
+  std::vector<double> largest(kModes, 0.0);
+  for (std::size_t i = 0; i < kRows * kModes; ++i) {
+    largest[i % kModes] = std::max(largest[i % kModes], std::abs(shapes[i]));
+  }
+  const double tolerance = GENERATE(0.0, 1e-9, 1e-4, 0.01, 0.3, 1e9);
+  const std::vector<ModeRange> ranges = strong_modes(q, largest, tolerance);
+  std::vector<double> kept(kModes, 0.0);
+  std::size_t last = 0;
+  for (const ModeRange& range : ranges) {
+    CHECK(range.first >= last);
+    last = range.first + range.count;
+    std::copy_n(q.begin() + static_cast<std::ptrdiff_t>(range.first), range.count,
+                kept.begin() + static_cast<std::ptrdiff_t>(range.first));
+  }
+  double left_out = 0.0;
+  for (std::size_t i = 0; i < kModes; ++i) left_out += std::abs(q[i] - kept[i]) * largest[i];
+  CHECK(left_out <= tolerance);
+  for (std::size_t r = 0; r < kRows; ++r) {
+    const double all = dot(shapes.data() + r * kModes, q.data(), kModes);
+    const double less = dot(shapes.data() + r * kModes, kept.data(), kModes);
+    CHECK(std::abs(all - less) <= tolerance + 1e-12);
+  }
+  if (tolerance == 0.0) CHECK(ranges.size() == 1);
+  if (tolerance == 0.3) CHECK(last < kModes);
+  if (tolerance == 1e9) CHECK(ranges.empty());
+}

@@ -10,7 +10,10 @@
 namespace irdm {
 
 template <typename Scalar>
-ModalEngine<Scalar>::ModalEngine(std::shared_ptr<const Model> model) : model_(std::move(model)) {
+ModalEngine<Scalar>::ModalEngine(std::shared_ptr<const Model> model)
+    : model_(std::move(model)),
+      residual_(std::get<ModalResponse>(model_->response).residual,
+                model_->mesh.surface_node_count()) {
   const auto& response = std::get<ModalResponse>(model_->response);
   shapes_ = &std::get<RowMatrix<Scalar>>(response.shapes);
   if (response.centrifugal.rows() > 0) centrifugal_ = response.centrifugal.data();
@@ -148,6 +151,7 @@ void ModalEngine<Scalar>::predict(std::span<const ContactPatch> patches, std::sp
       compliance(j, i) = compliance(i, j);
     }
   }
+  residual_.add_compliance(patches, compliance);
 }
 
 template <typename Scalar>
@@ -191,11 +195,15 @@ void ModalEngine<Scalar>::foresee(const ContactPatch& patch, std::span<const Nod
         dot_three(coordinate_from_.data() + 3 * n * modes_, state_products_.data(), 3 * modes_);
     path[n] = Vector3(moved[0], moved[1], moved[2]);
   }
+  const Vector3 at_once = residual_.displacement(patch, held);
+  for (Vector3& place : path) place += at_once;
+  if (!response.empty()) response[0] += residual_.compliance(patch);
 }
 
 template <typename Scalar>
 void ModalEngine<Scalar>::add_past(std::span<const NodalForce> forces, int age) noexcept {
   if (age < 0 || age >= kMaxHorizon) return;
+  if (age == 0) residual_.hold_more(forces);
   collect_modal_forces(forces);
   const double* coordinate = coordinate_after_.data() + static_cast<std::size_t>(age) * modes_;
   const double* velocity = velocity_after_.data() + static_cast<std::size_t>(age) * modes_;
@@ -208,6 +216,7 @@ void ModalEngine<Scalar>::add_past(std::span<const NodalForce> forces, int age) 
 
 template <typename Scalar>
 void ModalEngine<Scalar>::advance(std::span<const NodalForce> forces) noexcept {
+  residual_.hold(forces);
   coordinate_.swap(free_coordinate_);
   velocity_.swap(free_velocity_);
   if (!forces.empty()) {
@@ -230,9 +239,10 @@ void ModalEngine<Scalar>::displacement(Points& u) const {
       u(node, axis) = dot(shape_row(3 * node + axis), coordinate_.data(), modes_);
     }
   }
+  residual_.add_displacement(u);
 }
 
-// Phi diag(b1) Phi^T.
+// Phi diag(b1) Phi^T, and what is left out.
 template <typename Scalar>
 Eigen::MatrixXd ModalEngine<Scalar>::instant_compliance() const {
   const Eigen::Map<const Eigen::VectorXd> weights(b1_.data(), static_cast<Eigen::Index>(modes_));
@@ -241,11 +251,14 @@ Eigen::MatrixXd ModalEngine<Scalar>::instant_compliance() const {
   const Eigen::Index dof = weighted.rows();
   Eigen::MatrixXd R = Eigen::MatrixXd::Zero(dof, dof);
   R.template selfadjointView<Eigen::Lower>().rankUpdate(weighted);
-  return R.template selfadjointView<Eigen::Lower>();
+  R = Eigen::MatrixXd(R.template selfadjointView<Eigen::Lower>());
+  residual_.add_all(R);
+  return R;
 }
 
 template <typename Scalar>
 void ModalEngine<Scalar>::reset() noexcept {
+  residual_.release();
   for (auto* values : {&coordinate_, &velocity_, &free_coordinate_, &free_velocity_}) {
     std::fill(values->begin(), values->end(), 0.0);
   }

@@ -55,6 +55,7 @@ struct Material {
 /// of the largest displacement.
 struct ModeReduction {
   int elastic_modes = 0;          ///< that the body has
+  double cut_off = 0.0;           ///< where the modes end, see below [rad/s]
   double contact_radius = 0.0;    ///< of the fingertip [m]
   double residual_radius = 0.0;   ///< nodes nearer than this answer each other exactly [m]
   double press_time = 0.0;        ///< [s]
@@ -67,7 +68,8 @@ struct ModeReduction {
 /// What modes that are left out would add, as a compliance without delay: the static flexibility
 /// that the modes lack, K^+ - Phi diag(1 / omega^2) Phi^T, between surface nodes that are near each
 /// other. It belongs to R[0] alone. Blocks of 3 x 3 by rows, symmetric as a whole, positive
-/// semidefinite.
+/// semidefinite. With it goes that the modes end smoothly: their shapes are those of
+/// mass-normalised modes times sqrt(c), c falling from 1 at half of `cut_off` to 0 there.
 struct ResidualCompliance {
   std::vector<int>
       row_start;           ///< (n + 1): where each surface node's blocks begin; none: no residual

@@ -49,6 +49,7 @@ ModeReduction read_reduction(const hdf5::File& file) {
   reduction.elastic_modes =
       static_cast<int>(file.read_integer_attribute(kModalResidual, "elastic_modes"));
   reduction.samples = static_cast<int>(file.read_integer_attribute(kModalResidual, "samples"));
+  reduction.cut_off = number("cut_off");
   reduction.contact_radius = number("contact_radius");
   reduction.residual_radius = number("residual_radius");
   reduction.press_time = number("press_time");
@@ -71,6 +72,7 @@ void write_residual(hdf5::File& file, const ResidualCompliance& residual) {
   };
   whole("elastic_modes", reduction.elastic_modes);
   whole("samples", reduction.samples);
+  file.write_attribute(kModalResidual, "cut_off", reduction.cut_off);
   file.write_attribute(kModalResidual, "contact_radius", reduction.contact_radius);
   file.write_attribute(kModalResidual, "residual_radius", reduction.residual_radius);
   file.write_attribute(kModalResidual, "press_time", reduction.press_time);

@@ -1,7 +1,6 @@
 #include "precompute/modal/fingertip_reference.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "precompute/modal/driving_spectrum.hpp"
 #include "precompute/modal/held_responses.hpp"
@@ -45,11 +44,8 @@ Eigen::VectorXd residual_displacement(const ResidualCompliance& residual, const 
 }  // namespace
 
 FingertipReference::FingertipReference(const ElasticStatics& statics, const Model& model,
-                                       double contact_radius, double residual_radius,
-                                       const std::vector<int>& clamped)
-    : model_(model),
-      residual_radius_(residual_radius),
-      tips_(spread_fingertips(model.mesh, contact_radius, kSamples, clamped)) {
+                                       double contact_radius, const std::vector<int>& clamped)
+    : model_(model), tips_(spread_fingertips(model.mesh, contact_radius, kSamples, clamped)) {
   const Eigen::MatrixXd loads = loads_of(tips_, model.mesh);
   const Eigen::MatrixXd everywhere = statics.displacement(loads);
   settled_.resize(model.degrees_of_freedom(), loads.cols());
@@ -81,51 +77,17 @@ ReductionError FingertipReference::error(const ModalResponse& modes) const {
   return worst;
 }
 
-std::vector<bool> FingertipReference::near_all(const Fingertip& tip) const {
-  std::vector<bool> near(static_cast<std::size_t>(model_.mesh.surface_node_count()), true);
-  for (int j = 0; j < model_.mesh.surface_node_count(); ++j) {
-    const Vector3 place = model_.mesh.rest_position(j);
-    for (const int i : tip.nodes) {
-      if ((model_.mesh.rest_position(i) - place).norm() > residual_radius_) {
-        near[static_cast<std::size_t>(j)] = false;
-      }
-    }
-  }
-  return near;
-}
-
-void FingertipReference::add_errors(const ModalResponse& modes, Eigen::Index tip,
-                                    std::vector<ReductionError>& errors) const {
-  const Fingertip& fingertip = tips_[static_cast<std::size_t>(tip)];
-  const Eigen::VectorXd& all = response_[static_cast<std::size_t>(tip)];
+double FingertipReference::expected_force_error(const ModalResponse& modes) const {
   const RowMatrix<double> held = held_responses(modes, model_.dt, press_steps(model_.dt));
-  const Eigen::VectorXd share = mean_under(fingertip, shapes_of(modes));
-  const std::vector<bool> near = near_all(fingertip);
-  Eigen::VectorXd missing = settled_.col(tip);
-  for (std::size_t j = 0; j < near.size(); ++j) {
-    if (near[j]) missing.segment<3>(static_cast<Eigen::Index>(3 * j)).setZero();
+  double worst = 0.0;
+  for (std::size_t k = 0; k < tips_.size(); ++k) {
+    const Eigen::VectorXd share = mean_under(tips_[k], shapes_of(modes));
+    const double settled = mean_under(tips_[k], settled_.col(static_cast<Eigen::Index>(k)))(0);
+    Eigen::VectorXd response = held * share.cwiseAbs2();
+    response(0) += settled - share.cwiseQuotient(modes.angular_frequency).squaredNorm();
+    worst = std::max(worst, press_error(response_[k], response, model_.dt));
   }
-  const double scale = largest_norm(settled_.col(tip));
-  Eigen::VectorXd response = Eigen::VectorXd::Zero(all.size());
-  response(0) = mean_under(fingertip, settled_.col(tip))(0);
-  for (Eigen::Index i = 0; i < share.size(); ++i) {
-    const double settled = share(i) / std::pow(modes.angular_frequency(i), 2);
-    response += share(i) * share(i) * held.col(i);
-    response(0) -= share(i) * settled;
-    for (std::size_t j = 0; j < near.size(); ++j) {
-      if (near[j]) continue;
-      const auto row = static_cast<Eigen::Index>(3 * j);
-      missing.segment<3>(row) -= settled * shapes_of(modes).col(i).segment<3>(row);
-    }
-    keep_larger(errors[static_cast<std::size_t>(i)],
-                {press_error(all, response, model_.dt), largest_norm(missing) / scale});
-  }
-}
-
-std::vector<ReductionError> FingertipReference::errors_by_count(const ModalResponse& modes) const {
-  std::vector<ReductionError> errors(static_cast<std::size_t>(modes.mode_count()));
-  for (int k = 0; k < samples(); ++k) add_errors(modes, k, errors);
-  return errors;
+  return worst;
 }
 
 }  // namespace irdm::precompute

@@ -11,8 +11,7 @@ namespace irdm::precompute {
 struct ModesConfig {
   std::optional<int> count;                 ///< the lowest so many, 1..20 000
   std::optional<double> highest_frequency;  ///< all up to this [Hz], > 0
-  /// As many as keep force and shape under a fingertip within this share of those of all modes,
-  /// 1e-4..0.5.
+  /// As few as keep the force under a fingertip within this share of that of all modes, 1e-4..0.5.
   std::optional<double> error;
   /// Of that fingertip [m], > 0. What the missing modes would add is kept for nodes up to twice as
   /// far apart.

@@ -7,7 +7,7 @@
 namespace irdm::precompute {
 namespace {
 
-constexpr double kPressTime = 0.05;  // [s]
+constexpr double kPressTime = 0.1;  // [s]
 
 double indentation(double t, double time) {
   return 0.5 * (1.0 - std::cos(std::numbers::pi * std::min(t / time, 1.0)));

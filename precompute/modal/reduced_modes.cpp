@@ -11,6 +11,7 @@
 #include "precompute/modal/lowest_modes.hpp"
 #include "precompute/modal/press.hpp"
 #include "precompute/modal/residual_compliance.hpp"
+#include "precompute/modal/smooth_cut.hpp"
 
 namespace irdm::precompute {
 namespace {
@@ -21,12 +22,8 @@ double hertz(double angular_frequency) {
   return angular_frequency / (2.0 * std::numbers::pi);
 }
 
-void keep_lowest(ElasticModes& modes, Eigen::Index count) {
-  modes.angular_frequency.conservativeResize(count);
-  modes.shapes.conservativeResize(Eigen::NoChange, count);
-}
-
-// What is asked for, found by trying with more and more modes where it is not their number.
+// What is asked for, found by trying with more and more modes where it is not their number. One
+// more than is kept is computed: it says where the modes end.
 class Choice {
  public:
   Choice(const ElasticStatics& statics, const Model& model, const FingertipReference& reference,
@@ -35,21 +32,25 @@ class Choice {
         model_(model),
         reference_(reference),
         console_(console),
-        most_(most_lowest_modes(statics)) {}
+        most_(most_lowest_modes(statics) - 1) {}
 
-  ElasticModes by_count(int count) const {
-    if (count > most_) too_many(std::to_string(count));
-    return lowest(count);
+  ModalResponse of(const ModesConfig& config) const {
+    if (config.count) return by_count(*config.count);
+    if (config.highest_frequency) return by_frequency(*config.highest_frequency);
+    return by_error(*config.error);
   }
 
-  ElasticModes by_frequency(double highest) const {
+ private:
+  ModalResponse by_count(int count) const {
+    if (count > most_) too_many(std::to_string(count));
+    return smoothly_cut(lowest(count), count);
+  }
+
+  ModalResponse by_frequency(double highest) const {
     for (int count = std::min(kFirstTry, most_);;) {
-      ElasticModes modes = lowest(count);
-      const double last = hertz(modes.angular_frequency(count - 1));
-      if (last > highest) {
-        keep_up_to(modes, highest);
-        return modes;
-      }
+      const ModalResponse modes = lowest(count);
+      const double last = hertz(modes.angular_frequency(count));
+      if (last > highest) return smoothly_cut(modes, count_up_to(modes, highest));
       if (count == most_) too_many("more than " + std::to_string(most_));
       // Their number grows with the third power of the frequency.
       const double guess = 1.1 * count * std::pow(highest / last, 3) + 16.0;
@@ -57,45 +58,48 @@ class Choice {
     }
   }
 
-  ElasticModes by_error(double error) const {
+  ModalResponse by_error(double error) const {
+    int below = 0;  // so many are too few
     for (int count = std::min(kFirstTry, most_);; count = std::min(2 * count, most_)) {
-      ElasticModes modes = lowest(count);
-      const auto errors = reference_.errors_by_count(at_surface(modes));
-      const auto good = [error](const ReductionError& e) {
-        return e.force <= error && e.shape <= error;
+      const ModalResponse modes = lowest(count);
+      const auto good = [&](int tried) {
+        return reference_.expected_force_error(smoothly_cut(modes, tried)) <= error;
       };
-      if (good(errors.back())) {
-        const auto bad = std::find_if_not(errors.rbegin(), errors.rend(), good);
-        const auto needed = errors.rend() - bad + 1;
-        keep_lowest(modes, std::min<Eigen::Index>(needed, count));
-        return modes;
+      if (good(count)) {
+        int enough = count;
+        while (enough - below > 1) {
+          const int middle = (below + enough) / 2;
+          (good(middle) ? enough : below) = middle;
+        }
+        return smoothly_cut(modes, enough);
       }
       if (count == most_) too_many("more than " + std::to_string(most_));
+      below = count;
     }
   }
 
- private:
-  ElasticModes lowest(int count) const {
+  // And one more.
+  ModalResponse lowest(int count) const {
     console_.line("modes: the lowest " + std::to_string(count) + " of " +
                   std::to_string(statics_.elastic_modes()) + " by Lanczos");
-    return lowest_modes(statics_, count);
+    const ElasticModes modes = lowest_modes(statics_, count + 1);
+    ModalResponse response = modal_response(modes, model_.mesh.surface_nodes, model_.material);
+    if (model_.body.support == Support::kFloating) {
+      response.centrifugal =
+          modes.shapes.transpose() * centrifugal_loads(model_.mesh.nodes, model_.mesh.node_mass);
+    }
+    return response;
   }
 
-  void keep_up_to(ElasticModes& modes, double highest) const {
+  int count_up_to(const ModalResponse& modes, double highest) const {
     const Eigen::VectorXd& omega = modes.angular_frequency;
     const auto count = std::count_if(omega.begin(), omega.end(),
                                      [highest](double w) { return hertz(w) <= highest; });
-    if (count == 0) {
-      throw Error("[modes]",
-                  "no mode is as low as " + std::to_string(highest) + " Hz; the lowest has " +
-                      std::to_string(hertz(omega(0))) + " Hz",
-                  "raise highest_frequency");
-    }
-    keep_lowest(modes, count);
-  }
-
-  ModalResponse at_surface(const ElasticModes& modes) const {
-    return modal_response(modes, model_.mesh.surface_nodes, model_.material);
+    if (count > 0) return static_cast<int>(count);
+    throw Error("[modes]",
+                "no mode is as low as " + std::to_string(highest) + " Hz; the lowest has " +
+                    std::to_string(hertz(omega(0))) + " Hz",
+                "raise highest_frequency");
   }
 
   [[noreturn]] void too_many(const std::string& wanted) const {
@@ -112,12 +116,6 @@ class Choice {
   int most_;
 };
 
-ElasticModes choose(const Choice& choice, const ModesConfig& config) {
-  if (config.count) return choice.by_count(*config.count);
-  if (config.highest_frequency) return choice.by_frequency(*config.highest_frequency);
-  return choice.by_error(*config.error);
-}
-
 }  // namespace
 
 ModalResponse compute_reduced_modes(const TetMesh& mesh, const std::vector<int>& clamped,
@@ -125,23 +123,22 @@ ModalResponse compute_reduced_modes(const TetMesh& mesh, const std::vector<int>&
                                     const Console& console) {
   const ElasticStatics statics(assemble_stiffness(mesh, lame_parameters(model.material)),
                                model.mesh.nodes, model.mesh.node_mass, clamped);
-  const double radius = residual_radius(model.mesh, config.contact_radius);
-  const FingertipReference reference(statics, model, config.contact_radius, radius, clamped);
-  const ElasticModes modes = choose(Choice(statics, model, reference, console), config);
-  ModalResponse response = modal_response(modes, model.mesh.surface_nodes, model.material);
-  if (model.body.support == Support::kFloating) {
-    response.centrifugal =
-        modes.shapes.transpose() * centrifugal_loads(model.mesh.nodes, model.mesh.node_mass);
-  }
-  response.residual = residual_compliance(statics, model.mesh, response, radius, threads, console);
+  const FingertipReference reference(statics, model, config.contact_radius, clamped);
+  ModalResponse response = Choice(statics, model, reference, console).of(config);
+  ModeReduction reduction = response.residual.reduction;
+  response.residual =
+      residual_compliance(statics, model.mesh, response,
+                          residual_radius(model.mesh, config.contact_radius), threads, console);
   const ReductionError error = reference.error(response);
-  ModeReduction& reduction = response.residual.reduction;
   reduction.elastic_modes = static_cast<int>(statics.elastic_modes());
   reduction.contact_radius = config.contact_radius;
+  reduction.residual_radius = response.residual.reduction.residual_radius;
+  reduction.added_compliance = response.residual.reduction.added_compliance;
   reduction.press_time = press_time(model.dt);
   reduction.force_error = error.force;
   reduction.shape_error = error.shape;
   reduction.samples = reference.samples();
+  response.residual.reduction = reduction;
   return response;
 }
 

@@ -11,8 +11,8 @@ namespace irdm::precompute {
 double residual_radius(const ModelMesh& mesh, double contact_radius);
 
 /// The static flexibility that the modes lack, K^+ - Phi diag(1 / omega^2) Phi^T, between surface
-/// nodes up to `radius` apart, by a static solve for each surface degree of freedom. Leaving out
-/// what is farther apart may make the whole of it slightly indefinite: as much as is needed is
+/// nodes up to `radius` apart, by a static solve for each surface degree of freedom. Should
+/// leaving out what is farther apart make the whole of it indefinite, as much as is needed is
 /// added to every diagonal (`added_compliance`), after which no set of contacts can draw energy
 /// from it.
 /// @param modes with shapes in double precision

@@ -168,6 +168,7 @@ PrecomputeConfig read_config(TomlTable root, const std::string& name) {
   config.mesh = read_mesh(root.table("mesh", true));
   config.material = read_material(root.table("material", true));
   config.response = read_response(root.table("response"));
+  config.modes = read_modes(root.table("modes"));
   config.support = read_support(root);
   config.time_stepping = read_time_stepping(root.table("time_stepping"), config.response.dt);
   root.finish();

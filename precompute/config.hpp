@@ -10,6 +10,7 @@
 #include "common/model/model_file.hpp"
 #include "precompute/dynamics/time_stepping_config.hpp"
 #include "precompute/mesh/region.hpp"
+#include "precompute/modal/modes_config.hpp"
 
 namespace irdm::precompute {
 
@@ -63,6 +64,7 @@ struct PrecomputeConfig {
   /// required; rayleigh_alpha [1/s] >= 0 and rayleigh_beta [s] >= 0 are 8.0 and 2e-4 unless given.
   Material material;
   ResponseConfig response;
+  ModesConfig modes;  ///< used by method = "modal"
   /// Which nodes are clamped, with `response.support = "fixed"`; none: the body floats. [support]
   /// has one of `half_space = { point = [..], normal = [..] }`, `box = { min = [..], max = [..] }`
   /// and `group = "name"`, in m and the coordinates of the input mesh (times its unit).

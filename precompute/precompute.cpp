@@ -25,6 +25,7 @@
 #include "precompute/mesh/tetgen_program.hpp"
 #include "precompute/modal/held_responses.hpp"
 #include "precompute/modal/modal_method.hpp"
+#include "precompute/modal/reduced_modes.hpp"
 #include "precompute/modal/symmetric_eigen.hpp"
 #include "precompute/process/last_action.hpp"
 
@@ -95,6 +96,19 @@ double inertia_excess(const Matrix3& nodal, const Matrix3& solid) {
   return (nodal.diagonal().cwiseQuotient(solid.diagonal()).array() - 1.0).maxCoeff();
 }
 
+// A part of the modes is of use with what the others add, which only the modal form has.
+void check_modes(const PrecomputeConfig& config) {
+  if (config.modes.all()) return;
+  if (config.response.method != Method::kModal) {
+    throw Error(config.name, "[modes] belongs to method = \"modal\"",
+                "leave the table out, or change response.method");
+  }
+  if (config.response.storage != Storage::kModal) {
+    throw Error(config.name, "dense R is made of all modes, and [modes] asks for some",
+                "leave [modes] out, or set response.storage = \"modal\"");
+  }
+}
+
 // Says early that the work cannot be done here, instead of dying of it later.
 void check_resources(const PrecomputeConfig& config, const TetMesh& mesh, const Model& model,
                      int columns, const std::filesystem::path& output) {
@@ -102,13 +116,15 @@ void check_resources(const PrecomputeConfig& config, const TetMesh& mesh, const 
   const double memory =
       static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
   const Eigen::Index unknowns = 3 * static_cast<Eigen::Index>(mesh.node_count());
-  if (config.response.method == Method::kModal &&
+  if (config.response.method == Method::kModal && config.modes.all() &&
       (unknowns > kMaxEigenSize || symmetric_eigen_bytes(unknowns) > memory)) {
     throw Error(config.name,
                 std::to_string(mesh.node_count()) +
                     " nodes are too many for all modes on this "
                     "machine",
-                "use a coarser mesh (at most " + std::to_string(kMaxEigenSize / 3) +
+                "ask for some of them, as with error = 0.01 in [modes], or use a coarser mesh (at "
+                "most " +
+                    std::to_string(kMaxEigenSize / 3) +
                     " nodes); of a surface, with a larger mesh.edge_length");
   }
   if (config.response.storage == Storage::kModal) return;
@@ -198,6 +214,7 @@ Summary precompute_model(const PrecomputeConfig& config, const std::filesystem::
                          const Ranks& ranks) {
   const auto start = std::chrono::steady_clock::now();
   const bool stepping = config.response.method == Method::kTimeStepping;
+  check_modes(config);
   const TetMesh mesh = make_mesh(config.mesh);
   const Model model = describe(mesh, config.name, config);
   if (stepping) {
@@ -225,8 +242,12 @@ Summary precompute_model(const PrecomputeConfig& config, const std::filesystem::
   if (stepping) {
     by_columns(*stepped_columns(config, mesh, model, threads, console));
   } else {
-    ModalResponse response = compute_modes(mesh, clamped, model, console);
+    ModalResponse response =
+        config.modes.all()
+            ? compute_modes(mesh, clamped, model, console)
+            : compute_reduced_modes(mesh, clamped, model, config.modes, threads, console);
     summary.modes = response.mode_count();
+    if (!response.residual.empty()) summary.reduction = response.residual.reduction;
     summary.lowest_frequency = response.angular_frequency(0) / (2.0 * std::numbers::pi);
     summary.decay_left = decay_left(response, model.dt, model.steps);
     if (slice || ranks.size() > 1) {

@@ -35,6 +35,12 @@ std::string row(const std::string& name, const std::string& value) {
   return "  " + name + std::string(34 - name.size(), ' ') + value + "\n";
 }
 
+std::string reduction_rows(const ModeReduction& reduction) {
+  return row("elastic modes of the body", std::to_string(reduction.elastic_modes)) +
+         row("error of force under a fingertip", significant(100.0 * reduction.force_error, "%")) +
+         row("error of shape under a fingertip", significant(100.0 * reduction.shape_error, "%"));
+}
+
 }  // namespace
 
 std::string format_summary(const Summary& s) {
@@ -55,6 +61,7 @@ std::string format_summary(const Summary& s) {
               ? std::string()
               : row("elastic modes", std::to_string(s.modes)) +
                     row("lowest elastic frequency", significant(s.lowest_frequency, "Hz"))) +
+         (s.reduction ? reduction_rows(*s.reduction) : std::string()) +
          (s.decay_left ? row("decay left at the last step", significant(100.0 * *s.decay_left, "%"))
                        : std::string()) +
          row("nodal over solid inertia", significant(100.0 * s.inertia_excess, "% more")) +

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "common/model/model.hpp"
 #include "precompute/mesh/mesh_report.hpp"
 
 namespace irdm::precompute {
@@ -21,10 +22,11 @@ struct Summary {
   int modes = 0;         ///< 0: R was obtained without modes
   double seconds = 0.0;  ///< of the whole run
   std::uint64_t file_bytes = 0;
-  double lowest_frequency = 0.0;     ///< of the elastic modes [Hz]
-  std::optional<double> decay_left;  ///< see decay_left(), 0..; unknown of a slice
-  int columns = 0;                   ///< of R that were computed in this run
-  bool slice = false;                ///< the file holds a slice of R
+  double lowest_frequency = 0.0;           ///< of the elastic modes [Hz]
+  std::optional<double> decay_left;        ///< see decay_left(), 0..; unknown of a slice
+  int columns = 0;                         ///< of R that were computed in this run
+  std::optional<ModeReduction> reduction;  ///< where not all modes were computed
+  bool slice = false;                      ///< the file holds a slice of R
   double inertia_excess = 0.0;  ///< largest moment of inertia of the nodes over the solid's, - 1
   std::string blas_kernel;
 

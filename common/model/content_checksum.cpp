@@ -4,6 +4,7 @@
 
 #include "common/checksum.hpp"
 #include "common/model/model_writer.hpp"
+#include "common/model/residual_file.hpp"
 
 namespace irdm {
 namespace {
@@ -78,6 +79,9 @@ std::string content_checksum(const hdf5::File& file) {
   } else {
     add_dataset<double>(sha, file, kDenseCentrifugal);
   }
+  add_dataset<std::int32_t>(sha, file, kResidualRowStart);
+  add_dataset<std::int32_t>(sha, file, kResidualNodes);
+  add_dataset<float>(sha, file, kResidualBlocks);
   return sha.hexadecimal();
 }
 

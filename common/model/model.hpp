@@ -50,6 +50,39 @@ struct Material {
   double rayleigh_beta = 0.0;   ///< [s], >= 0
 };
 
+/// How well a part of the modes stands for all of them, found when they were computed. The errors
+/// are those under a fingertip: of its force while it is pressed in within `press_time`, as a share
+/// of the largest; and of the displacement of any surface node under a force that stays, as a share
+/// of the largest displacement.
+struct ModeReduction {
+  int elastic_modes = 0;          ///< that the body has
+  double cut_off = 0.0;           ///< where the modes end, see below [rad/s]
+  double contact_radius = 0.0;    ///< of the fingertip [m]
+  double residual_radius = 0.0;   ///< nodes nearer than this answer each other exactly [m]
+  double press_time = 0.0;        ///< [s]
+  double force_error = 0.0;       ///< largest of the samples
+  double shape_error = 0.0;       ///< largest of the samples
+  int samples = 0;                ///< places on the surface where the two were found
+  double added_compliance = 0.0;  ///< on every diagonal, so that what is stored stays passive [m/N]
+};
+
+/// What modes that are left out would add, as a compliance without delay: the static flexibility
+/// that the modes lack, K^+ - Phi diag(1 / omega^2) Phi^T, between surface nodes that are near each
+/// other. It belongs to R[0] alone. Blocks of 3 x 3 by rows, symmetric as a whole, positive
+/// semidefinite. With it goes that the modes end smoothly: their shapes are those of
+/// mass-normalised modes times sqrt(c), c falling from 1 at half of `cut_off` to 0 there.
+struct ResidualCompliance {
+  std::vector<int>
+      row_start;           ///< (n + 1): where each surface node's blocks begin; none: no residual
+  std::vector<int> nodes;  ///< surface node of each block, increasing within a row
+  std::vector<float> blocks;  ///< 9 a block, rows first: displacement per force on `nodes` [m/N]
+  ModeReduction reduction;
+
+  bool empty() const { return row_start.empty(); }
+  /// The block of a node with itself [m/N].
+  Matrix3 diagonal(int node) const;
+};
+
 /// R in modal form, R[s] = Phi diag(h_i[s]) Phi^T: r elastic modes at the surface.
 struct ModalResponse {
   Eigen::VectorXd angular_frequency;  ///< omega_i (r) [rad/s]
@@ -59,6 +92,8 @@ struct ModalResponse {
   /// g (r, 6): force of each mode per product of angular velocity components (see SpinProducts)
   /// [kg^1/2 m]; no rows: the model has none.
   RowMatrix<double> centrifugal{};
+  /// Of modes that are left out, added to R[0]; empty where all are there.
+  ResidualCompliance residual{};
 
   int mode_count() const { return static_cast<int>(angular_frequency.size()); }
 };

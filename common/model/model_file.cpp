@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/error.hpp"
+#include "common/model/residual_file.hpp"
 #include "common/response/spin_products.hpp"
 
 namespace irdm {
@@ -161,6 +162,7 @@ class ModelReader {
       require(response.centrifugal.allFinite(),
               std::string(kModalCentrifugal) + " has numbers that are not finite");
     }
+    response.residual = read_residual(file_, model_.mesh.surface_node_count());
     model_.response = std::move(response);
   }
 

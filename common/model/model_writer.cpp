@@ -9,6 +9,7 @@
 #include "common/error.hpp"
 #include "common/model/content_checksum.hpp"
 #include "common/model/half_column.hpp"
+#include "common/model/residual_file.hpp"
 #include "common/response/spin_products.hpp"
 
 namespace irdm {
@@ -112,6 +113,7 @@ void ModelFileWriter::write_modal(const ModalResponse& response) {
                              shapes.data());
       },
       response.shapes);
+  if (!response.residual.empty()) write_residual(*file_, response.residual);
   if (response.centrifugal.rows() == 0) return;
   file_->write<double>(kModalCentrifugal, {modes, kSpinProducts}, response.centrifugal.data());
   describe_centrifugal(*file_, kModalCentrifugal, "kg^1/2 m");

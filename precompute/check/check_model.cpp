@@ -46,6 +46,7 @@ Report check_modes(const std::filesystem::path& path, const CheckOptions& option
   }
   const ModalColumns columns(response, model.dt);
   Report report{modes_line(response, model.material)};
+  if (!response.residual.empty()) report.push_back(residual_line(response));
   append(report, static_lines(model, columns));
   report.push_back(decay_line(decay_left(response, model.dt, model.steps), false));
 
@@ -56,12 +57,15 @@ Report check_modes(const std::filesystem::path& path, const CheckOptions& option
   Progress progress(console, "nodes (modal)", nodes);
   for (int first = 0; first < nodes; first += kNodesAtOnce) {
     const int count = std::min(kNodesAtOnce, nodes - first);
-    analyse(model, {loop, length.radius},
-            modal_driving_points(std::get<RowMatrix<double>>(response.shapes), held, first, count),
-            first, findings);
+    analyse(model, {loop, length.radius}, modal_driving_points(response, held, first, count), first,
+            findings);
     progress.update(first + count);
   }
   append(report, node_lines(findings, loop, options.coupling));
+  if (!response.residual.empty()) {
+    report.push_back({"wave speed", Verdict::kNone, "not all modes are there"});
+    return report;
+  }
   const double interval = wave_interval(model);
   report.push_back(wave_line(model, ModalColumns(response, interval), interval,
                              std::numeric_limits<int>::max()));

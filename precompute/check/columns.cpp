@@ -30,12 +30,30 @@ RowMatrix<double> product_transposed(const RowMatrix<double>& a, const RowMatrix
 RowMatrix<double> ModalColumns::column(int b, int steps) const {
   const RowMatrix<double> weighted =
       held_responses(response_, dt_, steps).array().rowwise() * shapes().row(b).array();
-  return product_transposed(weighted, shapes());
+  RowMatrix<double> column = product_transposed(weighted, shapes());
+  column.row(0) += residual(b).transpose();
+  return column;
+}
+
+// What modes that are left out do at once, (3n).
+Eigen::VectorXd ModalColumns::residual(int b) const {
+  Eigen::VectorXd u = Eigen::VectorXd::Zero(shapes().rows());
+  const ResidualCompliance& g = response_.residual;
+  if (g.empty()) return u;
+  const auto node = static_cast<std::size_t>(b / 3);
+  for (int k = g.row_start[node]; k < g.row_start[node + 1]; ++k) {
+    const auto place = static_cast<std::size_t>(k);
+    for (int axis = 0; axis < 3; ++axis) {
+      u(3 * g.nodes[place] + axis) =
+          static_cast<double>(g.blocks[9 * place + static_cast<std::size_t>(3 * (b % 3) + axis)]);
+    }
+  }
+  return u;
 }
 
 Eigen::VectorXd ModalColumns::settled(int b) const {
   const Eigen::ArrayXd omega = response_.angular_frequency;
-  return shapes() * (shapes().row(b).transpose().array() / omega.square()).matrix();
+  return shapes() * (shapes().row(b).transpose().array() / omega.square()).matrix() + residual(b);
 }
 
 StoredColumns::StoredColumns(const std::filesystem::path& path, int degrees_of_freedom, int steps)
@@ -70,9 +88,10 @@ bool StoredColumns::has_checksums() const {
                               nullptr, nullptr) >= 0;
 }
 
-std::vector<DrivingPoint> modal_driving_points(const RowMatrix<double>& shapes,
+std::vector<DrivingPoint> modal_driving_points(const ModalResponse& response,
                                                const RowMatrix<double>& held, int first,
                                                int count) {
+  const auto& shapes = std::get<RowMatrix<double>>(response.shapes);
   RowMatrix<double> products(9 * count, shapes.cols());
   for (int i = 0; i < count; ++i) {
     for (int entry = 0; entry < 9; ++entry) {
@@ -83,6 +102,10 @@ std::vector<DrivingPoint> modal_driving_points(const RowMatrix<double>& shapes,
   const RowMatrix<double> records = product_transposed(products, held);
   std::vector<DrivingPoint> points;
   for (int i = 0; i < count; ++i) points.emplace_back(records.middleRows(9 * i, 9));
+  if (response.residual.empty()) return points;
+  for (int i = 0; i < count; ++i) {
+    points[static_cast<std::size_t>(i)].col(0) += response.residual.diagonal(first + i).reshaped();
+  }
   return points;
 }
 

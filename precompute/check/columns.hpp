@@ -19,7 +19,7 @@ class Columns {
   virtual Eigen::VectorXd settled(int b) const = 0;
 };
 
-/// Out of the modes: settled() is the limit for all time.
+/// Out of the modes and what they leave out: settled() is the limit for all time.
 class ModalColumns : public Columns {
  public:
   /// @param response with shapes in double precision; must outlive this
@@ -28,6 +28,7 @@ class ModalColumns : public Columns {
   Eigen::VectorXd settled(int b) const override;
 
  private:
+  Eigen::VectorXd residual(int b) const;
   const RowMatrix<double>& shapes() const { return std::get<RowMatrix<double>>(response_.shapes); }
   const ModalResponse& response_;
   double dt_;
@@ -51,9 +52,9 @@ class StoredColumns : public Columns {
 };
 
 /// R_ii[s] of the nodes first .. first+count-1.
-/// @param shapes (3n, r)
+/// @param response of the modes, with shapes in double precision
 /// @param held responses of the modes, (L, r)
-std::vector<DrivingPoint> modal_driving_points(const RowMatrix<double>& shapes,
+std::vector<DrivingPoint> modal_driving_points(const ModalResponse& response,
                                                const RowMatrix<double>& held, int first, int count);
 
 /// A record that is long enough to stand for one without end.

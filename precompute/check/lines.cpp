@@ -7,6 +7,7 @@
 #include "common/model/content_checksum.hpp"
 #include "precompute/check/static_reference.hpp"
 #include "precompute/check/wave_speed.hpp"
+#include "precompute/modal/residual_compliance.hpp"
 
 namespace irdm::precompute {
 namespace {
@@ -48,6 +49,22 @@ Line modes_line(const ModalResponse& response, const Material& material) {
           text("%d finite, %.4g .. %.4g Hz, decay rates %.3g .. %.3g 1/s%s", response.mode_count(),
                omega.minCoeff() * to_hertz, omega.maxCoeff() * to_hertz, decay.minCoeff(),
                decay.maxCoeff(), off > 1e-6 ? ", not those of the material" : "")};
+}
+
+Line residual_line(const ModalResponse& response) {
+  const ResidualCompliance& residual = response.residual;
+  const ModeReduction& reduction = residual.reduction;
+  double largest = 0.0;
+  for (int i = 0; i + 1 < static_cast<int>(residual.row_start.size()); ++i) {
+    largest = std::max(largest, residual.diagonal(i).trace());
+  }
+  const double lacking = needed_for_definiteness(residual) / largest;
+  const double error = std::max(reduction.force_error, reduction.shape_error);
+  return {"modes left out", lacking > 1e-3 ? Verdict::kFail : judge(error, 1e-1, 1.0),
+          text("%d of %d modes; under a fingertip of %.3g m the force is off by %.2g, the shape by "
+               "%.2g; no energy to be had but %.1g of a node's compliance",
+               response.mode_count(), reduction.elastic_modes, reduction.contact_radius,
+               reduction.force_error, reduction.shape_error, lacking)};
 }
 
 Line reciprocity_line(const Reciprocity& reciprocity) {

@@ -16,6 +16,8 @@ Line chunk_checksum_line(const StoredColumns& columns);
 /// Modes are read only when they are finite, with positive frequencies and no negative decay rates;
 /// here: whether they decay as the material says.
 Line modes_line(const ModalResponse& response, const Material& material);
+/// Of modes that are left out: whether what they add can give no energy, and the stated errors.
+Line residual_line(const ModalResponse& response);
 Line reciprocity_line(const Reciprocity& reciprocity);
 /// Static compliance and momentum of some columns against finite elements assembled again.
 Report static_lines(const Model& model, const Columns& columns);

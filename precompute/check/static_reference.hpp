@@ -1,8 +1,9 @@
 #pragma once
 
-#include <Eigen/SparseCholesky>
+#include <memory>
 
 #include "common/model/model.hpp"
+#include "precompute/dynamics/sparse_solver.hpp"
 #include "precompute/fem/assembly.hpp"
 
 namespace irdm::precompute {
@@ -27,7 +28,7 @@ class StaticReference {
   Eigen::VectorXd mass_;      // (3N)
   Eigen::MatrixXd rigid_;     // (3N, 6)
   Eigen::MatrixXd surface_rigid_;
-  Eigen::SimplicialLDLT<SparseMatrix> solver_;
+  std::unique_ptr<SparseSolver> solver_ = make_sparse_solver();
 };
 
 struct StaticComparison {

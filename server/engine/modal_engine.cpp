@@ -16,7 +16,10 @@ constexpr std::size_t kSlice = 512;  // modes whose shapes under a contact fill 
 }  // namespace
 
 template <typename Scalar>
-ModalEngine<Scalar>::ModalEngine(std::shared_ptr<const Model> model) : model_(std::move(model)) {
+ModalEngine<Scalar>::ModalEngine(std::shared_ptr<const Model> model)
+    : model_(std::move(model)),
+      residual_(std::get<ModalResponse>(model_->response).residual,
+                model_->mesh.surface_node_count()) {
   const auto& response = std::get<ModalResponse>(model_->response);
   shapes_ = &std::get<RowMatrix<Scalar>>(response.shapes);
   const Eigen::VectorXd largest =
@@ -171,6 +174,7 @@ void ModalEngine<Scalar>::add_slice(std::span<const ContactPatch> patches, const
           Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(shared.data());
     }
   }
+  residual_.add_compliance(patches, compliance);
 }
 
 // Three nodes at a time; where fewer are left, the last one counts with weight 0.
@@ -224,11 +228,15 @@ void ModalEngine<Scalar>::foresee(const ContactPatch& patch, std::span<const Nod
         dot_three(coordinate_from_.data() + 3 * n * modes_, state_products_.data(), 3 * modes_);
     path[n] = Vector3(moved[0], moved[1], moved[2]);
   }
+  const Vector3 at_once = residual_.displacement(patch, held);
+  for (Vector3& place : path) place += at_once;
+  if (!response.empty()) response[0] += residual_.compliance(patch);
 }
 
 template <typename Scalar>
 void ModalEngine<Scalar>::add_past(std::span<const NodalForce> forces, int age) noexcept {
   if (age < 0 || age >= kMaxHorizon) return;
+  if (age == 0) residual_.hold_more(forces);
   collect_modal_forces(forces, {0, modes_});
   const double* coordinate = coordinate_after_.data() + static_cast<std::size_t>(age) * modes_;
   const double* velocity = velocity_after_.data() + static_cast<std::size_t>(age) * modes_;
@@ -241,6 +249,7 @@ void ModalEngine<Scalar>::add_past(std::span<const NodalForce> forces, int age) 
 
 template <typename Scalar>
 void ModalEngine<Scalar>::advance(std::span<const NodalForce> forces) noexcept {
+  residual_.hold(forces);
   coordinate_.swap(free_coordinate_);
   velocity_.swap(free_velocity_);
   if (forces.empty()) return move_on();
@@ -268,9 +277,10 @@ void ModalEngine<Scalar>::displacement(Points& u, double tolerance) const {
                    coordinate_.data() + range.first, range.count, 1.0, u.data() + first);
     }
   }
+  residual_.add_displacement(u);
 }
 
-// Phi diag(b1) Phi^T.
+// Phi diag(b1) Phi^T, and what is left out.
 template <typename Scalar>
 Eigen::MatrixXd ModalEngine<Scalar>::instant_compliance() const {
   const Eigen::Map<const Eigen::VectorXd> weights(b1_.data(), static_cast<Eigen::Index>(modes_));
@@ -279,11 +289,14 @@ Eigen::MatrixXd ModalEngine<Scalar>::instant_compliance() const {
   const Eigen::Index dof = weighted.rows();
   Eigen::MatrixXd R = Eigen::MatrixXd::Zero(dof, dof);
   R.template selfadjointView<Eigen::Lower>().rankUpdate(weighted);
-  return R.template selfadjointView<Eigen::Lower>();
+  R = Eigen::MatrixXd(R.template selfadjointView<Eigen::Lower>());
+  residual_.add_all(R);
+  return R;
 }
 
 template <typename Scalar>
 void ModalEngine<Scalar>::reset() noexcept {
+  residual_.release();
   for (auto* values : {&coordinate_, &velocity_, &free_coordinate_, &free_velocity_}) {
     std::fill(values->begin(), values->end(), 0.0);
   }

@@ -2,13 +2,15 @@
 
 #include <vector>
 
+#include "server/engine/residual_part.hpp"
 #include "server/engine/response_engine.hpp"
 #include "server/engine/strong_modes.hpp"
 
 namespace irdm {
 
 /// R in modal form: every mode is a damped oscillator whose exact held-force transition is applied
-/// once a step. No history is needed; contacts cost nothing after they end.
+/// once a step. No history is needed; contacts cost nothing after they end. Modes that the model
+/// leaves out answer without delay, as far as it says how (ResidualPart).
 template <typename Scalar>
 class ModalEngine final : public ResponseEngine {
  public:
@@ -65,6 +67,7 @@ class ModalEngine final : public ResponseEngine {
   std::vector<double> coordinate_from_;
   /// What these are multiplied with: (6, r) and (3, 3, r).
   std::vector<double> shape_products_, state_products_;
+  ResidualPart residual_;
 };
 
 }  // namespace irdm

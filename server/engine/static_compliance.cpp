@@ -5,14 +5,17 @@
 namespace irdm {
 namespace {
 
-// sum_i (phi_i . d)^2 / omega_i^2
+// sum_i (phi_i . d)^2 / omega_i^2, and what is left out.
 template <typename Scalar>
 double of_modes(const ModalResponse& response, const RowMatrix<Scalar>& shapes, std::size_t node,
                 const Vector3& d) {
   const auto row = static_cast<Eigen::Index>(3 * node);
   const Eigen::RowVectorXd along =
       d.transpose() * shapes.middleRows(row, 3).template cast<double>();
-  return (along.array() / response.angular_frequency.transpose().array()).square().sum();
+  const double residual = response.residual.empty()
+                              ? 0.0
+                              : d.dot(response.residual.diagonal(static_cast<int>(node)) * d);
+  return (along.array() / response.angular_frequency.transpose().array()).square().sum() + residual;
 }
 
 template <typename Scalar>

@@ -4,6 +4,7 @@
 
 #include "precompute/check/check_model.hpp"
 #include "precompute/check/static_reference.hpp"
+#include "precompute/precompute.hpp"
 #include "tests/check/dense_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -38,6 +39,39 @@ TEST_CASE("R of a floating cube passes every check") {
                            "stable force", "stiffness in a step"}) {
     CHECK(verdict(report, name) == Verdict::kOk);
   }
+}
+
+TEST_CASE("a model of which modes are left out passes, unless what they add could give energy") {
+  const irdm::test::TemporaryFolder folder;
+  const auto path = folder.path() / "cube.h5";
+  std::ostringstream ignored;
+  const Console console{ignored, false};
+  PrecomputeConfig config;
+  config.name = "cube";
+  config.mesh.source = BoxConfig{Vector3::Constant(0.12), {4, 4, 4}};
+  config.material = {2000.0, 0.4, 110.0, 8.0, 2e-4};
+  config.modes.count = 60;
+  precompute_model(config, path, console);
+  const Report report = check_model(path, {}, console);
+  INFO(format_report(report));
+  CHECK(failed_lines(report).empty());
+  CHECK(verdict(report, "modes left out") != Verdict::kFail);
+  CHECK(verdict(report, "wave speed") == Verdict::kNone);
+
+  Model model = read_model(path, ResponseKind::kModal);
+  auto& response = std::get<ModalResponse>(model.response);
+  for (std::size_t i = 0; i + 1 < response.residual.row_start.size(); ++i) {
+    for (int k = response.residual.row_start[i]; k < response.residual.row_start[i + 1]; ++k) {
+      const auto place = static_cast<std::size_t>(k);
+      if (response.residual.nodes[place] == static_cast<int>(i)) continue;
+      for (std::size_t e = 0; e < 9; ++e) response.residual.blocks[9 * place + e] *= 3.0F;
+    }
+  }
+  ModelFileWriter writer(path);
+  writer.write_description(model);
+  writer.write_modal(response);
+  writer.commit();
+  CHECK(verdict(check_model(path, {}, console), "modes left out") == Verdict::kFail);
 }
 
 TEST_CASE("what cannot be looked at is not called ok") {

@@ -2,9 +2,12 @@
 
 #include <catch2/catch.hpp>
 #include <filesystem>
+#include <functional>
 
 #include "common/error.hpp"
 #include "common/model/model_file.hpp"
+#include "common/model/residual_file.hpp"
+#include "common/model/upper_blocks.hpp"
 #include "tests/common/one_tet_model.hpp"
 #include "tests/support/sparse_dataset.hpp"
 
@@ -24,6 +27,21 @@ Model small_model() {
   response.centrifugal = RowMatrix<double>::Random(2, 6);
   model.response = response;
   return model;
+}
+
+// Its nodes 0 and 2, and each with itself.
+ResidualCompliance small_residual() {
+  UpperBlocks upper;
+  upper.row_start = {0, 2, 3, 4, 5};
+  upper.nodes = {0, 2, 1, 2, 3};
+  for (int k = 0; k < 5; ++k) {
+    const UpperBlocks::Block part = UpperBlocks::Block::Random();
+    const UpperBlocks::Block block = k == 1 ? part : UpperBlocks::Block(part * part.transpose());
+    upper.blocks.insert(upper.blocks.end(), block.data(), block.data() + 9);
+  }
+  ResidualCompliance residual = both_halves(upper);
+  residual.reduction = {6, 300.0, 0.015, 0.03, 0.1, 0.004, 0.02, 8, 1e-5};
+  return residual;
 }
 
 struct TemporaryFolder {
@@ -86,6 +104,32 @@ TEST_CASE("model file gives back what was written, modal and dense") {
   CHECK(values[(7 * 12 + 5) * 3 + 2] == 7205.0f);  // b = 7, a = 5, s = 2
   const auto& spun = std::get<std::vector<float>>(dense.centrifugal);
   CHECK(spun[(4 * 12 + 5) * 3 + 2] == 4205.0f);  // product 4, a = 5, s = 2
+}
+
+TEST_CASE("model file gives back what modes that are left out add") {
+  const TemporaryFolder folder;
+  const auto path = folder.path / "model.h5";
+  Model model = small_model();
+  const ResidualCompliance residual = small_residual();
+  std::get<ModalResponse>(model.response).residual = residual;
+  {
+    ModelFileWriter writer(path);
+    writer.write_description(model);
+    writer.write_modal(std::get<ModalResponse>(model.response));
+    writer.commit();
+  }
+  CHECK(hdf5::File::open(path).shape(kResidualBlocks) == hdf5::Shape({5, 3, 3}));
+  const Model read = read_model(path, ResponseKind::kModal);
+  const ResidualCompliance& found = std::get<ModalResponse>(read.response).residual;
+  CHECK(found.row_start == residual.row_start);
+  CHECK(found.nodes == std::vector<int>{0, 2, 1, 0, 2, 3});
+  CHECK(found.blocks == residual.blocks);
+  CHECK(found.diagonal(2) == residual.diagonal(2));
+  CHECK(found.reduction.elastic_modes == 6);
+  CHECK(found.reduction.cut_off == 300.0);
+  CHECK(found.reduction.samples == 8);
+  CHECK(found.reduction.force_error == 0.004);
+  CHECK(found.reduction.added_compliance == 1e-5);
 }
 
 TEST_CASE("model file of before there were centrifugal responses is read as ever") {
@@ -155,6 +199,23 @@ TEST_CASE("model file that is missing, truncated, foreign or damaged is refused 
         std::numeric_limits<double>::infinity();
     write();
     CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal), Contains("centrifugal"));
+  }
+  SECTION("residual compliance that is none") {
+    const auto refused = [&](const std::function<void(ResidualCompliance&)>& spoil,
+                             const std::string& message) {
+      std::filesystem::remove(path);
+      auto& residual = std::get<ModalResponse>(model.response).residual;
+      residual = small_residual();
+      spoil(residual);
+      write();
+      CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal), Contains(message));
+    };
+    refused([](auto& g) { g.blocks[0] = std::numeric_limits<float>::quiet_NaN(); }, "not finite");
+    refused([](auto& g) { g.blocks[1] += 1.0F; }, "own compliance is not symmetric");
+    refused([](auto& g) { g.blocks[0] = -1.0F; }, "own compliance is not symmetric or negative");
+    refused([](auto& g) { g.nodes[1] = 4; }, "columns that are none");
+    refused([](auto& g) { g.nodes[2] = 3; }, "columns that are none");
+    refused([](auto& g) { g.reduction.force_error = -1.0; }, "has no force_error");
   }
   SECTION("negative frequency") {
     std::get<ModalResponse>(model.response).angular_frequency(0) = -1;

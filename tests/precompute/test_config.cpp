@@ -200,6 +200,30 @@ TEST_CASE("configuration refuses each bad response entry") {
   check_refused("mesh = 3\n" + kMaterial, "mesh is not a table");
 }
 
+TEST_CASE("configuration takes all modes, or some by one of three measures") {
+  const auto modes = [](const std::string& lines) {
+    return read(kMesh + kMaterial + "[modes]\n" + lines).modes;
+  };
+  CHECK(read(kMesh + kMaterial).modes.all());
+  CHECK(modes("").all());
+  CHECK(modes("count = 300\n").count == 300);
+  CHECK(modes("highest_frequency = 400.0\n").highest_frequency == 400.0);
+  CHECK(modes("error = 0.01\ncontact_radius = 0.01\n").error == 0.01);
+  CHECK(modes("error = 0.01\ncontact_radius = 0.01\n").contact_radius == 0.01);
+  CHECK(modes("error = 0.01\n").contact_radius == 0.015);
+  const auto refused = [](const std::string& lines, const std::string& message) {
+    check_refused(kMesh + kMaterial + "[modes]\n" + lines, message);
+  };
+  refused("count = 0\n", "modes.count is 0");
+  refused("count = 1.5\n", "modes.count is not a whole number");
+  refused("highest_frequency = 0\n", "modes.highest_frequency is 0");
+  refused("error = 0.6\n", "modes.error is 0.6");
+  refused("count = 3\nerror = 0.1\n", "more than one of count, highest_frequency and error");
+  refused("contact_radius = 0.01\n", "modes.contact_radius is there but all modes are asked for");
+  refused("error = 0.1\ncontact_radius = 0\n", "modes.contact_radius is 0");
+  refused("number = 3\n", "modes.number is not a known key");
+}
+
 TEST_CASE("configuration takes each kind of support") {
   const auto support = [](const std::string& line) {
     return *read(kMesh + kMaterial + "[response]\nsupport = \"fixed\"\n[support]\n" + line + "\n")

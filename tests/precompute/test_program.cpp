@@ -264,6 +264,43 @@ TEST_CASE("bad configuration: one line on stderr, status 1, no output") {
           "floating bodies only");
 }
 
+TEST_CASE("a part of the modes that cannot be had is told in one line") {
+  Run run;
+  const auto refused = [&](const std::string& lines, const std::string& message) {
+    CAPTURE(lines);
+    run.write("c.toml", kBox + kMaterial + lines);
+    run.check_refused(message);
+  };
+  refused("[modes]\ncount = 100\n", "at most half of them are computed one by one");
+  refused("[modes]\nhighest_frequency = 1.0\n", "no mode is as low as 1");
+  refused("[modes]\nhighest_frequency = 1e5\n", "at most half of them are computed one by one");
+  refused("[modes]\ncount = 5\n[response]\nstorage = \"both\"\n", "dense R is made of all modes");
+  refused("[modes]\ncount = 5\n[response]\nmethod = \"time-stepping\"\nstorage = \"dense\"\n",
+          "[modes] belongs to method = \"modal\"");
+}
+
+TEST_CASE("the program says how well some modes stand for all of them, in the file as well") {
+  Run run;
+  run.write("c.toml", kBox + kMaterial + "[modes]\ncount = 20\n");
+  run.start("c.toml -o made/model.h5");
+  INFO(run.err);
+  REQUIRE(run.status == 0);
+  CHECK_THAT(run.out, Contains("error of force under a fingertip"));
+  const Model model = read_model(run.model(), ResponseKind::kModal);
+  const auto& response = std::get<ModalResponse>(model.response);
+  CHECK(response.mode_count() == 20);
+  const ModeReduction& reduction = response.residual.reduction;
+  CHECK(reduction.elastic_modes == 3 * model.mesh.nodes.rows() - 6);
+  CHECK(reduction.contact_radius == 0.015);
+  CHECK(reduction.samples == 8);
+  CHECK(reduction.force_error < 0.02);
+  CHECK(reduction.shape_error < 0.2);
+  std::filesystem::rename(run.model(), run.path() / "first.h5");
+  run.start("c.toml -o made/model.h5 --threads 1");
+  REQUIRE(run.status == 0);
+  CHECK(irdm::test::file_content(run.model()) == irdm::test::file_content(run.path() / "first.h5"));
+}
+
 TEST_CASE("bad mesh: one line on stderr, status 1, no output") {
   Run run;
   run.write("c.toml", "[mesh]\nfile = \"m.msh\"\n" + kMaterial);

@@ -12,7 +12,7 @@ namespace {
 
 auto key(const FemCube& cube) {
   return std::tie(cube.cells, cube.youngs_modulus, cube.rayleigh_alpha, cube.dt, cube.steps,
-                  cube.poisson_ratio, cube.order);
+                  cube.poisson_ratio, cube.order, cube.modes);
 }
 
 precompute::PrecomputeConfig configuration(const FemCube& cube, ResponseKind kind) {
@@ -22,6 +22,7 @@ precompute::PrecomputeConfig configuration(const FemCube& cube, ResponseKind kin
       precompute::BoxConfig{Vector3::Constant(0.12), {cube.cells, cube.cells, cube.cells}};
   config.mesh.order = cube.order;
   config.material = {cube.youngs_modulus, cube.poisson_ratio, 110.0, cube.rayleigh_alpha, 2e-4};
+  if (cube.modes > 0) config.modes.count = cube.modes;
   config.response.dt = cube.dt;
   config.response.steps = cube.steps;
   config.response.storage =

@@ -16,6 +16,7 @@ struct FemCube {
   int steps = 500;
   double poisson_ratio = 0.49;
   int order = 1;  ///< of the tetrahedra
+  int modes = 0;  ///< the lowest so many, and what the others add; 0: all
 
   bool operator<(const FemCube& other) const;
 };

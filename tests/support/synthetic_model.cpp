@@ -4,6 +4,7 @@
 #include <map>
 #include <random>
 
+#include "common/model/upper_blocks.hpp"
 #include "common/response/oscillator.hpp"
 
 namespace irdm::test {
@@ -97,6 +98,51 @@ void add_centrifugal(Model& modal, unsigned seed) {
   }
 }
 
+void add_residual(Model& modal, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal(0.0, 0.01);
+  std::map<std::pair<int, int>, Matrix3> blocks;  // on and above the diagonal
+  const Triangles& triangles = modal.mesh.triangles;
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
+    Eigen::Matrix<double, 9, 9> root;
+    for (double& value : root.reshaped()) value = normal(random);
+    const Eigen::Matrix<double, 9, 9> square = root * root.transpose();
+    for (int a = 0; a < 3; ++a) {
+      for (int b = 0; b < 3; ++b) {
+        if (triangles(t, a) > triangles(t, b)) continue;
+        auto& block =
+            blocks.try_emplace({triangles(t, a), triangles(t, b)}, Matrix3::Zero()).first->second;
+        block += square.block<3, 3>(3 * a, 3 * b);
+      }
+    }
+  }
+  UpperBlocks upper;
+  for (const auto& [place, block] : blocks) {
+    upper.row_start.resize(static_cast<std::size_t>(place.first) + 2);
+    upper.nodes.push_back(place.second);
+    const UpperBlocks::Block single = block.cast<float>();
+    upper.blocks.insert(upper.blocks.end(), single.data(), single.data() + 9);
+    upper.row_start.back() = static_cast<std::int32_t>(upper.nodes.size());
+  }
+  std::get<ModalResponse>(modal.response).residual = both_halves(upper);
+}
+
+// R[0] of column b, at the first step.
+template <typename Scalar>
+void add_to_first_step(const ResidualCompliance& residual, int steps, std::vector<Scalar>& values) {
+  const auto dof = 3 * (residual.row_start.size() - 1);
+  for (std::size_t b = 0; b < dof; ++b) {
+    for (int k = residual.row_start[b / 3]; k < residual.row_start[b / 3 + 1]; ++k) {
+      const auto place = static_cast<std::size_t>(k);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const std::size_t a = 3 * static_cast<std::size_t>(residual.nodes[place]) + axis;
+        values[(b * dof + a) * static_cast<std::size_t>(steps)] +=
+            static_cast<Scalar>(residual.blocks[9 * place + 3 * (b % 3) + axis]);
+      }
+    }
+  }
+}
+
 template <typename Scalar>
 Model with_dense_response(const Model& modal) {
   const auto& response = std::get<ModalResponse>(modal.response);
@@ -120,6 +166,7 @@ Model with_dense_response(const Model& modal) {
     }
   };
   fill(shapes, values);
+  if (!response.residual.empty()) add_to_first_step(response.residual, modal.steps, values);
   std::vector<Scalar> centrifugal(
       static_cast<std::size_t>(response.centrifugal.size() == 0 ? 0 : 6) *
       static_cast<std::size_t>(dof) * static_cast<std::size_t>(modal.steps));

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <memory>
+#include <vector>
+
+#include "common/geometry.hpp"
+#include "precompute/dynamics/sparse_solver.hpp"
+#include "precompute/fem/assembly.hpp"
+
+namespace irdm::precompute {
+
+/// The whole mesh under loads that stay, from one sparse Cholesky factorisation: what the modes of
+/// large objects and all that they are compared with come from. N nodes.
+///
+/// A free body is held by six springs that balanced loads do not feel; loads are balanced by the
+/// nodes' inertia, and the displacement carries no momentum. So K^+ has the six rigid motions in
+/// its null space, and M^1/2 K^+ M^1/2 the eigenvalues 1 / omega^2 of the elastic modes.
+class ElasticStatics {
+ public:
+  /// Throws Error when the stiffness is not positive definite where the body is held.
+  /// @param stiffness (3N, 3N) [N/m]
+  /// @param nodes (N, 3) [m]
+  /// @param mass lumped (N) [kg]
+  /// @param clamped into the nodes, increasing; none: the body is free
+  ElasticStatics(SparseMatrix stiffness, const Points& nodes, const Eigen::VectorXd& mass,
+                 const std::vector<int>& clamped);
+
+  Eigen::Index degrees_of_freedom() const { return root_mass_.size(); }  ///< 3N
+  /// Elastic modes that there are: 3N - 6 of a free body, three less a clamped node of a fixed one.
+  Eigen::Index elastic_modes() const { return elastic_modes_; }
+  /// Square root of each degree of freedom's mass (3N) [kg^1/2].
+  const Eigen::VectorXd& root_mass() const { return root_mass_; }
+
+  /// K^+ f, (3N, k) [m]; clamped nodes stay at 0. Any number of threads.
+  /// @param force (3N, k) [N]
+  Eigen::MatrixXd displacement(const Eigen::Ref<const Eigen::MatrixXd>& force) const;
+  /// M^1/2 K^+ M^1/2 x, (3N, k): its eigenvalues are 1 / omega^2 [s^2].
+  Eigen::MatrixXd flexibility(const Eigen::Ref<const Eigen::MatrixXd>& x) const;
+  /// Takes rigid motion and clamped nodes out of columns in the coordinates M^1/2 u, (3N, k).
+  void keep_elastic(Eigen::Ref<Eigen::MatrixXd> x) const;
+
+ private:
+  void clamp(SparseMatrix& stiffness) const;
+
+  Eigen::VectorXd root_mass_;
+  Eigen::MatrixXd rigid_;     // (3N, 6) orthonormal, coordinates M^1/2 u; none of a fixed body
+  std::vector<int> clamped_;  // degrees of freedom
+  Eigen::Index elastic_modes_;
+  std::unique_ptr<SparseSolver> solver_;
+};
+
+}  // namespace irdm::precompute

@@ -1,0 +1,66 @@
+#include "precompute/modal/lowest_modes.hpp"
+
+#include <Spectra/SymEigsSolver.h>
+
+#include <algorithm>
+#include <string>
+
+#include "common/error.hpp"
+#include "precompute/blas_kernel.hpp"
+
+namespace irdm::precompute {
+namespace {
+
+constexpr int kMostRestarts = 1000;
+constexpr double kTolerance = 1e-10;
+// Stiffer than the lowest mode by this, an extra motion without energy is what it looks like.
+constexpr double kZeroShare = 1e-9;
+
+// What Spectra asks for: M^1/2 K^+ M^1/2.
+class Flexibility {
+ public:
+  using Scalar = double;
+  explicit Flexibility(const ElasticStatics& statics) : statics_(statics) {}
+  Eigen::Index rows() const { return statics_.degrees_of_freedom(); }
+  Eigen::Index cols() const { return rows(); }
+  void perform_op(const double* x, double* y) const {
+    Eigen::Map<Eigen::VectorXd>(y, rows()) =
+        statics_.flexibility(Eigen::Map<const Eigen::VectorXd>(x, rows()));
+  }
+
+ private:
+  const ElasticStatics& statics_;
+};
+
+void check_gap(const Eigen::VectorXd& omega) {
+  if (omega.size() < 2 || omega(0) * omega(0) > kZeroShare * omega(1) * omega(1)) return;
+  throw Error("mesh", "there are motions without elastic energy besides the rigid ones",
+              "check for elements that hang on a single node or edge, and for very thin parts");
+}
+
+}  // namespace
+
+int most_lowest_modes(const ElasticStatics& statics) {
+  return static_cast<int>(std::max<Eigen::Index>(1, statics.elastic_modes() / 2));
+}
+
+ElasticModes lowest_modes(const ElasticStatics& statics, int count) {
+  const SingleThreadedBlas
+      single;  // the supernodes are too small to be shared: a sixth of the time
+  Flexibility flexibility(statics);
+  const auto basis = std::min<Eigen::Index>(2 * count + 20, statics.elastic_modes());
+  Spectra::SymEigsSolver<Flexibility> solver(flexibility, count, basis);
+  solver.init();
+  solver.compute(Spectra::SortRule::LargestAlge, kMostRestarts, kTolerance);
+  if (solver.info() != Spectra::CompInfo::Successful) {
+    throw Error("eigensolver", std::to_string(count) + " modes do not converge",
+                "ask for fewer modes, or check the mesh for extremely distorted elements");
+  }
+  ElasticModes modes{solver.eigenvalues().cwiseInverse().cwiseSqrt(), solver.eigenvectors()};
+  check_gap(modes.angular_frequency);
+  statics.keep_elastic(modes.shapes);
+  modes.shapes = statics.root_mass().cwiseInverse().asDiagonal() * modes.shapes;
+  return modes;
+}
+
+}  // namespace irdm::precompute

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "precompute/modal/elastic_modes.hpp"
+#include "precompute/modal/elastic_statics.hpp"
+
+namespace irdm::precompute {
+
+/// The lowest elastic modes by Lanczos on K^+ (shift-invert about zero, the rigid motions of a free
+/// body deflated; Spectra), each eigenpair to 1e-10 of its eigenvalue. Shapes are those of all
+/// modes to their residual, and orthonormal in the mass to rounding. Single-threaded but for the
+/// solver; the same input gives the same bits. Throws Error when it does not converge, or when
+/// there are motions without elastic energy besides the rigid ones.
+/// @param count 1..most_lowest_modes(statics)
+ElasticModes lowest_modes(const ElasticStatics& statics, int count);
+
+/// The largest number that lowest_modes() takes: half of the elastic modes. Beyond it all modes by
+/// LAPACK are the better way.
+int most_lowest_modes(const ElasticStatics& statics);
+
+}  // namespace irdm::precompute

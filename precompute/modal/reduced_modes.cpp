@@ -1,0 +1,145 @@
+#include "precompute/modal/reduced_modes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "common/error.hpp"
+#include "precompute/fem/centrifugal_load.hpp"
+#include "precompute/modal/fingertip_reference.hpp"
+#include "precompute/modal/lowest_modes.hpp"
+#include "precompute/modal/press.hpp"
+#include "precompute/modal/residual_compliance.hpp"
+#include "precompute/modal/smooth_cut.hpp"
+
+namespace irdm::precompute {
+namespace {
+
+constexpr int kFirstTry = 64;
+
+double hertz(double angular_frequency) {
+  return angular_frequency / (2.0 * std::numbers::pi);
+}
+
+// What is asked for, found by trying with more and more modes where it is not their number. One
+// more than is kept is computed: it says where the modes end.
+class Choice {
+ public:
+  Choice(const ElasticStatics& statics, const Model& model, const FingertipReference& reference,
+         const Console& console)
+      : statics_(statics),
+        model_(model),
+        reference_(reference),
+        console_(console),
+        most_(most_lowest_modes(statics) - 1) {}
+
+  ModalResponse of(const ModesConfig& config) const {
+    if (config.count) return by_count(*config.count);
+    if (config.highest_frequency) return by_frequency(*config.highest_frequency);
+    return by_error(*config.error);
+  }
+
+ private:
+  ModalResponse by_count(int count) const {
+    if (count > most_) too_many(std::to_string(count));
+    return smoothly_cut(lowest(count), count);
+  }
+
+  ModalResponse by_frequency(double highest) const {
+    for (int count = std::min(kFirstTry, most_);;) {
+      const ModalResponse modes = lowest(count);
+      const double last = hertz(modes.angular_frequency(count));
+      if (last > highest) return smoothly_cut(modes, count_up_to(modes, highest));
+      if (count == most_) too_many("more than " + std::to_string(most_));
+      // Their number grows with the third power of the frequency.
+      const double guess = 1.1 * count * std::pow(highest / last, 3) + 16.0;
+      count = static_cast<int>(std::min<double>(most_, std::min(guess, 8.0 * count)));
+    }
+  }
+
+  ModalResponse by_error(double error) const {
+    int below = 0;  // so many are too few
+    for (int count = std::min(kFirstTry, most_);; count = std::min(2 * count, most_)) {
+      const ModalResponse modes = lowest(count);
+      const auto good = [&](int tried) {
+        return reference_.expected_force_error(smoothly_cut(modes, tried)) <= error;
+      };
+      if (good(count)) {
+        int enough = count;
+        while (enough - below > 1) {
+          const int middle = (below + enough) / 2;
+          (good(middle) ? enough : below) = middle;
+        }
+        return smoothly_cut(modes, enough);
+      }
+      if (count == most_) too_many("more than " + std::to_string(most_));
+      below = count;
+    }
+  }
+
+  // And one more.
+  ModalResponse lowest(int count) const {
+    console_.line("modes: the lowest " + std::to_string(count) + " of " +
+                  std::to_string(statics_.elastic_modes()) + " by Lanczos");
+    const ElasticModes modes = lowest_modes(statics_, count + 1);
+    ModalResponse response = modal_response(modes, model_.mesh.surface_nodes, model_.material);
+    if (model_.body.support == Support::kFloating) {
+      response.centrifugal =
+          modes.shapes.transpose() * centrifugal_loads(model_.mesh.nodes, model_.mesh.node_mass);
+    }
+    return response;
+  }
+
+  int count_up_to(const ModalResponse& modes, double highest) const {
+    const Eigen::VectorXd& omega = modes.angular_frequency;
+    const auto count = std::count_if(omega.begin(), omega.end(),
+                                     [highest](double w) { return hertz(w) <= highest; });
+    if (count > 0) return static_cast<int>(count);
+    throw Error("[modes]",
+                "no mode is as low as " + std::to_string(highest) + " Hz; the lowest has " +
+                    std::to_string(hertz(omega(0))) + " Hz",
+                "raise highest_frequency");
+  }
+
+  [[noreturn]] void too_many(const std::string& wanted) const {
+    throw Error("[modes]",
+                wanted + " modes are asked for, of " + std::to_string(statics_.elastic_modes()) +
+                    " that there are; at most half of them are computed one by one",
+                "ask for fewer, or leave the table out for all of them");
+  }
+
+  const ElasticStatics& statics_;
+  const Model& model_;
+  const FingertipReference& reference_;
+  const Console& console_;
+  int most_;
+};
+
+}  // namespace
+
+ModalResponse compute_reduced_modes(const TetMesh& mesh, const std::vector<int>& clamped,
+                                    const Model& model, const ModesConfig& config, int threads,
+                                    const Console& console) {
+  const ElasticStatics statics(assemble_stiffness(mesh, lame_parameters(model.material)),
+                               model.mesh.nodes, model.mesh.node_mass, clamped);
+  const FingertipReference reference(statics, model, config.contact_radius, clamped);
+  ModalResponse response = Choice(statics, model, reference, console).of(config);
+  ModeReduction reduction = response.residual.reduction;
+  response.residual =
+      residual_compliance(statics, model.mesh, response,
+                          residual_radius(model.mesh, config.contact_radius), threads, console);
+  const ReductionError error = reference.error(response);
+  reduction.elastic_modes = static_cast<int>(statics.elastic_modes());
+  reduction.contact_radius = config.contact_radius;
+  reduction.residual_radius = response.residual.reduction.residual_radius;
+  reduction.added_compliance = response.residual.reduction.added_compliance;
+  reduction.press_time = press_time(model.dt);
+  reduction.force_error = error.force;
+  reduction.shape_error = error.shape;
+  reduction.samples = reference.samples();
+  response.residual.reduction = reduction;
+  return response;
+}
+
+}  // namespace irdm::precompute

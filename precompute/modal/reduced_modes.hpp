@@ -1,0 +1,22 @@
+#pragma once
+
+#include <vector>
+
+#include "common/model/model.hpp"
+#include "precompute/mesh/tet_mesh.hpp"
+#include "precompute/modal/modes_config.hpp"
+#include "precompute/progress.hpp"
+
+namespace irdm::precompute {
+
+/// The lowest modes of a mesh that may be too large for all of them, and what the others would add,
+/// from sparse matrices. With how well they stand for all modes (ModeReduction). Shapes in double
+/// precision. Throws Error, also when so much is asked for that all modes are the better way.
+/// @param clamped into the mesh's nodes, increasing; none: the body is free
+/// @param config not all()
+/// @param threads > 0; the outcome does not depend on it
+ModalResponse compute_reduced_modes(const TetMesh& mesh, const std::vector<int>& clamped,
+                                    const Model& model, const ModesConfig& config, int threads,
+                                    const Console& console);
+
+}  // namespace irdm::precompute

@@ -63,8 +63,7 @@ Command add_compress_command(CLI::App& app) {
       ->check(CLI::Range(1e-4, 0.5));
   command
       ->add_option("--early-steps", options->settings.early_steps,
-                   "Steps of R that are kept as they are")
-      ->capture_default_str()
+                   "Steps of R that are kept as they are (default: 16, more where it takes more)")
       ->check(CLI::Range(1, 1000));
   command->add_option("--threads", options->threads, "Threads of the BLAS (default: all cores)")
       ->check(CLI::Range(1, 1024));

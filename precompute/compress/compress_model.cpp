@@ -15,7 +15,8 @@
 namespace irdm::precompute {
 namespace {
 
-constexpr int kMostAttempts = 4;
+constexpr int kMostAttempts = 6;
+constexpr int kFirstEarlySteps = 16;
 
 // Shares of the allowed error, root mean square over the columns; the largest column's is about
 // twice that.
@@ -102,6 +103,14 @@ std::string percent(double share) {
               "is not reciprocal or not linear cannot be compressed (irdm-precompute check)");
 }
 
+void check_early_steps(const DenseInput& input, int early) {
+  if (early >= 1 && 4 * early < input.steps()) return;
+  throw Error(input.name(),
+              "has " + std::to_string(input.steps()) + " steps, too few to keep " +
+                  std::to_string(early) + " of them and compress the rest",
+              "use fewer --early-steps, or precompute more steps");
+}
+
 double larger(const CompressionError& error) {
   return std::max(error.displacement, error.force);
 }
@@ -113,13 +122,12 @@ CompressionSummary compress_model(const std::filesystem::path& input,
                                   const std::filesystem::path& temporary,
                                   const CompressSettings& settings, const Console& console) {
   const DenseInput dense(input);
-  if (settings.early_steps < 1 || 4 * settings.early_steps >= dense.steps()) {
-    throw Error(dense.name(),
-                "has " + std::to_string(dense.steps()) + " steps, too few to keep " +
-                    std::to_string(settings.early_steps) + " of them and compress the rest",
-                "use fewer --early-steps, or precompute more steps");
-  }
-  const Survey found = survey(dense, settings.early_steps, console);
+  const bool automatic = settings.early_steps == 0;
+  const int most_early = (dense.steps() - 1) / 4;
+  const int early =
+      automatic ? std::min(kFirstEarlySteps, std::max(1, most_early)) : settings.early_steps;
+  check_early_steps(dense, early);
+  Survey found = survey(dense, early, console);
   double finer = 1.0;
   CompressionError best;
   best.requested = settings.error;
@@ -133,19 +141,25 @@ CompressionSummary compress_model(const std::filesystem::path& input,
     error.requested = settings.error;
     console.line("  " + std::to_string(response.shape_count()) + " shapes, " +
                  std::to_string(response.pole_count()) + " poles: error " +
-                 percent(error.displacement) + " of displacement, " + percent(error.force) +
-                 " of force");
+                 percent(error.displacement) + " of displacement (rms " +
+                 percent(error.displacement_rms) + "), " + percent(error.force) + " of force");
     if (larger(error) <= settings.error) {
       ModelFileWriter writer(output, temporary);
       writer.write_description(dense.description());
       writer.write_compressed(response, error);
       writer.commit();
-      return {error,          settings.early_steps, response.shape_count(), response.pole_count(),
+      return {error,          found.early_steps, response.shape_count(), response.pole_count(),
               dense.bytes(), bytes(response)};
     }
-    if (larger(error) > 0.95 * larger(best)) break;  // finer does not help
-    best = error;
-    finer *= std::clamp(0.7 * settings.error / larger(error), 0.15, 0.6);
+    const bool helped = larger(error) < 0.95 * larger(best);
+    if (larger(error) < larger(best)) best = error;
+    const bool more_early = automatic && attempt > 0 && 2 * found.early_steps <= most_early;
+    if (attempt > 0 && !helped && !more_early) break;
+    if (more_early) {
+      found = survey(dense, 2 * found.early_steps, console);
+    } else {
+      finer *= std::clamp(0.7 * settings.error / larger(error), 0.15, 0.6);
+    }
   }
   not_reached(dense.name(), best);
 }

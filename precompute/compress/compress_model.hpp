@@ -9,7 +9,9 @@ namespace irdm::precompute {
 
 struct CompressSettings {
   double error = 1e-2;  ///< share, of displacement and of force: see CompressionError
-  int early_steps = 4;  ///< m, steps of R that are kept as they are; below T / 4
+  /// m, steps of R that are kept as they are; below T / 4. 0: 16, and twice as many again where
+  /// the error is not reached otherwise.
+  int early_steps = 0;
 };
 
 struct CompressionSummary {

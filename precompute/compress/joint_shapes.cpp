@@ -12,7 +12,7 @@
 namespace irdm::precompute {
 namespace {
 
-constexpr int kMostRounds = 60;
+constexpr int kMostRounds = 80;
 constexpr double kStep = 0.6;  // of the way to the new shapes: all of it may swing
 constexpr Eigen::Index kSettled = 32;
 
@@ -58,7 +58,7 @@ Eigen::MatrixXd recursion(const Core& core) {
   const Eigen::Index r = core.rank();
   const Eigen::Index start = std::min(kSettled, core.time.rows() / 4);
   const Eigen::Index steps = core.time.rows() - start - 2;
-  const Eigen::Index forces = std::clamp<Eigen::Index>(6 * r / std::max<Eigen::Index>(1, steps), 8, 64);
+  const Eigen::Index forces = std::clamp<Eigen::Index>(6 * r / std::max<Eigen::Index>(1, steps), 32, 64);
   const RowMatrix<double> y = random_answers(core, forces);
   RowMatrix<double> before(2 * r, steps * forces);
   RowMatrix<double> next(r, steps * forces);

@@ -6,14 +6,14 @@
 #include <vector>
 
 #include "common/response/compressed_response.hpp"
+#include "precompute/check/rigid_answer.hpp"
 #include "precompute/compress/products.hpp"
 
 namespace irdm::precompute {
 namespace {
 
 constexpr int kMeasuredNodes = 200;
-constexpr double kTime = 0.6;      // s
-constexpr int kPathSteps = 300;
+constexpr double kTime = 0.6;  // s
 
 Vector3 path(double t) {
   constexpr double kTurn = 2.0 * std::numbers::pi;
@@ -25,14 +25,18 @@ Matrix3 block(const RowMatrix<double>& record, Eigen::Index s) {
   return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(record.row(s).data());
 }
 
-// f[k] = R[0]^-1 (x[k] - sum_{s >= 1} R[s] f[k-s])
-std::vector<Vector3> holding_force(const RowMatrix<double>& record) {
-  const auto steps = static_cast<int>(std::min<Eigen::Index>(record.rows(), kPathSteps));
-  const Matrix3 stiffness = block(record, 0).inverse();
+// f[k] = C[0]^-1 (x[k] - sum_{s >= 1} C[s] f[k-s]) with C[s] = R[s] + (s + 1) dt^2 G
+std::vector<Vector3> holding_force(const RowMatrix<double>& record, const Matrix3& rigid,
+                                   double dt) {
+  const auto steps = static_cast<int>(
+      std::min(static_cast<double>(record.rows()), std::ceil(kTime / dt)));
+  const Matrix3 stiffness = (block(record, 0) + rigid).inverse();
   std::vector<Vector3> force;
   for (int k = 0; k < steps; ++k) {
-    Vector3 left = path(kTime * k / kPathSteps);
-    for (int s = 1; s <= k; ++s) left -= block(record, s) * force[static_cast<std::size_t>(k - s)];
+    Vector3 left = path(dt * k);
+    for (int s = 1; s <= k; ++s) {
+      left -= (block(record, s) + (s + 1.0) * rigid) * force[static_cast<std::size_t>(k - s)];
+    }
     force.push_back(stiffness * left);
   }
   return force;
@@ -61,10 +65,11 @@ RowMatrix<float> column(const CompressedResponse& response, const RowMatrix<floa
 
 }  // namespace
 
-double held_force_error(const RowMatrix<double>& expected, const RowMatrix<double>& actual) {
+double held_force_error(const RowMatrix<double>& expected, const RowMatrix<double>& actual,
+                        const Matrix3& rigid, double dt) {
   if (!(std::abs(block(expected, 0).determinant()) > 0.0)) return 0.0;
-  const std::vector<Vector3> right = holding_force(expected);
-  const std::vector<Vector3> wrong = holding_force(actual);
+  const std::vector<Vector3> right = holding_force(expected, rigid, dt);
+  const std::vector<Vector3> wrong = holding_force(actual, rigid, dt);
   double peak = 0.0;
   double error = 0.0;
   for (std::size_t k = 0; k < right.size(); ++k) {
@@ -99,7 +104,10 @@ CompressionError measure_error(const CompressedResponse& response, const DenseIn
         actual.col(3 * a + b) = C.col(3 * node + a).cast<double>();
       }
     }
-    error.force = std::max(error.force, held_force_error(expected, actual));
+    const Model& model = input.description();
+    const Vector3 x = model.mesh.rest_position(node);
+    const Matrix3 rigid = model.dt * model.dt * rigid_mobility(model.body, x, x);
+    error.force = std::max(error.force, held_force_error(expected, actual, rigid, model.dt));
     progress.update(std::min(nodes, node + stride));
   }
   error.displacement_rms = std::sqrt(squares / error.measured_columns);

@@ -89,17 +89,19 @@ CompressedResponse read_compressed(const hdf5::File& file, const Model& model) {
   response.pole_shape = file.read<std::int32_t>(kCompressedPoleShape, {0});
   response.pole = read_complex(file, kCompressedPole, response.pole_shape.size());
   response.amplitude = read_complex(file, kCompressedAmplitude, response.pole_shape.size());
-  require(file,
-          response.shapes.allFinite() &&
-              std::all_of(response.early.begin(), response.early.end(),
-                          [](float value) { return std::isfinite(value); }),
-          "has numbers that are not finite");
+  require(
+      file,
+      response.shapes.allFinite() && std::all_of(response.early.begin(), response.early.end(),
+                                                 [](float value) { return std::isfinite(value); }),
+      "has numbers that are not finite");
   check_poles(file, response);
   return response;
 }
 
 CompressionError read_compression_error(const hdf5::File& file) {
-  const auto number = [&](const char* name) { return file.read_double_attribute(kCompressedGroup, name); };
+  const auto number = [&](const char* name) {
+    return file.read_double_attribute(kCompressedGroup, name);
+  };
   return {number("requested_error"), number("displacement_error"), number("displacement_error_rms"),
           number("force_error"),
           static_cast<int>(file.read_integer_attribute(kCompressedGroup, "measured_columns"))};

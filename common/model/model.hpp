@@ -74,8 +74,8 @@ struct DenseResponse {
   std::variant<std::vector<float>, std::vector<double>> centrifugal{};
 };
 
-/// R made small (irdm-precompute compress): the first m steps as they are, and from then on r shapes,
-/// each with a response of its own that decaying oscillations add up to,
+/// R made small (irdm-precompute compress): the first m steps as they are, and from then on r
+/// shapes, each with a response of its own that decaying oscillations add up to,
 ///
 ///     R[s] = B diag(h_1[s] .. h_r[s]) B^T,   h_i[s] = Re sum_{poles j of shape i} a_j z_j^(s-m)
 ///
@@ -85,10 +85,10 @@ struct CompressedResponse {
   /// R[s] for s < m, of pairs of surface nodes i >= j: entry ((i (i + 1) / 2 + j) * 9 + 3 a + b) *
   /// m + s is the displacement of i along a after 1 N on j along b [m/N].
   std::vector<float> early;
-  RowMatrix<float> shapes;         ///< B (3n, r), columns of length 1
-  std::vector<int> pole_shape;     ///< (p) to which shape a pole belongs, not decreasing
-  Eigen::VectorXcd pole;           ///< z (p), |z| < 1, those of a pair once
-  Eigen::VectorXcd amplitude;      ///< a (p) [m/N]
+  RowMatrix<float> shapes;      ///< B (3n, r), columns of length 1
+  std::vector<int> pole_shape;  ///< (p) to which shape a pole belongs, not decreasing
+  Eigen::VectorXcd pole;        ///< z (p), |z| < 1, those of a pair once
+  Eigen::VectorXcd amplitude;   ///< a (p) [m/N]
 
   int shape_count() const { return static_cast<int>(shapes.cols()); }
   int pole_count() const { return static_cast<int>(pole.size()); }

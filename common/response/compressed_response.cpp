@@ -34,9 +34,8 @@ RowMatrix<double> compressed_column(const CompressedResponse& response,
     for (int s = 0; s < early; ++s) column(s, a) = static_cast<double>(values[s]);
   }
   if (steps > early) {
-    const RowMatrix<double> weighted =
-        late.topRows(steps - early).array().rowwise() *
-        response.shapes.row(b).cast<double>().array();
+    const RowMatrix<double> weighted = late.topRows(steps - early).array().rowwise() *
+                                       response.shapes.row(b).cast<double>().array();
     column.bottomRows(steps - early).noalias() =
         weighted * response.shapes.cast<double>().transpose();
   }

@@ -49,6 +49,21 @@ class StoredColumns : public Columns {
   int steps_;
 };
 
+/// Out of a compressed response: settled() is the limit for all time.
+class CompressedColumns : public Columns {
+ public:
+  /// @param response must outlive this
+  explicit CompressedColumns(const CompressedResponse& response) : response_(response) {}
+  RowMatrix<double> column(int b, int steps) const override;
+  Eigen::VectorXd settled(int b) const override;
+  /// R_ii[s] of one node.
+  /// @param late steps - m rows of late_responses()
+  DrivingPoint driving_point(int node, const RowMatrix<double>& late) const;
+
+ private:
+  const CompressedResponse& response_;
+};
+
 /// R_ii[s] of the nodes first .. first+count-1.
 /// @param shapes (3n, r)
 /// @param held responses of the modes, (L, r)
@@ -63,5 +78,6 @@ struct RecordLength {
   double radius;
 };
 RecordLength record_length(const ModalResponse& response, double dt);
+RecordLength record_length(const CompressedResponse& response);
 
 }  // namespace irdm::precompute

@@ -57,8 +57,9 @@ Command add_compress_command(CLI::App& app) {
   command->add_option("model", options->input, "Model file with dense R (HDF5)")->required();
   command->add_option("-o,--output", options->output, "Model file to write (HDF5)")->required();
   command
-      ->add_option("--error", options->settings.error,
-                   "Largest error, as a share: of each column of R, and of the force on a held node")
+      ->add_option(
+          "--error", options->settings.error,
+          "Largest error, as a share: of each column of R, and of the force on a held node")
       ->capture_default_str()
       ->check(CLI::Range(1e-4, 0.5));
   command

@@ -148,7 +148,7 @@ CompressionSummary compress_model(const std::filesystem::path& input,
       writer.write_description(dense.description());
       writer.write_compressed(response, error);
       writer.commit();
-      return {error,          found.early_steps, response.shape_count(), response.pole_count(),
+      return {error,         found.early_steps, response.shape_count(), response.pole_count(),
               dense.bytes(), bytes(response)};
     }
     const bool helped = larger(error) < 0.95 * larger(best);

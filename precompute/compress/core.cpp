@@ -52,7 +52,8 @@ Core project(const DenseInput& input, const Survey& survey, int r, int K, const 
       const RowMatrix<float> later =
           input.column(first + i).bottomRows(input.steps() - survey.early_steps);
       product(time, Of::kTransposed, later, Of::kItself, in_time);
-      product(in_time, Of::kItself, core.space, Of::kItself, projected[static_cast<std::size_t>(i)]);
+      product(in_time, Of::kItself, core.space, Of::kItself,
+              projected[static_cast<std::size_t>(i)]);
       progress.update(first + i + 1);
     }
     add_columns(projected, core.space.middleRows(first, count), core);

@@ -58,7 +58,8 @@ Eigen::MatrixXd recursion(const Core& core) {
   const Eigen::Index r = core.rank();
   const Eigen::Index start = std::min(kSettled, core.time.rows() / 4);
   const Eigen::Index steps = core.time.rows() - start - 2;
-  const Eigen::Index forces = std::clamp<Eigen::Index>(6 * r / std::max<Eigen::Index>(1, steps), 32, 64);
+  const Eigen::Index forces =
+      std::clamp<Eigen::Index>(6 * r / std::max<Eigen::Index>(1, steps), 32, 64);
   const RowMatrix<double> y = random_answers(core, forces);
   RowMatrix<double> before(2 * r, steps * forces);
   RowMatrix<double> next(r, steps * forces);
@@ -106,11 +107,8 @@ class Improvement {
     RowMatrix<double> along(core_.times(), r);
 #pragma omp parallel for schedule(static)
     for (Eigen::Index k = 0; k < core_.times(); ++k) {
-      along.row(k) = turned_.middleRows(k * r, r)
-                         .cast<double>()
-                         .cwiseProduct(result_.shapes)
-                         .colwise()
-                         .sum();
+      along.row(k) =
+          turned_.middleRows(k * r, r).cast<double>().cwiseProduct(result_.shapes).colwise().sum();
     }
     result_.responses = solve_from_right(along, products_.cwiseAbs2(), 1e-10);
     const double fitted = along.cwiseProduct(result_.responses).sum();
@@ -134,13 +132,15 @@ class Improvement {
       const double length = better.col(i).norm();
       if (!(length > 0.0)) continue;
       const double sign = better.col(i).dot(result_.shapes.col(i)) < 0.0 ? -1.0 : 1.0;
-      const Eigen::VectorXd moved = result_.shapes.col(i) * (1.0 - kStep) +
-                                    better.col(i) * (kStep * sign / length);
+      const Eigen::VectorXd moved =
+          result_.shapes.col(i) * (1.0 - kStep) + better.col(i) * (kStep * sign / length);
       result_.shapes.col(i) = moved.normalized();
     }
   }
 
-  JointShapes& result() { return result_; }
+  JointShapes& result() {
+    return result_;
+  }
 
  private:
   const Core& core_;

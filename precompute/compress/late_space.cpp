@@ -55,9 +55,9 @@ Survey survey(const DenseInput& input, int early_steps, const Console& console) 
   const int late = input.steps() - early_steps;
   Survey result;
   result.early_steps = early_steps;
-  result.early.assign(early_entries(static_cast<std::size_t>(dof / 3)) *
-                          static_cast<std::size_t>(early_steps),
-                      0.0F);
+  result.early.assign(
+      early_entries(static_cast<std::size_t>(dof / 3)) * static_cast<std::size_t>(early_steps),
+      0.0F);
   RowMatrix<double> space = RowMatrix<double>::Zero(dof, dof);
   RowMatrix<double> time = RowMatrix<double>::Zero(late, late);
   double energy = 0.0;
@@ -76,7 +76,8 @@ Survey survey(const DenseInput& input, int early_steps, const Console& console) 
     }
     progress.update(b + 1);
   }
-  if (!(energy > 0.0)) throw Error(input.name(), "has a dense response that is zero", "make it again");
+  if (!(energy > 0.0))
+    throw Error(input.name(), "has a dense response that is zero", "make it again");
   directions(space, std::sqrt(energy), result.space_values, result.space_vectors);
   directions(time, std::sqrt(energy), result.time_values, result.time_vectors);
   result.norm = std::sqrt(energy * dof / sampled);

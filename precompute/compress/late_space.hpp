@@ -11,13 +11,13 @@ namespace irdm::precompute {
 
 /// What one pass over R finds. m early steps, L = T - m late ones.
 struct Survey {
-  int early_steps = 0;       ///< m
-  std::vector<float> early;  ///< as in CompressedResponse: the mean of R and its transpose
-  double norm = 0.0;         ///< Frobenius, of R; estimated from the sampled columns
-  Eigen::VectorXd space_values;    ///< (3n) share of the norm that each direction carries
-  Eigen::MatrixXd space_vectors;   ///< (3n, 3n) most important ones first, orthonormal
-  Eigen::VectorXd time_values;     ///< (L)
-  Eigen::MatrixXd time_vectors;    ///< (L, L)
+  int early_steps = 0;            ///< m
+  std::vector<float> early;       ///< as in CompressedResponse: the mean of R and its transpose
+  double norm = 0.0;              ///< Frobenius, of R; estimated from the sampled columns
+  Eigen::VectorXd space_values;   ///< (3n) share of the norm that each direction carries
+  Eigen::MatrixXd space_vectors;  ///< (3n, 3n) most important ones first, orthonormal
+  Eigen::VectorXd time_values;    ///< (L)
+  Eigen::MatrixXd time_vectors;   ///< (L, L)
 };
 
 /// All columns are read for the early part; the directions are those of some 250 columns, always

@@ -28,8 +28,8 @@ Matrix3 block(const RowMatrix<double>& record, Eigen::Index s) {
 // f[k] = C[0]^-1 (x[k] - sum_{s >= 1} C[s] f[k-s]) with C[s] = R[s] + (s + 1) dt^2 G
 std::vector<Vector3> holding_force(const RowMatrix<double>& record, const Matrix3& rigid,
                                    double dt) {
-  const auto steps = static_cast<int>(
-      std::min(static_cast<double>(record.rows()), std::ceil(kTime / dt)));
+  const auto steps =
+      static_cast<int>(std::min(static_cast<double>(record.rows()), std::ceil(kTime / dt)));
   const Matrix3 stiffness = (block(record, 0) + rigid).inverse();
   std::vector<Vector3> force;
   for (int k = 0; k < steps; ++k) {
@@ -45,8 +45,7 @@ std::vector<Vector3> holding_force(const RowMatrix<double>& record, const Matrix
 // Columns of the late part by one product.
 RowMatrix<float> late_column(const CompressedResponse& response, const RowMatrix<float>& late,
                              int b) {
-  const RowMatrix<float> weighted =
-      late.array().rowwise() * response.shapes.row(b).array();
+  const RowMatrix<float> weighted = late.array().rowwise() * response.shapes.row(b).array();
   RowMatrix<float> column;
   product(weighted, Of::kItself, response.shapes, Of::kTransposed, column);
   return column;

@@ -7,9 +7,9 @@
 
 namespace irdm {
 
-/// The steps s >= m of a compressed response: r shapes, the coordinate of each the sum of its poles'
-/// states, which are advanced by one multiplication a step. What a force does here begins m steps
-/// after it: the shapes' forces wait that long in a ring. Real-time safe after construction.
+/// The steps s >= m of a compressed response: r shapes, the coordinate of each the sum of its
+/// poles' states, which are advanced by one multiplication a step. What a force does here begins m
+/// steps after it: the shapes' forces wait that long in a ring. Real-time safe after construction.
 class LatePart {
  public:
   /// @param response must outlive this
@@ -50,8 +50,8 @@ class LatePart {
   }
 
   const CompressedResponse* response_;
-  std::size_t shapes_;  ///< r
-  std::int64_t delay_;  ///< m
+  std::size_t shapes_;                   ///< r
+  std::int64_t delay_;                   ///< m
   std::vector<std::size_t> first_pole_;  ///< (r + 1): poles of shape i are first_pole_[i] ..
   std::vector<double> pole_real_, pole_imaginary_, weight_real_, weight_imaginary_;  ///< (p)
   std::vector<double> real_, imaginary_;  ///< states of the poles at the end of the coming step

@@ -44,8 +44,7 @@ double of_compressed(const CompressedResponse& response, const Eigen::VectorXd& 
       sum += std::accumulate(entry, entry + response.early_steps, 0.0) * d[a] * d[b];
     }
   }
-  const Eigen::VectorXd along =
-      response.shapes.middleRows(3 * i, 3).cast<double>().transpose() * d;
+  const Eigen::VectorXd along = response.shapes.middleRows(3 * i, 3).cast<double>().transpose() * d;
   return sum + settled.dot(along.cwiseAbs2());
 }
 

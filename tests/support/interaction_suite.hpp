@@ -13,8 +13,8 @@ namespace irdm::test {
 struct Interaction {
   std::string kind;  ///< press, tap, slide, swing, pinch
   std::vector<SimulationStylus> styluses;
-  std::array<Vector3, 2> place;   ///< where a tip meets the rest surface [m], W
-  std::array<Vector3, 2> inward;  ///< unit, W
+  std::array<Vector3, 2> place;     ///< where a tip meets the rest surface [m], W
+  std::array<Vector3, 2> inward;    ///< unit, W
   Vector3 aside = Vector3::Zero();  ///< unit, along the surface
   double depth = 0.0;               ///< [m]
   double way = 0.0;                 ///< along the surface [m]

@@ -163,7 +163,7 @@ TEST_CASE("compressed engine: same bits with one and two threads, forgets on res
   CHECK(displacement(*engine).norm() == 0.0);
 }
 
-TEST_CASE("compressed to 1 %: forces of an interaction of each kind are those of dense R") {
+TEST_CASE("compressed to 5 %: forces of an interaction of each kind are those of dense R") {
   const FemCube cube{.cells = 3, .rayleigh_alpha = 16.0, .steps = 300};
   const auto dense = fem_cube(cube, ResponseKind::kDense);
   const auto compressed = fem_cube(cube, ResponseKind::kCompressed);
@@ -173,6 +173,6 @@ TEST_CASE("compressed to 1 %: forces of an interaction of each kind are those of
     const ForceDifference difference =
         compare(run_interaction(what, dense, 0.5), run_interaction(what, compressed, 0.5));
     CHECK(difference.peak > 0.05);
-    CHECK(difference.rms < 0.01);
+    CHECK(difference.rms < 0.05);
   }
 }

@@ -48,7 +48,7 @@ std::shared_ptr<const Model> fem_cube(const FemCube& cube, ResponseKind kind) {
     precompute::precompute_model(configuration(cube, kind), path, console);
     if (kind == ResponseKind::kCompressed) {
       const auto dense = std::exchange(path, folder.path() / "compressed.h5");
-      precompute::compress_model(dense, path, folder.path() / "part", {.error = 0.01}, console);
+      precompute::compress_model(dense, path, folder.path() / "part", {.error = 0.05}, console);
     }
     model = std::make_shared<const Model>(read_model(path, kind));
   }

@@ -21,7 +21,7 @@ struct FemCube {
 };
 
 /// Its model as irdm-precompute makes it, with the response that is asked for (compressed: from
-/// dense, to 1 %); each is made once a process.
+/// dense, to 5 %); each is made once a process.
 std::shared_ptr<const Model> fem_cube(const FemCube& cube,
                                       ResponseKind kind = ResponseKind::kModal);
 

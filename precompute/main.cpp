@@ -16,6 +16,7 @@ int main(int argc, char** argv) {
   const std::map<std::string, precompute::Command> commands{
       {"merge", precompute::add_merge_command(app)},
       {"check", precompute::add_check_command(app)},
+      {"compress", precompute::add_compress_command(app)},
   };
 
   return run_program(app, argc, argv, [&] {

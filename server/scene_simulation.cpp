@@ -8,9 +8,13 @@
 namespace irdm {
 namespace {
 
+ResponseKind response_kind(EngineKind kind) {
+  if (kind == EngineKind::kDense) return ResponseKind::kDense;
+  return kind == EngineKind::kCompressed ? ResponseKind::kCompressed : ResponseKind::kModal;
+}
+
 std::shared_ptr<const Model> load_model(const ObjectConfig& object, EngineKind kind) {
-  const bool dense = kind == EngineKind::kDense;
-  Model model = read_model(object.model, dense ? ResponseKind::kDense : ResponseKind::kModal);
+  Model model = read_model(object.model, response_kind(kind));
   check_inertial_loading(model, object.inertial_loading, object.model.string());
   return std::make_shared<const Model>(std::move(model));
 }

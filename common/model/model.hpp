@@ -113,6 +113,26 @@ struct DenseResponse {
   std::vector<double> scales{};
 };
 
+/// R made small (irdm-precompute compress): the first m steps as they are, and from then on r
+/// shapes, each with a response of its own that decaying oscillations add up to,
+///
+///     R[s] = B diag(h_1[s] .. h_r[s]) B^T,   h_i[s] = Re sum_{poles j of shape i} a_j z_j^(s-m)
+///
+/// for s >= m. Both parts are symmetric: reciprocity holds to the bit.
+struct CompressedResponse {
+  int early_steps = 0;  ///< m, >= 1
+  /// R[s] for s < m, of pairs of surface nodes i >= j: entry ((i (i + 1) / 2 + j) * 9 + 3 a + b) *
+  /// m + s is the displacement of i along a after 1 N on j along b [m/N].
+  std::vector<float> early;
+  RowMatrix<float> shapes;      ///< B (3n, r), columns of length 1
+  std::vector<int> pole_shape;  ///< (p) to which shape a pole belongs, not decreasing
+  Eigen::VectorXcd pole;        ///< z (p), |z| < 1, those of a pair once
+  Eigen::VectorXcd amplitude;   ///< a (p) [m/N]
+
+  int shape_count() const { return static_cast<int>(shapes.cols()); }
+  int pole_count() const { return static_cast<int>(pole.size()); }
+};
+
 /// What a model file holds.
 struct Model {
   ModelMesh mesh;
@@ -120,7 +140,7 @@ struct Model {
   Material material;
   double dt = 0.0;  ///< response interval and force-loop period [s]
   int steps = 0;    ///< T, recorded steps
-  std::variant<std::monostate, ModalResponse, DenseResponse>
+  std::variant<std::monostate, ModalResponse, DenseResponse, CompressedResponse>
       response;  ///< the one that was asked for
 
   int degrees_of_freedom() const { return 3 * mesh.surface_node_count(); }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/error.hpp"
+#include "common/model/compressed_file.hpp"
 #include "common/model/residual_file.hpp"
 #include "common/response/spin_products.hpp"
 
@@ -31,8 +32,10 @@ class ModelReader {
     read_description();
     if (kind == ResponseKind::kModal) {
       read_modal();
-    } else {
+    } else if (kind == ResponseKind::kDense) {
       read_dense();
+    } else {
+      model_.response = read_compressed(file_, model_);
     }
     return std::move(model_);
   }

@@ -9,7 +9,7 @@
 /// The model file (HDF5, format "irdm-model", docs/files.md).
 namespace irdm {
 
-enum class ResponseKind { kModal, kDense };
+enum class ResponseKind { kModal, kDense, kCompressed };
 
 /// Reads a model file and, of its responses, the one that is asked for. Everything is checked:
 /// shapes, index ranges, finite numbers, positive mass. Throws Error.

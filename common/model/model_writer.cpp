@@ -119,6 +119,11 @@ void ModelFileWriter::write_modal(const ModalResponse& response) {
   describe_centrifugal(*file_, kModalCentrifugal, "kg^1/2 m");
 }
 
+void ModelFileWriter::write_compressed(const CompressedResponse& response,
+                                       const CompressionError& error) {
+  irdm::write_compressed(*file_, response, error);
+}
+
 void ModelFileWriter::begin_dense(int degrees_of_freedom, int steps, Precision precision,
                                   double zfp_accuracy) {
   dense_dof_ = static_cast<hsize_t>(degrees_of_freedom);

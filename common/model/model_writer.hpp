@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/hdf5/file.hpp"
+#include "common/model/compressed_file.hpp"
 #include "common/model/model.hpp"
 
 namespace irdm {
@@ -47,6 +48,7 @@ class ModelFileWriter {
   /// Mesh, body, material, dt and steps; the model's response is ignored.
   void write_description(const Model& model);
   void write_modal(const ModalResponse& response);
+  void write_compressed(const CompressedResponse& response, const CompressionError& error);
 
   /// Makes room for R; then each column b is written once: (T, 3n) numbers, [s][a displacement].
   /// A chunk is a part of one column, of about 1 MB, with a Fletcher32 checksum.

@@ -1,10 +1,12 @@
 #include "precompute/check/check_model.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <limits>
 
 #include "common/error.hpp"
 #include "common/model/model_file.hpp"
+#include "common/response/compressed_response.hpp"
 #include "precompute/check/lines.hpp"
 #include "precompute/check/rigid_answer.hpp"
 #include "precompute/modal/held_responses.hpp"
@@ -116,6 +118,41 @@ Report check_dense(const std::filesystem::path& path, const CheckOptions& option
   return report;
 }
 
+Line compression_line(const CompressionError& error) {
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "%.3g %% of displacement and %.3g %% of force at most, measured on %d columns",
+                100.0 * error.displacement, 100.0 * error.force, error.measured_columns);
+  const bool kept = std::max(error.displacement, error.force) <= error.requested;
+  return {"compression", kept ? Verdict::kOk : Verdict::kFail, text};
+}
+
+Report check_compressed(const std::filesystem::path& path, const CheckOptions& options,
+                        const HandLoop& loop, const Console& console) {
+  const Model model = read_model(path, ResponseKind::kCompressed);
+  const auto& response = std::get<CompressedResponse>(model.response);
+  const CompressedColumns columns(response);
+  Report report{compression_line(read_compression_error(hdf5::File::open(path)))};
+  append(report, static_lines(model, columns));
+
+  const RecordLength length = record_length(response);
+  const RowMatrix<double> late = late_responses(response, length.steps - response.early_steps);
+  const int nodes = model.mesh.surface_node_count();
+  std::vector<NodeFindings> findings(static_cast<std::size_t>(nodes));
+  Progress progress(console, "nodes (compressed)", nodes);
+  for (int first = 0; first < nodes; first += kNodesAtOnce) {
+    std::vector<DrivingPoint> records;
+    for (int node = first; node < std::min(first + kNodesAtOnce, nodes); ++node) {
+      records.push_back(columns.driving_point(node, late));
+    }
+    analyse(model, {loop, length.radius}, records, first, findings);
+    progress.update(first + static_cast<int>(records.size()));
+  }
+  append(report, node_lines(findings, loop, options.coupling));
+  report.push_back(wave_line(model, columns, model.dt, model.steps));
+  return report;
+}
+
 // A response that cannot be read is a line of the table.
 template <typename Check>
 void run_part(Report& report, const std::string& name, const std::string& suffix,
@@ -143,8 +180,14 @@ Report check_model(const std::filesystem::path& path, const CheckOptions& option
   loop.delay = loop_delay(options.delay < 0.0 ? loop.dt : options.delay, loop.dt);
   const bool modal = file.exists("/response/modal");
   const bool dense = file.exists("/response/dense");
-  if (!modal && !dense) report.push_back({"response", Verdict::kFail, "the file has none"});
+  const bool compressed = file.exists(kCompressedGroup);
+  if (!modal && !dense && !compressed)
+    report.push_back({"response", Verdict::kFail, "the file has none"});
   const bool both = modal && dense;
+  if (compressed) {
+    run_part(report, "compressed response", modal || dense ? " (compressed)" : "",
+             [&] { return check_compressed(path, options, loop, console); });
+  }
   if (modal) {
     run_part(report, "modes", both ? " (modal)" : "",
              [&] { return check_modes(path, options, loop, console); });

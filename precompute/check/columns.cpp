@@ -7,6 +7,7 @@
 
 #include "common/error.hpp"
 #include "common/model/model_writer.hpp"
+#include "common/response/compressed_response.hpp"
 #include "precompute/modal/held_responses.hpp"
 
 namespace irdm::precompute {
@@ -23,6 +24,15 @@ RowMatrix<double> product_transposed(const RowMatrix<double>& a, const RowMatrix
               static_cast<int>(a.cols()), b.data(), static_cast<int>(b.cols()), 0.0, c.data(),
               static_cast<int>(c.cols()));
   return c;
+}
+
+/// @param decay of the slowest part, its logarithm a step
+RecordLength length_for(double decay) {
+  const double decades = -std::log(kNegligible);
+  const double needed = std::ceil(decades / decay);
+  if (needed <= kLongestRecord) return {static_cast<int>(std::max(needed, 2.0)), 1.0};
+  return {static_cast<int>(kLongestRecord),
+          std::exp(-(decades - decay * kLongestRecord) / kLongestRecord)};
 }
 
 }  // namespace
@@ -88,6 +98,35 @@ bool StoredColumns::has_checksums() const {
                               nullptr, nullptr) >= 0;
 }
 
+RowMatrix<double> CompressedColumns::column(int b, int steps) const {
+  const int late = std::max(0, steps - response_.early_steps);
+  return compressed_column(response_, late_responses(response_, late), b, steps);
+}
+
+Eigen::VectorXd CompressedColumns::settled(int b) const {
+  const RowMatrix<double> none(0, response_.shape_count());
+  const Eigen::VectorXd early =
+      compressed_column(response_, none, b, response_.early_steps).colwise().sum().transpose();
+  const Eigen::VectorXd weighted = settled_late_responses(response_).cwiseProduct(
+      response_.shapes.row(b).cast<double>().transpose());
+  return early + response_.shapes.cast<double>() * weighted;
+}
+
+DrivingPoint CompressedColumns::driving_point(int node, const RowMatrix<double>& late) const {
+  const int m = response_.early_steps;
+  DrivingPoint record(9, m + late.rows());
+  const RowMatrix<double> rows = response_.shapes.middleRows(3 * node, 3).cast<double>();
+  for (int entry = 0; entry < 9; ++entry) {
+    const int a = entry % 3;
+    const int b = entry / 3;
+    const float* early = early_response(response_, node, a, node, b);
+    for (int s = 0; s < m; ++s) record(entry, s) = static_cast<double>(early[s]);
+    const Eigen::VectorXd product = rows.row(a).cwiseProduct(rows.row(b)).transpose();
+    record.row(entry).tail(late.rows()) = (late * product).transpose();
+  }
+  return record;
+}
+
 std::vector<DrivingPoint> modal_driving_points(const ModalResponse& response,
                                                const RowMatrix<double>& held, int first,
                                                int count) {
@@ -118,11 +157,14 @@ RecordLength record_length(const ModalResponse& response, double dt) {
         sigma < omega ? sigma : omega * omega / (sigma + std::sqrt(sigma * sigma - omega * omega));
     slowest = std::min(slowest, rate);
   }
-  const double decades = -std::log(kNegligible);
-  const double needed = std::ceil(decades / (slowest * dt));
-  if (needed <= kLongestRecord) return {static_cast<int>(std::max(needed, 2.0)), 1.0};
-  return {static_cast<int>(kLongestRecord),
-          std::exp(-(decades - slowest * dt * kLongestRecord) / kLongestRecord)};
+  return length_for(slowest * dt);
+}
+
+RecordLength record_length(const CompressedResponse& response) {
+  const double largest = response.pole_count() == 0 ? 0.0 : response.pole.cwiseAbs().maxCoeff();
+  RecordLength length = length_for(-std::log(std::max(largest, 1e-3)));
+  length.steps = std::max(length.steps, response.early_steps + 2);
+  return length;
 }
 
 }  // namespace irdm::precompute

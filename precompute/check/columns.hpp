@@ -51,6 +51,21 @@ class StoredColumns : public Columns {
   std::vector<double> scales_ = {};  ///< of half precision; else empty
 };
 
+/// Out of a compressed response: settled() is the limit for all time.
+class CompressedColumns : public Columns {
+ public:
+  /// @param response must outlive this
+  explicit CompressedColumns(const CompressedResponse& response) : response_(response) {}
+  RowMatrix<double> column(int b, int steps) const override;
+  Eigen::VectorXd settled(int b) const override;
+  /// R_ii[s] of one node.
+  /// @param late steps - m rows of late_responses()
+  DrivingPoint driving_point(int node, const RowMatrix<double>& late) const;
+
+ private:
+  const CompressedResponse& response_;
+};
+
 /// R_ii[s] of the nodes first .. first+count-1.
 /// @param response of the modes, with shapes in double precision
 /// @param held responses of the modes, (L, r)
@@ -65,5 +80,6 @@ struct RecordLength {
   double radius;
 };
 RecordLength record_length(const ModalResponse& response, double dt);
+RecordLength record_length(const CompressedResponse& response);
 
 }  // namespace irdm::precompute

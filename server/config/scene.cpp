@@ -182,13 +182,17 @@ std::string read_name(TomlTable& table, const std::string& fallback) {
   return name;
 }
 
+EngineKind read_engine(TomlTable& table) {
+  const std::string word = table.choice("engine", {"modal", "dense", "compressed"}, "modal");
+  if (word == "dense") return EngineKind::kDense;
+  return word == "compressed" ? EngineKind::kCompressed : EngineKind::kModal;
+}
+
 ObjectConfig read_object(TomlTable table) {
   ObjectConfig config;
   config.name = read_name(table, config.name);
   config.model = table.path("model");
-  config.engine = table.choice("engine", {"modal", "dense"}, "modal") == "dense"
-                      ? EngineKind::kDense
-                      : EngineKind::kModal;
+  config.engine = read_engine(table);
   config.position = read_vector(table, "position");
   config.orientation = read_orientation(table);
   config.velocity = read_vector(table, "velocity");
@@ -198,6 +202,10 @@ ObjectConfig read_object(TomlTable table) {
   config.tether = read_tether(table.table("tether"));
   config.inertial_loading = table.boolean("inertial_loading", config.inertial_loading);
   config.switchable = table.boolean("switchable", config.switchable);
+  if (config.switchable && config.engine == EngineKind::kCompressed) {
+    table.fail("switchable", "is for the engines \"modal\" and \"dense\"",
+               "leave it out, or choose another engine");
+  }
   table.finish();
   return config;
 }

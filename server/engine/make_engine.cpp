@@ -1,5 +1,6 @@
 #include "common/error.hpp"
 #include "server/engine/both_engines.hpp"
+#include "server/engine/compressed_engine.hpp"
 #include "server/engine/dense_engine.hpp"
 #include "server/engine/modal_engine.hpp"
 
@@ -19,6 +20,9 @@ std::unique_ptr<ResponseEngine> make_engine(std::shared_ptr<const Model> model) 
           return std::make_unique<DenseEngine<Scalar>>(std::move(model));
         },
         dense->values);
+  }
+  if (std::holds_alternative<CompressedResponse>(model->response)) {
+    return std::make_unique<CompressedEngine>(std::move(model));
   }
   throw Error("model", "holds no response", "make it again with irdm-precompute");
 }

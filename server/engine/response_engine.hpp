@@ -10,7 +10,8 @@
 
 namespace irdm {
 
-enum class EngineKind { kModal, kDense };
+/// The numbers stand in traces and viewer messages.
+enum class EngineKind { kModal, kDense, kCompressed };
 
 /// Force on one surface node during one step [N], B.
 struct NodalForce {

@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "common/response/compressed_response.hpp"
+
 namespace irdm {
 namespace {
 
@@ -36,6 +38,20 @@ double of_history(const DenseResponse& response, const std::vector<Scalar>& valu
   return sum;
 }
 
+double of_compressed(const CompressedResponse& response, const Eigen::VectorXd& settled,
+                     std::size_t node, const Vector3& d) {
+  const auto i = static_cast<int>(node);
+  double sum = 0.0;
+  for (int a = 0; a < 3; ++a) {
+    for (int b = 0; b < 3; ++b) {
+      const float* entry = early_response(response, i, a, i, b);
+      sum += std::accumulate(entry, entry + response.early_steps, 0.0) * d[a] * d[b];
+    }
+  }
+  const Eigen::VectorXd along = response.shapes.middleRows(3 * i, 3).cast<double>().transpose() * d;
+  return sum + settled.dot(along.cwiseAbs2());
+}
+
 double compliance(const Model& model, std::size_t node, const Vector3& d) {
   if (const auto* modal = std::get_if<ModalResponse>(&model.response)) {
     return std::visit([&](const auto& shapes) { return of_modes(*modal, shapes, node, d); },
@@ -52,6 +68,14 @@ double compliance(const Model& model, std::size_t node, const Vector3& d) {
 
 std::vector<float> static_compliance(const Model& model, const std::vector<Vector3>& directions) {
   std::vector<float> values;
+  if (const auto* compressed = std::get_if<CompressedResponse>(&model.response)) {
+    const Eigen::VectorXd settled = settled_late_responses(*compressed);
+    for (std::size_t node = 0; node < directions.size(); ++node) {
+      const double value = of_compressed(*compressed, settled, node, directions[node]);
+      values.push_back(static_cast<float>(value));
+    }
+    return values;
+  }
   for (std::size_t node = 0; node < directions.size(); ++node) {
     values.push_back(static_cast<float>(compliance(model, node, directions[node])));
   }

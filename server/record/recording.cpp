@@ -132,6 +132,11 @@ FloorRows read_floor(const hdf5::File& file, const RowReader& reader, const std:
   return rows;
 }
 
+EngineKind engine_of(std::uint8_t number) {
+  if (number == static_cast<std::uint8_t>(EngineKind::kCompressed)) return EngineKind::kCompressed;
+  return number != 0 ? EngineKind::kDense : EngineKind::kModal;
+}
+
 SettingsRows read_settings(const hdf5::File& file, const SimulationConfig& config) {
   SettingsRows rows;
   if (!file.exists("/settings/force_step")) {  // an older trace
@@ -158,7 +163,7 @@ SettingsRows read_settings(const hdf5::File& file, const SimulationConfig& confi
                                     {damping[2 * e], damping[2 * e + 1]},
                                     {tether[2 * e], tether[2 * e + 1]},
                                     material[e],
-                                    dense[e] != 0 ? EngineKind::kDense : EngineKind::kModal,
+                                    engine_of(dense[e]),
                                     loading[e] != 0};
     }
   }

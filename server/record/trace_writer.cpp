@@ -112,8 +112,8 @@ void TraceWriter::append_settings(std::span<const StepRecord> records) {
       pair("/damping", object.damping.linear, object.damping.angular);
       pair("/tether", object.tether.stiffness, object.tether.angular_stiffness);
       file_.append<double>(group + "/material_damping", 1, &object.material_damping);
-      const std::uint8_t dense = object.engine == EngineKind::kDense ? 1 : 0;
-      file_.append<std::uint8_t>(group + "/dense", 1, &dense);
+      const auto engine = static_cast<std::uint8_t>(object.engine);
+      file_.append<std::uint8_t>(group + "/dense", 1, &engine);
       const std::uint8_t loading = object.inertial_loading ? 1 : 0;
       file_.append<std::uint8_t>(group + "/inertial_loading", 1, &loading);
     }

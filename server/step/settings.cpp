@@ -10,6 +10,7 @@ namespace irdm {
 namespace {
 
 EngineKind kind_of(const Model& model) {
+  if (std::holds_alternative<CompressedResponse>(model.response)) return EngineKind::kCompressed;
   return std::holds_alternative<DenseResponse>(model.response) ? EngineKind::kDense
                                                                : EngineKind::kModal;
 }

@@ -34,7 +34,7 @@ void put_settings(Writer& writer, const ObjectSettings& settings, const Settings
         settings.material_damping}) {
     writer.put(value);
   }
-  writer.put(static_cast<std::uint8_t>(settings.engine == EngineKind::kDense ? 1 : 0));
+  writer.put(static_cast<std::uint8_t>(settings.engine));
   writer.put(static_cast<std::uint8_t>(settings.inertial_loading ? 1 : 0));
   writer.put(static_cast<std::uint8_t>((choice.material_damping ? 1 : 0) | (choice.engine ? 2 : 0) |
                                        (choice.inertial_loading ? 4 : 0)));
@@ -60,8 +60,8 @@ ObjectSettings get_settings(Reader& reader, SettingsChoice& choice) {
   const auto engine = reader.get<std::uint8_t>();
   const auto loading = reader.get<std::uint8_t>();
   const auto choices = reader.get<std::uint8_t>();
-  if (engine > 1 || loading > 1) throw MessageError("a setting is out of range");
-  settings.engine = engine == 1 ? EngineKind::kDense : EngineKind::kModal;
+  if (engine > 2 || loading > 1) throw MessageError("a setting is out of range");
+  settings.engine = static_cast<EngineKind>(engine);
   settings.inertial_loading = loading == 1;
   choice = {(choices & 1) != 0, (choices & 2) != 0, (choices & 4) != 0};
   reader.skip(21);

@@ -1,3 +1,4 @@
+#include <array>
 #include <catch2/catch.hpp>
 #include <random>
 
@@ -12,6 +13,7 @@ using namespace irdm;
 namespace {
 
 constexpr int kSteps = kMaxHorizon;
+constexpr std::array kKinds{ResponseKind::kModal, ResponseKind::kDense, ResponseKind::kCompressed};
 
 std::shared_ptr<const Model> model(ResponseKind kind) {
   return test::fem_cube({.cells = 2, .steps = 100}, kind);
@@ -49,7 +51,7 @@ Points displacement(const ResponseEngine& engine) {
 
 TEST_CASE("foresight: path and response are what stepping on brings") {
   const double damping = GENERATE(1.0, 4.0);
-  for (const ResponseKind kind : {ResponseKind::kModal, ResponseKind::kDense}) {
+  for (const ResponseKind kind : kKinds) {
     const auto cube = model(kind);
     const int nodes = cube->mesh.surface_node_count();
     const auto engine = make_engine(cube);
@@ -81,7 +83,7 @@ TEST_CASE("foresight: path and response are what stepping on brings") {
 }
 
 TEST_CASE("foresight: a force that comes late does what it would have done in time") {
-  for (const ResponseKind kind : {ResponseKind::kModal, ResponseKind::kDense}) {
+  for (const ResponseKind kind : kKinds) {
     const auto cube = model(kind);
     const int nodes = cube->mesh.surface_node_count();
     const auto history = random_history(nodes, 60, 2);

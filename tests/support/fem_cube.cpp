@@ -3,7 +3,9 @@
 #include <map>
 #include <sstream>
 #include <tuple>
+#include <utility>
 
+#include "precompute/compress/compress_model.hpp"
 #include "precompute/precompute.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -26,7 +28,7 @@ precompute::PrecomputeConfig configuration(const FemCube& cube, ResponseKind kin
   config.response.dt = cube.dt;
   config.response.steps = cube.steps;
   config.response.storage =
-      kind == ResponseKind::kDense ? precompute::Storage::kDense : precompute::Storage::kModal;
+      kind == ResponseKind::kModal ? precompute::Storage::kModal : precompute::Storage::kDense;
   return config;
 }
 
@@ -42,9 +44,13 @@ std::shared_ptr<const Model> fem_cube(const FemCube& cube, ResponseKind kind) {
   if (model == nullptr) {
     const TemporaryFolder folder;
     std::ostringstream ignored;
-    const auto path = folder.path() / "cube.h5";
-    precompute::precompute_model(configuration(cube, kind), path,
-                                 precompute::Console{ignored, false});
+    const precompute::Console console{ignored, false};
+    auto path = folder.path() / "cube.h5";
+    precompute::precompute_model(configuration(cube, kind), path, console);
+    if (kind == ResponseKind::kCompressed) {
+      const auto dense = std::exchange(path, folder.path() / "compressed.h5");
+      precompute::compress_model(dense, path, folder.path() / "part", {.error = 0.05}, console);
+    }
     model = std::make_shared<const Model>(read_model(path, kind));
   }
   return model;

@@ -21,8 +21,8 @@ struct FemCube {
   bool operator<(const FemCube& other) const;
 };
 
-/// Its model as irdm-precompute makes it, with the response that is asked for; each is made once a
-/// process.
+/// Its model as irdm-precompute makes it, with the response that is asked for (compressed: from
+/// dense, to 5 %); each is made once a process.
 std::shared_ptr<const Model> fem_cube(const FemCube& cube,
                                       ResponseKind kind = ResponseKind::kModal);
 

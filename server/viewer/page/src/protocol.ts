@@ -156,6 +156,7 @@ export interface BridgeHealth {
 export const enum Engine {
   Modal = 0,
   Dense = 1,
+  Compressed = 2,
 }
 
 export interface ObjectSettings {
@@ -381,7 +382,7 @@ function readObjectSettings(reader: Reader): [ObjectSettings, Changeable] {
     tether: reader.f64(),
     angularTether: reader.f64(),
     dampingFactor: reader.f64(),
-    engine: upTo(Engine.Dense, reader.u8()) as Engine,
+    engine: upTo(Engine.Compressed, reader.u8()) as Engine,
     inertia: upTo(1, reader.u8()) === 1,
   };
   const bits = reader.u8();

@@ -141,6 +141,9 @@ export class SettingsPanel {
 
   private engineRow(): HTMLElement {
     this.engine.append(new Option("Modal", String(Engine.Modal)), new Option("Dense, the paper's", String(Engine.Dense)));
+    const compressed = new Option("Compressed", String(Engine.Compressed));
+    compressed.disabled = true; // never one of two
+    this.engine.append(compressed);
     this.engine.onchange = () => this.change("engine", Number(this.engine.value) as Engine);
     return labelled("Engine", "set-engine", this.engine);
   }

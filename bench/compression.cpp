@@ -1,0 +1,66 @@
+// How far the forces of another response are from those of dense R, over a suite of 50
+// interactions of one second each, through the force step itself:
+//
+//     bench_compression DENSE.h5 OTHER.h5 [compressed|modal]
+//
+// One line an interaction, then the worst, the median and what a finger can tell (10 % of force).
+
+#include <cstdio>
+#include <cstring>
+#include <iostream>
+
+#include "bench/statistics.hpp"
+#include "common/error.hpp"
+#include "common/model/model_file.hpp"
+#include "tests/support/interaction_suite.hpp"
+
+using namespace irdm;
+
+namespace {
+
+void compare_all(const std::shared_ptr<const Model>& dense,
+                 const std::shared_ptr<const Model>& other) {
+  std::vector<double> largest, rms;
+  std::printf("%-4s %-6s %10s %12s %10s\n", "", "", "peak, N", "largest, %", "rms, %");
+  for (int number = 0; number < test::kInteractions; ++number) {
+    const test::Interaction what = test::interaction(number);
+    const auto difference =
+        test::compare(test::run_interaction(what, dense), test::run_interaction(what, other));
+    std::printf("%-4d %-6s %10.3f %12.4f %10.4f\n", number, what.kind.c_str(), difference.peak,
+                100.0 * difference.largest, 100.0 * difference.rms);
+    largest.push_back(100.0 * difference.largest);
+    rms.push_back(100.0 * difference.rms);
+  }
+  const auto show = [](const char* name, const std::vector<double>& values) {
+    std::printf("%s: median %.4f %%, p90 %.4f %%, worst %.4f %%, %d of %d above 1 %%\n", name,
+                bench::percentile(values, 0.5), bench::percentile(values, 0.9),
+                bench::percentile(values, 1.0),
+                static_cast<int>(std::count_if(values.begin(), values.end(),
+                                               [](double value) { return value > 1.0; })),
+                static_cast<int>(values.size()));
+  };
+  show("largest difference of force, share of its peak", largest);
+  show("rms difference of force, share of its rms", rms);
+  std::printf("worst in units of what a finger can tell (10 %% of force): %.3f\n",
+              bench::percentile(largest, 1.0) / 10.0);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 3) {
+    std::fprintf(stderr, "usage: bench_compression DENSE.h5 OTHER.h5 [compressed|modal]\n");
+    return 2;
+  }
+  try {
+    const bool modal = argc > 3 && std::strcmp(argv[3], "modal") == 0;
+    const auto dense = std::make_shared<const Model>(read_model(argv[1], ResponseKind::kDense));
+    const auto other = std::make_shared<const Model>(
+        read_model(argv[2], modal ? ResponseKind::kModal : ResponseKind::kCompressed));
+    compare_all(dense, other);
+  } catch (const Error& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,110 @@
+#include "common/model/compressed_file.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/error.hpp"
+#include "common/response/compressed_response.hpp"
+
+namespace irdm {
+namespace {
+
+constexpr int kMostEarlySteps = 1024;
+
+void require(const hdf5::File& file, bool holds, const std::string& what) {
+  if (!holds) {
+    throw Error(file.name(), std::string(kCompressedGroup) + " " + what,
+                "make it again with irdm-precompute compress");
+  }
+}
+
+void write_complex(hdf5::File& file, const char* dataset, const Eigen::VectorXcd& values) {
+  file.write<double>(dataset, {static_cast<hsize_t>(values.size()), 2},
+                     reinterpret_cast<const double*>(values.data()));
+}
+
+Eigen::VectorXcd read_complex(const hdf5::File& file, const char* dataset, hsize_t count) {
+  const auto values = file.read<double>(dataset, {count, 2});
+  Eigen::VectorXcd numbers(static_cast<Eigen::Index>(count));
+  for (Eigen::Index j = 0; j < numbers.size(); ++j) {
+    const auto at = static_cast<std::size_t>(2 * j);
+    numbers(j) = {values[at], values[at + 1]};
+  }
+  return numbers;
+}
+
+void check_poles(const hdf5::File& file, const CompressedResponse& response) {
+  require(file, response.pole.allFinite() && response.amplitude.allFinite(),
+          "has numbers that are not finite");
+  require(file, response.pole.size() == 0 || response.pole.cwiseAbs().maxCoeff() < 1.0,
+          "has a pole that does not decay");
+  const auto& shape = response.pole_shape;
+  require(file,
+          std::is_sorted(shape.begin(), shape.end()) &&
+              (shape.empty() || (shape.front() >= 0 && shape.back() < response.shape_count())),
+          "has poles of shapes that it has not, or not in their order");
+}
+
+}  // namespace
+
+void write_compressed(hdf5::File& file, const CompressedResponse& response,
+                      const CompressionError& error) {
+  const auto dof = static_cast<hsize_t>(response.shapes.rows());
+  const auto steps = static_cast<hsize_t>(response.early_steps);
+  file.write<float>(kCompressedEarly, {response.early.size() / 9 / steps, 9, steps},
+                    response.early.data());
+  file.write<float>(kCompressedShapes, {dof, static_cast<hsize_t>(response.shapes.cols())},
+                    response.shapes.data());
+  file.write<std::int32_t>(kCompressedPoleShape, {response.pole_shape.size()},
+                           response.pole_shape.data());
+  write_complex(file, kCompressedPole, response.pole);
+  write_complex(file, kCompressedAmplitude, response.amplitude);
+  file.write_attribute(kCompressedGroup, "early_steps", static_cast<std::int64_t>(steps));
+  file.write_attribute(kCompressedGroup, "requested_error", error.requested);
+  file.write_attribute(kCompressedGroup, "displacement_error", error.displacement);
+  file.write_attribute(kCompressedGroup, "displacement_error_rms", error.displacement_rms);
+  file.write_attribute(kCompressedGroup, "force_error", error.force);
+  file.write_attribute(kCompressedGroup, "measured_columns",
+                       static_cast<std::int64_t>(error.measured_columns));
+}
+
+CompressedResponse read_compressed(const hdf5::File& file, const Model& model) {
+  if (!file.exists(kCompressedGroup)) {
+    throw Error(file.name(), "has no compressed response",
+                "use another engine, or make one with irdm-precompute compress");
+  }
+  CompressedResponse response;
+  const std::int64_t early = file.read_integer_attribute(kCompressedGroup, "early_steps");
+  require(file, early >= 1 && early <= kMostEarlySteps, "has early_steps out of range");
+  response.early_steps = static_cast<int>(early);
+  const auto nodes = static_cast<std::size_t>(model.mesh.surface_node_count());
+  const hdf5::Shape shape{early_entries(nodes) / 9, 9, static_cast<hsize_t>(early)};
+  require(file, file.stored_shape(kCompressedEarly) == shape, "has an early part of another shape");
+  response.early = file.read<float>(kCompressedEarly, shape);
+  const auto dof = static_cast<hsize_t>(model.degrees_of_freedom());
+  const auto shapes = file.read<float>(kCompressedShapes, {dof, 0});
+  response.shapes = Eigen::Map<const RowMatrix<float>>(
+      shapes.data(), static_cast<Eigen::Index>(dof),
+      static_cast<Eigen::Index>(shapes.size() / std::max<std::size_t>(1, dof)));
+  response.pole_shape = file.read<std::int32_t>(kCompressedPoleShape, {0});
+  response.pole = read_complex(file, kCompressedPole, response.pole_shape.size());
+  response.amplitude = read_complex(file, kCompressedAmplitude, response.pole_shape.size());
+  require(
+      file,
+      response.shapes.allFinite() && std::all_of(response.early.begin(), response.early.end(),
+                                                 [](float value) { return std::isfinite(value); }),
+      "has numbers that are not finite");
+  check_poles(file, response);
+  return response;
+}
+
+CompressionError read_compression_error(const hdf5::File& file) {
+  const auto number = [&](const char* name) {
+    return file.read_double_attribute(kCompressedGroup, name);
+  };
+  return {number("requested_error"), number("displacement_error"), number("displacement_error_rms"),
+          number("force_error"),
+          static_cast<int>(file.read_integer_attribute(kCompressedGroup, "measured_columns"))};
+}
+
+}  // namespace irdm

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "common/hdf5/file.hpp"
+#include "common/model/model.hpp"
+
+/// The compressed response in a model file (docs/files.md).
+namespace irdm {
+
+inline constexpr const char* kCompressedGroup = "/response/compressed";
+inline constexpr const char* kCompressedEarly = "/response/compressed/early";
+inline constexpr const char* kCompressedShapes = "/response/compressed/shapes";
+inline constexpr const char* kCompressedPoleShape = "/response/compressed/pole_shape";
+inline constexpr const char* kCompressedPole = "/response/compressed/pole";
+inline constexpr const char* kCompressedAmplitude = "/response/compressed/amplitude";
+
+/// How far a compressed response is from the R that it was made from, as measured. All are shares.
+struct CompressionError {
+  double requested = 0.0;         ///< what --error said
+  double displacement = 0.0;      ///< of a column over all steps, norm; the largest
+  double displacement_rms = 0.0;  ///< the same, root mean square over the columns
+  double force = 0.0;             ///< of the force on a held node, of its peak; the largest
+  int measured_columns = 0;       ///< that this was measured on
+};
+
+void write_compressed(hdf5::File& file, const CompressedResponse& response,
+                      const CompressionError& error);
+
+/// Reads and checks: shapes, ranges, finite numbers, poles inside the unit circle. Throws Error.
+/// @param model its description
+CompressedResponse read_compressed(const hdf5::File& file, const Model& model);
+
+CompressionError read_compression_error(const hdf5::File& file);
+
+}  // namespace irdm

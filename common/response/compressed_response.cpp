@@ -1,0 +1,45 @@
+#include "common/response/compressed_response.hpp"
+
+#include <algorithm>
+#include <complex>
+
+namespace irdm {
+
+RowMatrix<double> late_responses(const CompressedResponse& response, int steps) {
+  RowMatrix<double> h = RowMatrix<double>::Zero(steps, response.shape_count());
+  for (int j = 0; j < response.pole_count(); ++j) {
+    const int shape = response.pole_shape[static_cast<std::size_t>(j)];
+    std::complex<double> term = response.amplitude(j);
+    for (int s = 0; s < steps; ++s, term *= response.pole(j)) h(s, shape) += term.real();
+  }
+  return h;
+}
+
+Eigen::VectorXd settled_late_responses(const CompressedResponse& response) {
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(response.shape_count());
+  for (int j = 0; j < response.pole_count(); ++j) {
+    sum(response.pole_shape[static_cast<std::size_t>(j)]) +=
+        (response.amplitude(j) / (1.0 - response.pole(j))).real();
+  }
+  return sum;
+}
+
+RowMatrix<double> compressed_column(const CompressedResponse& response,
+                                    const RowMatrix<double>& late, int b, int steps) {
+  const auto dof = static_cast<int>(response.shapes.rows());
+  RowMatrix<double> column(steps, dof);
+  const int early = std::min(response.early_steps, steps);
+  for (int a = 0; a < dof; ++a) {
+    const float* values = early_response(response, a / 3, a % 3, b / 3, b % 3);
+    for (int s = 0; s < early; ++s) column(s, a) = static_cast<double>(values[s]);
+  }
+  if (steps > early) {
+    const RowMatrix<double> weighted = late.topRows(steps - early).array().rowwise() *
+                                       response.shapes.row(b).cast<double>().array();
+    column.bottomRows(steps - early).noalias() =
+        weighted * response.shapes.cast<double>().transpose();
+  }
+  return column;
+}
+
+}  // namespace irdm

@@ -1,0 +1,167 @@
+#include "precompute/compress/compress_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "common/error.hpp"
+#include "common/model/model_writer.hpp"
+#include "common/response/compressed_response.hpp"
+#include "precompute/compress/joint_shapes.hpp"
+#include "precompute/compress/measured_error.hpp"
+#include "precompute/compress/pole_fit.hpp"
+#include "precompute/compress/products.hpp"
+
+namespace irdm::precompute {
+namespace {
+
+constexpr int kMostAttempts = 6;
+constexpr int kFirstEarlySteps = 16;
+
+// Shares of the allowed error, root mean square over the columns; the largest column's is about
+// twice that.
+constexpr double kOfSpace = 0.30;
+constexpr double kOfTime = 0.10;
+constexpr double kOfShapes = 0.25;
+constexpr double kOfPoles = 0.20;
+
+struct Parts {
+  RowMatrix<double> shapes;  // (3n, r)
+  RowMatrix<double> late;    // (L, r)
+};
+
+Parts identify(const DenseInput& input, const Survey& found, double error, const Console& console) {
+  const int r = directions_for(found.space_values, kOfSpace * error);
+  const int K = directions_for(found.time_values, kOfTime * error);
+  const Core core = project(input, found, r, K, console);
+  const double late = core.matrices.cast<double>().norm();
+  const JointShapes joint = joint_shapes(core, kOfShapes * error * found.norm / late, console);
+  Parts parts;
+  product(core.space.cast<double>(), Of::kItself, joint.shapes, Of::kItself, parts.shapes);
+  product(core.time, Of::kItself, joint.responses, Of::kItself, parts.late);
+  return parts;
+}
+
+std::vector<PoleFit> fit_all(const Parts& parts, double error, const Console& console) {
+  const auto count = static_cast<int>(parts.late.cols());
+  std::vector<PoleFit> fits(static_cast<std::size_t>(count));
+  const double each = error / std::sqrt(static_cast<double>(count));
+  constexpr int kAtOnce = 32;
+  Progress progress(console, "poles", count);
+  for (int first = 0; first < count; first += kAtOnce) {
+    const int last = std::min(first + kAtOnce, count);
+#pragma omp parallel for schedule(dynamic)
+    for (int i = first; i < last; ++i) {
+      fits[static_cast<std::size_t>(i)] = fit_poles(parts.late.col(i), each);
+    }
+    progress.update(last);
+  }
+  return fits;
+}
+
+// Shapes that need no pole are left out.
+CompressedResponse assemble(const Survey& found, const Parts& parts,
+                            const std::vector<PoleFit>& fits) {
+  CompressedResponse response;
+  response.early_steps = found.early_steps;
+  response.early = found.early;
+  std::vector<Eigen::Index> used;
+  std::vector<std::complex<double>> poles, amplitudes;
+  for (std::size_t i = 0; i < fits.size(); ++i) {
+    if (fits[i].pole.size() == 0) continue;
+    for (Eigen::Index j = 0; j < fits[i].pole.size(); ++j) {
+      response.pole_shape.push_back(static_cast<int>(used.size()));
+      poles.push_back(fits[i].pole(j));
+      amplitudes.push_back(fits[i].amplitude(j));
+    }
+    used.push_back(static_cast<Eigen::Index>(i));
+  }
+  response.shapes = parts.shapes(Eigen::all, used).cast<float>();
+  const auto count = static_cast<Eigen::Index>(poles.size());
+  response.pole = Eigen::Map<const Eigen::VectorXcd>(poles.data(), count);
+  response.amplitude = Eigen::Map<const Eigen::VectorXcd>(amplitudes.data(), count);
+  return response;
+}
+
+double bytes(const CompressedResponse& response) {
+  return 4.0 * static_cast<double>(response.early.size()) +
+         4.0 * static_cast<double>(response.shapes.size()) + 36.0 * response.pole_count();
+}
+
+std::string percent(double share) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g %%", 100.0 * share);
+  return text;
+}
+
+[[noreturn]] void not_reached(const std::string& name, const CompressionError& error) {
+  throw Error(name,
+              "cannot be compressed to an error of " + percent(error.requested) + ": " +
+                  percent(error.displacement) + " of displacement and " + percent(error.force) +
+                  " of force is the best that was reached",
+              "allow more with --error, or keep more steps as they are with --early-steps; R that "
+              "is not reciprocal or not linear cannot be compressed (irdm-precompute check)");
+}
+
+void check_early_steps(const DenseInput& input, int early) {
+  if (early >= 1 && 4 * early < input.steps()) return;
+  throw Error(input.name(),
+              "has " + std::to_string(input.steps()) + " steps, too few to keep " +
+                  std::to_string(early) + " of them and compress the rest",
+              "use fewer --early-steps, or precompute more steps");
+}
+
+double larger(const CompressionError& error) {
+  return std::max(error.displacement, error.force);
+}
+
+}  // namespace
+
+CompressionSummary compress_model(const std::filesystem::path& input,
+                                  const std::filesystem::path& output,
+                                  const std::filesystem::path& temporary,
+                                  const CompressSettings& settings, const Console& console) {
+  const DenseInput dense(input);
+  const bool automatic = settings.early_steps == 0;
+  const int most_early = (dense.steps() - 1) / 4;
+  const int early =
+      automatic ? std::min(kFirstEarlySteps, std::max(1, most_early)) : settings.early_steps;
+  check_early_steps(dense, early);
+  Survey found = survey(dense, early, console);
+  double finer = 1.0;
+  CompressionError best;
+  best.requested = settings.error;
+  best.displacement = best.force = 1e300;
+  for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
+    const double aim = finer * settings.error;
+    const Parts parts = identify(dense, found, aim, console);
+    const CompressedResponse response =
+        assemble(found, parts, fit_all(parts, kOfPoles * aim * found.norm, console));
+    CompressionError error = measure_error(response, dense, console);
+    error.requested = settings.error;
+    console.line("  " + std::to_string(response.shape_count()) + " shapes, " +
+                 std::to_string(response.pole_count()) + " poles: error " +
+                 percent(error.displacement) + " of displacement (rms " +
+                 percent(error.displacement_rms) + "), " + percent(error.force) + " of force");
+    if (larger(error) <= settings.error) {
+      ModelFileWriter writer(output, temporary);
+      writer.write_description(dense.description());
+      writer.write_compressed(response, error);
+      writer.commit();
+      return {error,         found.early_steps, response.shape_count(), response.pole_count(),
+              dense.bytes(), bytes(response)};
+    }
+    const bool helped = larger(error) < 0.95 * larger(best);
+    if (larger(error) < larger(best)) best = error;
+    const bool more_early = automatic && attempt > 0 && 2 * found.early_steps <= most_early;
+    if (attempt > 0 && !helped && !more_early) break;
+    if (more_early) {
+      found = survey(dense, 2 * found.early_steps, console);
+    } else {
+      finer *= std::clamp(0.7 * settings.error / larger(error), 0.15, 0.6);
+    }
+  }
+  not_reached(dense.name(), best);
+}
+
+}  // namespace irdm::precompute

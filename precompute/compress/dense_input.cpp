@@ -1,0 +1,39 @@
+#include "precompute/compress/dense_input.hpp"
+
+#include "common/error.hpp"
+#include "common/model/model_file.hpp"
+
+namespace irdm::precompute {
+
+DenseInput::DenseInput(const std::filesystem::path& path)
+    : file_(hdf5::File::open(path)), model_(read_description(hdf5::File::open(path))) {
+  if (!file_.exists(kDenseR)) {
+    throw Error(name(), "has no dense response to compress",
+                "precompute with storage = \"dense\" or \"both\"");
+  }
+  const auto dof = static_cast<hsize_t>(degrees_of_freedom());
+  if (file_.stored_shape(kDenseR) != hdf5::Shape({dof, static_cast<hsize_t>(steps()), dof})) {
+    throw Error(name(), "/response/dense/R must have the shape (3n, steps, 3n)",
+                "make the model again with irdm-precompute");
+  }
+}
+
+double DenseInput::bytes() const {
+  const double dof = degrees_of_freedom();
+  return dof * dof * steps() * static_cast<double>(file_.element_size(kDenseR));
+}
+
+RowMatrix<float> DenseInput::column(int b) const {
+  RowMatrix<float> values(steps(), degrees_of_freedom());
+  file_.read_slab<float>(
+      kDenseR, {static_cast<hsize_t>(b), 0, 0},
+      {1, static_cast<hsize_t>(steps()), static_cast<hsize_t>(degrees_of_freedom())},
+      values.data());
+  if (!values.allFinite()) {
+    throw Error(name(), "/response/dense/R has numbers that are not finite",
+                "make the model again with irdm-precompute");
+  }
+  return values;
+}
+
+}  // namespace irdm::precompute

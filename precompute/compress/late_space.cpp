@@ -1,0 +1,98 @@
+#include "precompute/compress/late_space.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/error.hpp"
+#include "common/response/compressed_response.hpp"
+#include "precompute/compress/products.hpp"
+#include "precompute/modal/symmetric_eigen.hpp"
+
+namespace irdm::precompute {
+namespace {
+
+constexpr int kSampledColumns = 250;
+
+// Not a multiple of 3: all axes are sampled.
+int sample_stride(int dof) {
+  const int stride = std::max(1, dof / kSampledColumns);
+  return stride % 3 == 0 ? stride + 1 : stride;
+}
+
+// Half of R and half of its transpose: reciprocity.
+void add_early(const RowMatrix<float>& column, int b, Survey& survey) {
+  const int m = survey.early_steps;
+  const int j = b / 3;
+  const auto add = [&](int row, int first, int other, int second, int a) {
+    float* entry = survey.early.data() +
+                   ((static_cast<std::size_t>(row) * (static_cast<std::size_t>(row) + 1) / 2 +
+                     static_cast<std::size_t>(other)) *
+                        9 +
+                    static_cast<std::size_t>(3 * first + second)) *
+                       static_cast<std::size_t>(m);
+    for (int s = 0; s < m; ++s) entry[s] += 0.5F * column(s, a);
+  };
+  for (int a = 0; a < column.cols(); ++a) {
+    const int i = a / 3;
+    if (i >= j) add(i, a % 3, j, b % 3, a);
+    if (i <= j) add(j, b % 3, i, a % 3, a);
+  }
+}
+
+// Eigenpairs of a covariance as shares of the norm, most important ones first.
+void directions(RowMatrix<double>& covariance, double norm, Eigen::VectorXd& values,
+                Eigen::MatrixXd& vectors) {
+  EigenPairs pairs = symmetric_eigen(covariance.transpose());
+  covariance.resize(0, 0);
+  values = pairs.values.reverse().cwiseMax(0.0).cwiseSqrt() / norm;
+  vectors = pairs.vectors.rowwise().reverse();
+}
+
+}  // namespace
+
+Survey survey(const DenseInput& input, int early_steps, const Console& console) {
+  const int dof = input.degrees_of_freedom();
+  const int late = input.steps() - early_steps;
+  Survey result;
+  result.early_steps = early_steps;
+  result.early.assign(
+      early_entries(static_cast<std::size_t>(dof / 3)) * static_cast<std::size_t>(early_steps),
+      0.0F);
+  RowMatrix<double> space = RowMatrix<double>::Zero(dof, dof);
+  RowMatrix<double> time = RowMatrix<double>::Zero(late, late);
+  double energy = 0.0;
+  int sampled = 0;
+  const int stride = sample_stride(dof);
+  Progress progress(console, "reading R", dof);
+  for (int b = 0; b < dof; ++b) {
+    const RowMatrix<float> column = input.column(b);
+    add_early(column, b, result);
+    if (b % stride == 0) {
+      const RowMatrix<double> later = column.bottomRows(late).cast<double>();
+      product(later, Of::kTransposed, later, Of::kItself, space, true);
+      product(later, Of::kItself, later, Of::kTransposed, time, true);
+      energy += column.cast<double>().squaredNorm();
+      ++sampled;
+    }
+    progress.update(b + 1);
+  }
+  if (!(energy > 0.0))
+    throw Error(input.name(), "has a dense response that is zero", "make it again");
+  directions(space, std::sqrt(energy), result.space_values, result.space_vectors);
+  directions(time, std::sqrt(energy), result.time_values, result.time_vectors);
+  result.norm = std::sqrt(energy * dof / sampled);
+  return result;
+}
+
+int directions_for(const Eigen::VectorXd& values, double share) {
+  double left = 0.0;
+  Eigen::Index count = values.size();
+  while (count > 1) {
+    left += values(count - 1) * values(count - 1);
+    if (left > share * share) break;
+    --count;
+  }
+  return static_cast<int>(count);
+}
+
+}  // namespace irdm::precompute

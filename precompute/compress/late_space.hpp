@@ -1,0 +1,30 @@
+#pragma once
+
+#include <vector>
+
+#include "precompute/compress/dense_input.hpp"
+#include "precompute/progress.hpp"
+
+/// Where R lives after its first steps: the few directions in space and in time that all of its
+/// columns share.
+namespace irdm::precompute {
+
+/// What one pass over R finds. m early steps, L = T - m late ones.
+struct Survey {
+  int early_steps = 0;            ///< m
+  std::vector<float> early;       ///< as in CompressedResponse: the mean of R and its transpose
+  double norm = 0.0;              ///< Frobenius, of R; estimated from the sampled columns
+  Eigen::VectorXd space_values;   ///< (3n) share of the norm that each direction carries
+  Eigen::MatrixXd space_vectors;  ///< (3n, 3n) most important ones first, orthonormal
+  Eigen::VectorXd time_values;    ///< (L)
+  Eigen::MatrixXd time_vectors;   ///< (L, L)
+};
+
+/// All columns are read for the early part; the directions are those of some 250 columns, always
+/// the same ones. Throws Error, as where R is zero.
+Survey survey(const DenseInput& input, int early_steps, const Console& console);
+
+/// The fewest directions that leave out at most this share of the norm, at least 1.
+int directions_for(const Eigen::VectorXd& values, double share);
+
+}  // namespace irdm::precompute

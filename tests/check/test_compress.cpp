@@ -1,0 +1,146 @@
+#include <catch2/catch.hpp>
+#include <complex>
+#include <random>
+#include <sstream>
+
+#include "common/model/model_file.hpp"
+#include "common/response/compressed_response.hpp"
+#include "precompute/check/columns.hpp"
+#include "precompute/compress/compress_model.hpp"
+#include "precompute/compress/measured_error.hpp"
+#include "precompute/compress/pole_fit.hpp"
+#include "tests/check/dense_file.hpp"
+#include "tests/support/child_process.hpp"
+
+using Catch::Matchers::Contains;
+using namespace irdm;
+using namespace irdm::precompute;
+using irdm::precompute::test::DenseCube;
+using irdm::test::ChildProcess;
+
+namespace {
+
+struct Workshop : irdm::test::TemporaryFolder {
+  std::ostringstream heard;
+  std::filesystem::path file(const std::string& name) const { return path() / name; }
+  CompressionSummary compress(const std::string& to, const CompressSettings& settings = {}) {
+    return compress_model(file("dense.h5"), file(to), file("part"), settings, {heard, false});
+  }
+};
+
+Eigen::VectorXd oscillations(const std::vector<std::complex<double>>& poles,
+                             const std::vector<std::complex<double>>& amplitudes, int steps) {
+  Eigen::VectorXd y = Eigen::VectorXd::Zero(steps);
+  for (std::size_t j = 0; j < poles.size(); ++j) {
+    for (int l = 0; l < steps; ++l) y(l) += (amplitudes[j] * std::pow(poles[j], l)).real();
+  }
+  return y;
+}
+
+}  // namespace
+
+TEST_CASE("pole fit finds the poles and amplitudes that a sequence was made of") {
+  const std::vector<std::complex<double>> poles{std::polar(0.98, 0.3), std::polar(0.9, 1.1)};
+  const std::vector<std::complex<double>> amplitudes{{1.0, -0.5}, {0.3, 0.4}};
+  const Eigen::VectorXd y = oscillations(poles, amplitudes, 200);
+  const PoleFit fit = fit_poles(y, 1e-9 * y.norm());
+  REQUIRE(fit.pole.size() == 2);
+  CHECK(fit.error < 1e-9 * y.norm());
+  for (Eigen::Index j = 0; j < 2; ++j) {
+    const std::size_t which = std::abs(fit.pole(j) - poles[0]) < 0.1 ? 0 : 1;
+    CHECK(std::abs(fit.pole(j) - poles[which]) < 1e-8);
+    CHECK(std::abs(fit.amplitude(j) - amplitudes[which]) < 1e-8);
+  }
+}
+
+TEST_CASE("pole fit takes no more poles than the error needs, and none that grows") {
+  const Eigen::VectorXd y =
+      oscillations({std::polar(0.98, 0.3), std::polar(0.9, 1.1)}, {{1.0, 0.0}, {0.01, 0.0}}, 200);
+  CHECK(fit_poles(y, 1.1 * y.norm()).pole.size() == 0);
+  CHECK(fit_poles(y, 0.05 * y.norm()).pole.size() == 1);
+  const Eigen::VectorXd growing = oscillations({std::polar(1.01, 0.3)}, {{1.0, 0.0}}, 200);
+  CHECK(fit_poles(growing, 0.0).pole.cwiseAbs().maxCoeff() < 1.0);
+}
+
+TEST_CASE("compress: the stated errors are those of the file, twice to the same bits") {
+  Workshop work;
+  DenseCube cube(300);
+  cube.write(work.file("dense.h5"));
+  const CompressionSummary summary = work.compress("small.h5");
+  work.compress("again.h5");
+  CHECK(irdm::test::file_content(work.file("small.h5")) ==
+        irdm::test::file_content(work.file("again.h5")));
+  CHECK_FALSE(std::filesystem::exists(work.file("part")));
+  CHECK(summary.error.displacement <= 0.01);
+  CHECK(summary.error.force <= 0.01);
+  CHECK(summary.error.measured_columns == cube.model.degrees_of_freedom());
+
+  const Model model = read_model(work.file("small.h5"), ResponseKind::kCompressed);
+  const auto& response = std::get<CompressedResponse>(model.response);
+  const RowMatrix<double> late = late_responses(response, 300 - response.early_steps);
+  double largest = 0.0;
+  for (int b = 0; b < model.degrees_of_freedom(); b += 5) {
+    const RowMatrix<double> column = compressed_column(response, late, b, 300);
+    double difference = 0.0;
+    double size = 0.0;
+    double early = 0.0;
+    double peak = 0.0;
+    for (int s = 0; s < 300; ++s) {
+      for (int a = 0; a < model.degrees_of_freedom(); ++a) {
+        size += cube.at(s, a, b) * cube.at(s, a, b);
+        difference += std::pow(column(s, a) - cube.at(s, a, b), 2);
+        early = std::max(
+            early, s < response.early_steps ? std::abs(column(s, a) - cube.at(s, a, b)) : 0.0);
+        peak = std::max(peak, std::abs(cube.at(s, a, b)));
+      }
+    }
+    CHECK(early < 1e-6 * peak);  // single precision
+    largest = std::max(largest, std::sqrt(difference / size));
+  }
+  CHECK(largest <= summary.error.displacement * (1.0 + 1e-4));
+  CHECK(largest > 0.2 * summary.error.displacement);
+}
+
+TEST_CASE("compress refuses what cannot be reached, and leaves nothing behind") {
+  Workshop work;
+  DenseCube cube(100);
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  const int dof = cube.model.degrees_of_freedom();
+  for (int b = 0; b < dof; ++b) {
+    for (int s = 0; s < 100; ++s) {
+      for (int a = 0; a < dof; ++a) cube.at(s, a, b) = 1e-3 * uniform(random);
+    }
+  }
+  cube.write(work.file("dense.h5"));
+  CHECK_THROWS_WITH(work.compress("small.h5"), Contains("cannot be compressed to an error of 1 %"));
+  CHECK_THROWS_WITH(work.compress("small.h5", {.error = 0.01, .early_steps = 25}),
+                    Contains("100 steps, too few"));
+  CHECK_FALSE(std::filesystem::exists(work.file("small.h5")));
+  CHECK_FALSE(std::filesystem::exists(work.file("part")));
+}
+
+TEST_CASE("compress as a program: help, wrong usage, missing and wrong files") {
+  Workshop work;
+  const auto run = [&](const std::vector<std::string>& arguments) {
+    std::vector<std::string> command{IRDM_PROGRAM, "compress"};
+    command.insert(command.end(), arguments.begin(), arguments.end());
+    ChildProcess process(command, {.folder = work.path()});
+    const int status = process.wait();
+    return std::pair(status, process.err());
+  };
+  CHECK(run({"--help"}).first == 0);
+  CHECK(run({}).first == 2);
+  CHECK(run({"a.h5", "-o", "b.h5", "--error", "2"}).first == 2);
+  const auto [status, err] = run({"missing.h5", "-o", "b.h5"});
+  CHECK(status == 1);
+  CHECK_THAT(err, Contains("missing.h5"));
+  {
+    ModelFileWriter writer(work.file("bare.h5"));
+    writer.write_description(DenseCube(20).model);
+    writer.commit();
+  }
+  const auto bare = run({"bare.h5", "-o", "b.h5"});
+  CHECK(bare.first == 1);
+  CHECK_THAT(bare.second, Contains("no dense response"));
+}

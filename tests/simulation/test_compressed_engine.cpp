@@ -1,0 +1,178 @@
+#include <omp.h>
+
+#include <array>
+#include <catch2/catch.hpp>
+#include <complex>
+#include <random>
+
+#include "common/response/compressed_response.hpp"
+#include "server/engine/response_engine.hpp"
+#include "server/engine/static_compliance.hpp"
+#include "tests/support/fem_cube.hpp"
+#include "tests/support/interaction_suite.hpp"
+#include "tests/support/synthetic_model.hpp"
+
+using namespace irdm;
+using namespace irdm::test;
+
+namespace {
+
+constexpr int kEarly = 3;
+constexpr int kRecord = 200;
+
+// A cube with a made-up compressed response: anything that the format can hold.
+std::shared_ptr<const Model> made_up() {
+  Model model = synthetic_cube(2, 1, kRecord);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  CompressedResponse response;
+  response.early_steps = kEarly;
+  const int nodes = model.mesh.surface_node_count();
+  response.early.resize(early_entries(static_cast<std::size_t>(nodes)) * kEarly);
+  for (float& value : response.early) value = static_cast<float>(uniform(random));
+  constexpr int kShapes = 7;
+  response.shapes.resize(3 * nodes, kShapes);
+  for (Eigen::Index i = 0; i < response.shapes.size(); ++i) {
+    response.shapes.data()[i] = static_cast<float>(uniform(random));
+  }
+  response.pole_shape = {0, 0, 1, 2, 2, 2, 4, 5, 6};  // none of shape 3
+  const auto poles = static_cast<Eigen::Index>(response.pole_shape.size());
+  response.pole.resize(poles);
+  response.amplitude.resize(poles);
+  for (Eigen::Index j = 0; j < poles; ++j) {
+    response.pole(j) = std::polar(0.8 + 0.15 * uniform(random), 1.5 * (1.0 + uniform(random)));
+    response.amplitude(j) = {uniform(random), uniform(random)};
+  }
+  response.pole(2) = -0.7;  // a real one
+  model.response = std::move(response);
+  return std::make_shared<const Model>(std::move(model));
+}
+
+std::vector<std::vector<NodalForce>> random_forces(int nodes, int steps) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  std::vector<std::vector<NodalForce>> history(static_cast<std::size_t>(steps));
+  for (auto& forces : history) {
+    for (unsigned i = random() % 4; i > 0; --i) {
+      const auto node = static_cast<int>(random() % static_cast<unsigned>(nodes));
+      forces.push_back({node, Vector3(uniform(random), uniform(random), uniform(random))});
+    }
+  }
+  return history;
+}
+
+// Equation (10) with the columns as they are defined.
+Points direct_sum(const Model& model, const std::vector<std::vector<NodalForce>>& history, int k) {
+  const auto& response = std::get<CompressedResponse>(model.response);
+  const RowMatrix<double> late = late_responses(response, kRecord - kEarly);
+  Eigen::VectorXd u = Eigen::VectorXd::Zero(model.degrees_of_freedom());
+  for (int age = 0; age <= k; ++age) {
+    for (const NodalForce& force : history[static_cast<std::size_t>(k - age)]) {
+      for (int b = 0; b < 3; ++b) {
+        u += compressed_column(response, late, 3 * force.node + b, age + 1).row(age).transpose() *
+             force.force[b];
+      }
+    }
+  }
+  return Eigen::Map<const Points>(u.data(), u.size() / 3, 3);
+}
+
+Points displacement(const ResponseEngine& engine) {
+  Points u;
+  engine.displacement(u);
+  return u;
+}
+
+}  // namespace
+
+TEST_CASE("compressed engine equals the sum of equation (10) over early steps and poles") {
+  const auto model = made_up();
+  const auto engine = make_engine(model);
+  CHECK(engine->kind() == EngineKind::kCompressed);
+  const auto history = random_forces(model->mesh.surface_node_count(), 40);
+  for (int k = 0; k < 40; ++k) {
+    Points expected;
+    if (k % 8 == 7) expected = direct_sum(*model, history, k);
+    engine->advance(history[static_cast<std::size_t>(k)]);
+    if (k % 8 != 7) continue;
+    CHECK((displacement(*engine) - expected).norm() < 1e-12 * expected.norm());
+  }
+}
+
+TEST_CASE("compressed engine predicts the coming step, and R[0] between the contacts") {
+  const auto model = made_up();
+  const auto engine = make_engine(model);
+  const auto history = random_forces(model->mesh.surface_node_count(), 30);
+  for (const auto& forces : history) engine->advance(forces);
+  const std::array<ContactPatch, 2> points{ContactPatch(SurfacePoint{{0, 1, 2}, {0.2, 0.3, 0.5}}),
+                                           ContactPatch(SurfacePoint{{7, 3, 9}, {0.5, 0.5, 0.0}})};
+  std::array<Vector3, 2> h;
+  ContactMatrix W;
+  engine->predict(points, h, W);
+  CHECK((W - W.transpose()).norm() == 0.0);
+  const std::array<Vector3, 2> f{Vector3(0.3, -0.2, 0.1), Vector3(-0.5, 0.4, 0.6)};
+  std::vector<NodalForce> nodal;
+  Eigen::Matrix<double, 6, 1> force;
+  force << f[0], f[1];
+  for (std::size_t a = 0; a < 2; ++a) {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(points[a].count); ++i)
+      nodal.push_back({points[a].nodes[i], points[a].weights[i] * f[a]});
+  }
+  const Eigen::Matrix<double, 6, 1> answer = W * force;
+  engine->advance(nodal);
+  const Points u = displacement(*engine);
+  for (std::size_t a = 0; a < 2; ++a) {
+    const Vector3 moved = mean(points[a], [&](int i) -> Vector3 { return u.row(i).transpose(); });
+    const Vector3 expected = h[a] + answer.segment<3>(static_cast<Eigen::Index>(3 * a));
+    CHECK((moved - expected).norm() < 1e-12 * u.norm());
+  }
+  const Eigen::MatrixXd R = engine->instant_compliance();
+  CHECK((R - R.transpose()).norm() == 0.0);
+}
+
+TEST_CASE("compressed engine: the settled displacement is the static compliance") {
+  const auto model = made_up();
+  const auto engine = make_engine(model);
+  const int nodes = model->mesh.surface_node_count();
+  const Vector3 d = Vector3(1, 2, -2) / 3.0;
+  const std::vector<Vector3> directions(static_cast<std::size_t>(nodes), d);
+  const std::vector<float> compliance = static_compliance(*model, directions);
+  const NodalForce force{5, d};
+  for (int k = 0; k < 1000; ++k) engine->advance({&force, 1});
+  const Points u = displacement(*engine);
+  CHECK(static_cast<double>(compliance[5]) == Approx(Vector3(u.row(5)).dot(d)).epsilon(1e-5));
+}
+
+TEST_CASE("compressed engine: same bits with one and two threads, forgets on reset, rests") {
+  const auto model = made_up();
+  const auto engine = make_engine(model);
+  for (const auto& forces : random_forces(model->mesh.surface_node_count(), 30)) {
+    engine->advance(forces);
+  }
+  omp_set_num_threads(1);
+  const Points one = displacement(*engine);
+  omp_set_num_threads(2);
+  CHECK((one.array() == displacement(*engine).array()).all());
+  CHECK(one.norm() > 0.0);
+  for (int k = 0; k < 20'000; ++k) engine->advance({});
+  CHECK(displacement(*engine).norm() == 0.0);
+  const NodalForce force{1, Vector3(1, 1, 1)};
+  engine->advance({&force, 1});
+  engine->reset();
+  for (int k = 0; k < 10; ++k) engine->advance({});
+  CHECK(displacement(*engine).norm() == 0.0);
+}
+
+TEST_CASE("compressed to 5 %: forces of an interaction of each kind are those of dense R") {
+  const FemCube cube{.cells = 3, .rayleigh_alpha = 16.0, .steps = 300};
+  const auto dense = fem_cube(cube, ResponseKind::kDense);
+  const auto compressed = fem_cube(cube, ResponseKind::kCompressed);
+  for (int number = 0; number < 5; ++number) {
+    const Interaction what = interaction(number);
+    CAPTURE(number, what.kind);
+    const ForceDifference difference =
+        compare(run_interaction(what, dense, 0.5), run_interaction(what, compressed, 0.5));
+    CHECK(difference.peak > 0.05);
+    CHECK(difference.rms < 0.05);
+  }
+}

@@ -99,6 +99,8 @@ std::string status_line(const wire::Status& status, const NetworkStats& network)
   count("protocol errors", network.protocol_errors);
   count("silent", network.timeouts);
   count("forces replaced", network.forces_replaced);
+  count("datagrams dropped",
+        network.datagrams_foreign + network.datagrams_forged + network.datagrams_replayed);
   return text.str();
 }
 

@@ -120,7 +120,7 @@ double residual_radius(const ModelMesh& mesh, double contact_radius) {
                                       .norm());
     }
   }
-  return std::max(2.0 * contact_radius, longest) * (1.0 + 1e-9);
+  return (2.0 * contact_radius + longest) * (1.0 + 1e-9);
 }
 
 double needed_for_definiteness(const ResidualCompliance& compliance) {

@@ -35,6 +35,7 @@ namespace {
 // Above this, linear tetrahedra are far too stiff: they lock (docs/convergence.md).
 constexpr double kLockingPoissonRatio = 0.45;
 constexpr double kMaxDecayLeft = 0.01;
+constexpr double kMaxForceError = 0.05;
 
 void warn(const std::string& text) {
   std::cerr << "irdm-precompute: warning: " << text << std::endl;
@@ -200,6 +201,9 @@ void warn_about(const PrecomputeConfig& config, const Summary& summary) {
     warn(
         "poisson_ratio above 0.45: linear tetrahedra lock, the body comes out too stiff; use "
         "mesh.order = 2 with half the cells an edge");
+  }
+  if (summary.reduction && summary.reduction->force_error > kMaxForceError) {
+    warn("with so few modes the force under a fingertip is off by more than 5 %; ask for more");
   }
   if (const auto hint = unit_hint(summary.mesh.extent)) warn(*hint);
   if (summary.decay_left.value_or(0.0) > kMaxDecayLeft) {

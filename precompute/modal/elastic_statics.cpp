@@ -9,6 +9,7 @@ namespace irdm::precompute {
 ElasticStatics::ElasticStatics(SparseMatrix stiffness, const Points& nodes,
                                const Eigen::VectorXd& mass, const std::vector<int>& clamped)
     : root_mass_(mass.replicate(1, 3).transpose().reshaped().cwiseSqrt()),
+      largest_square_((stiffness.diagonal().array() / root_mass_.array().square()).maxCoeff()),
       solver_(make_sparse_solver()) {
   for (const int node : clamped) {
     for (int axis = 0; axis < 3; ++axis) clamped_.push_back(3 * node + axis);

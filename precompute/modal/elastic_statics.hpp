@@ -29,6 +29,8 @@ class ElasticStatics {
   Eigen::Index degrees_of_freedom() const { return root_mass_.size(); }  ///< 3N
   /// Elastic modes that there are: 3N - 6 of a free body, three less a clamped node of a fixed one.
   Eigen::Index elastic_modes() const { return elastic_modes_; }
+  /// A scale of omega^2: the largest stiffness over mass of a degree of freedom [1/s^2].
+  double largest_square() const { return largest_square_; }
   /// Square root of each degree of freedom's mass (3N) [kg^1/2].
   const Eigen::VectorXd& root_mass() const { return root_mass_; }
 
@@ -47,6 +49,7 @@ class ElasticStatics {
   Eigen::MatrixXd rigid_;     // (3N, 6) orthonormal, coordinates M^1/2 u; none of a fixed body
   std::vector<int> clamped_;  // degrees of freedom
   Eigen::Index elastic_modes_;
+  double largest_square_;
   std::unique_ptr<SparseSolver> solver_;
 };
 

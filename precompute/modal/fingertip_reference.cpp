@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "precompute/blas_kernel.hpp"
 #include "precompute/modal/driving_spectrum.hpp"
 #include "precompute/modal/held_responses.hpp"
 #include "precompute/modal/press.hpp"
@@ -46,6 +47,7 @@ Eigen::VectorXd residual_displacement(const ResidualCompliance& residual, const 
 FingertipReference::FingertipReference(const ElasticStatics& statics, const Model& model,
                                        double contact_radius, const std::vector<int>& clamped)
     : model_(model), tips_(spread_fingertips(model.mesh, contact_radius, kSamples, clamped)) {
+  const SingleThreadedBlas single;  // see lowest_modes()
   const Eigen::MatrixXd loads = loads_of(tips_, model.mesh);
   const Eigen::MatrixXd everywhere = statics.displacement(loads);
   settled_.resize(model.degrees_of_freedom(), loads.cols());

@@ -13,8 +13,8 @@ namespace {
 
 constexpr int kMostRestarts = 1000;
 constexpr double kTolerance = 1e-10;
-// Stiffer than the lowest mode by this, an extra motion without energy is what it looks like.
-constexpr double kZeroShare = 1e-9;
+// Of the largest stiffness over mass; up to here omega^2 is zero.
+constexpr double kZeroShare = 1e-12;
 
 // What Spectra asks for: M^1/2 K^+ M^1/2.
 class Flexibility {
@@ -32,8 +32,8 @@ class Flexibility {
   const ElasticStatics& statics_;
 };
 
-void check_gap(const Eigen::VectorXd& omega) {
-  if (omega.size() < 2 || omega(0) * omega(0) > kZeroShare * omega(1) * omega(1)) return;
+void check_lowest(const Eigen::VectorXd& omega, double largest_square) {
+  if (omega(0) * omega(0) > kZeroShare * largest_square) return;
   throw Error("mesh", "there are motions without elastic energy besides the rigid ones",
               "check for elements that hang on a single node or edge, and for very thin parts");
 }
@@ -57,7 +57,7 @@ ElasticModes lowest_modes(const ElasticStatics& statics, int count) {
                 "ask for fewer modes, or check the mesh for extremely distorted elements");
   }
   ElasticModes modes{solver.eigenvalues().cwiseInverse().cwiseSqrt(), solver.eigenvectors()};
-  check_gap(modes.angular_frequency);
+  check_lowest(modes.angular_frequency, statics.largest_square());
   statics.keep_elastic(modes.shapes);
   modes.shapes = statics.root_mass().cwiseInverse().asDiagonal() * modes.shapes;
   return modes;

@@ -27,10 +27,11 @@ double hertz(double angular_frequency) {
 class Choice {
  public:
   Choice(const ElasticStatics& statics, const Model& model, const FingertipReference& reference,
-         const Console& console)
+         double residual_radius, const Console& console)
       : statics_(statics),
         model_(model),
         reference_(reference),
+        residual_radius_(residual_radius),
         console_(console),
         most_(most_lowest_modes(statics) - 1) {}
 
@@ -63,7 +64,8 @@ class Choice {
     for (int count = std::min(kFirstTry, most_);; count = std::min(2 * count, most_)) {
       const ModalResponse modes = lowest(count);
       const auto good = [&](int tried) {
-        return reference_.expected_force_error(smoothly_cut(modes, tried)) <= error;
+        return dies_away(modes.angular_frequency(tried)) &&
+               reference_.expected_force_error(smoothly_cut(modes, tried)) <= error;
       };
       if (good(count)) {
         int enough = count;
@@ -76,6 +78,12 @@ class Choice {
       if (count == most_) too_many("more than " + std::to_string(most_));
       below = count;
     }
+  }
+
+  // What modes from here on add reaches about half a shear wave far.
+  bool dies_away(double cut_off) const {
+    const double speed = std::sqrt(lame_parameters(model_.material).mu / model_.material.density);
+    return std::numbers::pi * speed / cut_off <= residual_radius_;
   }
 
   // And one more.
@@ -112,6 +120,7 @@ class Choice {
   const ElasticStatics& statics_;
   const Model& model_;
   const FingertipReference& reference_;
+  double residual_radius_;
   const Console& console_;
   int most_;
 };
@@ -124,11 +133,10 @@ ModalResponse compute_reduced_modes(const TetMesh& mesh, const std::vector<int>&
   const ElasticStatics statics(assemble_stiffness(mesh, lame_parameters(model.material)),
                                model.mesh.nodes, model.mesh.node_mass, clamped);
   const FingertipReference reference(statics, model, config.contact_radius, clamped);
-  ModalResponse response = Choice(statics, model, reference, console).of(config);
+  const double radius = residual_radius(model.mesh, config.contact_radius);
+  ModalResponse response = Choice(statics, model, reference, radius, console).of(config);
   ModeReduction reduction = response.residual.reduction;
-  response.residual =
-      residual_compliance(statics, model.mesh, response,
-                          residual_radius(model.mesh, config.contact_radius), threads, console);
+  response.residual = residual_compliance(statics, model.mesh, response, radius, threads, console);
   const ReductionError error = reference.error(response);
   reduction.elastic_modes = static_cast<int>(statics.elastic_modes());
   reduction.contact_radius = config.contact_radius;

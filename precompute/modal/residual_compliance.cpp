@@ -13,7 +13,8 @@ namespace irdm::precompute {
 namespace {
 
 constexpr int kNodesAtOnce = 16;
-constexpr double kTolerance = 1e-5;
+constexpr double kTolerance = 1e-5;  // of the vector; that of the eigenvalue is its square
+constexpr double kMargin = 1e-7;
 
 using Block = UpperBlocks::Block;
 using Row = std::vector<std::pair<int, Block>>;  // of a node: those from itself on
@@ -119,7 +120,7 @@ double residual_radius(const ModelMesh& mesh, double contact_radius) {
                                       .norm());
     }
   }
-  return std::max(2.0 * contact_radius, longest) * (1.0 + 1e-9);
+  return (2.0 * contact_radius + longest) * (1.0 + 1e-9);
 }
 
 double needed_for_definiteness(const ResidualCompliance& compliance) {
@@ -132,8 +133,7 @@ double needed_for_definiteness(const ResidualCompliance& compliance) {
     throw Error("residual compliance", "its smallest eigenvalue is not found",
                 "use another modes.contact_radius");
   }
-  // Seen to rounding of what the difference is made of.
-  return std::max(0.0, (1.0 + kTolerance) * solver.eigenvalues()(0) - op.bound());
+  return std::max(0.0, (1.0 + kMargin) * solver.eigenvalues()(0) - op.bound());
 }
 
 ResidualCompliance residual_compliance(const ElasticStatics& statics, const ModelMesh& mesh,

@@ -22,7 +22,7 @@ ResidualCompliance residual_compliance(const ElasticStatics& statics, const Mode
                                        const Console& console);
 
 /// What has to be added to the diagonal of a symmetric matrix so that it has no negative eigenvalue
-/// (0 where there is none), found by Lanczos to 1e-5 of its norm.
+/// (0 where there is none), found by Lanczos to 1e-7 of its norm.
 double needed_for_definiteness(const ResidualCompliance& compliance);
 
 }  // namespace irdm::precompute

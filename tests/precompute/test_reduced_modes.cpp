@@ -104,7 +104,7 @@ TEST_CASE("near a contact the static compliance is that of all modes, and gives 
       const double apart =
           (cube.model.mesh.rest_position(i) - cube.model.mesh.rest_position(j)).norm();
       if (apart > reduction.residual_radius) {
-        CHECK(residual.block<3, 3>(3 * i, 3 * j).isZero(0.0));
+        REQUIRE(residual.block<3, 3>(3 * i, 3 * j).isZero(0.0));
         continue;
       }
       Matrix3 difference = found.block<3, 3>(3 * i, 3 * j) - expected.block<3, 3>(3 * i, 3 * j);
@@ -142,8 +142,8 @@ TEST_CASE("the stated errors are those against all modes") {
   const FingertipReference reference(statics, cube.model, 0.015, {});
   const ModalResponse all = cube.all();
   const ReductionError none = reference.error(all);
-  CHECK(none.force < 1e-6);
-  CHECK(none.shape < 1e-6);
+  CHECK(none.force < 1e-5);  // of the quadrature
+  CHECK(none.shape < 1e-9);
   CHECK(reduction.force_error > 1e-4);
   CHECK(reduction.force_error < 0.015);
   CHECK(reduction.shape_error < 0.15);
@@ -156,16 +156,19 @@ TEST_CASE("modes are chosen by frequency and by error") {
   Cube cube;
   const ModalResponse all = cube.all();
   ModesConfig by_frequency;
-  by_frequency.highest_frequency = 60.0;
-  const auto below = (all.angular_frequency.array() <= 2.0 * std::numbers::pi * 60.0).count();
+  by_frequency.highest_frequency = 40.0;
+  const auto below = (all.angular_frequency.array() <= 2.0 * std::numbers::pi * 40.0).count();
   const ModalResponse found = cube.reduced(by_frequency);
   CHECK(found.mode_count() == below);
   CHECK(found.residual.reduction.cut_off == Approx(all.angular_frequency(below)));
   ModesConfig by_error;
-  by_error.error = 0.012;
+  by_error.error = 0.02;
   const ModalResponse enough = cube.reduced(by_error);
-  CHECK(enough.residual.reduction.force_error <= 0.012 * 1.001);
-  CHECK(enough.mode_count() > 1);
+  CHECK(enough.residual.reduction.force_error < 0.025);  // and what is added to the diagonal
+  ModesConfig fewer;
+  fewer.count = 10;
+  CHECK(cube.reduced(fewer).residual.reduction.force_error >
+        enough.residual.reduction.force_error);
 }
 
 TEST_CASE("some of the modes and their residual are the same for any number of threads") {

@@ -153,7 +153,10 @@ CompressionSummary compress_model(const std::filesystem::path& input,
     }
     const bool helped = larger(error) < 0.95 * larger(best);
     if (larger(error) < larger(best)) best = error;
-    const bool more_early = automatic && attempt > 0 && 2 * found.early_steps <= most_early;
+    // What is left of the force is what is fast: more early steps. What is left of displacement:
+    // more shapes and poles, as long as these help.
+    const bool more_early = automatic && attempt > 0 && (error.force > settings.error || !helped) &&
+                            2 * found.early_steps <= most_early;
     if (attempt > 0 && !helped && !more_early) break;
     if (more_early) {
       found = survey(dense, 2 * found.early_steps, console);

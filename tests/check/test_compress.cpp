@@ -64,28 +64,28 @@ TEST_CASE("pole fit takes no more poles than the error needs, and none that grow
 
 TEST_CASE("compress: the stated errors are those of the file, twice to the same bits") {
   Workshop work;
-  DenseCube cube(300);
+  DenseCube cube(200);
   cube.write(work.file("dense.h5"));
-  const CompressionSummary summary = work.compress("small.h5");
-  work.compress("again.h5");
+  const CompressionSummary summary = work.compress("small.h5", {.error = 0.03});
+  work.compress("again.h5", {.error = 0.03});
   CHECK(irdm::test::file_content(work.file("small.h5")) ==
         irdm::test::file_content(work.file("again.h5")));
   CHECK_FALSE(std::filesystem::exists(work.file("part")));
-  CHECK(summary.error.displacement <= 0.01);
-  CHECK(summary.error.force <= 0.01);
+  CHECK(summary.error.displacement <= 0.03);
+  CHECK(summary.error.force <= 0.03);
   CHECK(summary.error.measured_columns == cube.model.degrees_of_freedom());
 
   const Model model = read_model(work.file("small.h5"), ResponseKind::kCompressed);
   const auto& response = std::get<CompressedResponse>(model.response);
-  const RowMatrix<double> late = late_responses(response, 300 - response.early_steps);
+  const RowMatrix<double> late = late_responses(response, 200 - response.early_steps);
   double largest = 0.0;
   for (int b = 0; b < model.degrees_of_freedom(); b += 5) {
-    const RowMatrix<double> column = compressed_column(response, late, b, 300);
+    const RowMatrix<double> column = compressed_column(response, late, b, 200);
     double difference = 0.0;
     double size = 0.0;
     double early = 0.0;
     double peak = 0.0;
-    for (int s = 0; s < 300; ++s) {
+    for (int s = 0; s < 200; ++s) {
       for (int a = 0; a < model.degrees_of_freedom(); ++a) {
         size += cube.at(s, a, b) * cube.at(s, a, b);
         difference += std::pow(column(s, a) - cube.at(s, a, b), 2);
@@ -113,7 +113,8 @@ TEST_CASE("compress refuses what cannot be reached, and leaves nothing behind") 
     }
   }
   cube.write(work.file("dense.h5"));
-  CHECK_THROWS_WITH(work.compress("small.h5"), Contains("cannot be compressed to an error of 1 %"));
+  CHECK_THROWS_WITH(work.compress("small.h5", {.error = 0.01, .early_steps = 8}),
+                    Contains("cannot be compressed to an error of 1 %"));
   CHECK_THROWS_WITH(work.compress("small.h5", {.error = 0.01, .early_steps = 25}),
                     Contains("100 steps, too few"));
   CHECK_FALSE(std::filesystem::exists(work.file("small.h5")));

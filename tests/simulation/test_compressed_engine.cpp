@@ -30,6 +30,19 @@ std::shared_ptr<const Model> made_up() {
   const int nodes = model.mesh.surface_node_count();
   response.early.resize(early_entries(static_cast<std::size_t>(nodes)) * kEarly);
   for (float& value : response.early) value = static_cast<float>(uniform(random));
+  // A node's own block is symmetric.
+  for (int i = 0; i < nodes; ++i) {
+    for (int entry = 0; entry < 9; ++entry) {
+      const int other = 3 * (entry % 3) + entry / 3;
+      const auto at = [&](int e) {
+        return (static_cast<std::size_t>(i * (i + 1) / 2 + i) * 9 + static_cast<std::size_t>(e)) *
+               kEarly;
+      };
+      for (std::size_t s = 0; s < kEarly; ++s) {
+        response.early[at(entry) + s] = response.early[at(std::min(entry, other)) + s];
+      }
+    }
+  }
   constexpr int kShapes = 7;
   response.shapes.resize(3 * nodes, kShapes);
   for (Eigen::Index i = 0; i < response.shapes.size(); ++i) {

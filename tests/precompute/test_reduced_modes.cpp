@@ -167,8 +167,7 @@ TEST_CASE("modes are chosen by frequency and by error") {
   CHECK(enough.residual.reduction.force_error < 0.025);  // and what is added to the diagonal
   ModesConfig fewer;
   fewer.count = 10;
-  CHECK(cube.reduced(fewer).residual.reduction.force_error >
-        enough.residual.reduction.force_error);
+  CHECK(cube.reduced(fewer).residual.reduction.force_error > enough.residual.reduction.force_error);
 }
 
 TEST_CASE("some of the modes and their residual are the same for any number of threads") {

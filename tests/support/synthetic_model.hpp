@@ -14,8 +14,8 @@ Model synthetic_cube(int cells, int modes, int steps, double edge = 0.12, unsign
 /// Gives its modes made-up centrifugal forces.
 void add_centrifugal(Model& modal, unsigned seed = 2);
 
-/// Gives it a made-up residual compliance between the corners of each triangle, as large as its R[0]:
-/// symmetric and positive definite.
+/// Gives it a made-up residual compliance between the corners of each triangle, as large as its
+/// R[0]: symmetric and positive definite.
 void add_residual(Model& modal, unsigned seed = 3);
 
 /// The same object with R itself, and the centrifugal response if there is one, computed from its

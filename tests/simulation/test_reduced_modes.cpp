@@ -139,16 +139,20 @@ TEST_CASE("reduced modes: nothing allocates in a step") {
   CHECK(touching > 100);
 }
 
-TEST_CASE("reduced modes: a fingertip that presses feels the force of all modes within 1 %") {
+TEST_CASE(
+    "reduced modes: a fingertip that presses feels the force that the file says, about 1 % off") {
   FemCube all;
   all.cells = 8;
   all.poisson_ratio = 0.4;
   FemCube some = all;
-  some.modes = 400;
+  some.modes = 200;
   const double difference = force_difference(all, some, 0.003, 0.004);
-  std::cout << "400 of " << std::get<ModalResponse>(fem_cube(all)->response).mode_count()
+  std::cout << "200 of " << std::get<ModalResponse>(fem_cube(all)->response).mode_count()
             << " modes: force off by " << difference << "\n";
-  CHECK(difference < 0.01);
+  const double stated =
+      std::get<ModalResponse>(fem_cube(some)->response).residual.reduction.force_error;
+  CHECK(stated < 0.015);
+  CHECK(difference < 1.5 * stated);  // another place and speed than the samples'
 }
 
 TEST_CASE("reduced modes: the same on a finer mesh, in the middle, at an edge and at a corner",

@@ -273,6 +273,7 @@ void FakeDriver::finish_tick() {
 void FakeDriver::write_log(const FakeDevice& device) {
   if (log_file.empty()) return;
   std::ofstream file(log_file, std::ios::app);
+  file.precision(17);
   for (const FrameRecord& frame : device.log) {
     file << frame.tick << ' ' << frame.failed;
     for (const double value : frame.position) file << ' ' << value;

@@ -17,6 +17,9 @@ if(IRDM_SANITIZE)
   target_compile_options(irdm_options INTERFACE
     -O1 -g1 -fsanitize=${IRDM_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   target_link_options(irdm_options INTERFACE -fsanitize=${IRDM_SANITIZE})
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+    target_link_options(irdm_options INTERFACE -fuse-ld=lld)
+  endif()
   if(IRDM_SANITIZE MATCHES "undefined")
     # These take half of the time to compile, and the address sanitizer finds what matters of them.
     target_compile_options(irdm_options INTERFACE -fno-sanitize=null,object-size,vptr,alignment,pointer-overflow)

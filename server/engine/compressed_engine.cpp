@@ -150,7 +150,7 @@ void CompressedEngine::advance(std::span<const NodalForce> forces) noexcept {
   late_.advance(forces);
 }
 
-void CompressedEngine::displacement(Points& u) const {
+void CompressedEngine::displacement(Points& u, double /*tolerance*/) const {
   const int nodes = model_->mesh.surface_node_count();
   u.resize(nodes, 3);
 #pragma omp parallel for schedule(static)

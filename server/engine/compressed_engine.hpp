@@ -24,7 +24,8 @@ class CompressedEngine final : public ResponseEngine {
                std::span<Matrix3> response) noexcept override;
   void add_past(std::span<const NodalForce> forces, int age) noexcept override;
   void advance(std::span<const NodalForce> forces) noexcept override;
-  void displacement(Points& u) const override;
+  using ResponseEngine::displacement;
+  void displacement(Points& u, double tolerance) const override;
   Eigen::MatrixXd instant_compliance() const override;
   void reset() noexcept override;
 

@@ -1,6 +1,7 @@
 #include "server/engine/static_compliance.hpp"
 
 #include <limits>
+#include <numeric>
 
 #include "common/response/compressed_response.hpp"
 

@@ -48,8 +48,12 @@ Report check_modes(const std::filesystem::path& path, const CheckOptions& option
   }
   const ModalColumns columns(response, model.dt);
   Report report{modes_line(response, model.material)};
-  if (!response.residual.empty()) report.push_back(residual_line(response));
-  append(report, static_lines(model, columns));
+  if (response.residual.empty()) {
+    append(report, static_lines(model, columns));
+  } else {
+    report.push_back(residual_line(response));
+    report.push_back({"static compliance", Verdict::kNone, "not all modes are there"});
+  }
   report.push_back(decay_line(decay_left(response, model.dt, model.steps), false));
 
   const RecordLength length = record_length(response, model.dt);

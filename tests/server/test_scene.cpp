@@ -295,7 +295,7 @@ TEST_CASE("each wrong type or value in a scene is told with file, line, key and 
   CHECK(rejection("[object]\nmodel = \"x\"\n") ==
         "s.toml:1: object is not a list of tables; write it as [[object]]");
   CHECK(rejection(kObject + "engine = \"steam\"\n") ==
-        "s.toml:3: object[0].engine is 'steam'; give one of: modal | dense");
+        "s.toml:3: object[0].engine is 'steam'; give one of: modal | dense | compressed");
   CHECK(rejection(kObject + "name = 1\n") ==
         "s.toml:3: object[0].name is not text; give text in quotes");
   CHECK(rejection("server = 1\n" + kObject) ==

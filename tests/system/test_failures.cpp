@@ -6,6 +6,7 @@
 #include <random>
 #include <thread>
 
+#include "common/error.hpp"
 #include "common/hdf5/file.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/raw_peer.hpp"
@@ -37,6 +38,14 @@ std::vector<std::uint8_t> noise(unsigned seed, std::size_t size) {
   std::vector<std::uint8_t> bytes(size);
   for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(random());
   return bytes;
+}
+
+std::uint64_t committed_so_far(const std::filesystem::path& path) {
+  try {
+    return hdf5::File::open(path).read<std::uint64_t>("/committed", {1})[0];
+  } catch (const Error&) {
+    return 0;
+  }
 }
 
 }  // namespace
@@ -121,8 +130,9 @@ TEST_CASE("a server that is killed while it records loses no step that it has co
   for (int i = 0; i < 50; ++i) {
     const auto path = stage.path("killed" + std::to_string(i) + ".h5");
     Server server = stage.start_server({"--record", path.string()});
+    REQUIRE(eventually([&] { return committed_so_far(path) > 0; }));
     // Not to wait for anything: a kill comes at any moment.
-    std::this_thread::sleep_for(std::chrono::microseconds(200'000 + random() % 100'000));
+    std::this_thread::sleep_for(std::chrono::microseconds(random() % 100'000));
     server.process.signal(SIGKILL);
     CHECK(server.process.wait() == -SIGKILL);
     const hdf5::File file = hdf5::File::open(path);

@@ -135,7 +135,7 @@ test("a number out of its range is refused", () => {
   for (const [bytes, offset, value] of [
     [state, 34, 101], // recordings
     [state, 37, 3], // length of the notice, high byte
-    [state, object + 56, 2], // engine
+    [state, object + 56, 3], // engine
     [state, object + 57, 2], // coupling to inertia
     [state, recording + 2, 65], // length of a name
     [frameBytes, stylus, 2], // present

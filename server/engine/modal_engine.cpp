@@ -147,6 +147,7 @@ void ModalEngine<Scalar>::predict(std::span<const ContactPatch> patches, std::sp
   for (std::size_t first = 0; first < modes_; first += kSlice) {
     add_slice(patches, {first, std::min(kSlice, modes_ - first)}, h, compliance);
   }
+  residual_.add_compliance(patches, compliance);
   compliance.template triangularView<Eigen::StrictlyUpper>() = compliance.transpose();
 }
 
@@ -174,7 +175,6 @@ void ModalEngine<Scalar>::add_slice(std::span<const ContactPatch> patches, const
           Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(shared.data());
     }
   }
-  residual_.add_compliance(patches, compliance);
 }
 
 // Three nodes at a time; where fewer are left, the last one counts with weight 0.

@@ -21,8 +21,8 @@ std::shared_ptr<const Model> share(Model model) {
   return std::make_shared<const Model>(std::move(model));
 }
 
-Model with_residual() {
-  Model model = synthetic_cube(3, 20, 200);
+Model with_residual(int modes = 20) {
+  Model model = synthetic_cube(3, modes, 200);
   add_residual(model);
   return model;
 }
@@ -47,23 +47,39 @@ std::vector<Vector3> pressed_forces(const FemCube& cube, double x, double z) {
   return forces;
 }
 
-double force_difference(const FemCube& all, const FemCube& some, double x, double z) {
+/// What two runs of the same press differ by, as shares of the largest force.
+struct ForceDifference {
+  double step = 0.0;         ///< of a step
+  double mean = 0.0;         ///< without what goes to and fro from step to step (binomial, 5 steps)
+  double alternation = 0.0;  ///< by which the first run's force goes to and fro from step to step
+};
+
+ForceDifference force_difference(const FemCube& all, const FemCube& some, double x, double z) {
   const std::vector<Vector3> expected = pressed_forces(all, x, z);
   const std::vector<Vector3> found = pressed_forces(some, x, z);
-  double largest = 0.0;
   double peak = 0.0;
-  for (std::size_t k = 0; k < expected.size(); ++k) {
-    largest = std::max(largest, (found[k] - expected[k]).norm());
-    peak = std::max(peak, expected[k].norm());
-  }
+  for (const Vector3& force : expected) peak = std::max(peak, force.norm());
   REQUIRE(peak > 0.1);
-  return largest / peak;
+  ForceDifference worst;
+  const auto difference = [&](std::size_t k) -> Vector3 { return found[k] - expected[k]; };
+  for (std::size_t k = 2; k + 2 < expected.size(); ++k) {
+    const Vector3 mean = (difference(k - 2) + 4.0 * difference(k - 1) + 6.0 * difference(k) +
+                          4.0 * difference(k + 1) + difference(k + 2)) /
+                         16.0;
+    const Vector3 fro = (expected[k - 1] - 2.0 * expected[k] + expected[k + 1]) / 4.0;
+    worst.step = std::max(worst.step, difference(k).norm() / peak);
+    worst.mean = std::max(worst.mean, mean.norm() / peak);
+    worst.alternation = std::max(worst.alternation, fro.norm() / peak);
+  }
+  return worst;
 }
 
 }  // namespace
 
 TEST_CASE("reduced modes: the engine answers as R does that the model stands for") {
-  const Model model = with_residual();
+  const int modes = GENERATE(20, 1100);  // the engine takes 512 at a time
+  CAPTURE(modes);
+  const Model model = with_residual(modes);
   const auto modal = make_engine(share(model));
   const auto dense = make_engine(share(with_dense_response<double>(model)));
   const std::array<ContactPatch, 3> patches{
@@ -146,23 +162,33 @@ TEST_CASE(
   all.poisson_ratio = 0.4;
   FemCube some = all;
   some.modes = 200;
-  const double difference = force_difference(all, some, 0.003, 0.004);
+  const ForceDifference difference = force_difference(all, some, 0.003, 0.004);
   std::cout << "200 of " << std::get<ModalResponse>(fem_cube(all)->response).mode_count()
-            << " modes: force off by " << difference << "\n";
+            << " modes: force off by " << difference.step << "\n";
   const double stated =
       std::get<ModalResponse>(fem_cube(some)->response).residual.reduction.force_error;
   CHECK(stated < 0.015);
-  CHECK(difference < 1.5 * stated);  // another place and speed than the samples'
+  CHECK(difference.step < 1.5 * stated);  // another place and speed than the samples'
 }
 
-TEST_CASE("reduced modes: the same on a finer mesh", "[slow]") {
+// At edges and corners, where little mass is under the finger, the force of *all* modes goes to and
+// fro from step to step: the step's inverse has a pole near -1 there, which the few modes do not.
+TEST_CASE("reduced modes: the same on a finer mesh, in the middle, at an edge and at a corner",
+          "[slow]") {
   FemCube all;
   all.cells = 12;
   all.poisson_ratio = 0.4;
   FemCube some = all;
-  some.modes = 300;
-  const double stated =
-      std::get<ModalResponse>(fem_cube(some)->response).residual.reduction.force_error;
-  CHECK(stated < 0.01);
-  CHECK(force_difference(all, some, 0.003, 0.004) < 1.5 * stated);
+  some.modes = 600;
+  for (const double x : {0.003, 0.055}) {
+    for (const double z : {0.004, 0.055}) {
+      const ForceDifference difference = force_difference(all, some, x, z);
+      std::cout << some.modes << " of "
+                << std::get<ModalResponse>(fem_cube(all)->response).mode_count() << " modes, at "
+                << x << ", " << z << ": force off by " << difference.step << ", in the mean by "
+                << difference.mean << "; goes to and fro by " << difference.alternation << "\n";
+      CHECK(difference.mean < 0.01);
+      CHECK(difference.step < 0.01 + difference.alternation);
+    }
+  }
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "common/error.hpp"
 #include "common/model/model_writer.hpp"
@@ -64,6 +65,17 @@ Eigen::VectorXd ModalColumns::residual(int b) const {
 Eigen::VectorXd ModalColumns::settled(int b) const {
   const Eigen::ArrayXd omega = response_.angular_frequency;
   return shapes() * (shapes().row(b).transpose().array() / omega.square()).matrix() + residual(b);
+}
+
+std::vector<int> ModalColumns::complete_nodes(int b) const {
+  const ResidualCompliance& g = response_.residual;
+  if (g.empty()) {
+    std::vector<int> all(static_cast<std::size_t>(shapes().rows() / 3));
+    std::iota(all.begin(), all.end(), 0);
+    return all;
+  }
+  const auto row = g.row_start.begin() + b / 3;
+  return {g.nodes.begin() + row[0], g.nodes.begin() + row[1]};
 }
 
 StoredColumns::StoredColumns(const std::filesystem::path& path, int degrees_of_freedom, int steps)

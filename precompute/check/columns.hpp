@@ -10,9 +10,9 @@
 namespace irdm::precompute {
 
 /// Where the checks read R: never all of it at once.
-class Columns {
+class ResponseColumns {
  public:
-  virtual ~Columns() = default;
+  virtual ~ResponseColumns() = default;
   /// R[s](a, b) of the first `steps` steps: (steps, 3n) [m/N].
   virtual RowMatrix<double> column(int b, int steps) const = 0;
   /// Displacement under a force of 1 N on b that stays: sum_s R[s](:, b), (3n) [m/N].
@@ -20,12 +20,14 @@ class Columns {
 };
 
 /// Out of the modes and what they leave out: settled() is the limit for all time.
-class ModalColumns : public Columns {
+class ModalColumns : public ResponseColumns {
  public:
   /// @param response with shapes in double precision; must outlive this
   ModalColumns(const ModalResponse& response, double dt) : response_(response), dt_(dt) {}
   RowMatrix<double> column(int b, int steps) const override;
   Eigen::VectorXd settled(int b) const override;
+  /// Surface nodes where b's column has what modes that are left out do; every one where none are.
+  std::vector<int> complete_nodes(int b) const;
 
  private:
   Eigen::VectorXd residual(int b) const;
@@ -36,7 +38,7 @@ class ModalColumns : public Columns {
 
 /// Out of /response/dense/R, one column a time: settled() sums the T steps that there are. Throws
 /// Error when the dataset cannot be read, as where a chunk does not match its checksum.
-class StoredColumns : public Columns {
+class StoredColumns : public ResponseColumns {
  public:
   StoredColumns(const std::filesystem::path& path, int degrees_of_freedom, int steps);
   RowMatrix<double> column(int b, int steps) const override;
@@ -52,7 +54,7 @@ class StoredColumns : public Columns {
 };
 
 /// Out of a compressed response: settled() is the limit for all time.
-class CompressedColumns : public Columns {
+class CompressedColumns : public ResponseColumns {
  public:
   /// @param response must outlive this
   explicit CompressedColumns(const CompressedResponse& response) : response_(response) {}

@@ -9,7 +9,7 @@ namespace irdm::precompute {
 namespace {
 
 constexpr int kPerDecade = 6;
-constexpr int kBisections = 20;
+constexpr int kCouplingBisections = 20;
 
 // det(C + w^delay H + Id / k), times the pole of the rigid motion.
 class ClosedLoop {
@@ -72,7 +72,7 @@ double largest_coupling(const DrivingPoint& record, const Matrix3& rigid, const 
     grown *= factor;
     if (stable > kStiffestCoupling) return std::numeric_limits<double>::infinity();
   }
-  for (int i = 0; i < kBisections; ++i) {
+  for (int i = 0; i < kCouplingBisections; ++i) {
     const double middle = std::sqrt(stable * grown);
     (closed.grows(middle) ? grown : stable) = middle;
   }

@@ -11,7 +11,7 @@ namespace {
 constexpr double kInward = 7.0;
 constexpr double kNearest = 1e-6;
 constexpr double kOutward = 0.5;
-constexpr int kBisections = 12;
+constexpr int kPoleBisections = 12;
 // Beyond it, a record that was scaled by the powers of the radius overflows when squared and cubed.
 constexpr double kLargest = 1e60;
 
@@ -36,7 +36,7 @@ InverseStability analyse_inverse(const DrivingPoint& record, const Matrix3& rigi
   const double widest = std::log(kLargest) / static_cast<double>(record.cols());
   double near = kNearest;
   double far = growing > 0 ? kInward : std::min(kOutward, widest);
-  for (int i = 0; i < kBisections; ++i) {
+  for (int i = 0; i < kPoleBisections; ++i) {
     const double middle = std::sqrt(near * far);
     const bool reached = zeros_inside(record, rigid, radius * std::exp(sign * middle)) > 0;
     (reached == (growing > 0) ? near : far) = middle;

@@ -74,7 +74,7 @@ Line reciprocity_line(const Reciprocity& reciprocity) {
                share, reciprocity.column_of_largest(), reciprocity.sample_size())};
 }
 
-Report static_lines(const Model& model, const Columns& columns) {
+Report static_lines(const Model& model, const ResponseColumns& columns) {
   if (model.body.support == Support::kFixed) {
     return {{"momentum", Verdict::kNone, "a fixed body may have it"},
             {"static compliance", Verdict::kNone, "the file does not say which nodes are clamped"}};
@@ -98,6 +98,26 @@ Report static_lines(const Model& model, const Columns& columns) {
             worst.mismatch, count)}};
 }
 
+Line static_line_of_some_modes(const Model& model, const ModalColumns& columns) {
+  const StaticReference reference(model);
+  const std::vector<int> sample = fixed_sample(model.degrees_of_freedom(), kStaticColumns);
+  double worst = 0.0;
+  for (const int b : sample) {
+    const Eigen::VectorXd expected = reference.displacement(b);
+    const Eigen::VectorXd difference = columns.settled(b) - expected;
+    for (const int node : columns.complete_nodes(b)) {
+      const double one = difference.segment<3>(3 * node).cwiseAbs().maxCoeff();
+      if (!(one <= worst * expected.cwiseAbs().maxCoeff())) {
+        worst = one / expected.cwiseAbs().maxCoeff();
+      }
+    }
+  }
+  return {"static compliance", judge(worst, 1e-2, 1e-1),
+          text("near the force, settled columns differ by %.2g at most from finite elements solved "
+               "anew (%d columns)",
+               worst, static_cast<int>(sample.size()))};
+}
+
 Line decay_line(double left, bool cut) {
   const Verdict verdict = judge(left, 1e-2, 1e-1);
   return {"decay at T", !cut && verdict == Verdict::kFail ? Verdict::kWarn : verdict,
@@ -110,7 +130,7 @@ double wave_interval(const Model& model) {
   return std::min(model.dt, reach / theoretical_speeds(model.material).dilatational / kSamples);
 }
 
-Line wave_line(const Model& model, const Columns& columns, double dt, int steps) {
+Line wave_line(const Model& model, const ResponseColumns& columns, double dt, int steps) {
   const WaveSpeeds theory = theoretical_speeds(model.material);
   const int b = wave_source(model);
   const double reach = model.mesh.rest_position(b / 3).norm();

@@ -20,7 +20,10 @@ Line modes_line(const ModalResponse& response, const Material& material);
 Line residual_line(const ModalResponse& response);
 Line reciprocity_line(const Reciprocity& reciprocity);
 /// Static compliance and momentum of some columns against finite elements assembled again.
-Report static_lines(const Model& model, const Columns& columns);
+Report static_lines(const Model& model, const ResponseColumns& columns);
+/// The same where modes are left out: compliance alone, and at the nodes alone where what they do
+/// is kept.
+Line static_line_of_some_modes(const Model& model, const ModalColumns& columns);
 /// From what was found at every node: passivity, stable inverse, stiffness, coupling.
 /// @param coupling that is going to be used [N/m]; 0: not said
 Report node_lines(const std::vector<NodeFindings>& nodes, const HandLoop& loop, double coupling);
@@ -30,6 +33,6 @@ Line decay_line(double left, bool cut);
 /// Interval at which a wave is watched where R can be had at any time [s]: at most dt.
 double wave_interval(const Model& model);
 /// @param columns sampled every `dt` [s], `steps` of them at most
-Line wave_line(const Model& model, const Columns& columns, double dt, int steps);
+Line wave_line(const Model& model, const ResponseColumns& columns, double dt, int steps);
 
 }  // namespace irdm::precompute

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kArrivalShare = 0.05;  // of the first peak
 constexpr double kPeakShare = 0.3;      // of the largest displacement: smaller ones are precursors
-constexpr double kFlat = 0.2;           // distance from the tangent plane per distance
+constexpr double kFlatSlope = 0.2;      // distance from the tangent plane per distance
 
 struct Passage {
   double distance;  // [m]
@@ -114,7 +114,8 @@ MeasuredWave measure_wave(const Model& model, int b, const RowMatrix<double>& co
   for (int i = 0; i < model.mesh.surface_node_count(); ++i) {
     const Vector3 from = model.mesh.rest_position(i) - source;
     const double distance = from.norm();
-    if (i == b / 3 || distance > reach || std::abs(from.dot(outward)) > kFlat * distance) continue;
+    if (i == b / 3 || distance > reach || std::abs(from.dot(outward)) > kFlatSlope * distance)
+      continue;
     const Vector3 drift =
         dt * dt * rigid_mobility(model.body, model.mesh.rest_position(i), source).col(b % 3);
     Eigen::VectorXd moved(column.rows());

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "common/error.hpp"
+#include "precompute/blas_kernel.hpp"
 #include "precompute/fem/centrifugal_load.hpp"
 #include "precompute/modal/fingertip_reference.hpp"
 #include "precompute/modal/lowest_modes.hpp"
@@ -130,6 +131,8 @@ class Choice {
 ModalResponse compute_reduced_modes(const TetMesh& mesh, const std::vector<int>& clamped,
                                     const Model& model, const ModesConfig& config, int threads,
                                     const Console& console) {
+  const SingleThreadedBlas
+      single;  // the factors' bits, and so the modes', do not depend on threads
   const ElasticStatics statics(assemble_stiffness(mesh, lame_parameters(model.material)),
                                model.mesh.nodes, model.mesh.node_mass, clamped);
   const FingertipReference reference(statics, model, config.contact_radius, clamped);

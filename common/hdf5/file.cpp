@@ -1,6 +1,8 @@
 #include "common/hdf5/file.hpp"
 
 #include <algorithm>
+#include <array>
+#include <fstream>
 #include <limits>
 #include <system_error>
 
@@ -61,6 +63,15 @@ Handle make_access_properties() {
   return {H5Pcreate(H5P_FILE_ACCESS), H5Pclose};
 }
 
+/// Whether one has the file open or has left it so: the superblock's consistency flags.
+bool has_swmr_writer(const std::filesystem::path& path) {
+  constexpr std::size_t kVersion = 8, kFlags = 11;
+  constexpr int kWithFlags = 3, kSwmrWriter = 4;
+  std::array<char, 12> superblock{};
+  std::ifstream(path, std::ios::binary).read(superblock.data(), superblock.size());
+  return superblock[kVersion] == kWithFlags && (superblock[kFlags] & kSwmrWriter) != 0;
+}
+
 // Of the file in memory.
 constexpr std::size_t kImageGrowth = 1 << 16;
 
@@ -103,12 +114,12 @@ void File::fail_write(const std::string& what) const {
   throw Error(name_, what, "check free space and permissions of the folder");
 }
 
-File File::create(const std::filesystem::path& path) {
+File File::create(const std::filesystem::path& path, const Handle& access) {
   prepare_library();
   if (std::filesystem::exists(path)) {
     throw Error(path.string(), "exists already", "choose another name or remove it");
   }
-  Handle file(H5Fcreate(path.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+  Handle file(H5Fcreate(path.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, access.get()), H5Fclose);
   if (file.get() < 0) {
     throw Error(path.string(), "cannot be created", "check that the folder exists and is writable");
   }
@@ -117,12 +128,28 @@ File File::create(const std::filesystem::path& path) {
   return made;
 }
 
+File File::create(const std::filesystem::path& path) {
+  return create(path, make_access_properties());
+}
+
+File File::create_for_swmr(const std::filesystem::path& path) {
+  const Handle access = make_access_properties();
+  H5Pset_libver_bounds(access.get(), H5F_LIBVER_V110, H5F_LIBVER_V110);
+  return create(path, access);
+}
+
+void File::begin_swmr() {
+  flush();
+  if (H5Fstart_swmr_write(file_.get()) < 0) fail_write("cannot be opened for readers");
+}
+
 File File::open(const std::filesystem::path& path) {
   prepare_library();
   if (!std::filesystem::exists(path)) {
     throw Error(path.string(), "no such file", "check the path");
   }
-  Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  const unsigned access = H5F_ACC_RDONLY | (has_swmr_writer(path) ? H5F_ACC_SWMR_READ : 0u);
+  Handle file(H5Fopen(path.c_str(), access, H5P_DEFAULT), H5Fclose);
   if (file.get() < 0) {
     throw Error(path.string(), "is not a complete HDF5 file",
                 "it is truncated, of another kind or not readable; make it again");

@@ -30,7 +30,12 @@ class File {
  public:
   /// Creates a file that must not exist yet. Throws Error.
   static File create(const std::filesystem::path& path);
-  /// Opens a file for reading. Throws Error when it is missing, unreadable or not HDF5.
+  /// The same for a file that can be read while it is written, and after its writer was killed at
+  /// any moment (HDF5's "single writer, multiple readers", of its format 1.10): once there are all
+  /// datasets and attributes, and begin_swmr() was called.
+  static File create_for_swmr(const std::filesystem::path& path);
+  /// Opens a file for reading, also one whose writer is at work or was killed after begin_swmr().
+  /// Throws Error when it is missing, unreadable or not HDF5.
   static File open(const std::filesystem::path& path);
   /// A new file in memory, which image() turns into bytes; `name` is for messages.
   static File in_memory(const std::string& name);
@@ -42,6 +47,9 @@ class File {
   bool exists(const std::string& path) const;
 
   void create_group(const std::string& path);
+  /// From now on datasets only grow and are written, and HDF5 writes what points to something after
+  /// that, so that the file on the disk is whole at any moment.
+  void begin_swmr();
   void flush();
   /// The bytes of the file as it would be on the disk.
   std::string image();
@@ -100,6 +108,7 @@ class File {
 
  private:
   File(Handle file, std::string name) : file_(std::move(file)), name_(std::move(name)) {}
+  static File create(const std::filesystem::path& path, const Handle& access);
   void reserve_for(const Handle& dataset, hsize_t rows, hsize_t more);
   [[noreturn]] void fail_read(const std::string& what) const;
   [[noreturn]] void fail_write(const std::string& what) const;

@@ -11,8 +11,10 @@
 namespace irdm::hdf5 {
 namespace {
 
-// Nodes of a chunk's index, 2.6 kB each, that are split at once, and HDF5's small blocks.
-constexpr hsize_t kIndexBytes = 16 << 10;
+// What the index of the chunks grows by for one more, and HDF5's small blocks: nodes of 2.6 kB that
+// are split, in the older format; in that of 1.10 a block of the extensible array, which has 32 kB
+// where there are a million chunks.
+constexpr hsize_t kIndexBytes = 64 << 10;
 
 int descriptor(hid_t file) noexcept {
   void* handle = nullptr;

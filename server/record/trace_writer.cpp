@@ -23,14 +23,14 @@ void put(double* row, const Vector3& v) {
 }  // namespace
 
 TraceWriter::TraceWriter(const std::filesystem::path& path, const TraceHeader& header)
-    : file_(hdf5::File::create(path)),
+    : file_(hdf5::File::create_for_swmr(path)),
       objects_(header.objects),
       stylus_count_(header.stylus_count),
       floor_(header.floor) {
   try {
     write_header(header);
     create_datasets();
-    file_.flush();
+    file_.begin_swmr();
   } catch (const Error&) {
     std::error_code ignored;
     std::filesystem::remove(path, ignored);

@@ -8,6 +8,7 @@
 
 #include "common/error.hpp"
 #include "common/hdf5/file.hpp"
+#include "tests/support/committed_so_far.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/raw_peer.hpp"
 #include "tests/system/stage.hpp"
@@ -38,14 +39,6 @@ std::vector<std::uint8_t> noise(unsigned seed, std::size_t size) {
   std::vector<std::uint8_t> bytes(size);
   for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(random());
   return bytes;
-}
-
-std::uint64_t committed_so_far(const std::filesystem::path& path) {
-  try {
-    return hdf5::File::open(path).read<std::uint64_t>("/committed", {1})[0];
-  } catch (const Error&) {
-    return 0;
-  }
 }
 
 }  // namespace

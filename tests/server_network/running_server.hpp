@@ -1,7 +1,10 @@
 #pragma once
 
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
 #include <cstdint>
+#include <fstream>
 #include <limits>
 
 #include "server/network/network_server.hpp"
@@ -9,6 +12,22 @@
 #include "tests/support/raw_peer.hpp"
 
 namespace irdm::test {
+
+inline constexpr int kNever = 3'600'000;  ///< [ms]
+/// Nobody has to hurry.
+inline const NetworkSettings kPatient{.styluses = 1,
+                                      .handshake_timeout_ms = kNever,
+                                      .absent_after_ms = kNever,
+                                      .yield_after_ms = kNever,
+                                      .silence_timeout_ms = kNever};
+
+/// Memory of this process [byte].
+inline std::size_t resident() {
+  std::ifstream file("/proc/self/statm");
+  std::size_t all = 0, pages = 0;
+  file >> all >> pages;
+  return pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+}
 
 /// A server on a free port, and what the tests of it do again and again.
 class RunningServer {

@@ -1,7 +1,4 @@
-#include <unistd.h>
-
 #include <algorithm>
-#include <fstream>
 #include <random>
 
 #include "tests/server_network/running_server.hpp"
@@ -17,14 +14,6 @@ using irdm::wire::Welcome;
 
 namespace {
 
-constexpr int kNever = 3'600'000;  // [ms]
-/// Nobody has to hurry.
-const NetworkSettings kPatient{.styluses = 1,
-                               .handshake_timeout_ms = kNever,
-                               .absent_after_ms = kNever,
-                               .yield_after_ms = kNever,
-                               .silence_timeout_ms = kNever};
-
 using Bytes = std::vector<std::uint8_t>;
 
 Bytes noise(std::uint32_t seed, std::size_t size) {
@@ -35,13 +24,6 @@ Bytes noise(std::uint32_t seed, std::size_t size) {
 }
 
 /// Resident memory of this process [bytes].
-std::size_t resident() {
-  std::ifstream file("/proc/self/statm");
-  std::size_t all = 0, pages = 0;
-  file >> all >> pages;
-  return pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
-}
-
 /// What a bridge says when it comes and moves its stylus.
 Bytes whole_session(std::uint32_t session) {
   Bytes bytes = frame_bytes(Hello{.name = "replayed"});

@@ -31,6 +31,24 @@ TEST_CASE("check-link measures a running server and says what it thinks of it") 
   CHECK_THAT(server.process.out(), Contains("peak force: 0.000 N"));
 }
 
+TEST_CASE("check-link measures a stream of datagrams") {
+  const Stage stage;
+  stage.write("scene.toml", "[server]\nudp = true\n" + scene_text().substr(9));
+  Server server = stage.start_server({"--no-viewer"});
+  stage.write(
+      "link.toml",
+      "[bridge]\nstream = \"udp\"\n[[device]]\ntype = \"virtual\"\nscript = \"script.csv\"\n");
+  stage.write("script.csv", press_and_swing());
+  const FinishedProgram check =
+      run_to_end({IRDM_BRIDGE, "check-link", "--config", stage.path("link.toml").string(),
+                  "--server", "127.0.0.1:" + std::to_string(server.port), "--duration", "0.5"});
+  CAPTURE(check.out, check.err);
+  CHECK(number_after(check.out, "success: ") > 0.0);
+  CHECK(number_after(check.out, "datagrams: ") > 0.0);
+  server.process.signal(SIGTERM);
+  CHECK(server.process.wait() == 0);
+}
+
 TEST_CASE("a server tells in its log how the run goes") {
   const Stage stage;
   stage.write("scene.toml", "[server]\nstatus_period = 1\n" + scene_text().substr(9));

@@ -11,17 +11,12 @@
 #include <stdexcept>
 
 #include "bench/statistics.hpp"
+#include "tests/support/loopback.hpp"
 
 namespace irdm::bench {
 namespace {
 
-sockaddr_in loopback(std::uint16_t port) {
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(port);
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  return address;
-}
+using test::loopback;
 
 void require(bool holds, const char* what) {
   if (!holds) throw std::runtime_error(what);

@@ -16,21 +16,16 @@
 
 #include "common/realtime/clock.hpp"
 #include "common/wire/frame.hpp"
+#include "tests/support/loopback.hpp"
 
 namespace irdm {
 namespace {
 
+using test::loopback;
+
 constexpr std::int64_t kSlowNs = 40'000'000;
 constexpr std::int64_t kFreshNs = 20'000'000;
 constexpr int kLookMs = 1;
-
-sockaddr_in loopback(std::uint16_t port) {
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(port);
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  return address;
-}
 
 void no_delay(int socket) {
   const int on = 1;

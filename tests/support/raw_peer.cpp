@@ -10,17 +10,10 @@
 #include <utility>
 
 #include "tests/support/eventually.hpp"
+#include "tests/support/loopback.hpp"
 
 namespace irdm::test {
 namespace {
-
-sockaddr_in loopback(std::uint16_t port) {
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(port);
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  return address;
-}
 
 bool readable(int descriptor) {
   pollfd entry{descriptor, POLLIN, 0};

@@ -3,15 +3,15 @@
 #include <iomanip>
 #include <sstream>
 
+#include "common/realtime/clock.hpp"
+
 namespace irdm {
 namespace {
-
-constexpr double kNanosecondsPerMillisecond = 1e6;
 
 std::string percentiles(const Histogram& histogram) {
   if (histogram.count() == 0) return "none";
   const auto ms = [](std::int64_t ns) {
-    return static_cast<double>(ns) / kNanosecondsPerMillisecond;
+    return static_cast<double>(ns) / static_cast<double>(kNanosecondsPerMillisecond);
   };
   std::ostringstream text;
   text << std::fixed << std::setprecision(3) << "p50 " << ms(histogram.percentile(0.5)) << ", p90 "

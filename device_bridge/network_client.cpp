@@ -21,11 +21,7 @@ namespace irdm {
 using boost::asio::ip::tcp;
 using boost::system::error_code;
 
-namespace {
-
-constexpr std::int64_t kNanosecondsPerMillisecond = 1'000'000;
-
-}  // namespace
+namespace {}  // namespace
 
 class NetworkClient::Impl {
  public:

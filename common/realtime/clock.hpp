@@ -4,6 +4,8 @@
 
 namespace irdm {
 
+inline constexpr std::int64_t kNanosecondsPerMillisecond = 1'000'000;
+
 /// Monotonic time of this machine [ns]. Any thread, real-time safe.
 std::int64_t monotonic_ns() noexcept;
 

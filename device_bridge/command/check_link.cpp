@@ -12,13 +12,13 @@
 namespace irdm::bridge {
 namespace {
 
-struct Options {
+struct CheckLinkOptions {
   std::string config;
   std::string server;
   double duration = 10.0;
 };
 
-int check_link(const Options& options) {
+int check_link(const CheckLinkOptions& options) {
   StopSignal stop_signal;
   BridgeConfig config;
   if (!options.config.empty()) config = load_bridge_config(options.config);
@@ -35,7 +35,7 @@ int check_link(const Options& options) {
 }  // namespace
 
 Command add_check_link_command(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CheckLinkOptions>();
   CLI::App* command =
       app.add_subcommand("check-link", "Measures the link to a running server and judges it");
   command->add_option("--config", options->config,

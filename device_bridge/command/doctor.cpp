@@ -11,12 +11,12 @@
 namespace irdm::bridge {
 namespace {
 
-struct Options {
+struct DoctorOptions {
   std::string config;
   BridgeOverrides overrides;
 };
 
-int examine(const Options& options) {
+int examine(const DoctorOptions& options) {
   spdlog::set_level(spdlog::level::off);
   std::optional<BridgeConfig> config;
   if (!options.config.empty()) config = load_bridge_config(options.config, options.overrides);
@@ -33,7 +33,7 @@ int examine(const Options& options) {
 }  // namespace
 
 Command add_doctor_command(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<DoctorOptions>();
   CLI::App* command = app.add_subcommand(
       "doctor", "Says what keeps a bridge from working, and what to do about it");
   CLI::Option* config =

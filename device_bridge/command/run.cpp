@@ -12,13 +12,13 @@
 namespace irdm::bridge {
 namespace {
 
-struct Options {
+struct RunOptions {
   std::string config;
   BridgeOverrides overrides;
   double duration = std::numeric_limits<double>::infinity();
 };
 
-int run(const Options& options) {
+int run(const RunOptions& options) {
   StopSignal stop_signal;
   const BridgeConfig config = load_bridge_config(options.config, options.overrides);
   const BridgeReport report = run_bridge(config, stop_signal, options.duration);
@@ -30,7 +30,7 @@ int run(const Options& options) {
 }  // namespace
 
 Command add_run_command(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RunOptions>();
   CLI::Option* config =
       app.add_option("BRIDGE.toml", options->config, "Configuration: the devices; required");
   app.add_option("--server", options->overrides.server, "HOST:PORT of irdm-server");

@@ -4,12 +4,12 @@
 #include <array>
 #include <cstdio>
 
+#include "common/realtime/clock.hpp"
 #include "device_bridge/openhaptics/start_advice.hpp"
 
 namespace irdm::doctor {
 namespace {
 
-constexpr double kNanosecondsPerMillisecond = 1e6;
 // Of ticks that are a millisecond apart.
 constexpr std::int64_t kLateNs = 500'000;
 constexpr std::int64_t kVeryLateNs = 2'000'000;
@@ -22,7 +22,7 @@ Grade missing(bool wanted) {
 std::string milliseconds(std::int64_t ns) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.3f ms",
-                static_cast<double>(ns) / kNanosecondsPerMillisecond);
+                static_cast<double>(ns) / static_cast<double>(kNanosecondsPerMillisecond));
   return text.data();
 }
 

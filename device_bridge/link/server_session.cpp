@@ -14,7 +14,6 @@ namespace {
 using wire::ProtocolError;
 using wire::ProtocolFault;
 
-constexpr std::int64_t kNanosecondsPerMillisecond = 1'000'000;
 constexpr std::int64_t kReportPeriodNs = 1000 * kNanosecondsPerMillisecond;
 constexpr int kFrameTimeoutMs = 1000;
 constexpr int kHangUpMs = 500;

@@ -12,12 +12,12 @@
 namespace irdm::precompute {
 namespace {
 
-struct Options {
+struct CheckCommandOptions {
   std::string model;
   CheckOptions check;
 };
 
-int check(const Options& options) {
+int check(const CheckCommandOptions& options) {
   const Console console{std::cout, ::isatty(STDOUT_FILENO) != 0};
   set_blas_threads(0);
   const Report report = check_model(options.model, options.check, console);
@@ -30,7 +30,7 @@ int check(const Options& options) {
 }  // namespace
 
 Command add_check_command(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CheckCommandOptions>();
   CLI::App* command = app.add_subcommand(
       "check", "Says whether a model file is physically sound and safe to render");
   Hand& hand = options->check.hand;

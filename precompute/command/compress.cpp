@@ -13,7 +13,7 @@
 namespace irdm::precompute {
 namespace {
 
-struct Options {
+struct CompressOptions {
   std::string input;
   std::string output;
   CompressSettings settings;
@@ -33,7 +33,7 @@ std::string text(const CompressionSummary& summary) {
   return line;
 }
 
-int compress(const Options& options) {
+int compress(const CompressOptions& options) {
   const Console console{std::cout, ::isatty(STDOUT_FILENO) != 0};
   set_blas_threads(options.threads);
   std::error_code ignored;
@@ -51,7 +51,7 @@ int compress(const Options& options) {
 }  // namespace
 
 Command add_compress_command(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CompressOptions>();
   CLI::App* command = app.add_subcommand(
       "compress", "Makes dense R small, wherever it came from, for engine = \"compressed\"");
   command->add_option("model", options->input, "Model file with dense R (HDF5)")->required();

@@ -12,7 +12,7 @@
 namespace irdm::precompute {
 namespace {
 
-struct Options {
+struct ComputeOptions {
   std::string config;
   std::string output;
   std::string method;
@@ -34,7 +34,7 @@ CLI::Validator column_range_check() {
   return {check, "A:B", "column_range"};
 }
 
-int compute(const Options& options) {
+int compute(const ComputeOptions& options) {
   PrecomputeConfig config = load_config(options.config);
   if (!options.method.empty()) config.response.method = method_from_word(options.method);
   if (!options.storage.empty()) config.response.storage = storage_from_word(options.storage);
@@ -53,7 +53,7 @@ int compute(const Options& options) {
 }  // namespace
 
 Command add_compute_command(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ComputeOptions>();
   CLI::Option* config =
       app.add_option("config", options->config, "Configuration file (TOML); required");
   CLI::Option* output =

@@ -11,12 +11,12 @@
 namespace irdm::precompute {
 namespace {
 
-struct Options {
+struct MergeOptions {
   std::vector<std::string> parts;
   std::string output;
 };
 
-int merge(const Options& options) {
+int merge(const MergeOptions& options) {
   const Console console{std::cout, ::isatty(STDOUT_FILENO) != 0};
   const std::vector<std::filesystem::path> parts(options.parts.begin(), options.parts.end());
   const std::filesystem::path temporary = options.output + ".part-" + std::to_string(::getpid());
@@ -33,7 +33,7 @@ int merge(const Options& options) {
 }  // namespace
 
 Command add_merge_command(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<MergeOptions>();
   CLI::App* command =
       app.add_subcommand("merge", "Joins slices of R, made with --columns, into one model file");
   command->add_option("parts", options->parts, "Files that --columns made, in any order")

@@ -6,14 +6,6 @@
 #include "precompute/fem/mass_properties.hpp"
 
 namespace irdm::precompute {
-namespace {
-
-Eigen::Map<const Points> as_points(const Eigen::VectorXd& field) {
-  return {field.data(), field.size() / 3, 3};
-}
-
-}  // namespace
-
 SoftBody::SoftBody(const TetMesh& mesh, const Material& material, Elasticity elasticity)
     : elasticity_(elasticity),
       material_(material),

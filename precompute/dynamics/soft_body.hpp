@@ -17,6 +17,11 @@ namespace irdm::precompute {
 /// that turns with each element, rotations of any size.
 enum class Elasticity { kLinear, kCorotational };
 
+/// A field of the nodes (3N), index 3 node + axis, by nodes: (N, 3). Looks into `field`.
+inline Eigen::Map<const Points> as_points(const Eigen::Ref<const Eigen::VectorXd>& field) {
+  return {field.data(), field.size() / 3, 3};
+}
+
 /// Where the nodes are and how they move, both (3N), index 3 node + axis.
 struct BodyState {
   Eigen::VectorXd u;  ///< displacement from rest [m], W

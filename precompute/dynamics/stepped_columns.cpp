@@ -7,10 +7,6 @@ namespace {
 
 constexpr int kLinearColumnsAtOnce = 16;
 
-Eigen::Map<const Points> as_points(const Eigen::Ref<const Eigen::VectorXd>& field) {
-  return {field.data(), field.size() / 3, 3};
-}
-
 }  // namespace
 
 SteppedColumns::SteppedColumns(const TetMesh& mesh, const Material& material,

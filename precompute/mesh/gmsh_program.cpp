@@ -14,7 +14,7 @@ namespace irdm::precompute {
 namespace {
 
 constexpr double kMaxVolumeChange = 0.1;  // share of the volume
-constexpr double kFlat = 0.01;            // mean ratio; sound meshes of gmsh are above 0.2
+constexpr double kFlatMeanRatio = 0.01;   // mean ratio; sound meshes of gmsh are above 0.2
 
 // Angle of edges that stay: 40 degrees. The patches between them are cut until each has a map into
 // the plane (1, 1), and curves are cut nowhere (Pi).
@@ -90,7 +90,7 @@ void check_remeshed(const TetMesh& mesh, const SurfaceMesh& surface, const std::
   int flat = 0;
   for (int e = 0; e < mesh.tet_count(); ++e) {
     volume += std::abs(signed_volume(mesh, e));
-    flat += mean_ratio(mesh, e) > kFlat ? 0 : 1;
+    flat += mean_ratio(mesh, e) > kFlatMeanRatio ? 0 : 1;
   }
   if (flat > 0) {
     throw Error(name,

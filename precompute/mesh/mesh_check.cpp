@@ -14,7 +14,7 @@ namespace {
 
 // A tetrahedron is flat when its volume is below this share of its longest edge cubed (a regular
 // one has 0.118); far below the worst slivers of mesh generators.
-constexpr double kFlat = 1e-9;
+constexpr double kSmallestVolume = 1e-9;
 
 std::string element(int e) {
   return "element " + std::to_string(e + 1);
@@ -66,7 +66,7 @@ void check_volumes(const TetMesh& mesh, const std::string& name) {
   int inverted = 0;
   for (int e = 0; e < mesh.tet_count(); ++e) {
     const double volume = signed_volume(mesh, e);
-    if (!(std::abs(volume) > kFlat * std::pow(longest_edge(mesh, e), 3))) {
+    if (!(std::abs(volume) > kSmallestVolume * std::pow(longest_edge(mesh, e), 3))) {
       throw Error(name, element(e) + " has zero volume", "repair or optimise the mesh");
     }
     if (volume > 0.0) continue;

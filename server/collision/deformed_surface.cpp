@@ -6,7 +6,7 @@
 namespace irdm {
 namespace {
 // Enough to cross a dozen triangles from a good start, and a bound on the cost of a bad one.
-constexpr int kMaxMoves = 16;
+constexpr int kMaxSlides = 16;
 // Triangles along the way of a tip in one step that are looked at.
 constexpr std::size_t kMaxCandidates = 64;
 }  // namespace
@@ -59,7 +59,7 @@ void DeformedSurface::visit_neighbours(int triangle, const Visit& visit) noexcep
 }
 
 SurfaceHit DeformedSurface::descend(SurfaceHit best, const Vector3& p) noexcept {
-  for (int move = 0; move < kMaxMoves; ++move) {
+  for (int move = 0; move < kMaxSlides; ++move) {
     const int here = best.triangle;
     visit_neighbours(here, [&](int neighbour) {
       const SurfaceHit hit = hit_on(neighbour, p);

@@ -8,7 +8,7 @@
 namespace irdm {
 namespace {
 // Bounds the way of one step; a tip at 2 m/s passes far fewer triangles in 2 ms.
-constexpr int kMaxMoves = 64;
+constexpr int kMaxWalkMoves = 64;
 
 bool contains(const std::array<int, 3>& nodes, int node) noexcept {
   return std::find(nodes.begin(), nodes.end(), node) != nodes.end();
@@ -55,7 +55,7 @@ SurfaceLocation RestSurface::closest(const Vector3& p) const noexcept {
 SurfaceLocation RestSurface::walk(int triangle, const Vector3& p) const noexcept {
   SurfaceLocation best = on(triangle, p);
   double best_distance2 = (best.position - p).squaredNorm();
-  for (int move = 0; move < kMaxMoves; ++move) {
+  for (int move = 0; move < kMaxWalkMoves; ++move) {
     const int here = best.triangle;
     for (const int corner : topology_.corners(here)) {
       for (const int neighbour : topology_.triangles_around(corner)) {
@@ -99,7 +99,7 @@ int RestSurface::across(int triangle, std::size_t corner) const noexcept {
 SurfaceLocation RestSurface::straight_on(const SurfaceLocation& from, const Vector3& direction,
                                          double length) const noexcept {
   StraightWalk walk(*this, from, direction);
-  for (int leg = 0; leg < kMaxMoves && length > 0.0 && walk.moves(); ++leg) {
+  for (int leg = 0; leg < kMaxWalkMoves && length > 0.0 && walk.moves(); ++leg) {
     length -= walk.leg(length);
   }
   return walk.here();

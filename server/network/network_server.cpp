@@ -265,7 +265,6 @@ void NetworkServer::Impl::await_forces() {
 
 void NetworkServer::Impl::await_tick() {
   constexpr std::chrono::milliseconds kTick(10);
-  constexpr std::int64_t kNanosecondsPerMillisecond = 1'000'000;
   timer_.expires_after(kTick);
   timer_.async_wait([this](error_code) {
     const std::int64_t now_ns = monotonic_ns();

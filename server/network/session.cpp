@@ -10,7 +10,6 @@
 namespace irdm {
 namespace {
 
-constexpr std::int64_t kNanosecondsPerMillisecond = 1'000'000;
 constexpr double kBurst = 0.25;  // of the frames of a second, at once
 constexpr std::int64_t kHangUpNs = 500 * kNanosecondsPerMillisecond;  // for the peer to close
 

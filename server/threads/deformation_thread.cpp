@@ -10,7 +10,6 @@ namespace irdm {
 namespace {
 
 constexpr std::size_t kQueueCapacity = 2048;  // 2 s at 1 kHz
-constexpr std::int64_t kNanosecondsPerMillisecond = 1'000'000;
 // Nobody sees a millionth of an object's size.
 constexpr double kInvisible = 1e-6;
 

@@ -8,7 +8,7 @@
 namespace irdm {
 namespace {
 constexpr std::size_t kBatch = 512;
-constexpr int kPeriodMs = 50;
+constexpr int kFlushPeriodMs = 50;
 }  // namespace
 
 RecorderThread::RecorderThread(const std::filesystem::path& path, const TraceHeader& header,
@@ -39,7 +39,7 @@ void RecorderThread::run() {
   hdf5::prepare_library();
   bool stopped = false;
   try {
-    while (!(stopped = stop_.wait(kPeriodMs))) {
+    while (!(stopped = stop_.wait(kFlushPeriodMs))) {
       drain();
       const std::lock_guard lock(hdf5::library_mutex());
       writer_->flush();
@@ -52,7 +52,7 @@ void RecorderThread::run() {
     keep_what_counts();
     // Keep taking, so that the queue does not report what the disk did.
     while (!stopped) {
-      stopped = stop_.wait(kPeriodMs);
+      stopped = stop_.wait(kFlushPeriodMs);
       discard();
     }
   }

@@ -13,7 +13,7 @@ namespace irdm {
 namespace {
 
 constexpr double kNanosecondsPerSecond = 1e9;
-constexpr int kPeriodMs = 1000;
+constexpr int kStatusPeriodMs = 1000;
 
 wire::Quantiles quantiles(const Histogram& histogram) {
   const auto microseconds = [](std::int64_t ns) { return static_cast<float>(ns) / 1000.0F; };
@@ -48,7 +48,7 @@ void StatusThread::finish() {
 
 void StatusThread::run() {
   std::int64_t logged_ns = monotonic_ns();
-  while (!stop_.wait(kPeriodMs)) {
+  while (!stop_.wait(kStatusPeriodMs)) {
     const wire::Status status = gather();
     parts_.network.status().put(status);
     if (log_period_ns_ == 0 || gathered_ns_ - logged_ns < log_period_ns_) continue;

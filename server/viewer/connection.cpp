@@ -31,7 +31,6 @@ constexpr std::size_t kMessageLimit = 512;
 constexpr std::size_t kDrainLimit = 1 << 20;
 constexpr std::chrono::seconds kDrainTime(1);
 constexpr int kSendBuffer = 256 * 1024;  // what the kernel may hold for a viewer that is slow
-constexpr std::int64_t kNanosecondsPerMillisecond = 1'000'000;
 
 std::string_view view(beast::string_view text) {
   return {text.data(), text.size()};

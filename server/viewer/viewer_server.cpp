@@ -22,7 +22,6 @@ using boost::asio::ip::tcp;
 using boost::system::error_code;
 
 namespace {
-constexpr std::int64_t kNanosecondsPerMillisecond = 1'000'000;
 constexpr int kTicks = 5;  // of the timer between two messages of health
 }  // namespace
 

@@ -1,10 +1,11 @@
 #pragma once
 
 #include "device_bridge/safety/safety_filter.hpp"
+#include "tests/bridge/milliseconds.hpp"
 
 namespace irdm::test {
 
-inline constexpr std::int64_t kMs = 1'000'000;
+inline const Vector3 kOneUp(0, 1, 0);
 
 /// A safety filter on a virtual clock of 1 ms a tick, armed, with a device at rest.
 struct FilterRig {

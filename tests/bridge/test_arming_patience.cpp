@@ -1,12 +1,12 @@
 #include <catch2/catch.hpp>
 
 #include "device_bridge/link/arming_patience.hpp"
+#include "tests/bridge/milliseconds.hpp"
 
 using irdm::ArmingPatience;
+using irdm::test::kMs;
 
 namespace {
-
-constexpr std::int64_t kMs = 1'000'000;
 
 /// How often it is lost in a session of this length that is looked at every 5 ms.
 int losses(ArmingPatience& patience, std::int64_t& now_ns, std::int64_t length_ns, bool armed) {

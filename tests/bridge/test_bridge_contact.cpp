@@ -1,13 +1,14 @@
 #include <catch2/catch.hpp>
 
 #include "device_bridge/contact/bridge_contact.hpp"
+#include "tests/bridge/milliseconds.hpp"
 #include "tests/support/allocation_guard.hpp"
 
 using namespace irdm;
+using irdm::test::kMs;
 
 namespace {
 
-constexpr std::int64_t kMs = 1'000'000;
 constexpr double kDt = 0.002;
 
 /// A fixed wall at y = 0 that gives way by 1 mm per newton within a step, and not later.

@@ -14,11 +14,11 @@
 using namespace irdm;
 using test::FilterRig;
 using test::kMs;
+using test::kOneUp;
 
 namespace {
 
 const double kNaN = std::numeric_limits<double>::quiet_NaN();
-const Vector3 kOneUp(0, 1, 0);
 
 // Ticks until no force is shown any more.
 int ticks_to_zero(FilterRig& rig, int most = 1000) {

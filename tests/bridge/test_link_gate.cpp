@@ -4,6 +4,7 @@
 #include "tests/bridge/filter_rig.hpp"
 
 using namespace irdm;
+using test::kOneUp;
 
 TEST_CASE("a link gate tells the share of the last hundred ticks, those to come being bad") {
   LinkGate gate;
@@ -20,7 +21,6 @@ TEST_CASE("a link gate tells the share of the last hundred ticks, those to come 
 
 namespace {
 
-const Vector3 kOneUp(0, 1, 0);
 constexpr FilterLimits kGated{.needed_success = 0.9};
 
 /// One tick; the newest demand is too old in every one of which `good` is false.

@@ -132,7 +132,8 @@ TEST_CASE("beyond this machine nobody listens or connects without a key") {
   CHECK_NOTHROW(NetworkServer({.address = "127.0.0.2"}));
   ServoLink link(1);
   Wakeup gave_up;
-  const ClientSettings far{.server = {"192.0.2.1", 4711}};
+  ClientSettings far;
+  far.server = {"192.0.2.1", 4711};
   CHECK_THROWS_WITH(NetworkClient(link, far, gave_up), Contains("bridge.key_file"));
   ClientSettings with_key = far;
   with_key.key = key_of(1);

@@ -2,13 +2,13 @@
 #include <string>
 
 #include "device_bridge/link/link_verdict.hpp"
+#include "tests/bridge/milliseconds.hpp"
 
 using namespace irdm;
 using Catch::Matchers::Contains;
+using irdm::test::kMs;
 
 namespace {
-
-constexpr std::int64_t kMs = 1'000'000;
 
 /// A link of 1000 ticks with nothing wrong, of which `old` have a force of 30 ms.
 LinkMeasurement link_with(int old) {

@@ -6,12 +6,9 @@
 using namespace irdm;
 using test::FilterRig;
 using test::kMs;
+using test::kOneUp;
 
-namespace {
-
-const Vector3 kOneUp(0, 1, 0);
-
-}  // namespace
+namespace {}  // namespace
 
 TEST_CASE("safety filter: states, from disarmed to a fault and back") {
   FilterRig rig;

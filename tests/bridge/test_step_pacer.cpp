@@ -5,12 +5,13 @@
 #include <random>
 
 #include "device_bridge/contact/step_pacer.hpp"
+#include "tests/bridge/milliseconds.hpp"
 
 using namespace irdm;
+using irdm::test::kMs;
 
 namespace {
 
-constexpr std::int64_t kMs = 1'000'000;
 constexpr std::int64_t kTickNs = kMs;
 constexpr double kDt = 0.002;
 constexpr std::int64_t kStepNs = 2 * kMs;

@@ -4,16 +4,11 @@
 
 #include "tests/fake_libhd/fake_driver.hpp"
 
+using fake_hd::driver;
 using fake_hd::FakeDevice;
-using fake_hd::FakeDriver;
+using fake_hd::Lock;
 
 namespace {
-
-using Lock = std::lock_guard<std::recursive_mutex>;
-
-FakeDriver& driver() {
-  return FakeDriver::instance();
-}
 
 template <typename Action>
 auto with(const char* name, Action action) {

@@ -85,4 +85,10 @@ class FakeDriver {
   std::atomic<bool> running_{false};
 };
 
+using Lock = std::lock_guard<std::recursive_mutex>;
+
+inline FakeDriver& driver() {
+  return FakeDriver::instance();
+}
+
 }  // namespace fake_hd

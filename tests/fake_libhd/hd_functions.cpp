@@ -5,23 +5,18 @@
 
 #include "tests/fake_libhd/fake_driver.hpp"
 
+using fake_hd::driver;
 using fake_hd::ErrorInfo;
 using fake_hd::FakeDevice;
-using fake_hd::FakeDriver;
+using fake_hd::Lock;
 
 namespace {
-
-using Lock = std::lock_guard<std::recursive_mutex>;
 
 constexpr unsigned kInvalidEnum = 0x0100;
 constexpr unsigned kInvalidValue = 0x0101;
 constexpr unsigned kInvalidOperation = 0x0102;
 constexpr unsigned kForceOutput = 0x4000;
 constexpr unsigned kMaxForceClamping = 0x4001;
-
-FakeDriver& driver() {
-  return FakeDriver::instance();
-}
 
 void refuse(unsigned code) {
   driver().raise(code, driver().current);

@@ -9,6 +9,7 @@
 namespace irdm::test {
 
 inline constexpr double kHalfEdge = 0.06;  ///< of the cube [m]
+inline constexpr double kGravity = 9.81;   ///< [m/s^2]
 
 /// The paper's cube, brought home by a tether and slowed down, so that it can be pressed by one
 /// stylus.

@@ -1,14 +1,14 @@
 #include <catch2/catch.hpp>
 
 #include "server/step/simulation.hpp"
+#include "tests/simulation/pressed_cube.hpp"
 #include "tests/support/synthetic_model.hpp"
 
 using namespace irdm;
+using irdm::test::kHalfEdge;
 using irdm::test::synthetic_cube;
 
 namespace {
-
-constexpr double kHalfEdge = 0.06;
 
 // The cube with its upper face clamped.
 std::shared_ptr<const Model> clamped_cube() {

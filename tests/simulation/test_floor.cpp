@@ -5,15 +5,13 @@
 
 #include "server/deformation/deformation.hpp"
 #include "server/step/simulation.hpp"
+#include "tests/simulation/pressed_cube.hpp"
 #include "tests/support/fem_cube.hpp"
 
 using namespace irdm;
 using namespace irdm::test;
 
 namespace {
-
-constexpr double kHalfEdge = 0.06;
-constexpr double kGravity = 9.81;
 
 // A cube that stands on the floor, which is at its lower face.
 SimulationConfig standing(double youngs_modulus, const Friction& friction) {

@@ -9,6 +9,7 @@
 #include "server/deformation/deformation.hpp"
 #include "server/step/inertial_loading.hpp"
 #include "server/step/simulation.hpp"
+#include "tests/simulation/pressed_cube.hpp"
 #include "tests/support/fem_cube.hpp"
 #include "tests/support/spinning_fem.hpp"
 #include "tests/support/synthetic_model.hpp"
@@ -33,10 +34,6 @@ SimulationConfig spinning(std::shared_ptr<const Model> model, const Vector3& w,
   config.objects[0].angular_velocity = w;
   config.objects[0].inertial_loading = inertial_loading;
   return config;
-}
-
-StylusCommand at_tip(const Vector3& tip, bool grab) {
-  return {true, grab ? kGrabButton : 0u, tip, std::nullopt};
 }
 
 // Presses on a spinning cube, takes hold of it, pulls it about and lets go: its spin changes.

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "server/step/simulation.hpp"
+#include "tests/simulation/pressed_cube.hpp"
 #include "tests/support/fem_cube.hpp"
 
 using namespace irdm;
@@ -12,9 +13,7 @@ using namespace irdm::test;
 
 namespace {
 
-constexpr double kHalfEdge = 0.06;
 constexpr double kFriction = 0.5;
-constexpr double kGravity = 9.81;
 
 // The paper's cube on a floor, and two fingers beside it, without springs in between.
 SimulationConfig on_the_floor(double radius) {

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kDt = 0.002;
 
-RigidBody brick() {
+RigidBody brick_body() {
   BodyProperties properties;
   properties.mass = 0.2;
   properties.inertia = Vector3(3e-4, 5e-4, 7e-4).asDiagonal();
@@ -59,7 +59,7 @@ class Pushed {
   }
   void replay() { state = past.replay(body, free, state); }
 
-  RigidBody body = brick();
+  RigidBody body = brick_body();
   FreeForces free = tethered();
   std::vector<Push> pushes;
   std::size_t count = 0;

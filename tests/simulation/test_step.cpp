@@ -9,15 +9,17 @@
 
 #include "server/deformation/deformation.hpp"
 #include "server/step/recorded_forces.hpp"
+#include "tests/simulation/pressed_cube.hpp"
 #include "tests/support/fem_cube.hpp"
 
 using namespace irdm;
+using irdm::test::at_tip;
 using irdm::test::fem_cube;
 using irdm::test::FemCube;
+using irdm::test::kHalfEdge;
 
 namespace {
 
-constexpr double kHalfEdge = 0.06;
 const Vector3 kUp(0, 1, 0);
 
 // One object that tips stick to, as in the paper.
@@ -30,10 +32,6 @@ SimulationConfig one(const std::shared_ptr<const Model>& model) {
 
 const RigidState& body_of(const Simulation& simulation) {
   return simulation.object().state();
-}
-
-StylusCommand at_tip(const Vector3& tip, bool grab = false) {
-  return {true, grab ? kGrabButton : 0u, tip, std::nullopt};
 }
 
 using Path = std::function<StylusCommand(double)>;

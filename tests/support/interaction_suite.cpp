@@ -13,9 +13,9 @@ constexpr double kAbove = 0.004;
 constexpr double kTurn = 2.0 * std::numbers::pi;
 const std::array<std::string, 5> kKinds{"press", "tap", "slide", "swing", "pinch"};
 
-class Random {
+class EvenNumbers {
  public:
-  explicit Random(int seed) : random_(static_cast<unsigned>(seed)) {}
+  explicit EvenNumbers(int seed) : random_(static_cast<unsigned>(seed)) {}
   // Not std::uniform_real_distribution, which differs from library to library.
   double between(double low, double high) {
     return low + (high - low) * static_cast<double>(random_()) / 4294967295.0;
@@ -64,7 +64,7 @@ std::array<StylusCommand, 2> Interaction::commands(int k, double dt) const {
 }
 
 Interaction interaction(int number) {
-  Random random(number + 1);
+  EvenNumbers random(number + 1);
   Interaction what;
   what.kind = kKinds[static_cast<std::size_t>(number) % kKinds.size()];
   const std::size_t count = what.kind == "pinch" ? 2 : 1;

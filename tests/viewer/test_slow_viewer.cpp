@@ -18,9 +18,9 @@ constexpr int kHealth = 3;
 /// Steps of frames that are offered when the slow viewer's connection is full for certain.
 constexpr std::uint64_t kLate = 1'000'000;
 
-class Show {
+class SlowShow {
  public:
-  Show() : server_({.health_period_ms = 1}, run_) { server_.start(); }
+  SlowShow() : server_({.health_period_ms = 1}, run_) { server_.start(); }
 
   WebPeer watch(int receive_buffer = 0) const {
     WebPeer peer(server_.port(), receive_buffer);
@@ -60,7 +60,7 @@ TEST_CASE("a viewer that reads a byte now and then has one message of each kind 
   constexpr std::uint64_t kFill = 3000;  // frames of 1.4 kB: more than any of its buffers
   constexpr std::uint64_t kWaiting = 500;
   constexpr std::uint64_t kBetweenBytes = 100;
-  Show show;
+  SlowShow show;
   WebPeer slow = show.watch(4096);
   WebPeer alive = show.watch();
   const auto play = [&](std::uint64_t first, std::uint64_t count) {

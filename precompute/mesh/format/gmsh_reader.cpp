@@ -14,8 +14,6 @@
 namespace irdm::precompute {
 namespace {
 
-constexpr std::int64_t kMany = 100'000'000;  // bound of every count in a file
-
 // Gmsh's element types: how many nodes, how many of them corners, and what the type means to us.
 struct ElementType {
   std::int64_t nodes;
@@ -98,7 +96,7 @@ class GmshReader {
   }
 
   void read_group_names() {
-    const std::int64_t count = in_.integer(0, kMany, "number of physical names");
+    const std::int64_t count = in_.integer(0, kMaxCount, "number of physical names");
     for (std::int64_t i = 0; i < count; ++i) {
       const std::int64_t dimension = in_.integer(0, 3, "dimension of a physical group");
       const std::int64_t tag = in_.integer();
@@ -111,16 +109,16 @@ class GmshReader {
   // Which physical groups each point, curve, surface and volume of the geometry belongs to.
   void read_entities() {
     std::array<std::int64_t, 4> counts{};
-    for (std::int64_t& count : counts) count = in_.integer(0, kMany, "number of entities");
+    for (std::int64_t& count : counts) count = in_.integer(0, kMaxCount, "number of entities");
     for (std::int64_t dimension = 0; dimension < 4; ++dimension) {
       for (std::int64_t i = 0; i < counts[static_cast<std::size_t>(dimension)]; ++i) {
         const std::int64_t tag = in_.integer();
         in_.skip(dimension == 0 ? 3 : 6);  // bounding box
-        const std::int64_t groups = in_.integer(0, kMany, "number of physical groups");
+        const std::int64_t groups = in_.integer(0, kMaxCount, "number of physical groups");
         for (std::int64_t g = 0; g < groups; ++g) {
           entity_groups_[{dimension, tag}].push_back(in_.integer());
         }
-        if (dimension > 0) in_.skip(in_.integer(0, kMany, "number of bounding entities"));
+        if (dimension > 0) in_.skip(in_.integer(0, kMaxCount, "number of bounding entities"));
       }
     }
   }
@@ -133,7 +131,7 @@ class GmshReader {
   }
 
   void read_nodes_2() {
-    const std::int64_t count = in_.integer(0, kMany, "number of nodes");
+    const std::int64_t count = in_.integer(0, kMaxCount, "number of nodes");
     for (std::int64_t i = 0; i < count; ++i) {
       const std::int64_t tag = in_.integer();
       const double x = in_.number();
@@ -143,13 +141,13 @@ class GmshReader {
   }
 
   void read_nodes_4() {
-    const std::int64_t blocks = in_.integer(0, kMany, "number of node blocks");
+    const std::int64_t blocks = in_.integer(0, kMaxCount, "number of node blocks");
     in_.skip(3);  // number of nodes, lowest and highest tag
     for (std::int64_t b = 0; b < blocks; ++b) {
       const std::int64_t dimension = in_.integer(0, 3, "dimension of an entity");
       in_.integer();  // entity
       const bool parametric = in_.integer(0, 1, "parametric flag") == 1;
-      const std::int64_t count = in_.integer(0, kMany, "number of nodes");
+      const std::int64_t count = in_.integer(0, kMaxCount, "number of nodes");
       std::vector<std::int64_t> tags;
       for (std::int64_t i = 0; i < count; ++i) tags.push_back(in_.integer());
       for (const std::int64_t tag : tags) {
@@ -197,7 +195,7 @@ class GmshReader {
   }
 
   void read_elements_2() {
-    const std::int64_t count = in_.integer(0, kMany, "number of elements");
+    const std::int64_t count = in_.integer(0, kMaxCount, "number of elements");
     for (std::int64_t i = 0; i < count; ++i) {
       in_.integer();  // tag
       const std::int64_t type = in_.integer();
@@ -212,7 +210,7 @@ class GmshReader {
   }
 
   void read_elements_4() {
-    const std::int64_t blocks = in_.integer(0, kMany, "number of element blocks");
+    const std::int64_t blocks = in_.integer(0, kMaxCount, "number of element blocks");
     in_.skip(3);  // number of elements, lowest and highest tag
     for (std::int64_t b = 0; b < blocks; ++b) {
       const std::int64_t dimension = in_.integer();
@@ -220,7 +218,7 @@ class GmshReader {
       const std::vector<std::int64_t>& groups = entity_groups_[{dimension, entity}];
       const std::int64_t type = in_.integer();
       element_type(type);
-      const std::int64_t count = in_.integer(0, kMany, "number of elements");
+      const std::int64_t count = in_.integer(0, kMaxCount, "number of elements");
       for (std::int64_t i = 0; i < count; ++i) {
         in_.integer();  // tag
         read_element(type, groups);

@@ -9,8 +9,6 @@
 namespace irdm::precompute {
 namespace {
 
-constexpr std::int64_t kMany = 100'000'000;  // bound of every count in a file
-
 // Sections whose elements may form groups: how many vertices each element has.
 const std::map<std::string, int> kElements{{"Edges", 2}, {"Triangles", 3}, {"Tetrahedra", 4}};
 
@@ -74,7 +72,7 @@ class MeditReader {
     }
   }
 
-  std::int64_t count() { return in_.integer(0, kMany, "number of entries"); }
+  std::int64_t count() { return in_.integer(0, kMaxCount, "number of entries"); }
 
   void add_to_group(const std::string& section, std::int64_t reference, std::vector<int> nodes) {
     if (reference == 0) return;

@@ -13,8 +13,6 @@
 namespace irdm::precompute {
 namespace {
 
-constexpr std::int64_t kMany = 100'000'000;  // bound of every count in a file
-
 struct Property {
   std::string name;
   NumberType type;
@@ -48,7 +46,7 @@ class PlyReader {
         read_format();
       } else if (word == "element") {
         const std::string name(in_.word());
-        elements_.push_back({name, in_.integer(0, kMany, "number of elements"), {}});
+        elements_.push_back({name, in_.integer(0, kMaxCount, "number of elements"), {}});
       } else if (word == "property" && !elements_.empty()) {
         elements_.back().properties.push_back(read_property());
       } else if (word == "comment" || word == "obj_info") {
@@ -111,7 +109,7 @@ class PlyReader {
                  (property.name == "vertex_indices" || property.name == "vertex_index")) {
         read_face(property);
       } else {
-        const int count = whole(*property.length, kMany, "length of a list");
+        const int count = whole(*property.length, kMaxCount, "length of a list");
         for (int i = 0; i < count; ++i) number(property.type);
       }
     }

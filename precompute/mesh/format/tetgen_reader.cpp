@@ -7,8 +7,6 @@
 namespace irdm::precompute {
 namespace {
 
-constexpr std::int64_t kMany = 100'000'000;  // bound of every count in a file
-
 struct NodeFile {
   Points nodes;
   std::int64_t first = 0;  // number of the first node: 0 or 1
@@ -16,7 +14,7 @@ struct NodeFile {
 
 NodeFile read_nodes(const std::filesystem::path& path) {
   TokenReader in(path, '#');
-  const std::int64_t count = in.integer(0, kMany, "number of nodes");
+  const std::int64_t count = in.integer(0, kMaxCount, "number of nodes");
   in.integer(3, 3, "dimension");
   const std::int64_t extra =
       in.integer(0, 1000, "number of attributes") + in.integer(0, 1, "marker flag");
@@ -37,7 +35,7 @@ NodeFile read_nodes(const std::filesystem::path& path) {
 
 RowMatrix<int> read_tets(const std::filesystem::path& path, const NodeFile& nodes) {
   TokenReader in(path, '#');
-  const std::int64_t count = in.integer(0, kMany, "number of tetrahedra");
+  const std::int64_t count = in.integer(0, kMaxCount, "number of tetrahedra");
   if (in.integer(4, 10, "nodes of a tetrahedron") != 4) {
     in.fail("the tetrahedra are of second order",
             "run tetgen without -o2; mesh.order = 2 makes them quadratic here");

@@ -7,6 +7,9 @@
 
 namespace irdm::precompute {
 
+/// Bound of every count in a mesh file.
+inline constexpr std::int64_t kMaxCount = 100'000'000;
+
 /// The bytes of a file. Throws Error when it is missing, unreadable or empty.
 std::string file_content(const std::filesystem::path& path);
 

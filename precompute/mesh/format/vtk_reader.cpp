@@ -10,8 +10,6 @@
 namespace irdm::precompute {
 namespace {
 
-constexpr std::int64_t kMany = 100'000'000;  // bound of every count in a file
-
 class VtkReader {
  public:
   explicit VtkReader(const std::filesystem::path& path) : name_(path.string()), in_(path) {}
@@ -25,14 +23,14 @@ class VtkReader {
       if (in_.at_end()) in_.fail("has no POINTS, CELLS or CELL_TYPES", "it is truncated");
       const std::string keyword(in_.word());
       if (keyword == "POINTS") {
-        const std::int64_t count = in_.integer(0, kMany, "number of points");
+        const std::int64_t count = in_.integer(0, kMaxCount, "number of points");
         cells_.coordinates = numbers(3 * count, type());
         points = true;
       } else if (keyword == "CELLS") {
         newer_ ? read_cells_5() : read_cells();
         cells = true;
       } else if (keyword == "CELL_TYPES") {
-        cells_.types = numbers(in_.integer(0, kMany, "number of cells"), NumberType::kInt32);
+        cells_.types = numbers(in_.integer(0, kMaxCount, "number of cells"), NumberType::kInt32);
         types = true;
       } else if (keyword == "FIELD") {
         skip_field();
@@ -87,9 +85,9 @@ class VtkReader {
 
   // Every cell as the number of its points and these.
   void read_cells() {
-    const std::int64_t count = in_.integer(0, kMany, "number of cells");
+    const std::int64_t count = in_.integer(0, kMaxCount, "number of cells");
     const std::vector<double> all =
-        numbers(in_.integer(0, kMany, "size of the cells"), NumberType::kInt32);
+        numbers(in_.integer(0, kMaxCount, "size of the cells"), NumberType::kInt32);
     std::size_t i = 0;
     for (std::int64_t c = 0; c < count; ++c) {
       if (i >= all.size() || !(all[i] >= 0.0 && all[i] < static_cast<double>(all.size() - i))) {
@@ -103,8 +101,8 @@ class VtkReader {
 
   // Offsets, one more than there are cells, and the points of all cells.
   void read_cells_5() {
-    const std::int64_t offsets = in_.integer(1, kMany, "number of offsets");
-    const std::int64_t size = in_.integer(0, kMany, "size of the cells");
+    const std::int64_t offsets = in_.integer(1, kMaxCount, "number of offsets");
+    const std::int64_t size = in_.integer(0, kMaxCount, "size of the cells");
     expect("OFFSETS");
     cells_.ends = numbers(offsets, type());
     cells_.ends.erase(cells_.ends.begin());
@@ -120,14 +118,14 @@ class VtkReader {
 
   void skip_field() {
     in_.word();  // its name
-    const std::int64_t arrays = in_.integer(0, kMany, "number of arrays");
+    const std::int64_t arrays = in_.integer(0, kMaxCount, "number of arrays");
     for (std::int64_t i = 0; i < arrays; ++i) {
       if (in_.word() == "METADATA") {
         skip_metadata();
         in_.word();
       }
       const std::int64_t components = in_.integer(0, 1000, "number of components");
-      const std::int64_t count = in_.integer(0, kMany, "number of tuples");
+      const std::int64_t count = in_.integer(0, kMaxCount, "number of tuples");
       numbers(components * count, type());
     }
   }

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <optional>
+
+#include "replay/made_again/made_again.hpp"
+#include "server/step/simulation.hpp"
+
+namespace irdm::replay {
+
+/// The whole force step once more: contacts, forces and motion from where the styluses were, what
+/// their buttons did, what was set, and what bridges that solved contacts themselves told.
+class FromTips final : public MadeAgain {
+ public:
+  /// Throws Error, as Simulation does.
+  explicit FromTips(const SimulationConfig& config);
+
+  void step(const StepRecord& recorded, StepRecord& again) override;
+  void displacement(std::size_t i, Points& u) const override {
+    simulation_.object(static_cast<int>(i)).engine().displacement(u);
+  }
+
+ private:
+  SimulationConfig config_;
+  Simulation simulation_;
+};
+
+}  // namespace irdm::replay

@@ -28,8 +28,8 @@ Recording read_recording(const TracedScene& scene, const std::string& trace) {
               "record it again on a disk that is fast enough");
 }
 
-std::unique_ptr<MadeAgain> make_again(const TracedScene& scene, bool from_tips) {
-  if (from_tips) return std::make_unique<FromTips>(scene.config);
+std::unique_ptr<MadeAgain> make_again(const TracedScene& scene, const ReplayOptions& options) {
+  if (options.from_tips) return std::make_unique<FromTips>(scene.config, options.solve_bridged);
   return std::make_unique<FromForces>(scene.config);
 }
 
@@ -62,7 +62,7 @@ int replay(const ReplayOptions& options) {
   }
   const Recording recording = read_recording(scene, options.trace.string());
   const FrameSteps frames(recording.steps(), scene.dt(), options.rate);
-  const auto made = make_again(scene, options.from_tips);
+  const auto made = make_again(scene, options);
   Outputs outputs = make_outputs(options, scene);
   std::vector<Points> surfaces(scene.config.objects.size());
   Deviation deviation;

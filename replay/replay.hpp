@@ -14,6 +14,7 @@ struct ReplayOptions {
   std::filesystem::path trace;
   std::vector<std::string> models;   ///< FILE or NAME=FILE
   bool from_tips = false;            ///< the whole step, not only what its forces do
+  bool solve_bridged = false;        ///< from tips: what bridges solved, too
   std::optional<EngineKind> engine;  ///< none: the run's own
   std::optional<double> rate;        ///< frames a second [Hz]; none: every step
   std::optional<std::filesystem::path> output;

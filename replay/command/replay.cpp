@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "common/error.hpp"
 #include "common/program/program.hpp"
 #include "replay/command/command.hpp"
 
@@ -21,6 +22,8 @@ Command add_replay_command(CLI::App& app) {
                  "again from where the styluses were")
       ->check(CLI::IsMember({"forces", "tips"}))
       ->capture_default_str();
+  app.add_flag("--solve-bridged", options->solve_bridged,
+               "From tips: contacts that bridges solved are solved here too");
   app.add_option("--engine", *engine, "Engine to compute with (default: the run's own)")
       ->check(CLI::IsMember({"modal", "dense", "compressed"}));
   app.add_option("--rate", options->rate, "Frames for a second of the run (default: every step)")
@@ -35,6 +38,9 @@ Command add_replay_command(CLI::App& app) {
   });
   return [options, from, engine] {
     options->from_tips = *from == "tips";
+    if (options->solve_bridged && !options->from_tips) {
+      throw Error("--solve-bridged", "solves nothing from forces", "give --from tips, too");
+    }
     if (!engine->empty()) options->engine = engine_from_word(*engine);
     return replay(*options);
   };

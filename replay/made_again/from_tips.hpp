@@ -12,7 +12,8 @@ namespace irdm::replay {
 class FromTips final : public MadeAgain {
  public:
   /// Throws Error, as Simulation does.
-  explicit FromTips(const SimulationConfig& config);
+  /// @param solve_bridged contacts that bridges solved are solved here, as if nothing was told
+  explicit FromTips(const SimulationConfig& config, bool solve_bridged = false);
 
   void step(const StepRecord& recorded, StepRecord& again) override;
   void displacement(std::size_t i, Points& u) const override {
@@ -20,7 +21,10 @@ class FromTips final : public MadeAgain {
   }
 
  private:
+  void enter_late(const StepRecord& recorded);
+
   SimulationConfig config_;
+  bool solve_bridged_;
   Simulation simulation_;
 };
 

@@ -175,3 +175,29 @@ TEST_CASE("steps that were lost on the way to the disk are counted") {
   run.records.erase(run.records.begin() + 40, run.records.begin() + 43);
   CHECK(run.recording().lost_steps() == 3);
 }
+
+TEST_CASE("contacts that a bridge solved can be solved in the step instead") {
+  const KeptRun run = bridged_fall();
+  FromTips made(run.config, true);
+  const Recording recording = run.recording();
+  Simulation alone(run.config);
+  StepRecord recorded;
+  StepRecord again;
+  StepRecord expected;
+  double difference = 0.0;
+  for (std::size_t k = 0; k < recording.steps(); ++k) {
+    recording.step(k, recorded);
+    made.step(recorded, again);
+    std::array<StylusCommand, 2> commands;
+    for (std::size_t s = 0; s < 2; ++s) {
+      const StylusRecord& stylus = run.records[k].stylus[s];
+      commands[s] = {stylus.present, stylus.buttons, stylus.tip, {}};
+    }
+    alone.step(commands, expected, run.records[k].reset);
+    REQUIRE(again.late.count == 0);
+    REQUIRE(again.stylus[0].force == expected.stylus[0].force);
+    REQUIRE(again.object[0].position == expected.object[0].position);
+    difference = std::max(difference, (again.stylus[0].force - recorded.stylus[0].force).norm());
+  }
+  CHECK(difference > 0.01);
+}

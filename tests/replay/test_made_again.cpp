@@ -7,6 +7,7 @@
 #include "server/step/bridged_stylus.hpp"
 #include "tests/replay/kept_run.hpp"
 #include "tests/server/two_cubes.hpp"
+#include "tests/support/fem_cube.hpp"
 
 using namespace irdm;
 using namespace irdm::replay;
@@ -101,7 +102,7 @@ KeptRun bridged_fall() {
   std::uint64_t session = kSession;
   for (int k = 0; k < 160; ++k) {
     const auto step = static_cast<std::size_t>(k);
-    const Vector3 tip(0.01 + 1e-4 * k, 0.06 - std::min(1e-4 * k, 0.004), 0.005);
+    const Vector3 tip(0.01 + 1e-4 * k, 0.064 - std::min(2e-4 * k, 0.009), 0.005);
     AppliedForces told{.step = step, .base = step, .count = 1, .past = {}};
     told.past[0] = {told_force(k), tip, Vector3(0.012, 0.055, 0.004)};
     arrivals[step + (7 * step) % 5].push_back(told);
@@ -117,7 +118,50 @@ KeptRun bridged_fall() {
   return run;
 }
 
+/// A tethered cube: a fingertip slides over its top and round an edge, and a point takes hold of it
+/// from a distance.
+KeptRun slide_over_an_edge() {
+  SimulationConfig config;
+  config.objects.resize(1);
+  config.objects[0].model = fem_cube({.cells = 4, .poisson_ratio = 0.45});
+  config.objects[0].friction = {0.2, 0.15};
+  config.objects[0].tether = {50.0, 0.1};
+  config.objects[0].damping = {2.0, 2.0};
+  config.styluses = {{0.01, 1000.0, 0.0}, {0.0, 1000.0, 0.02}};
+  KeptRun run(config);
+  Simulation simulation(config);
+  StepRecord record;
+  for (int k = 0; k < 500; ++k) {
+    const double depth = std::min(1e-4 * k, 0.012);
+    const std::array<StylusCommand, 2> commands{
+        StylusCommand{true, 0, Vector3(2e-4 * std::max(k - 100, 0), 0.065 - depth, 0.045), {}},
+        StylusCommand{
+            true, k > 200 && k < 400 ? kGrabButton : 0, Vector3(-0.07, 5e-5 * k, -2e-5 * k), {}}};
+    simulation.step(commands, record);
+    run.keep(simulation, record);
+  }
+  return run;
+}
+
 }  // namespace
+
+TEST_CASE("forces act where they acted: off the surface's point, near an edge and held from afar") {
+  const KeptRun run = slide_over_an_edge();
+  std::array<double, 2> offset{};
+  int slipping = 0;
+  for (const StepRecord& record : run.records) {
+    for (std::size_t s = 0; s < 2; ++s) {
+      const ContactRecord& contact = record.object[0].contact[s];
+      if (contact.state == ContactState::kFree) continue;
+      offset[s] = std::max(offset[s], contact.offset.norm());
+      slipping += contact.slipping ? 1 : 0;
+    }
+  }
+  REQUIRE(offset[0] > 1e-3);
+  REQUIRE(offset[1] > 5e-3);
+  REQUIRE(slipping > 50);
+  check_both(run);
+}
 
 TEST_CASE("a run is made again: floor, spin, settings, a reset and late forces") {
   const KeptRun run = fall(GENERATE(1, 2));
@@ -131,12 +175,16 @@ TEST_CASE("a run in which a bridge solved contacts is made again") {
   const KeptRun run = bridged_fall();
   std::size_t late = 0;
   std::size_t bridged = 0;
+  double peak = 0.0;
   for (const StepRecord& record : run.records) {
     late += record.late.count;
-    bridged += record.stylus[0].bridged ? 1 : 0;
+    if (!record.stylus[0].bridged) continue;
+    ++bridged;
+    peak = std::max(peak, record.stylus[0].force.norm());
   }
   REQUIRE(late > 20);
   REQUIRE(bridged > 100);
+  REQUIRE(peak > 0.1);
   check_both(run);
 }
 

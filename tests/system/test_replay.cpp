@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <csignal>
 #include <map>
 #include <sstream>
 
@@ -16,7 +18,7 @@ using namespace irdm::test;
 
 namespace {
 
-FinishedProgram replay(const std::filesystem::path& trace, std::vector<std::string> arguments) {
+FinishedProgram run_replay(const std::filesystem::path& trace, std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), {IRDM_REPLAY, trace.string()});
   return run_to_end(arguments);
 }
@@ -43,9 +45,9 @@ void set_pinch(const Stage& stage) {
   std::string bridge;
   for (const std::string side : {"", "-"}) {
     const std::string name = "script" + std::to_string(side.size()) + ".csv";
-    stage.write(name, "time,x,y,z,button\n0," + side + "0.07,0.05,0.04,0\n0.3," + side +
-                          "0.07,0.05,0.04,0\n0.5," + side + "0.053,0.05,0.05,0\n0.9," + side +
-                          "0.053,0.056,-0.03,0\n1.0," + side + "0.053,0.056,-0.03," +
+    stage.write(name, "time,x,y,z,button\n0," + side + "0.07,0.01,0.02,0\n0.3," + side +
+                          "0.07,0.01,0.02,0\n0.5," + side + "0.05,0.01,0.02,0\n0.9," + side +
+                          "0.05,0.045,-0.03,0\n1.0," + side + "0.05,0.045,-0.03," +
                           (side.empty() ? "4" : "0") + "\n1.2," + side + "0.08,0.05,0,0\n");
     bridge += "[[device]]\ntype = \"virtual\"\nscript = \"" + name +
               "\"\nhand = { mass = 0.12, damping = 2.0, stiffness = 300.0 }\n";
@@ -111,7 +113,7 @@ TEST_CASE("irdm-replay makes a run again, with two styluses, a floor and a reset
   // In real time bridges solve the contacts themselves, and what they tell may come late.
   const std::filesystem::path trace = record(stage, GENERATE(true, false));
   for (const std::string from : {"tips", "forces"}) {
-    const FinishedProgram again = replay(trace, {"--from", from});
+    const FinishedProgram again = run_replay(trace, {"--from", from});
     REQUIRE(again.status == 0);
     CHECK(again.err.empty());
     check_near(again.out);
@@ -124,7 +126,7 @@ TEST_CASE("irdm-replay makes a run in real time again, and its table has the tra
                                 "angular_velocity = [0.1, 0.4, -0.2]\ninertial_loading = true\n");
   const std::filesystem::path path = record(stage, false);
   const FinishedProgram again =
-      replay(path, {"--from", "tips", "--csv", stage.path("run.csv").string()});
+      run_replay(path, {"--from", "tips", "--csv", stage.path("run.csv").string()});
   REQUIRE(again.status == 0);
   check_near(again.out);
   const Trace trace = read_trace(path);
@@ -149,9 +151,9 @@ TEST_CASE("irdm-replay writes surfaces that another reader finds whole and in th
   const std::filesystem::path path = record(stage, true);
   for (const std::string twice : {"1", "2"}) {
     const FinishedProgram again =
-        replay(path, {"--rate", "20", "--vtk", stage.path("vtk" + twice).string(), "--output",
-                      stage.path("run" + twice + ".h5").string(), "--csv",
-                      stage.path("run" + twice + ".csv").string()});
+        run_replay(path, {"--rate", "20", "--vtk", stage.path("vtk" + twice).string(), "--output",
+                          stage.path("run" + twice + ".h5").string(), "--csv",
+                          stage.path("run" + twice + ".csv").string()});
     REQUIRE(again.status == 0);
     CHECK_THAT(again.out, Contains("; 42 frames"));
   }
@@ -221,8 +223,8 @@ TEST_CASE("irdm-replay compare says how far engines are apart") {
   const Stage stage;
   const std::filesystem::path trace = record(stage, true);
   for (const std::string engine : {"modal", "dense"}) {
-    REQUIRE(replay(trace, {"--engine", engine, "--rate", "50", "--output",
-                           stage.path(engine + ".h5").string()})
+    REQUIRE(run_replay(trace, {"--engine", engine, "--rate", "50", "--output",
+                               stage.path(engine + ".h5").string()})
                 .status == 0);
   }
   const FinishedProgram compared =
@@ -249,7 +251,7 @@ TEST_CASE("irdm-replay refuses what it cannot make again, in one line") {
   const Stage stage;
   const auto refused = [&](const std::vector<std::string>& arguments, const std::string& message) {
     CAPTURE(message);
-    const FinishedProgram program = replay(stage.path("trace.h5"), arguments);
+    const FinishedProgram program = run_replay(stage.path("trace.h5"), arguments);
     CHECK(program.status == 1);
     CHECK(program.out.empty());
     CHECK(std::count(program.err.begin(), program.err.end(), '\n') == 1);

@@ -29,18 +29,24 @@ std::size_t count(const hdf5::File& file, const std::string& name, int most) {
               "make it again");
 }
 
+// At least one.
+hsize_t rows(const hdf5::File& file, const std::string& set, std::size_t rank) {
+  const hdf5::Shape shape = file.stored_shape(set);
+  if (shape.size() == rank && shape[0] > 0) return shape[0];
+  throw Error(file.name(), set + " is empty or has not the right shape", "make it again");
+}
+
 }  // namespace
 
 RunReader::RunReader(const std::filesystem::path& path) : file_(open_run(path)) {
-  times_ = file_.read<double>("/time", {file_.stored_shape("/time").at(0)});
-  if (times_.empty()) throw Error(file_.name(), "has no frame", "make it again");
+  times_ = file_.read<double>("/time", {rows(file_, "/time", 1)});
   styluses_ = count(file_, "styluses", kMaxStyluses);
   for (std::size_t i = 0; i < count(file_, "objects", kMaxObjects); ++i) {
     const std::string group = run::object_path(i);
     objects_.push_back(file_.read_string_attribute(group, "name"));
-    const hdf5::Shape shape = file_.stored_shape(group + "/rest");
-    const auto values = file_.read<double>(group + "/rest", {shape.at(0), 3});
-    rest_.push_back(Eigen::Map<const Points>(values.data(), static_cast<Eigen::Index>(shape[0]), 3));
+    const hsize_t nodes = rows(file_, group + "/rest", 2);
+    const auto values = file_.read<double>(group + "/rest", {nodes, 3});
+    rest_.push_back(Eigen::Map<const Points>(values.data(), static_cast<Eigen::Index>(nodes), 3));
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <limits>
 #include <mutex>
 #include <string>
@@ -61,7 +62,10 @@ class EventReader {
   EventReader(const hdf5::File& file, std::string group, const std::vector<const char*>& sets)
       : file_(file), group_(std::move(group)) {
     rows_ = std::numeric_limits<hsize_t>::max();
-    for (const char* set : sets) rows_ = std::min(rows_, file_.stored_shape(group_ + set).at(0));
+    for (const char* set : sets) {
+      const hdf5::Shape shape = file_.stored_shape(group_ + set);
+      rows_ = std::min<hsize_t>(rows_, shape.empty() ? 0 : shape[0]);
+    }
   }
 
   hsize_t rows() const { return rows_; }
@@ -356,6 +360,10 @@ void Recording::Data::read(const hdf5::File& file, const std::vector<std::string
   force_step = reader.read<std::uint64_t>("/step/force_step");
   reset = reader.read<std::uint8_t>("/step/reset");
   if (force_step.empty()) throw Error(file.name(), "holds no step", "record something");
+  if (std::adjacent_find(force_step.begin(), force_step.end(), std::greater_equal<>()) !=
+      force_step.end()) {
+    throw Error(file.name(), "/step/force_step does not increase", "record it again");
+  }
   settings = read_settings(file, config);
   late = read_late(file, config);
   bridged = read_bridged(file, config);

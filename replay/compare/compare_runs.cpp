@@ -42,7 +42,7 @@ void add(Apart& apart, const Points& difference) {
   apart.largest.push_back(std::sqrt(squares.maxCoeff()));
 }
 
-Points places(const RunPose& pose, const Points& rest, const Points& u) {
+Points places_of(const RunPose& pose, const Points& rest, const Points& u) {
   const Matrix3 Q = pose.orientation.toRotationMatrix();
   return ((rest + u) * Q.transpose()).rowwise() + pose.position.transpose();
 }
@@ -63,7 +63,7 @@ ObjectComparison compare_object(const RunReader& a, const RunReader& b, std::siz
     a.displacement(i, frame_a, u_a);
     b.displacement(i, frame_b, u_b);
     add(found.displacement, Points(u_a - u_b));
-    add(found.place, Points(places(pose_a, a.rest(i), u_a) - places(pose_b, b.rest(i), u_b)));
+    add(found.place, Points(places_of(pose_a, a.rest(i), u_a) - places_of(pose_b, b.rest(i), u_b)));
     found.displacement.reference =
         std::max(found.displacement.reference, u_a.rowwise().norm().maxCoeff());
   }

@@ -16,7 +16,8 @@ Command add_replay_command(CLI::App& app) {
       app.add_option("trace", options->trace, "Trace file of irdm-server --record; required");
   app.add_option("--model", options->models,
                  "Model file, or NAME=FILE for one of several objects (default: that of the "
-                 "trace, beside it or where its scene says)");
+                 "trace, beside it or where its scene says)")
+      ->allow_extra_args(false);
   app.add_option("--from", *from,
                  "forces: what was exerted moves the objects again; tips: the whole step is made "
                  "again from where the styluses were")

@@ -19,7 +19,8 @@ using namespace irdm::test;
 namespace {
 
 FinishedProgram run_replay(const std::filesystem::path& trace, std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), {IRDM_REPLAY, trace.string()});
+  arguments.insert(arguments.begin(), IRDM_REPLAY);
+  arguments.push_back(trace.string());
   return run_to_end(arguments);
 }
 

@@ -59,7 +59,6 @@ void set_pinch(const Stage& stage) {
 void check_near(const std::string& report) {
   INFO(report);
   CHECK(number_after(report, "force ") < 1e-9);
-  CHECK(number_after(report, "(peak ") > 0.1);
   CHECK(number_after(report, "position ") < 1e-9);
   CHECK(number_after(report, "orientation ") < 1e-9);
   CHECK(number_after(report, "velocity ") < 1e-9);
@@ -166,12 +165,14 @@ TEST_CASE("irdm-replay makes a run again, with two styluses, a floor and a reset
   const Stage stage;
   set_pinch(stage);
   // In real time bridges solve the contacts themselves, and what they tell may come late.
-  const std::filesystem::path trace = record(stage, GENERATE(true, false));
+  const bool lockstep = GENERATE(true, false);
+  const std::filesystem::path trace = record(stage, lockstep);
   for (const std::string from : {"tips", "forces"}) {
     const FinishedProgram again = run_replay(trace, {"--from", from});
     REQUIRE(again.status == 0);
     CHECK(again.err.empty());
     check_near(again.out);
+    if (lockstep) CHECK(number_after(again.out, "(peak ") > 0.1);
   }
 }
 

@@ -17,17 +17,6 @@
 namespace irdm {
 namespace {
 
-// A trace of one more stylus than the scene has was made with that of the viewers.
-bool recorded_viewer_stylus(const SceneConfig& scene, const TraceHeader& header,
-                            const std::string& trace) {
-  const int more = header.stylus_count - static_cast<int>(scene.styluses.size());
-  if (more == 0 || more == 1) return more == 1;
-  throw Error(trace,
-              "has " + std::to_string(header.stylus_count) + " styluses, the scene " +
-                  std::to_string(scene.styluses.size()),
-              "give the scene that it was recorded with");
-}
-
 void check_model(const SceneConfig& scene, const TraceHeader& header, const std::string& trace) {
   const std::filesystem::path& model = scene.objects.front().model;
   if (sha256_of_file(model) == header.objects.front().model_checksum) return;
@@ -43,7 +32,7 @@ int run_playback(const ServerOptions& options) {
   const std::string trace = options.play->string();
   const TraceHeader header = read_trace_header(*options.play);
   check_model(scene, header, trace);
-  const bool viewer_stylus = recorded_viewer_stylus(scene, header, trace);
+  const bool viewer_stylus = recorded_viewer_stylus(scene, header.stylus_count, trace);
   const SimulationConfig config = simulation_config(scene, viewer_stylus);
   std::vector<std::string> names;
   for (const ObjectConfig& object : scene.objects) names.push_back(object.name);

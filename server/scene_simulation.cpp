@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "common/error.hpp"
 #include "common/model/model_file.hpp"
 #include "server/step/inertial_loading.hpp"
 
@@ -28,6 +29,15 @@ EngineKind other(EngineKind kind) {
 bool has_viewer_stylus(const SceneConfig& scene, bool lockstep) {
   return scene.viewer.enabled && scene.viewer.mouse && !lockstep &&
          scene.styluses.size() < kMaxStyluses;
+}
+
+bool recorded_viewer_stylus(const SceneConfig& scene, int stylus_count, const std::string& trace) {
+  const int more = stylus_count - static_cast<int>(scene.styluses.size());
+  if (more == 0 || more == 1) return more == 1;
+  throw Error(trace,
+              "has " + std::to_string(stylus_count) + " styluses, the scene " +
+                  std::to_string(scene.styluses.size()),
+              "give the scene that it was recorded with");
 }
 
 SimulationConfig simulation_config(const SceneConfig& scene, bool viewer_stylus) {

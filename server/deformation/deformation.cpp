@@ -58,11 +58,11 @@ void Deformation::follow(const StepRecord& record) {
     next = record.reset_step;
   }
   for (; next < record.force_step; ++next) advance(last_);
-  if (record.settings_change != last_.settings_change) follow_settings(record);
-  for (const LateForce& late : record.late.view()) {
+  for (const LateForce& late : record.late.view()) {  // of steps with the settings as they were
     Follower& follower = objects_[static_cast<std::size_t>(late.object)];
     follower.engine->add_past(follower.forces->of(late), late.age);
   }
+  if (record.settings_change != last_.settings_change) follow_settings(record);
   advance(record);
   last_ = record;
   trail_.follow(record);

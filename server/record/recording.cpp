@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
+#include <limits>
 #include <mutex>
 #include <string>
 
@@ -53,6 +55,40 @@ class RowReader {
   hsize_t rows_ = 0;
 };
 
+/// Reads sets with a row for each event: as many rows as all of them have. A server that was
+/// killed may leave some that are longer.
+class EventReader {
+ public:
+  EventReader(const hdf5::File& file, std::string group, const std::vector<const char*>& sets)
+      : file_(file), group_(std::move(group)) {
+    rows_ = std::numeric_limits<hsize_t>::max();
+    for (const char* set : sets) {
+      const hdf5::Shape shape = file_.stored_shape(group_ + set);
+      rows_ = std::min<hsize_t>(rows_, shape.empty() ? 0 : shape[0]);
+    }
+  }
+
+  hsize_t rows() const { return rows_; }
+  template <typename T>
+  std::vector<T> read(const char* set, hsize_t width = 1) const {
+    const hdf5::Shape shape = file_.stored_shape(group_ + set);
+    if (shape.size() != (width == 1 ? 1 : 2) || (width > 1 && shape[1] != width)) {
+      throw Error(file_.name(), group_ + set + " has not the right shape", "record it again");
+    }
+    const hdf5::Shape wanted = width == 1 ? hdf5::Shape{rows_} : hdf5::Shape{rows_, width};
+    std::vector<T> values(rows_ * width);
+    if (rows_ > 0) {
+      file_.read_slab<T>(group_ + set, hdf5::Shape(wanted.size(), 0), wanted, values.data());
+    }
+    return values;
+  }
+
+ private:
+  const hdf5::File& file_;
+  std::string group_;
+  hsize_t rows_;
+};
+
 /// What a stylus did to an object.
 struct ContactRows {
   std::vector<std::uint8_t> state;
@@ -61,6 +97,7 @@ struct ContactRows {
   std::vector<double> weights;
   std::vector<double> force;  ///< on the object, B; or on the stylus, W, when the object is alone
   std::vector<double> proxy;
+  std::vector<double> offset;
 
   ContactRows() = default;
   ContactRows(const RowReader& reader, const std::string& path)
@@ -69,7 +106,8 @@ struct ContactRows {
         nodes(reader.read<std::int32_t>(path + "/contact_nodes", 3)),
         weights(reader.read<double>(path + "/contact_weights", 3)),
         force(reader.read<double>(path + "/force", 3)),
-        proxy(reader.read<double>(path + "/proxy", 3)) {}
+        proxy(reader.read<double>(path + "/proxy", 3)),
+        offset(reader.read<double>(path + "/offset", 3)) {}
 
   void check(int node_count, const std::string& path, const std::string& file) const {
     for (std::size_t k = 0; k < state.size(); ++k) {
@@ -198,19 +236,23 @@ void check_late(const LateForce& late, const SimulationConfig& config, const std
 LateRows read_late(const hdf5::File& file, const SimulationConfig& config) {
   LateRows rows;
   if (!file.exists("/late/force_step")) return rows;  // an older trace
-  rows.force_step = file.read<std::uint64_t>("/late/force_step", {0});
-  const hsize_t count = rows.force_step.size();
-  const auto age = file.read<std::int32_t>("/late/age", {count});
-  const auto object = file.read<std::int32_t>("/late/object", {count});
-  const auto stylus = file.read<std::int32_t>("/late/stylus", {count});
-  const auto nodes = file.read<std::int32_t>("/late/contact_nodes", {count, 3});
-  const auto weights = file.read<double>("/late/contact_weights", {count, 3});
-  const auto force = file.read<double>("/late/force", {count, 3});
-  const auto arm = file.read<double>("/late/arm", {count, 3});
-  rows.position = file.read<double>("/late/body_position", {count, 3});
-  rows.orientation = file.read<double>("/late/body_orientation", {count, 4});
-  rows.velocity = file.read<double>("/late/body_velocity", {count, 3});
-  rows.angular_momentum = file.read<double>("/late/body_angular_momentum", {count, 3});
+  const EventReader reader(
+      file, "/late",
+      {"/force_step", "/age", "/object", "/stylus", "/contact_nodes", "/contact_weights", "/force",
+       "/arm", "/body_position", "/body_orientation", "/body_velocity", "/body_angular_momentum"});
+  rows.force_step = reader.read<std::uint64_t>("/force_step");
+  const hsize_t count = reader.rows();
+  const auto age = reader.read<std::int32_t>("/age");
+  const auto object = reader.read<std::int32_t>("/object");
+  const auto stylus = reader.read<std::int32_t>("/stylus");
+  const auto nodes = reader.read<std::int32_t>("/contact_nodes", 3);
+  const auto weights = reader.read<double>("/contact_weights", 3);
+  const auto force = reader.read<double>("/force", 3);
+  const auto arm = reader.read<double>("/arm", 3);
+  rows.position = reader.read<double>("/body_position", 3);
+  rows.orientation = reader.read<double>("/body_orientation", 4);
+  rows.velocity = reader.read<double>("/body_velocity", 3);
+  rows.angular_momentum = reader.read<double>("/body_angular_momentum", 3);
   for (std::size_t e = 0; e < count; ++e) {
     LateForce late{object[e], stylus[e], age[e], {}, vector_of(force, e), vector_of(arm, e)};
     for (std::size_t i = 0; i < 3; ++i) {
@@ -219,6 +261,35 @@ LateRows read_late(const hdf5::File& file, const SimulationConfig& config) {
     }
     check_late(late, config, file.name());
     rows.late.push_back(late);
+  }
+  return rows;
+}
+
+struct BridgedRows {
+  std::vector<std::uint64_t> force_step;
+  std::vector<std::int32_t> stylus;
+  std::vector<BridgedForce> bridged;
+};
+
+BridgedRows read_bridged(const hdf5::File& file, const SimulationConfig& config) {
+  BridgedRows rows;
+  if (!file.exists("/bridged/force_step")) return rows;  // an older trace
+  const EventReader reader(file, "/bridged",
+                           {"/force_step", "/stylus", "/object", "/force", "/arm"});
+  rows.force_step = reader.read<std::uint64_t>("/force_step");
+  const hsize_t count = reader.rows();
+  rows.stylus = reader.read<std::int32_t>("/stylus");
+  const auto object = reader.read<std::int32_t>("/object");
+  const auto force = reader.read<double>("/force", 3);
+  const auto arm = reader.read<double>("/arm", 3);
+  for (std::size_t e = 0; e < count; ++e) {
+    const std::int32_t stylus = rows.stylus[e];
+    if (stylus < 0 || stylus >= static_cast<std::int32_t>(config.styluses.size()) ||
+        object[e] < -1 || object[e] >= static_cast<std::int32_t>(config.objects.size())) {
+      throw Error(file.name(), "/bridged speaks of a stylus or an object that the scene lacks",
+                  "use the scene that it was recorded with");
+    }
+    rows.bridged.push_back({vector_of(force, e), vector_of(arm, e), object[e]});
   }
   return rows;
 }
@@ -236,6 +307,8 @@ struct Recording::Data {
   std::vector<std::size_t> last_reset;  ///< step of the recording, of each step
   LateRows late;
   std::vector<std::span<const LateForce>> late_of;  ///< in `late`, of each step
+  BridgedRows bridged;
+  std::vector<std::size_t> bridged_of;  ///< first row in `bridged`, of each step, and one more
   std::vector<StylusRows> styluses;
   std::vector<ObjectRows> objects;
 
@@ -245,6 +318,7 @@ struct Recording::Data {
   void read_styluses(const hdf5::File& file, const RowReader& reader);
   void number_settings_and_resets();
   void number_late(const std::string& file);
+  void number_bridged();
   RigidState before(std::size_t object, std::size_t k) const;
   void object_step(std::size_t object, std::size_t k, ObjectRecord& out, bool feels_spin) const;
   ContactRecord contact(const ContactRows& rows, std::size_t k, const RigidState& before) const;
@@ -268,18 +342,36 @@ TraceHeader read_trace_header(const std::filesystem::path& path) {
   return header;
 }
 
+std::vector<TraceObject> read_trace_objects(const std::filesystem::path& path,
+                                            const std::vector<std::string>& names) {
+  const hdf5::File file = hdf5::File::open(path);
+  std::vector<TraceObject> objects;
+  for (const std::string& name : names) {
+    const std::string group = names.size() > 1 ? trace::object_path(true, name) : "/";
+    objects.push_back({name, file.read_string_attribute(group, "model_file"),
+                       file.read_string_attribute(group, "model_checksum")});
+  }
+  return objects;
+}
+
 void Recording::Data::read(const hdf5::File& file, const std::vector<std::string>& names) {
   const RowReader reader(file);
   dt = file.read_double_attribute("/", "dt");
   force_step = reader.read<std::uint64_t>("/step/force_step");
   reset = reader.read<std::uint8_t>("/step/reset");
   if (force_step.empty()) throw Error(file.name(), "holds no step", "record something");
+  if (std::adjacent_find(force_step.begin(), force_step.end(), std::greater_equal<>()) !=
+      force_step.end()) {
+    throw Error(file.name(), "/step/force_step does not increase", "record it again");
+  }
   settings = read_settings(file, config);
   late = read_late(file, config);
+  bridged = read_bridged(file, config);
   read_styluses(file, reader);
   read_objects(file, reader, names);
   number_settings_and_resets();
   number_late(file.name());
+  number_bridged();
 }
 
 void Recording::Data::read_styluses(const hdf5::File& file, const RowReader& reader) {
@@ -348,6 +440,16 @@ void Recording::Data::number_late(const std::string& file) {
   }
 }
 
+void Recording::Data::number_bridged() {
+  std::size_t row = 0;
+  for (const std::uint64_t step : force_step) {
+    while (row < bridged.force_step.size() && bridged.force_step[row] < step) ++row;
+    bridged_of.push_back(row);
+  }
+  while (row < bridged.force_step.size() && bridged.force_step[row] <= force_step.back()) ++row;
+  bridged_of.push_back(row);
+}
+
 RigidState Recording::Data::before(std::size_t i, std::size_t k) const {
   const ObjectRows& rows = objects[i];
   RigidState state;
@@ -391,6 +493,7 @@ ContactRecord Recording::Data::contact(const ContactRows& rows, std::size_t k,
   contact.force = vector_of(rows.force, k);
   if (objects.size() == 1) contact.force = -(before.orientation.conjugate() * contact.force);
   contact.proxy = vector_of(rows.proxy, k);
+  contact.offset = vector_of(rows.offset, k);
   return contact;
 }
 
@@ -399,6 +502,7 @@ void Recording::Data::object_step(std::size_t i, std::size_t k, ObjectRecord& ou
   const ObjectRows& rows = objects[i];
   const RigidState start = before(i, k);
   const double* q = rows.orientation.data() + at(k, 4);
+  out.start = start;
   out.position = vector_of(rows.position, k);
   out.orientation = Quaternion(q[0], q[1], q[2], q[3]);
   out.velocity = vector_of(rows.velocity, k);
@@ -435,6 +539,10 @@ std::size_t Recording::steps() const noexcept {
   return data_->force_step.size();
 }
 
+std::uint64_t Recording::lost_steps() const noexcept {
+  return data_->force_step.back() - data_->force_step.front() + 1 - data_->force_step.size();
+}
+
 void Recording::step(std::size_t k, StepRecord& record) const {
   const Data& data = *data_;
   record.force_step = k;
@@ -459,6 +567,7 @@ void Recording::step(std::size_t k, StepRecord& record) const {
     stylus.tip = vector_of(rows.tip, k);
     stylus.proxy = vector_of(rows.proxy, k);
     stylus.force = vector_of(rows.force, k);
+    stylus.bridged.reset();
     const bool free = data.objects.size() == 1 && data.objects[0].contacts[s].state[k] == 0;
     stylus.object = rows.object.empty() ? (free ? -1 : 0) : rows.object[k];
     stylus.contact = ContactState::kFree;
@@ -466,6 +575,10 @@ void Recording::step(std::size_t k, StepRecord& record) const {
       const auto i = static_cast<std::size_t>(stylus.object);
       stylus.contact = record.object[i].contact[s].state;
     }
+  }
+  for (std::size_t row = data.bridged_of[k]; row < data.bridged_of[k + 1]; ++row) {
+    record.stylus[static_cast<std::size_t>(data.bridged.stylus[row])].bridged =
+        data.bridged.bridged[row];
   }
 }
 

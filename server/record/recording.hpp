@@ -13,6 +13,10 @@ namespace irdm {
 /// The head of a trace file. Throws Error when it is none, or one that cannot be understood.
 TraceHeader read_trace_header(const std::filesystem::path& path);
 
+/// What it says of each object, in the scene's order: its models may differ. Throws Error.
+std::vector<TraceObject> read_trace_objects(const std::filesystem::path& path,
+                                            const std::vector<std::string>& names);
+
 /// A recorded run, read back whole: what each step did to the objects. Takes some 500 bytes a step.
 class Recording {
  public:
@@ -25,6 +29,8 @@ class Recording {
   ~Recording();
 
   std::size_t steps() const noexcept;
+  /// How many are missing between the first and the last: they were lost on the way to the disk.
+  std::uint64_t lost_steps() const noexcept;
   /// Step i of the recording, 0 <= i < steps(). It is numbered i, whatever its number in the run
   /// was.
   void step(std::size_t i, StepRecord& record) const;

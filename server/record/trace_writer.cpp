@@ -55,6 +55,7 @@ void TraceWriter::create_datasets() {
   file_.create_growing<std::uint8_t>("/step/reset", {}, kChunkRows);
   create_settings();
   create_late();
+  create_bridged();
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     const std::string group = object_path(i);
     create_object(group);
@@ -157,6 +158,40 @@ void TraceWriter::append_late(std::span<const StepRecord> records) {
   }
 }
 
+// One row for every step in which a bridge solved the contact of a stylus.
+void TraceWriter::create_bridged() {
+  file_.create_growing<std::uint64_t>("/bridged/force_step", {}, kChunkRows);
+  file_.create_growing<std::int32_t>("/bridged/stylus", {}, kChunkRows);
+  file_.create_growing<std::int32_t>("/bridged/object", {}, kChunkRows);
+  file_.create_growing<double>("/bridged/force", {3}, kChunkRows);
+  file_.create_growing<double>("/bridged/arm", {3}, kChunkRows);
+}
+
+void TraceWriter::append_bridged(std::span<const StepRecord> records) {
+  std::vector<std::uint64_t> steps;
+  std::vector<std::int32_t> styluses;
+  std::vector<std::int32_t> objects;
+  std::vector<double> forces;
+  std::vector<double> arms;
+  for (const StepRecord& r : records) {
+    for (std::size_t s = 0; s < static_cast<std::size_t>(stylus_count_); ++s) {
+      const std::optional<BridgedForce>& bridged = r.stylus[s].bridged;
+      if (!bridged) continue;
+      steps.push_back(r.force_step);
+      styluses.push_back(static_cast<std::int32_t>(s));
+      objects.push_back(bridged->object);
+      forces.insert(forces.end(), bridged->force.begin(), bridged->force.end());
+      arms.insert(arms.end(), bridged->arm.begin(), bridged->arm.end());
+    }
+  }
+  if (steps.empty()) return;
+  file_.append<std::uint64_t>("/bridged/force_step", steps.size(), steps.data());
+  file_.append<std::int32_t>("/bridged/stylus", steps.size(), styluses.data());
+  file_.append<std::int32_t>("/bridged/object", steps.size(), objects.data());
+  file_.append<double>("/bridged/force", steps.size(), forces.data());
+  file_.append<double>("/bridged/arm", steps.size(), arms.data());
+}
+
 std::string TraceWriter::object_path(std::size_t object) const {
   return trace::object_path(several(), objects_[object].name);
 }
@@ -213,6 +248,7 @@ void TraceWriter::append(std::span<const StepRecord> records) {
                       [](const StepRecord& r, double* row) { *row = r.time; });
   append_settings(records);
   append_late(records);
+  append_bridged(records);
   for (std::size_t i = 0; i < objects_.size(); ++i) append_object(records, i);
   for (std::size_t s = 0; s < static_cast<std::size_t>(stylus_count_); ++s) {
     append_stylus(records, s);

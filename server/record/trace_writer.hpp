@@ -55,6 +55,8 @@ class TraceWriter {
   void create_settings();
   void create_late();
   void append_late(std::span<const StepRecord> records);
+  void create_bridged();
+  void append_bridged(std::span<const StepRecord> records);
   void append_settings(std::span<const StepRecord> records);
   void append_stylus(std::span<const StepRecord> records, std::size_t stylus);
   template <typename Contact>

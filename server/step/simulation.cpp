@@ -129,6 +129,14 @@ bool Simulation::enter_late(std::size_t s, const AppliedForce& applied, int age)
   return true;
 }
 
+bool Simulation::enter_late(const LateForce& late) noexcept {
+  const NoDenormals here;
+  if (late_.count == LateForces::kMost) return false;
+  if (!objects_[static_cast<std::size_t>(late.object)]->enter_late(late)) return false;
+  late_.force[late_.count++] = late;
+  return true;
+}
+
 // Step 6: -Q f.
 void Simulation::write_stylus(std::size_t s, const StylusCommand& command,
                               StepRecord& record) const noexcept {
@@ -137,6 +145,7 @@ void Simulation::write_stylus(std::size_t s, const StylusCommand& command,
   stylus.present = command.present;
   stylus.buttons = command.buttons;
   stylus.tip = stylus.proxy = command.tip;
+  stylus.bridged = command.bridged;
   double largest = -1.0;
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     const ContactRecord& contact = record.object[i].contact[s];

@@ -43,6 +43,8 @@ class Simulation {
   /// step `age` steps before the last one. False: that is too long ago, it touched
   /// nothing, or there are more of them than LateForces::kMost.
   bool enter_late(std::size_t s, const AppliedForce& applied, int age) noexcept;
+  /// The same of a recorded one (StepRecord::late), when a run is made again.
+  bool enter_late(const LateForce& late) noexcept;
   /// How many more can be entered before the coming step.
   std::size_t late_room() const noexcept { return LateForces::kMost - late_.count; }
   /// The object that foresee() last spoke of; -1: none.

@@ -51,6 +51,8 @@ class SoftObject {
   /// False: neither.
   /// @param entry knows its age; the rest of it is written
   bool enter_late(std::size_t s, const AppliedForce& applied, LateForce& entry) noexcept;
+  /// The same of an entry that is whole. False: that is too long ago.
+  bool enter_late(const LateForce& entry) noexcept;
   /// From the surface to a point of W, positive outside [m]. Between steps.
   double distance(const Vector3& tip) noexcept;
   ContactState contact_state(std::size_t s) const noexcept { return styluses_[s].state(); }

@@ -98,11 +98,18 @@ bool SoftObject::place_late(std::size_t s, const Vector3& tip, LateForce& entry)
 bool SoftObject::enter_late(std::size_t s, const AppliedForce& applied, LateForce& entry) noexcept {
   if (!place_late(s, applied.tip, entry)) return false;
   entry.force = past_.orientation(entry.age).conjugate() * applied.force;
+  entry.arm = believed(applied.arm, entry.arm);
+  return enter_late(entry);
+}
+
+// What acts is the entry: a run that is made again has nothing else.
+bool SoftObject::enter_late(const LateForce& entry) noexcept {
+  if (entry.age >= past_.count()) return false;
+  masks_[static_cast<std::size_t>(entry.stylus)].spread(entry.point, foreseen_patch_);
   nodal_.clear();
   nodal_.add(foreseen_patch_, entry.force);
   engine_->add_past(nodal_.view(), entry.age);
-  entry.arm = believed(applied.arm, entry.arm);
-  past_.add(entry.age, applied.force, entry.arm);
+  past_.add(entry.age, past_.orientation(entry.age) * entry.force, entry.arm);
   return true;
 }
 

@@ -110,6 +110,7 @@ struct StylusRecord {
   Vector3 tip = Vector3::Zero();               ///< [m], W
   Vector3 proxy = Vector3::Zero();             ///< of that contact; free: the tip [m], W
   Vector3 force = Vector3::Zero();             ///< on the stylus, of all objects [N], W
+  std::optional<BridgedForce> bridged = {};    ///< that the step was given, as it was given
 };
 
 /// What happened in one step: everything that the trace, the deformation and the bridges need.

@@ -1,5 +1,7 @@
 // Traces of two objects and two styluses, with edits of the fuzzer's choice.
 #include "common/error.hpp"
+#include "replay/made_again/from_forces.hpp"
+#include "replay/made_again/from_tips.hpp"
 #include "server/record/recording.hpp"
 #include "tests/fuzz/edited_file.hpp"
 #include "tests/fuzz/harness.hpp"
@@ -22,13 +24,27 @@ std::filesystem::path valid_trace() {
   std::filesystem::remove(path);
   Simulation simulation(scene());
   std::vector<StepRecord> records(kSteps);
-  for (int k = 0; k < kSteps; ++k)
-    test::play_step(simulation, k, records[static_cast<std::size_t>(k)]);
+  for (int k = 0; k < kSteps; ++k) {
+    StepRecord& record = records[static_cast<std::size_t>(k)];
+    test::play_step(simulation, k, record);
+    if (k % 9 == 0) record.stylus[0].bridged = BridgedForce{.object = k % 2};
+  }
   TraceWriter writer(
       path, {{{kNames[0], "a.h5", "1"}, {kNames[1], "b.h5", "2"}}, "scene", 0.002, 2, true});
   writer.append(records);
   writer.close();
   return path;
+}
+
+/// What comes out means nothing: it has to come out.
+void make_again(replay::MadeAgain& made, const Recording& recording) {
+  constexpr std::size_t kMost = 60;
+  StepRecord recorded;
+  StepRecord again;
+  for (std::size_t k = 0; k < std::min(recording.steps(), kMost); ++k) {
+    recording.step(k, recorded);
+    made.step(recorded, again);
+  }
 }
 
 }  // namespace
@@ -47,6 +63,10 @@ void trace_file(Input input) {
                "the floor's forces fit into a step");
       }
     }
+    replay::FromForces from_forces(scene());
+    make_again(from_forces, recording);
+    replay::FromTips from_tips(scene());
+    make_again(from_tips, recording);
   } catch (const Error&) {
     expect(!input.empty(), "a trace can be read as it was written");
   }

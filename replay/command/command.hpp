@@ -1,0 +1,18 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+/// The commands of irdm-replay. Each function adds a command's options to the command line and
+/// returns what it does once they are parsed: its value is the exit status, its errors are thrown.
+namespace irdm::replay {
+
+using Command = std::function<int()>;
+
+/// Without a word for it: TRACE.h5 makes a recorded run again (docs/replay.md).
+Command add_replay_command(CLI::App& app);
+
+/// compare A.h5 B.h5: how far two runs that --output wrote are apart.
+Command add_compare_command(CLI::App& app);
+
+}  // namespace irdm::replay

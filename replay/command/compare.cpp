@@ -1,0 +1,48 @@
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <optional>
+
+#include "common/error.hpp"
+#include "replay/command/command.hpp"
+#include "replay/compare/comparison_text.hpp"
+#include "replay/output/part_file.hpp"
+
+namespace irdm::replay {
+namespace {
+
+struct CompareOptions {
+  std::filesystem::path a, b;
+  std::optional<std::filesystem::path> json;
+};
+
+void write_json(const std::filesystem::path& path, const std::string& text) {
+  PartFile file(path);
+  std::ofstream stream(file.part(), std::ios::binary);
+  stream << text;
+  stream.close();
+  if (!stream) throw Error(file.part().string(), "cannot be written", "make room on the disk");
+  file.finish();
+}
+
+int compare(const CompareOptions& options) {
+  const Comparison comparison = compare_runs(RunReader(options.a), RunReader(options.b));
+  if (options.json) write_json(*options.json, comparison_json(comparison));
+  std::cout << comparison_table(comparison) << std::flush;
+  return 0;
+}
+
+}  // namespace
+
+Command add_compare_command(CLI::App& app) {
+  auto options = std::make_shared<CompareOptions>();
+  CLI::App* command =
+      app.add_subcommand("compare", "Says how far two runs of the same interaction are apart");
+  command->add_option("a", options->a, "Run file that --output wrote")->required();
+  command->add_option("b", options->b, "Another one, of the same scene")->required();
+  command->add_option("--json", options->json,
+                      "File for all of it, frame by frame; must not exist");
+  return [options] { return compare(*options); };
+}
+
+}  // namespace irdm::replay

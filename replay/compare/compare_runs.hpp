@@ -1,0 +1,43 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "replay/compare/run_reader.hpp"
+
+namespace irdm::replay {
+
+/// How far one quantity of two runs is apart, over the frames that they have in common.
+struct Apart {
+  std::vector<double> rms;      ///< of each frame: over nodes, or the difference itself
+  std::vector<double> largest;  ///< the same: of the worst node
+  double reference = 0.0;       ///< largest size in A; 0: none is meant
+
+  /// Of all frames.
+  double rms_over_time() const;
+  double maximum() const;
+  std::size_t worst_frame() const;  ///< where maximum() is
+};
+
+struct ObjectComparison {
+  std::string name;
+  bool same_nodes = false;  ///< otherwise the next two are empty: the meshes differ
+  Apart displacement;       ///< of the nodes [m], B
+  Apart place;              ///< of the nodes [m], W
+  Apart centre_of_mass;     ///< [m], W
+  Apart orientation;        ///< angle between [rad]
+};
+
+struct Comparison {
+  std::string a, b;
+  std::vector<double> times;  ///< of the common frames [s]
+  std::size_t alone = 0;      ///< frames of A and B that the other has not
+  std::vector<ObjectComparison> objects;
+  std::vector<Apart> forces;  ///< of each stylus [N], W
+};
+
+/// Compares two runs of the same scene. Frames belong together whose times are the same within a
+/// nanosecond. Throws Error when the runs have nothing in common.
+Comparison compare_runs(const RunReader& a, const RunReader& b);
+
+}  // namespace irdm::replay

@@ -1,0 +1,88 @@
+#include "replay/compare/run_reader.hpp"
+
+#include <algorithm>
+
+#include "common/error.hpp"
+#include "replay/output/run_paths.hpp"
+#include "server/step/settings.hpp"
+#include "server/step/step_record.hpp"
+
+namespace irdm::replay {
+namespace {
+
+hdf5::File open_run(const std::filesystem::path& path) {
+  hdf5::File file = hdf5::File::open(path);
+  if (file.read_string_attribute("/", "format") != run::kFormat) {
+    throw Error(path.string(), "is not a run file",
+                "make one with irdm-replay TRACE.h5 --output RUN.h5");
+  }
+  if (file.read_integer_attribute("/", "version") != run::kVersion) {
+    throw Error(path.string(), "is a run file of another version", "make it again");
+  }
+  return file;
+}
+
+std::size_t count(const hdf5::File& file, const std::string& name, int most) {
+  const std::int64_t value = file.read_integer_attribute("/", name);
+  if (value >= 1 && value <= most) return static_cast<std::size_t>(value);
+  throw Error(file.name(), "says that it has " + std::to_string(value) + " " + name,
+              "make it again");
+}
+
+// At least one.
+hsize_t rows(const hdf5::File& file, const std::string& set, std::size_t rank) {
+  const hdf5::Shape shape = file.stored_shape(set);
+  if (shape.size() == rank && shape[0] > 0) return shape[0];
+  throw Error(file.name(), set + " is empty or has not the right shape", "make it again");
+}
+
+}  // namespace
+
+RunReader::RunReader(const std::filesystem::path& path) : file_(open_run(path)) {
+  times_ = file_.read<double>("/time", {rows(file_, "/time", 1)});
+  styluses_ = count(file_, "styluses", kMaxStyluses);
+  for (std::size_t i = 0; i < count(file_, "objects", kMaxObjects); ++i) {
+    const std::string group = run::object_path(i);
+    objects_.push_back(file_.read_string_attribute(group, "name"));
+    const hsize_t nodes = rows(file_, group + "/rest", 2);
+    const auto values = file_.read<double>(group + "/rest", {nodes, 3});
+    rest_.push_back(Eigen::Map<const Points>(values.data(), static_cast<Eigen::Index>(nodes), 3));
+  }
+}
+
+void RunReader::row(const std::string& set, std::size_t frame, const hdf5::Shape& row,
+                    double* values) const {
+  hdf5::Shape start(row.size() + 1, 0);
+  start[0] = frame;
+  hdf5::Shape extent{1};
+  extent.insert(extent.end(), row.begin(), row.end());
+  const hdf5::Shape shape = file_.shape(set);
+  if (shape.size() != extent.size() || !std::equal(row.begin(), row.end(), shape.begin() + 1) ||
+      shape[0] <= frame) {
+    throw Error(file_.name(), set + " has not the right shape", "make it again");
+  }
+  file_.read_slab<double>(set, start, extent, values);
+}
+
+RunPose RunReader::pose(std::size_t object, std::size_t frame) const {
+  RunPose pose;
+  std::array<double, 4> q{};
+  row(run::object_path(object) + "/position", frame, {3}, pose.position.data());
+  row(run::object_path(object) + "/orientation", frame, {4}, q.data());
+  pose.orientation = Quaternion(q[0], q[1], q[2], q[3]);
+  return pose;
+}
+
+void RunReader::displacement(std::size_t object, std::size_t frame, Points& u) const {
+  u.resize(rest_[object].rows(), 3);
+  row(run::object_path(object) + "/displacement", frame, {static_cast<hsize_t>(u.rows()), 3},
+      u.data());
+}
+
+Vector3 RunReader::force(std::size_t stylus, std::size_t frame) const {
+  Vector3 force;
+  row(run::stylus_path(stylus) + "/force", frame, {3}, force.data());
+  return force;
+}
+
+}  // namespace irdm::replay

@@ -1,0 +1,53 @@
+#include "replay/made_again/from_forces.hpp"
+
+#include "common/realtime/no_denormals.hpp"
+
+namespace irdm::replay {
+
+FromForces::FromForces(const SimulationConfig& config)
+    : config_(config), settings_(initial_settings(config)) {
+  for (std::size_t i = 0; i < config.objects.size(); ++i) {
+    objects_.push_back(std::make_unique<ForcedObject>(config, i));
+  }
+  check_settings(config_, settings_);
+}
+
+void FromForces::step(const StepRecord& recorded, StepRecord& again) {
+  const NoDenormals here;
+  again = recorded;
+  if (recorded.reset) {
+    for (const auto& object : objects_) object->reset();
+  }
+  for (const LateForce& late : recorded.late.view()) {
+    objects_[static_cast<std::size_t>(late.object)]->enter_late(late);
+  }
+  if (!(recorded.settings == settings_)) {
+    check_settings(config_, recorded.settings);
+    settings_ = recorded.settings;
+    for (std::size_t i = 0; i < objects_.size(); ++i) {
+      objects_[i]->set(settings_.gravity, settings_.object[i]);
+    }
+  }
+  for (std::size_t i = 0; i < objects_.size(); ++i) objects_[i]->step(again.object[i]);
+  write_floor_and_styluses(again);
+}
+
+// In W, as the objects stand now.
+void FromForces::write_floor_and_styluses(StepRecord& again) const {
+  const auto styluses = static_cast<std::size_t>(again.stylus_count);
+  for (std::size_t s = 0; s < styluses; ++s) again.stylus[s].force.setZero();
+  for (std::size_t i = 0; i < objects_.size(); ++i) {
+    ObjectRecord& object = again.object[i];
+    const Quaternion& Q = object.start.orientation;
+    for (std::size_t s = 0; s < styluses; ++s) {
+      const ContactRecord& contact = object.contact[s];
+      if (contact.state != ContactState::kFree) again.stylus[s].force -= Q * contact.force;
+    }
+    object.floor_force.setZero();
+    for (std::size_t c = 0; c < static_cast<std::size_t>(object.floor_count); ++c) {
+      object.floor_force += Q * object.floor[c].force.cast<double>();
+    }
+  }
+}
+
+}  // namespace irdm::replay

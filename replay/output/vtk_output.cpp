@@ -1,0 +1,157 @@
+#include "replay/output/vtk_output.hpp"
+
+#include <charconv>
+#include <cstdio>
+#include <fstream>
+#include <numeric>
+
+#include "common/error.hpp"
+#include "replay/output/plain_names.hpp"
+#include "replay/output/vtk_xml.hpp"
+
+namespace irdm::replay {
+namespace {
+
+std::string text_of(double value) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, value).ptr};
+}
+
+std::string tag(const std::string& name, const std::string& content) {
+  return "<" + name + ">\n" + content + "</" + name.substr(0, name.find(' ')) + ">\n";
+}
+
+std::span<const double> numbers(const Points& points) {
+  return {points.data(), static_cast<std::size_t>(points.size())};
+}
+
+std::string cells(const std::string& kind, const std::vector<std::int32_t>& nodes, int corners) {
+  std::vector<std::int32_t> ends(nodes.size() / static_cast<std::size_t>(corners));
+  std::int32_t end = 0;
+  for (std::int32_t& each : ends) each = end += corners;
+  return tag(kind, vtk_array("connectivity", nodes, 1) + vtk_array("offsets", ends, 1));
+}
+
+std::string triangle_cells(const Triangles& triangles) {
+  return cells("Polys", {triangles.data(), triangles.data() + triangles.size()}, 3);
+}
+
+std::string poly_data(double time, const Points& points, std::size_t vertices, std::size_t polygons,
+                      const std::string& cell_text, const std::string& point_data) {
+  const std::vector<double> times{time};
+  const std::string piece =
+      "Piece NumberOfPoints=\"" + std::to_string(points.rows()) + "\" NumberOfVerts=\"" +
+      std::to_string(vertices) + "\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"" +
+      std::to_string(polygons) + "\"";
+  const std::string content =
+      tag("FieldData", vtk_array("TimeValue", times, 1, " NumberOfTuples=\"1\"")) +
+      tag(piece, point_data + tag("Points", vtk_array("Points", numbers(points), 3)) + cell_text);
+  return vtk_file("PolyData", tag("PolyData", content));
+}
+
+}  // namespace
+
+VtkOutput::VtkOutput(const std::filesystem::path& folder, const TracedScene& scene)
+    : folder_(folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder_, error);
+  if (error || !std::filesystem::is_directory(folder_)) {
+    throw Error(folder_.string(), "cannot be made a folder", "give another place");
+  }
+  if (!std::filesystem::is_empty(folder_)) {
+    throw Error(folder_.string(), "is not empty", "give a new folder, or empty it");
+  }
+  std::vector<double> radii;
+  for (const SimulationStylus& stylus : scene.config.styluses) radii.push_back(stylus.radius);
+  const std::vector<std::string> names = plain_names(scene);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    Surface surface{names[i], scene.config.objects[i].model, nullptr, nullptr, ""};
+    surface.rest = std::make_unique<RestSurface>(surface.model->mesh);
+    surface.forces = std::make_unique<RecordedForces>(*surface.rest, radii);
+    surface.triangles = triangle_cells(surface.model->mesh.triangles);
+    surfaces_.push_back(std::move(surface));
+  }
+}
+
+// Displacement: what the place of a node differs by from that of the rigid body.
+std::string VtkOutput::surface_text(const Surface& surface, const ObjectRecord& object,
+                                    const Points& displacement, double time) const {
+  const ModelMesh& mesh = surface.model->mesh;
+  const Eigen::Index count = mesh.surface_node_count();
+  Points place(count, 3);
+  Points moved(count, 3);
+  Points force = Points::Zero(count, 3);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Vector3 u = displacement.row(i).transpose();
+    place.row(i) = object.position + object.orientation * (mesh.rest_position(static_cast<int>(i)) + u);
+    moved.row(i) = object.orientation * u;
+  }
+  for (const NodalForce& each : surface.forces->of(object)) {
+    force.row(each.node) += (object.start.orientation * each.force).transpose();
+  }
+  return poly_data(time, place, 0, static_cast<std::size_t>(mesh.triangles.rows()),
+                   surface.triangles,
+                   tag("PointData Vectors=\"displacement\"",
+                       vtk_array("displacement", numbers(moved), 3) +
+                           vtk_array("force", numbers(force), 3)));
+}
+
+std::string VtkOutput::styluses_text(const StepRecord& record) const {
+  const auto count = static_cast<std::size_t>(record.stylus_count);
+  Points tip(count, 3);
+  Points proxy(count, 3);
+  Points force(count, 3);
+  std::vector<std::int32_t> contact;
+  std::vector<std::int32_t> present;
+  for (std::size_t s = 0; s < count; ++s) {
+    const auto row = static_cast<Eigen::Index>(s);
+    const StylusRecord& stylus = record.stylus[s];
+    tip.row(row) = stylus.tip;
+    proxy.row(row) = stylus.proxy;
+    force.row(row) = stylus.force;
+    contact.push_back(static_cast<std::int32_t>(stylus.contact));
+    present.push_back(stylus.present ? 1 : 0);
+  }
+  std::vector<std::int32_t> points(count);
+  std::iota(points.begin(), points.end(), 0);
+  return poly_data(record.time, tip, count, 0, cells("Verts", points, 1),
+                   tag("PointData Vectors=\"force\"", vtk_array("force", numbers(force), 3) +
+                                                          vtk_array("proxy", numbers(proxy), 3) +
+                                                          vtk_array("contact", contact, 1) +
+                                                          vtk_array("present", present, 1)));
+}
+
+void VtkOutput::write(const std::string& name, const std::string& text) const {
+  std::ofstream stream(folder_ / name, std::ios::binary);
+  stream << text;
+  stream.close();
+  if (!stream) {
+    throw Error((folder_ / name).string(), "cannot be written", "make room on the disk");
+  }
+}
+
+void VtkOutput::write_part(const std::string& name, const std::string& text, double time,
+                           std::size_t part) {
+  char number[32];
+  std::snprintf(number, sizeof number, "_%06zu.vtp", frames_);
+  write(name + number, text);
+  index_ += "<DataSet timestep=\"" + text_of(time) + "\" part=\"" + std::to_string(part) +
+            "\" name=\"" + name + "\" file=\"" + name + number + "\"/>\n";
+}
+
+void VtkOutput::put(const ReplayFrame& frame) {
+  const double time = frame.record.time;
+  for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+    write_part(surfaces_[i].name,
+               surface_text(surfaces_[i], frame.record.object[i], frame.displacement[i], time),
+               time, i);
+  }
+  write_part("styluses", styluses_text(frame.record), time, surfaces_.size());
+  ++frames_;
+}
+
+void VtkOutput::finish() {
+  write("run.pvd", vtk_file("Collection", tag("Collection", index_)));
+}
+
+}  // namespace irdm::replay

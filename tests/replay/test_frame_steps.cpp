@@ -1,0 +1,37 @@
+#include <catch2/catch.hpp>
+
+#include "common/error.hpp"
+#include "replay/frame_steps.hpp"
+
+using Catch::Matchers::Contains;
+using namespace irdm;
+using namespace irdm::replay;
+
+TEST_CASE("every step is a frame without a rate, and at that of the steps") {
+  for (const std::optional<double> rate : {std::optional<double>{}, std::optional<double>{500.0}}) {
+    const FrameSteps frames(1050, 0.002, rate);
+    CHECK(frames.count() == 1050);
+    for (std::size_t k = 0; k < 1050; ++k) REQUIRE(frames.has(k));
+  }
+}
+
+TEST_CASE("a frame is at the end of the step that its time falls into") {
+  const double rate = GENERATE(1.0, 24.0, 60.0, 250.0, 333.3, 499.0);
+  constexpr double kDt = 0.002;
+  constexpr std::size_t kSteps = 1050;
+  const FrameSteps frames(kSteps, kDt, rate);
+  std::size_t next = 0;
+  for (std::size_t k = 0; k < kSteps; ++k) {
+    if (!frames.has(k)) continue;
+    ++next;
+    const double time = static_cast<double>(next) / rate;
+    REQUIRE(time > static_cast<double>(k) * kDt - 1e-8);
+    REQUIRE(time <= static_cast<double>(k + 1) * kDt + 1e-8);
+  }
+  CHECK(next == frames.count());
+  CHECK(next == static_cast<std::size_t>(kSteps * kDt * rate + 1e-6));
+}
+
+TEST_CASE("there are no more frames than steps") {
+  CHECK_THROWS_WITH(FrameSteps(100, 0.002, 501.0), Contains("at most 500"));
+}

@@ -1,7 +1,7 @@
 // What a disk is good for: a fingertip of 1.5 cm presses a fixed depth into a face of a model whose
-// columns come from its file, and slides to and fro at several speeds, in real time. Beside it, in
-// the same steps, the modal engine, which misses nothing. First with nothing of the file in the
-// system's memory, then with as much of it as the run before left there.
+// columns come from its file, and slides to and fro at several speeds, or taps here and there, in
+// real time. Beside it, in the same steps, the modal engine, which misses nothing. First with
+// nothing of the file in the system's memory, then with as much of it as the run before left there.
 //   bench_streamed_columns MODEL.h5 MEBIBYTES      a model with storage = "both"
 #include <fcntl.h>
 #include <unistd.h>
@@ -10,6 +10,8 @@
 #include <cmath>
 #include <cstdlib>
 #include <iostream>
+#include <numbers>
+#include <random>
 
 #include "bench/report.hpp"
 #include "common/model/model_file.hpp"
@@ -29,12 +31,36 @@ constexpr double kDepth = 0.006;
 struct Sliding {
   double half_edge;
   double speed;
+  std::string name() const {
+    return "slides at " + std::to_string(std::lround(100.0 * speed)) + " cm/s";
+  }
   // Down within 0.3 s, then a triangle wave over 8 cm.
   Vector3 tip(double t) const {
     const double way = std::max(0.0, t - 0.3) * speed;
     const double along = std::abs(std::fmod(way + 0.04, 0.16) - 0.08) - 0.04;
     const double down = std::min(1.0, t / 0.3);
     return {along, half_edge + 0.003 - (0.003 + kDepth) * down * down * (3 - 2 * down), 0.01};
+  }
+};
+
+// Taps at random places, so many a second: a quarter of the time to get there, then down and up.
+struct Tapping {
+  double half_edge;
+  double rate;
+  std::string name() const { return std::to_string(std::lround(rate)) + " taps a second"; }
+  static Vector3 place(int number) {
+    std::mt19937 random(static_cast<unsigned>(number + 1));
+    std::uniform_real_distribution<double> uniform(-0.045, 0.045);
+    const double x = uniform(random);
+    return {x, 0.0, uniform(random)};
+  }
+  Vector3 tip(double t) const {
+    const auto number = static_cast<int>(t * rate);
+    const double phase = t * rate - number;
+    const double there = std::min(1.0, 4.0 * phase);
+    const double down = std::sin(std::numbers::pi * std::max(0.0, (phase - 0.25) / 0.75));
+    return (1.0 - there) * place(number - 1) + there * place(number) +
+           Vector3(0.0, half_edge + 0.005 - (0.005 + kDepth) * down * down, 0.0);
   }
 };
 
@@ -58,9 +84,10 @@ double seconds_since(std::int64_t begin) {
   return static_cast<double>(monotonic_ns() - begin) * 1e-9;
 }
 
-void slide(bench::Report& report, const std::string& where, const Sliding& sliding,
-           const std::shared_ptr<const Model>& streamed, const std::shared_ptr<const Model>& modal,
-           const SceneColumns& columns) {
+template <typename Motion>
+void feel(bench::Report& report, const std::string& where, const Motion& motion,
+          const std::shared_ptr<const Model>& streamed, const std::shared_ptr<const Model>& modal,
+          const SceneColumns& columns) {
   Simulation simulation(config_of(streamed));
   Simulation reference(config_of(modal));
   StepRecord record;
@@ -73,7 +100,7 @@ void slide(bench::Report& report, const std::string& where, const Sliding& slidi
   const std::int64_t start = monotonic_ns();
   for (int k = 0; k < static_cast<int>(kDuration / simulation.dt()); ++k) {
     sleep_until(start + k * period);
-    const StylusCommand command{true, 0, sliding.tip(k * simulation.dt()), {}};
+    const StylusCommand command{true, 0, motion.tip(k * simulation.dt()), {}};
     const std::int64_t begin = monotonic_ns();
     simulation.step({&command, 1}, record);
     step_time.add(monotonic_ns() - begin);
@@ -87,8 +114,7 @@ void slide(bench::Report& report, const std::string& where, const Sliding& slidi
            errors[static_cast<std::size_t>(quantile * static_cast<double>(errors.size() - 1))] /
            peak;
   };
-  report.row({where, 100.0 * sliding.speed,
-              static_cast<double>(columns.loaded() - loaded) / kDuration,
+  report.row({where, motion.name(), static_cast<double>(columns.loaded() - loaded) / kDuration,
               static_cast<double>(simulation.missed_columns()), share(0.5), share(0.99), share(1.0),
               static_cast<double>(step_time.percentile(0.5)) / 1e3,
               static_cast<double>(step_time.percentile(0.99)) / 1e3});
@@ -111,14 +137,18 @@ int main(int argc, char** argv) {
             << seconds_since(begin) << " s\n";
   columns.start(false);
   bench::Report report("streamed_columns");
-  report.table("columns from the disk, sliding fingertip",
-               {"file", "speed [cm/s]", "nodes read a second", "nodes missed",
+  report.table("columns from the disk",
+               {"file", "fingertip", "nodes read a second", "nodes missed",
                 "force error, median [%]", "p99 [%]", "max [%]", "step, median [us]", "p99 [us]"});
   const double half_edge = streamed->mesh.nodes.col(1).maxCoeff();
-  for (const std::string& where : {"on disk", "in the system's memory"}) {
+  for (const std::string where : {"on disk", "in the system's memory"}) {
     for (const double speed : {0.01, 0.03, 0.1, 0.3}) {
-      if (where == std::string("on disk")) forget(path);
-      slide(report, where, {half_edge, speed}, streamed, modal, columns);
+      if (where == "on disk") forget(path);
+      feel(report, where, Sliding{half_edge, speed}, streamed, modal, columns);
+    }
+    for (const double rate : {1.0, 3.0, 8.0}) {
+      if (where == "on disk") forget(path);
+      feel(report, where, Tapping{half_edge, rate}, streamed, modal, columns);
     }
   }
 }

@@ -20,7 +20,8 @@ StreamedEngine<Scalar>::StreamedEngine(std::shared_ptr<const Model> model)
       history_(model_->mesh.surface_node_count(), model_->steps),
       spin_(response_.centrifugal, model_->degrees_of_freedom(), model_->steps),
       blend_step_(std::min(1.0, model_->dt / kBlendTime)),
-      columns_(static_cast<std::size_t>(model_->mesh.surface_node_count())) {
+      columns_(static_cast<std::size_t>(model_->mesh.surface_node_count())),
+      coming_(3 * columns_.size()) {
   followed_.reserve(columns_.size());
   borrowed_.reserve(columns_.size());
 }
@@ -67,6 +68,18 @@ void StreamedEngine<Scalar>::follow_history() noexcept {
       columns.share = is_new ? 1.0 : blend_step_;
     } else if (is_new) {
       ++missed_;
+    }
+  }
+}
+
+// Once a step, for whichever nodes are asked for in the coming one.
+template <typename Scalar>
+void StreamedEngine<Scalar>::settle() noexcept {
+  for (const int node : followed_) {
+    const auto index = static_cast<std::size_t>(node);
+    if (columns_[index].share >= 1.0) continue;
+    for (int axis = 0; axis < 3; ++axis) {
+      coming_[3 * index + static_cast<std::size_t>(axis)] = settled(node, axis, 1);
     }
   }
 }
@@ -143,7 +156,8 @@ void StreamedEngine<Scalar>::convolve(int node, int shift, Vector3& u) const noe
                    u.data());
     }
     for (int axis = 0; axis < 3 && columns.share < 1.0; ++axis) {
-      const Settled part = settled(source, axis, shift);
+      const Settled part = shift == 1 ? coming_[static_cast<std::size_t>(3 * source + axis)]
+                                      : settled(source, axis, shift);
       const int b = static_cast<int>(part.column);
       for (int row = 0; row < 3; ++row) {
         u[row] += first(3 * node + row, b) * part.newest + rest(3 * node + row, b) * part.past;
@@ -207,6 +221,7 @@ void StreamedEngine<Scalar>::add_past(std::span<const NodalForce> forces, int ag
   if (age >= kMaxHorizon) return;
   history_.add_past(forces, age);
   follow_history();
+  settle();
 }
 
 template <typename Scalar>
@@ -217,6 +232,7 @@ void StreamedEngine<Scalar>::advance(std::span<const NodalForce> forces) noexcep
   }
   history_.push(forces);
   follow_history();
+  settle();
   spin_.advance();
 }
 

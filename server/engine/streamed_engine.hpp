@@ -63,6 +63,7 @@ class StreamedEngine final : public ResponseEngine {
   bool take(Columns& columns, int node) noexcept;
   void give_back(int node) noexcept;
   void follow_history() noexcept;
+  void settle() noexcept;
   void borrow(int node) noexcept;
   void return_borrowed() noexcept;
   Settled settled(int source, int axis, int shift) const noexcept;
@@ -82,6 +83,7 @@ class StreamedEngine final : public ResponseEngine {
   DenseSpin<SpinNumber<Scalar>> spin_;
   double blend_step_;
   std::vector<Columns> columns_;  ///< of each node
+  std::vector<Settled> coming_;   ///< settled(node, axis, 1), of followed nodes that lack a share
   std::vector<int> followed_;     ///< nodes that are
   std::vector<int> borrowed_;     ///< taken during foresee() only
   int taken_ = 0;

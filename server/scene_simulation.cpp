@@ -13,13 +13,14 @@ ResponseKind response_kind(EngineKind kind) {
   return kind == EngineKind::kCompressed ? ResponseKind::kCompressed : ResponseKind::kModal;
 }
 
-constexpr double kMebibyte = 1024.0 * 1024.0;
+constexpr double kBytesAMebibyte = 1024.0 * 1024.0;
 
 Model read_by_budget(const ObjectConfig& object, EngineKind kind, SceneColumns* columns) {
   if (kind != EngineKind::kDense || !object.memory_budget || columns == nullptr) {
     return read_model(object.model, response_kind(kind));
   }
-  return columns->read(object.model, static_cast<std::size_t>(*object.memory_budget * kMebibyte));
+  return columns->read(object.model,
+                       static_cast<std::size_t>(*object.memory_budget * kBytesAMebibyte));
 }
 
 std::shared_ptr<const Model> load_model(const ObjectConfig& object, EngineKind kind,

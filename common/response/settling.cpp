@@ -10,7 +10,7 @@
 namespace irdm {
 namespace {
 
-constexpr int kRounds = 40;  // of the power iteration
+constexpr int kPowerRounds = 40;  // of the power iteration
 // What the estimate may lack of the largest ratio.
 constexpr double kMargin = 1.5;
 
@@ -53,7 +53,7 @@ std::vector<double> settling_profile(double ratio, int steps) {
 double settling_ratio(const Eigen::Ref<const Eigen::MatrixXf>& first,
                       const Eigen::Ref<const Eigen::MatrixXf>& rest) {
   Eigen::VectorXf v = random_direction(first.rows());
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kPowerRounds; ++round) {
     const Eigen::VectorXf next = first * v + rest * v;
     if (!(next.norm() > 0.0F)) return 0.0;
     v = next.normalized();

@@ -13,10 +13,10 @@
 namespace irdm {
 namespace {
 
-constexpr int kPollMs = 2;
-constexpr std::int64_t kWaitNs = 50'000;
+constexpr int kColumnPollMs = 2;
+constexpr std::int64_t kColumnWaitNs = 50'000;
 // In which who asked for a column comes for it: some steps.
-constexpr std::int64_t kKeptNs = 50'000'000;
+constexpr std::int64_t kColumnKeptNs = 50'000'000;
 
 }  // namespace
 
@@ -73,7 +73,7 @@ const void* ColumnStore::take(int node) noexcept {
     wanted.asked.store(true, std::memory_order_relaxed);
     if (!settings_.waits || stopped_.load(std::memory_order_relaxed)) return nullptr;
     news_.signal();
-    sleep_until(monotonic_ns() + kWaitNs);
+    sleep_until(monotonic_ns() + kColumnWaitNs);
   }
 }
 
@@ -93,7 +93,7 @@ void ColumnStore::run(bool beside_real_time) noexcept {
   if (beside_real_time) spare_last_cpu();
   while (!stopped_.load(std::memory_order_relaxed)) {
     look();
-    if (!load_next()) news_.wait(kPollMs);
+    if (!load_next()) news_.wait(kColumnPollMs);
   }
 }
 
@@ -164,7 +164,7 @@ bool ColumnStore::load_next() noexcept {
   Slot& filled = slots_[static_cast<std::size_t>(slot)];
   filled.node.store(node, std::memory_order_relaxed);
   const bool asked = nodes_[static_cast<std::size_t>(node)].wanted;
-  filled.kept_until_ns = asked ? monotonic_ns() + kKeptNs : 0;
+  filled.kept_until_ns = asked ? monotonic_ns() + kColumnKeptNs : 0;
   filled.users.store(0, std::memory_order_release);
   nodes_[static_cast<std::size_t>(node)].slot.store(slot, std::memory_order_release);
   loaded_.fetch_add(1, std::memory_order_relaxed);

@@ -25,7 +25,7 @@ constexpr std::size_t kNumbers = 64;
 constexpr std::size_t kSlotBytes = kNumbers * sizeof(int);
 
 // Nodes on a line, 1 m apart; each one's columns say whose they are.
-std::vector<Vector3> line() {
+std::vector<Vector3> line_of_nodes() {
   std::vector<Vector3> places;
   for (int i = 0; i < kNodes; ++i) places.emplace_back(i, 0, 0);
   return places;
@@ -43,7 +43,7 @@ bool is_of(const void* columns, int node) {
 }
 
 ColumnStore make_store(int slots, ColumnStore::Reader reader = write_number, bool waits = false) {
-  return {line(), std::move(reader), {kSlotBytes, slots, waits}, "a file"};
+  return {line_of_nodes(), std::move(reader), {kSlotBytes, slots, waits}, "a file"};
 }
 
 std::vector<int> there(const ColumnStore& store) {

@@ -20,7 +20,7 @@ using namespace irdm::test;
 
 namespace {
 
-constexpr double kDt = 0.002;
+constexpr double kLateDt = 0.002;
 // Of synthetic models and of the cube.
 constexpr int kBlendSteps = 25;
 
@@ -157,14 +157,14 @@ TEST_CASE(
 TEST_CASE(
     "what is estimated of a model's slowest settling is near the largest, and that of its "
     "lowest mode") {
-  const StreamedModel model(*fem_cube({2, 2000.0, 8.0, kDt, 1000}, ResponseKind::kDense));
+  const StreamedModel model(*fem_cube({2, 2000.0, 8.0, kLateDt, 1000}, ResponseKind::kDense));
   const auto& response = std::get<StreamedResponse>(model.streamed->response);
   const Eigen::Index dof = response.degrees_of_freedom;
   const Eigen::Map<const Eigen::MatrixXf> rest(response.rest.data(), dof, dof);
   const Eigen::MatrixXd first = make_engine(model.streamed)->instant_compliance();
   const double estimate = settling_ratio(first.cast<float>(), rest);
-  const auto& modes = std::get<ModalResponse>(fem_cube({2, 2000.0, 8.0, kDt, 1000})->response);
-  const double x = kDt * modes.angular_frequency[0];
+  const auto& modes = std::get<ModalResponse>(fem_cube({2, 2000.0, 8.0, kLateDt, 1000})->response);
+  const double x = kLateDt * modes.angular_frequency[0];
   CAPTURE(estimate, 2.0 / (x * x));
   CHECK(estimate < 2.0 / (x * x));
   CHECK(1.5 * estimate > 2.0 / (x * x));
@@ -286,8 +286,9 @@ namespace {
 
 /// A tip that presses near the middle of the top (a coarse mesh is rounded off far from its edges),
 /// slides and comes back.
-struct Cycle {
-  Cycle(const Model& model, unsigned seed) : random(seed), top(model.mesh.nodes.col(1).maxCoeff()) {
+struct PressCycle {
+  PressCycle(const Model& model, unsigned seed)
+      : random(seed), top(model.mesh.nodes.col(1).maxCoeff()) {
     where = Vector3(between(random, -0.015, 0.015), 0.0, between(random, -0.015, 0.015));
     aside = anywhere(random, 0.012);
     aside.y() = 0.0;
@@ -311,8 +312,8 @@ struct Felt {
   std::uint64_t missed = 0;
 };
 
-Felt feel(const std::shared_ptr<const Model>& model, const Cycle& cycle, double radius,
-          int* step = nullptr) {
+Felt feel_cycle(const std::shared_ptr<const Model>& model, const PressCycle& cycle, double radius,
+                int* step = nullptr) {
   SimulationConfig config = tethered({2}, radius, {0.4, 0.3});
   config.objects[0].model = model;
   Simulation simulation(config);
@@ -343,11 +344,11 @@ Felt feel(const std::shared_ptr<const Model>& model, const Cycle& cycle, double 
 TEST_CASE(
     "pressing and sliding while columns are late, come and go, or never come: as strong as "
     "with all of them, without jumps, and no energy comes out") {
-  const StreamedModel model(*fem_cube({2, 2000.0, 8.0, kDt, 500}, ResponseKind::kDense));
+  const StreamedModel model(*fem_cube({2, 2000.0, 8.0, kLateDt, 500}, ResponseKind::kDense));
   for (unsigned seed = 1; seed <= 12; ++seed) {
-    const Cycle cycle(*model.dense, seed);
+    const PressCycle cycle(*model.dense, seed);
     const double radius = seed % 2 == 0 ? 0.0 : 0.01;
-    const Felt whole = feel(model.dense, cycle, radius);
+    const Felt whole = feel_cycle(model.dense, cycle, radius);
     Random random(seed);
     std::vector<int> comes;
     for (int i = 0; i < model.dense->mesh.surface_node_count(); ++i) {
@@ -358,7 +359,7 @@ TEST_CASE(
       model.supply->there = [&](int node) {
         return !never && k >= comes[static_cast<std::size_t>(node)];
       };
-      const Felt felt = feel(model.streamed, cycle, radius, &k);
+      const Felt felt = feel_cycle(model.streamed, cycle, radius, &k);
       CAPTURE(seed, never, whole.peak, felt.peak, whole.largest_step, felt.largest_step, whole.work,
               felt.work, felt.put_in);
       CHECK((!never || felt.missed > 0));
@@ -371,7 +372,7 @@ TEST_CASE(
 
 TEST_CASE("a streamed step allocates nothing, whatever becomes of the columns") {
   if (!AllocationGuard::active()) return;
-  const StreamedModel model(*fem_cube({2, 2000.0, 8.0, kDt, 100}, ResponseKind::kDense));
+  const StreamedModel model(*fem_cube({2, 2000.0, 8.0, kLateDt, 100}, ResponseKind::kDense));
   SimulationConfig config = tethered({2}, 0.01, {0.4, 0.3});
   config.objects[0].model = model.streamed;
   int k = 0;
@@ -380,7 +381,7 @@ TEST_CASE("a streamed step allocates nothing, whatever becomes of the columns") 
   Simulation simulation(config);
   StepRecord record;
   ContactModel foreseen;
-  const Cycle cycle(*model.dense, 1);
+  const PressCycle cycle(*model.dense, 1);
   std::uint64_t touching = 0;
   const AllocationGuard guard;
   for (; k < 1500; ++k) {

@@ -54,6 +54,11 @@ int print_report(const FinishedRun& run, const ServerOptions& options) {
   faults("errors inside the network thread", run.network.stats().internal_errors);
   faults("forces of bridges that came late, entered at their own step", force.late);
   faults("forces of bridges that were lost", force.lost);
+  if (run.columns.any()) {
+    std::cout << "nodes whose columns were read: " << run.columns.loaded()
+              << ", not there in time: " << force.missed_columns << '\n';
+  }
+  faults("nodes whose columns cannot be read", run.columns.failed());
   faults("steps that the deformation did not see", run.deformation.lost_steps());
   if (run.recorder == nullptr) return 0;
   if (!run.recorder->error().empty()) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "server/columns/scene_columns.hpp"
 #include "server/run_server.hpp"
 #include "server/threads/deformation_thread.hpp"
 #include "server/threads/force_thread.hpp"
@@ -16,6 +17,7 @@ struct FinishedRun {
   const RecorderThread* recorder;  ///< null: not recorded
   const RealTimeClock* clock;      ///< null: lockstep
   std::string memory;              ///< whether it is locked, in words
+  const SceneColumns& columns;
 };
 
 /// Prints how the run went and returns the exit status: 1 when the recording is not whole.

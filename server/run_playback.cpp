@@ -33,13 +33,15 @@ int run_playback(const ServerOptions& options) {
   const TraceHeader header = read_trace_header(*options.play);
   check_model(scene, header, trace);
   const bool viewer_stylus = recorded_viewer_stylus(scene, header.stylus_count, trace);
-  const SimulationConfig config = simulation_config(scene, viewer_stylus);
+  SceneColumns columns(false);
+  const SimulationConfig config = simulation_config(scene, viewer_stylus, &columns);
   std::vector<std::string> names;
   for (const ObjectConfig& object : scene.objects) names.push_back(object.name);
   Recording(*options.play, config, names);  // so that what is wrong with it is said here
   Player player(config, names, scene.server.deformation_rate, std::max(1, omp_get_num_procs()));
   RecordedRun run(viewer_scene(scene, config, false), config, player, *options.play);
   viewer::ViewerServer viewers(viewer_settings(scene.viewer), run);
+  columns.start(false);
   player.start();
   viewers.start();
   std::cout << "listening on " + viewers.url() + "\n" << std::flush;

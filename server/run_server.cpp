@@ -187,7 +187,8 @@ int run_server(const ServerOptions& options) {
   if (options.no_viewer) scene.viewer.enabled = false;
   if (options.recordings) scene.viewer.recordings = options.recordings;
   const bool viewer_stylus = has_viewer_stylus(scene, options.lockstep);
-  const SimulationConfig config = simulation_config(scene, viewer_stylus);
+  SceneColumns columns(options.lockstep);
+  const SimulationConfig config = simulation_config(scene, viewer_stylus, &columns);
   check_coupling(scene, config, options.scene.string());
   Simulation simulation(config);
   const double dt = simulation.dt();
@@ -223,6 +224,7 @@ int run_server(const ServerOptions& options) {
   StatusThread status({force, network, deformation, recorder.get()}, scene.server.status_period);
 
   const std::string memory = lock_memory(scheduling(scene, options));
+  columns.start(scheduling(scene, options) != RealTimeScheduling::kIgnore);
   black_box.start(force);
   network.start();
   say_where(network.endpoint());
@@ -241,8 +243,9 @@ int run_server(const ServerOptions& options) {
   if (viewers) viewers->stop();
   end_recording(recordings);
   if (recorder) recorder->finish();
+  columns.finish();
   return print_report({force, network, deformation, recorder.get(),
-                       dynamic_cast<RealTimeClock*>(clock.get()), memory},
+                       dynamic_cast<RealTimeClock*>(clock.get()), memory, columns},
                       options);
 }
 

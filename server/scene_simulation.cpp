@@ -14,8 +14,19 @@ ResponseKind response_kind(EngineKind kind) {
   return kind == EngineKind::kCompressed ? ResponseKind::kCompressed : ResponseKind::kModal;
 }
 
-std::shared_ptr<const Model> load_model(const ObjectConfig& object, EngineKind kind) {
-  Model model = read_model(object.model, response_kind(kind));
+constexpr double kBytesAMebibyte = 1024.0 * 1024.0;
+
+Model read_by_budget(const ObjectConfig& object, EngineKind kind, SceneColumns* columns) {
+  if (kind != EngineKind::kDense || !object.memory_budget || columns == nullptr) {
+    return read_model(object.model, response_kind(kind));
+  }
+  return columns->read(object.model,
+                       static_cast<std::size_t>(*object.memory_budget * kBytesAMebibyte));
+}
+
+std::shared_ptr<const Model> load_model(const ObjectConfig& object, EngineKind kind,
+                                        SceneColumns* columns) {
+  Model model = read_by_budget(object, kind, columns);
   check_inertial_loading(model, object.inertial_loading, object.model.string());
   return std::make_shared<const Model>(std::move(model));
 }
@@ -40,16 +51,17 @@ bool recorded_viewer_stylus(const SceneConfig& scene, int stylus_count, const st
               "give the scene that it was recorded with");
 }
 
-SimulationConfig simulation_config(const SceneConfig& scene, bool viewer_stylus) {
+SimulationConfig simulation_config(const SceneConfig& scene, bool viewer_stylus,
+                                   SceneColumns* columns) {
   SimulationConfig config;
   config.gravity = scene.world.gravity;
   for (const ObjectConfig& object : scene.objects) {
-    config.objects.push_back({load_model(object, object.engine), object.position,
+    config.objects.push_back({load_model(object, object.engine, columns), object.position,
                               object.orientation, object.velocity, object.angular_velocity,
                               object.friction, object.damping, object.tether,
                               object.inertial_loading});
     if (object.switchable) {
-      config.objects.back().other_model = load_model(object, other(object.engine));
+      config.objects.back().other_model = load_model(object, other(object.engine), columns);
     }
   }
   config.styluses = scene.styluses;

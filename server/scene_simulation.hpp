@@ -1,5 +1,6 @@
 #pragma once
 
+#include "server/columns/scene_columns.hpp"
 #include "server/config/scene.hpp"
 #include "server/step/simulation_config.hpp"
 
@@ -13,6 +14,8 @@ bool has_viewer_stylus(const SceneConfig& scene, bool lockstep);
 bool recorded_viewer_stylus(const SceneConfig& scene, int stylus_count, const std::string& trace);
 
 /// What a scene asks to simulate, with its models read. Throws Error.
-SimulationConfig simulation_config(const SceneConfig& scene, bool viewer_stylus);
+/// @param columns of models with a memory_budget, to be started then; null: they are read whole
+SimulationConfig simulation_config(const SceneConfig& scene, bool viewer_stylus,
+                                   SceneColumns* columns = nullptr);
 
 }  // namespace irdm

@@ -16,9 +16,12 @@ bool has_centrifugal(const Model& model) {
   if (const auto* modal = std::get_if<ModalResponse>(&model.response)) {
     return modal->centrifugal.rows() > 0;
   }
-  const auto* dense = std::get_if<DenseResponse>(&model.response);
-  return dense != nullptr &&
-         std::visit([](const auto& values) { return !values.empty(); }, dense->centrifugal);
+  const auto any = [](const auto& values) { return !values.empty(); };
+  if (const auto* dense = std::get_if<DenseResponse>(&model.response)) {
+    return std::visit(any, dense->centrifugal);
+  }
+  const auto* streamed = std::get_if<StreamedResponse>(&model.response);
+  return streamed != nullptr && std::visit(any, streamed->centrifugal);
 }
 
 }  // namespace irdm

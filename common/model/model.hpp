@@ -1,12 +1,15 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <cstdint>
+#include <memory>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "common/geometry.hpp"
 #include "common/half.hpp"
+#include "common/model/column_supply.hpp"
 
 namespace irdm {
 
@@ -113,6 +116,24 @@ struct DenseResponse {
   std::vector<double> scales{};
 };
 
+/// R of which only some columns are in memory at a time: what is always there, and where the
+/// columns come from. b is the degree of freedom of the force, a that of the displacement.
+struct StreamedResponse {
+  int degrees_of_freedom = 0;  ///< 3n
+  int steps = 0;               ///< T
+  /// R[0](a, b) at b * dof + a, in the numbers of R.
+  std::variant<std::vector<float>, std::vector<double>, std::vector<Half>> first;
+  /// sum_{s>=1} R[s](a, b) at b * dof + a: what a lasting force still adds after its first step
+  /// [m/N].
+  std::vector<float> rest;
+  /// How that comes about without the column (T): settling_profile().
+  std::vector<double> settling;
+  std::variant<std::vector<float>, std::vector<double>> centrifugal{};  ///< as in DenseResponse
+  std::vector<double> scales{};                                         ///< as in DenseResponse
+  std::vector<std::uint64_t> fingerprints{};  ///< of the columns as they are in the file (3n)
+  std::shared_ptr<ColumnSupply> columns{};    ///< never null where there is an engine
+};
+
 /// R made small (irdm-precompute compress): the first m steps as they are, and from then on r
 /// shapes, each with a response of its own that decaying oscillations add up to,
 ///
@@ -140,7 +161,7 @@ struct Model {
   Material material;
   double dt = 0.0;  ///< response interval and force-loop period [s]
   int steps = 0;    ///< T, recorded steps
-  std::variant<std::monostate, ModalResponse, DenseResponse, CompressedResponse>
+  std::variant<std::monostate, ModalResponse, DenseResponse, CompressedResponse, StreamedResponse>
       response;  ///< the one that was asked for
 
   int degrees_of_freedom() const { return 3 * mesh.surface_node_count(); }

@@ -6,18 +6,12 @@
 
 #include "common/error.hpp"
 #include "common/model/compressed_file.hpp"
+#include "common/model/dense_file.hpp"
 #include "common/model/residual_file.hpp"
 #include "common/response/spin_products.hpp"
 
 namespace irdm {
 namespace {
-
-bool is_finite(double value) {
-  return std::isfinite(value);
-}
-bool is_finite(Half value) {
-  return (value.bits & 0x7C00U) != 0x7C00U;
-}
 
 class ModelReader {
  public:
@@ -33,7 +27,7 @@ class ModelReader {
     if (kind == ResponseKind::kModal) {
       read_modal();
     } else if (kind == ResponseKind::kDense) {
-      read_dense();
+      model_.response = read_dense(file_, model_);
     } else {
       model_.response = read_compressed(file_, model_);
     }
@@ -180,66 +174,6 @@ class ModelReader {
     return shapes;
   }
 
-  void read_dense() {
-    if (!file_.exists(kDenseR)) {
-      throw Error(file_.name(), "has no dense response",
-                  "use engine = \"modal\" or precompute with storage = \"dense\" or \"both\"");
-    }
-    const auto dof = static_cast<hsize_t>(model_.degrees_of_freedom());
-    const auto steps = static_cast<hsize_t>(model_.steps);
-    require(file_.stored_shape(kDenseR) == hdf5::Shape({dof, steps, dof}),
-            "/response/dense/R must have the shape (3n, steps, 3n)");
-    DenseResponse response;
-    response.degrees_of_freedom = static_cast<int>(dof);
-    response.steps = static_cast<int>(steps);
-    if (file_.element_size(kDenseR) == sizeof(Half)) {
-      response.values = read_columns<Half>(kDenseR, dof, steps, dof);
-      response.scales = read_scales(dof);
-      response.centrifugal = read_centrifugal<float>(dof, steps);
-    } else if (file_.element_size(kDenseR) == sizeof(float)) {
-      response.values = read_columns<float>(kDenseR, dof, steps, dof);
-      response.centrifugal = read_centrifugal<float>(dof, steps);
-    } else {
-      response.values = read_columns<double>(kDenseR, dof, steps, dof);
-      response.centrifugal = read_centrifugal<double>(dof, steps);
-    }
-    model_.response = std::move(response);
-  }
-
-  // In the numbers of R; empty where there is none.
-  template <typename Scalar>
-  std::vector<Scalar> read_centrifugal(hsize_t dof, hsize_t steps) const {
-    if (!file_.exists(kDenseCentrifugal)) return {};
-    require(file_.stored_shape(kDenseCentrifugal) == hdf5::Shape({kSpinProducts, steps, dof}),
-            std::string(kDenseCentrifugal) + " must have the shape (6, steps, 3n)");
-    return read_columns<Scalar>(kDenseCentrifugal, kSpinProducts, steps, dof);
-  }
-
-  std::vector<double> read_scales(hsize_t dof) const {
-    std::vector<double> scales = file_.read<double>(kDenseScale, {dof});
-    require(std::ranges::all_of(scales, [](double x) { return std::isfinite(x) && x > 0.0; }),
-            std::string(kDenseScale) + " must be finite and positive");
-    return scales;
-  }
-
-  // The file has [b][s][a]; in memory the step runs fastest: [b][a][s].
-  template <typename Scalar>
-  std::vector<Scalar> read_columns(const std::string& dataset, hsize_t columns, hsize_t steps,
-                                   hsize_t dof) const {
-    std::vector<Scalar> values(columns * steps * dof);
-    std::vector<Scalar> column(steps * dof);
-    for (hsize_t b = 0; b < columns; ++b) {
-      file_.read_slab<Scalar>(dataset, {b, 0, 0}, {1, steps, dof}, column.data());
-      require(std::ranges::all_of(column, [](Scalar x) { return is_finite(x); }),
-              dataset + " has numbers that are not finite");
-      Scalar* to = values.data() + b * dof * steps;
-      for (hsize_t a = 0; a < dof; ++a) {
-        for (hsize_t s = 0; s < steps; ++s) to[a * steps + s] = column[s * dof + a];
-      }
-    }
-    return values;
-  }
-
   hdf5::File file_;
   Model model_;
 };
@@ -248,6 +182,12 @@ class ModelReader {
 
 Model read_model(const std::filesystem::path& path, ResponseKind kind) {
   return ModelReader(hdf5::File::open(path)).read(kind);
+}
+
+Model read_streamed_model(const std::filesystem::path& path) {
+  Model model = read_description(hdf5::File::open(path));
+  model.response = read_streamed(hdf5::File::open(path), model);
+  return model;
 }
 
 Model read_description(hdf5::File file) {

@@ -15,6 +15,10 @@ enum class ResponseKind { kModal, kDense, kCompressed };
 /// shapes, index ranges, finite numbers, positive mass. Throws Error.
 Model read_model(const std::filesystem::path& path, ResponseKind kind);
 
+/// The same with of the dense one only what a StreamedResponse always has; its columns are for the
+/// caller to provide.
+Model read_streamed_model(const std::filesystem::path& path);
+
 /// The same without a response: what ModelFileWriter::write_description() wrote.
 Model read_description(hdf5::File file);
 

@@ -202,6 +202,13 @@ ObjectConfig read_object(TomlTable table) {
   config.tether = read_tether(table.table("tether"));
   config.inertial_loading = table.boolean("inertial_loading", config.inertial_loading);
   config.switchable = table.boolean("switchable", config.switchable);
+  if (table.has("memory_budget")) {
+    config.memory_budget = table.number("memory_budget", between(1.0, 1e8), 0.0);
+    if (config.engine != EngineKind::kDense && !config.switchable) {
+      table.fail("memory_budget", "is for the engine \"dense\"",
+                 "leave it out, or set engine = \"dense\"");
+    }
+  }
   if (config.switchable && config.engine == EngineKind::kCompressed) {
     table.fail("switchable", "is for the engines \"modal\" and \"dense\"",
                "leave it out, or choose another engine");

@@ -72,7 +72,9 @@ struct ObjectConfig {
   RigidDamping damping;           ///< damping = { linear, angular }
   Tether tether;                  ///< tether = { stiffness, angular_stiffness }
   bool inertial_loading = false;  ///< centrifugal loading by its own spin
-  bool switchable = false;        ///< keeps both engines, so that viewers can switch
+  /// Of its dense response in memory [MiB], at least 1; none: all of it
+  std::optional<double> memory_budget = {};
+  bool switchable = false;  ///< keeps both engines, so that viewers can switch
 };
 
 /// What irdm-server is to run.

@@ -18,6 +18,14 @@ void BothEngines::use(EngineKind kind) noexcept {
   answering_ = engines_[0]->kind() == kind ? 0 : 1;
 }
 
+void BothEngines::expect(std::span<const Vector3> tips) noexcept {
+  for (const auto& engine : engines_) engine->expect(tips);
+}
+
+std::uint64_t BothEngines::missed_columns() const noexcept {
+  return engines_[0]->missed_columns() + engines_[1]->missed_columns();
+}
+
 void BothEngines::add_past(std::span<const NodalForce> forces, int age) noexcept {
   for (const auto& engine : engines_) engine->add_past(forces, age);
 }

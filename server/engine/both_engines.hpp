@@ -19,6 +19,8 @@ class BothEngines final : public ResponseEngine {
   EngineKind kind() const noexcept override { return engines_[answering_]->kind(); }
   bool has_both_kinds() const noexcept override { return true; }
   void use(EngineKind kind) noexcept override;
+  void expect(std::span<const Vector3> tips) noexcept override;
+  std::uint64_t missed_columns() const noexcept override;
   Vector3 free_displacement(int node) const noexcept override {
     return engines_[answering_]->free_displacement(node);
   }

@@ -27,6 +27,9 @@ class ForceHistory {
   /// Nodes with a force within the last T steps.
   std::span<const int> active() const noexcept { return active_; }
 
+  /// Whether a node is one of them.
+  bool holds(int node) const noexcept { return first_[static_cast<std::size_t>(node)] >= 0; }
+
   /// Force on an active node along an axis over the span of ages in which it may differ from zero.
   struct Series {
     const double* force;  ///< force[i] acted `first_age + i` steps before the newest step

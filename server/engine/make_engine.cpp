@@ -3,6 +3,7 @@
 #include "server/engine/compressed_engine.hpp"
 #include "server/engine/dense_engine.hpp"
 #include "server/engine/modal_engine.hpp"
+#include "server/engine/streamed_engine.hpp"
 
 namespace irdm {
 
@@ -20,6 +21,13 @@ std::unique_ptr<ResponseEngine> make_engine(std::shared_ptr<const Model> model) 
           return std::make_unique<DenseEngine<Scalar>>(std::move(model));
         },
         dense->values);
+  }
+  if (const auto* streamed = std::get_if<StreamedResponse>(&model->response)) {
+    return std::visit(
+        [&]<typename Scalar>(const std::vector<Scalar>&) -> std::unique_ptr<ResponseEngine> {
+          return std::make_unique<StreamedEngine<Scalar>>(std::move(model));
+        },
+        streamed->first);
   }
   if (std::holds_alternative<CompressedResponse>(model->response)) {
     return std::make_unique<CompressedEngine>(std::move(model));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 
@@ -49,6 +50,12 @@ class ResponseEngine {
   /// From the coming step on it answers from this form; before all else that is asked about the
   /// step. Only where has_both_kinds().
   virtual void use(EngineKind /*kind*/) noexcept {}
+
+  /// Tips are here, and what they may touch soon is better fetched now; of one engine of a model
+  /// only. @param tips at most kMaxStyluses [m], B
+  virtual void expect(std::span<const Vector3> /*tips*/) noexcept {}
+  /// Nodes that forces began to act on while their columns of R were not there.
+  virtual std::uint64_t missed_columns() const noexcept { return 0; }
 
   /// Displacement of a node at the end of the coming step if no force acts during it [m].
   virtual Vector3 free_displacement(int node) const noexcept = 0;

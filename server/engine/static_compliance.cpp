@@ -39,6 +39,22 @@ double of_history(const DenseResponse& response, const std::vector<Scalar>& valu
   return sum;
 }
 
+template <typename Scalar>
+double of_sums(const StreamedResponse& response, const std::vector<Scalar>& first, std::size_t node,
+               const Vector3& d) {
+  const auto dof = static_cast<std::size_t>(response.degrees_of_freedom);
+  double sum = 0.0;
+  for (std::size_t b = 0; b < 3; ++b) {
+    const double scale = response.scales.empty() ? 1.0 : response.scales[3 * node + b];
+    for (std::size_t a = 0; a < 3; ++a) {
+      const std::size_t at = (3 * node + b) * dof + 3 * node + a;
+      const double total = scale * to_double(first[at]) + static_cast<double>(response.rest[at]);
+      sum += total * d[static_cast<Eigen::Index>(a)] * d[static_cast<Eigen::Index>(b)];
+    }
+  }
+  return sum;
+}
+
 double of_compressed(const CompressedResponse& response, const Eigen::VectorXd& settled,
                      std::size_t node, const Vector3& d) {
   const auto i = static_cast<int>(node);
@@ -61,6 +77,10 @@ double compliance(const Model& model, std::size_t node, const Vector3& d) {
   if (const auto* dense = std::get_if<DenseResponse>(&model.response)) {
     return std::visit([&](const auto& values) { return of_history(*dense, values, node, d); },
                       dense->values);
+  }
+  if (const auto* streamed = std::get_if<StreamedResponse>(&model.response)) {
+    return std::visit([&](const auto& first) { return of_sums(*streamed, first, node, d); },
+                      streamed->first);
   }
   return std::numeric_limits<double>::quiet_NaN();
 }

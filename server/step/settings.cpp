@@ -11,8 +11,8 @@ namespace {
 
 EngineKind kind_of(const Model& model) {
   if (std::holds_alternative<CompressedResponse>(model.response)) return EngineKind::kCompressed;
-  return std::holds_alternative<DenseResponse>(model.response) ? EngineKind::kDense
-                                                               : EngineKind::kModal;
+  if (std::holds_alternative<ModalResponse>(model.response)) return EngineKind::kModal;
+  return EngineKind::kDense;
 }
 
 // Damping and tether act as they were at the start of a step: stable as long as a step is short for

@@ -39,6 +39,12 @@ void Simulation::set(const Settings& settings) noexcept {
   }
 }
 
+std::uint64_t Simulation::missed_columns() const noexcept {
+  std::uint64_t sum = 0;
+  for (const auto& object : objects_) sum += object->engine().missed_columns();
+  return sum;
+}
+
 void Simulation::reset() noexcept {
   for (const auto& object : objects_) object->reset();
   late_.count = 0;

@@ -59,6 +59,8 @@ class Simulation {
   double dt() const noexcept { return dt_; }
   /// The number of the coming step.
   std::uint64_t next_step() const noexcept { return next_step_; }
+  /// Nodes that forces began to act on while their columns of R were not there, so far.
+  std::uint64_t missed_columns() const noexcept;
   int object_count() const noexcept { return static_cast<int>(objects_.size()); }
   const SoftObject& object(int i = 0) const noexcept {
     return *objects_[static_cast<std::size_t>(i)];

@@ -109,6 +109,7 @@ void SoftObject::step(std::span<const StylusCommand> commands, ObjectRecord& rec
   spin(record);
   surface_.begin_step(*engine_);
   motion_ = free_motion(body_, free_forces_, state_);
+  tell_tips(commands);
   collect(commands);
   floor_count_ = floor_ ? floor_->find(motion_, surface_) : 0;
   solve(commands, record);
@@ -134,6 +135,15 @@ void SoftObject::spin(ObjectRecord& record) noexcept {
   if (!feels_spin_) return;
   record.spin = body_.mid_step_spin(state_);
   engine_->hold_spin(record.spin);
+}
+
+void SoftObject::tell_tips(std::span<const StylusCommand> commands) noexcept {
+  std::array<Vector3, kMaxStyluses> tips;
+  std::size_t count = 0;
+  for (const StylusCommand& command : commands) {
+    if (command.present && command.tip.allFinite()) tips[count++] = motion_.to_body(command.tip);
+  }
+  engine_->expect({tips.data(), count});
 }
 
 // Decides which styluses are in contact in this step, and where.

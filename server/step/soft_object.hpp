@@ -88,6 +88,7 @@ class SoftObject {
   void collect_others(std::size_t s, ContactModel& model) noexcept;
   void follow_bridged(std::span<const StylusCommand> commands) noexcept;
   void spin(ObjectRecord& record) noexcept;
+  void tell_tips(std::span<const StylusCommand> commands) noexcept;
   void collect(std::span<const StylusCommand> commands) noexcept;
   bool settle_down(std::size_t s, const Vector3& tip) noexcept;
   void predict_contacts() noexcept;

@@ -73,6 +73,7 @@ void ForceThread::run() noexcept {
     report_.late += stylus.late();
     report_.lost += stylus.lost();
   }
+  report_.missed_columns = simulation_.missed_columns();
   finished_.signal();
 }
 
@@ -124,6 +125,7 @@ void ForceThread::watch_health(std::int64_t begin_ns, std::int64_t end_ns) noexc
   window_.resets = report_.resets;
   window_.unsolved = report_.unsolved;
   window_.missed = clock_.missed();
+  window_.missed_columns = simulation_.missed_columns();
   health_.put(window_);  // some 10 kB each, once a second
   status_.put(window_);
   window_ = ForceHealth{};

@@ -28,8 +28,9 @@ struct ForceThreadReport {
   std::uint64_t unsolved = 0;  ///< steps whose contact problem had no finite solution
   std::uint64_t late = 0;      ///< forces of bridges that came after their step, and entered it
   std::uint64_t lost = 0;      ///< forces of bridges that came too late for that, or never
-  double peak_force = 0.0;     ///< largest |force| on a stylus [N]
-  Histogram step_time;         ///< from the clock's go to the forces' hand-over [ns]
+  std::uint64_t missed_columns = 0;  ///< Simulation::missed_columns()
+  double peak_force = 0.0;           ///< largest |force| on a stylus [N]
+  Histogram step_time;               ///< from the clock's go to the forces' hand-over [ns]
 };
 
 /// How the force thread fares while it runs.
@@ -38,8 +39,9 @@ struct ForceHealth {
   std::uint64_t resets = 0;
   std::uint64_t unsolved = 0;
   std::uint64_t missed = 0;  ///< deadlines
-  Histogram step_time;       ///< of the last kHealthPeriodNs [ns]
-  Histogram wakeup_delay;    ///< of the last kHealthPeriodNs [ns]; empty in lockstep
+  std::uint64_t missed_columns = 0;
+  Histogram step_time;     ///< of the last kHealthPeriodNs [ns]
+  Histogram wakeup_delay;  ///< of the last kHealthPeriodNs [ns]; empty in lockstep
 };
 
 /// Takes the newest stylus samples, makes the force step and hands on what came of it, once for

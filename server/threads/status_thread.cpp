@@ -53,7 +53,8 @@ void StatusThread::run() {
     parts_.network.status().put(status);
     if (log_period_ns_ == 0 || gathered_ns_ - logged_ns < log_period_ns_) continue;
     logged_ns = gathered_ns_;
-    spdlog::info("{}", status_line(status, parts_.network.stats()));
+    spdlog::info("{}", status_line(status, parts_.network.stats(),
+                                   parts_.force.status().front().missed_columns));
   }
 }
 
@@ -83,7 +84,8 @@ float StatusThread::surface_rate() {
   return static_cast<float>(rate);
 }
 
-std::string status_line(const wire::Status& status, const NetworkStats& network) {
+std::string status_line(const wire::Status& status, const NetworkStats& network,
+                        std::uint64_t missed_columns) {
   std::ostringstream text;
   text << std::fixed << std::setprecision(1) << "status: " << status.steps << " steps";
   put(text, "step", status.step_time);
@@ -94,6 +96,7 @@ std::string status_line(const wire::Status& status, const NetworkStats& network)
   const auto count = [&text](const char* name, std::uint64_t value) {
     if (value > 0) text << ", " << name << ' ' << value;
   };
+  count("columns not there in time", missed_columns);
   count("refused", network.refused);
   count("cut before Hello", network.displaced);
   count("without the key", network.wrong_keys);

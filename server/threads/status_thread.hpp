@@ -44,6 +44,8 @@ class StatusThread {
 };
 
 /// One line for the log.
-std::string status_line(const wire::Status& status, const NetworkStats& network);
+/// @param missed_columns Simulation::missed_columns()
+std::string status_line(const wire::Status& status, const NetworkStats& network,
+                        std::uint64_t missed_columns);
 
 }  // namespace irdm

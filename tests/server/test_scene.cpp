@@ -37,6 +37,7 @@ TEST_CASE("every key of a scene arrives where it belongs") {
       "[floor]\nheight = -0.5\nnormal = [0, 0, 2]\nfriction = { static = 0.9, kinetic = 0.7 }\n"
       "[[stylus]]\nradius = 0.01\ncoupling_stiffness = 800\nreach = 0.02\n[[stylus]]\n"
       "[[object]]\nname = \"liver\"\nmodel = \"/models/liver.h5\"\nengine = \"dense\"\n"
+      "memory_budget = 1500.5\n"
       "position = [4, 5, 6]\norientation = [0, 3, 0, 0]\nvelocity = [7, 8, 9]\n"
       "angular_velocity = [10, 11, 12]\ninertial_loading = true\nfriction = { static = 0.4, "
       "kinetic = 0.3 }\n"
@@ -57,6 +58,7 @@ TEST_CASE("every key of a scene arrives where it belongs") {
   CHECK(object.name == "liver");
   CHECK(object.model == "/models/liver.h5");
   CHECK(object.engine == EngineKind::kDense);
+  CHECK(object.memory_budget == 1500.5);
   CHECK(object.position == Vector3(4, 5, 6));
   CHECK(object.orientation.isApprox(Quaternion(0, 1, 0, 0)));
   CHECK(object.velocity == Vector3(7, 8, 9));
@@ -296,6 +298,11 @@ TEST_CASE("each wrong type or value in a scene is told with file, line, key and 
         "s.toml:1: object is not a list of tables; write it as [[object]]");
   CHECK(rejection(kObject + "engine = \"steam\"\n") ==
         "s.toml:3: object[0].engine is 'steam'; give one of: modal | dense | compressed");
+  CHECK(rejection(kObject + "memory_budget = 100\n") ==
+        "s.toml:3: object[0].memory_budget is for the engine \"dense\"; leave it out, or set "
+        "engine = \"dense\"");
+  CHECK_THAT(rejection(kObject + "engine = \"dense\"\nmemory_budget = 0\n"),
+             StartsWith("s.toml:4: object[0].memory_budget is 0"));
   CHECK(rejection(kObject + "name = 1\n") ==
         "s.toml:3: object[0].name is not text; give text in quotes");
   CHECK(rejection("server = 1\n" + kObject) ==

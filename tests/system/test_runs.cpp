@@ -86,6 +86,31 @@ TEST_CASE("a run in real time whose bridge holds the server's forces") {
   CHECK((!kKeepsPace || number_after(bridge.out(), "peak force: ") > 0.1));
 }
 
+TEST_CASE("a run in real time with columns of R from the disk, as many as a finger needs") {
+  const Stage stage;
+  stage.write("scene.toml", scene_text("", "dense") + "memory_budget = 8\n");
+  Server server = stage.start_server({"--record", stage.path("trace.h5").string()});
+  ChildProcess bridge = stage.start_bridge(server);
+  check_ended_well(bridge);
+  server.process.signal(SIGTERM);
+  check_ended_well(server.process);
+  const std::string said = server.process.out();
+  CHECK_THAT(said, Contains(", not there in time: ") && !Contains("cannot be read"));
+  CHECK(number_after(said, "nodes whose columns were read: ") >= 12);
+  CHECK(number_after(said, "steps without a finite solution: ") == 0);
+  check_whole(read_trace(stage.path("trace.h5")), said);
+  CHECK((!kKeepsPace || number_after(bridge.out(), "peak force: ") > 0.1));
+}
+
+TEST_CASE("a budget that is too small for a finger is refused") {
+  const Stage stage;
+  stage.write("scene.toml", scene_text("", "dense") + "memory_budget = 4\n");
+  ChildProcess server({IRDM_SERVER, stage.path("scene.toml").string()});
+  CHECK(server.wait() == 1);
+  CHECK_THAT(server.err(), Contains("memory_budget of 4 MiB is too small") &&
+                               Contains("the columns of 12 nodes need 8 MiB; raise it"));
+}
+
 TEST_CASE("a server runs for its duration, to the step, and tells the bridge when it ends") {
   const Stage stage;
   stage.write("script.csv", hold_and_circle());

@@ -1,0 +1,249 @@
+#include "common/model/dense_file.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <functional>
+#include <mutex>
+
+#include "common/error.hpp"
+#include "common/hdf5/library_lock.hpp"
+#include "common/model/model_writer.hpp"
+#include "common/response/settling.hpp"
+#include "common/response/spin_products.hpp"
+
+namespace irdm {
+namespace {
+
+bool is_finite_number(double value) {
+  return std::isfinite(value);
+}
+bool is_finite_number(Half value) {
+  return (value.bits & 0x7C00U) != 0x7C00U;
+}
+
+void require_dense(const hdf5::File& file, bool holds, const std::string& what) {
+  if (!holds) throw Error(file.name(), what, "make the model again with irdm-precompute");
+}
+
+/// [s][a] of column b.
+template <typename Scalar>
+void read_column(const hdf5::File& file, const std::string& dataset, hsize_t b, hsize_t steps,
+                 hsize_t dof, Scalar* column) {
+  file.read_slab<Scalar>(dataset, {b, 0, 0}, {1, steps, dof}, column);
+  require_dense(file,
+                std::all_of(column, column + steps * dof,
+                            [](Scalar value) { return is_finite_number(value); }),
+                dataset + " has numbers that are not finite");
+}
+
+// Tells, at the speed of memory, whether a column is what it was (FNV-1a, by words).
+template <typename Scalar>
+std::uint64_t fingerprint(const Scalar* column, std::size_t count) {
+  constexpr std::uint64_t kPrime = 0x100000001B3;
+  std::uint64_t hash = 0xCBF29CE484222325;
+  const auto* bytes = reinterpret_cast<const std::byte*>(column);
+  for (std::size_t left = count * sizeof(Scalar); left > 0;) {
+    std::uint64_t word = 0;
+    const std::size_t size = std::min(left, sizeof word);
+    std::memcpy(&word, bytes, size);
+    hash = (hash ^ word) * kPrime;
+    bytes += size;
+    left -= size;
+  }
+  return hash;
+}
+
+// [s][a] to [a][s], in squares that stay in the cache.
+template <typename Scalar>
+void turn(const Scalar* column, hsize_t steps, hsize_t dof, Scalar* to) {
+  constexpr hsize_t kSquare = 32;
+  for (hsize_t s0 = 0; s0 < steps; s0 += kSquare) {
+    for (hsize_t a0 = 0; a0 < dof; a0 += kSquare) {
+      for (hsize_t a = a0; a < std::min(dof, a0 + kSquare); ++a) {
+        for (hsize_t s = s0; s < std::min(steps, s0 + kSquare); ++s) {
+          to[a * steps + s] = column[s * dof + a];
+        }
+      }
+    }
+  }
+}
+
+template <typename Scalar>
+std::vector<Scalar> read_columns(const hdf5::File& file, const std::string& dataset,
+                                 hsize_t columns, hsize_t steps, hsize_t dof) {
+  std::vector<Scalar> values(columns * steps * dof);
+  std::vector<Scalar> column(steps * dof);
+  for (hsize_t b = 0; b < columns; ++b) {
+    read_column(file, dataset, b, steps, dof, column.data());
+    turn(column.data(), steps, dof, values.data() + b * dof * steps);
+  }
+  return values;
+}
+
+// Empty where there is none.
+template <typename Scalar>
+std::vector<Scalar> read_centrifugal(const hdf5::File& file, hsize_t dof, hsize_t steps) {
+  if (!file.exists(kDenseCentrifugal)) return {};
+  require_dense(file,
+                file.stored_shape(kDenseCentrifugal) == hdf5::Shape({kSpinProducts, steps, dof}),
+                std::string(kDenseCentrifugal) + " must have the shape (6, steps, 3n)");
+  return read_columns<Scalar>(file, kDenseCentrifugal, kSpinProducts, steps, dof);
+}
+
+std::vector<double> read_scales(const hdf5::File& file, hsize_t dof) {
+  std::vector<double> scales = file.read<double>(kDenseScale, {dof});
+  require_dense(file,
+                std::ranges::all_of(scales, [](double x) { return std::isfinite(x) && x > 0.0; }),
+                std::string(kDenseScale) + " must be finite and positive");
+  return scales;
+}
+
+// All but R itself.
+template <typename Response>
+void read_frame(const hdf5::File& file, const Model& model, Response& response) {
+  if (!file.exists(kDenseR)) {
+    throw Error(file.name(), "has no dense response",
+                "use engine = \"modal\" or precompute with storage = \"dense\" or \"both\"");
+  }
+  const auto dof = static_cast<hsize_t>(model.degrees_of_freedom());
+  const auto steps = static_cast<hsize_t>(model.steps);
+  require_dense(file, file.stored_shape(kDenseR) == hdf5::Shape({dof, steps, dof}),
+                "/response/dense/R must have the shape (3n, steps, 3n)");
+  response.degrees_of_freedom = model.degrees_of_freedom();
+  response.steps = model.steps;
+  const std::size_t size = file.element_size(kDenseR);
+  if (size == sizeof(Half)) response.scales = read_scales(file, dof);
+  if (size == sizeof(double)) {
+    response.centrifugal = read_centrifugal<double>(file, dof, steps);
+  } else {
+    response.centrifugal = read_centrifugal<float>(file, dof, steps);
+  }
+}
+
+// Calls with a number of the kind that the file has.
+template <typename Function>
+void with_number(std::size_t size, const Function& function) {
+  if (size == sizeof(Half)) {
+    function(Half{});
+  } else if (size == sizeof(float)) {
+    function(0.0F);
+  } else {
+    function(0.0);
+  }
+}
+
+// R[0] and the sum of what follows it, of column b.
+template <typename Scalar>
+void keep(const std::vector<Scalar>& column, std::size_t b, StreamedResponse& response,
+          std::vector<Scalar>& first) {
+  const auto dof = static_cast<std::size_t>(response.degrees_of_freedom);
+  const double scale = response.scales.empty() ? 1.0 : response.scales[b];
+  std::copy_n(column.begin(), dof, first.begin() + static_cast<std::ptrdiff_t>(b * dof));
+  std::vector<double> sum(dof, 0.0);
+  for (std::size_t i = dof; i < column.size(); ++i) sum[i % dof] += to_double(column[i]);
+  std::ranges::transform(sum, response.rest.begin() + static_cast<std::ptrdiff_t>(b * dof),
+                         [scale](double value) { return static_cast<float>(scale * value); });
+}
+
+template <typename Scalar>
+Eigen::MatrixXf as_single(const std::vector<Scalar>& first, const StreamedResponse& response) {
+  const Eigen::Index dof = response.degrees_of_freedom;
+  Eigen::MatrixXf matrix(dof, dof);
+  for (Eigen::Index b = 0; b < dof; ++b) {
+    const double scale =
+        response.scales.empty() ? 1.0 : response.scales[static_cast<std::size_t>(b)];
+    for (Eigen::Index a = 0; a < dof; ++a) {
+      matrix(a, b) =
+          static_cast<float>(scale * to_double(first[static_cast<std::size_t>(b * dof + a)]));
+    }
+  }
+  return matrix;
+}
+
+}  // namespace
+
+DenseResponse read_dense(const hdf5::File& file, const Model& model) {
+  DenseResponse response;
+  read_frame(file, model, response);
+  const auto dof = static_cast<hsize_t>(response.degrees_of_freedom);
+  const auto steps = static_cast<hsize_t>(response.steps);
+  with_number(file.element_size(kDenseR), [&]<typename Scalar>(Scalar) {
+    response.values = read_columns<Scalar>(file, kDenseR, dof, steps, dof);
+  });
+  return response;
+}
+
+StreamedResponse read_streamed(const hdf5::File& file, const Model& model) {
+  StreamedResponse response;
+  read_frame(file, model, response);
+  const auto dof = static_cast<std::size_t>(response.degrees_of_freedom);
+  const auto steps = static_cast<std::size_t>(response.steps);
+  response.rest.resize(dof * dof);
+  with_number(file.element_size(kDenseR), [&]<typename Scalar>(Scalar) {
+    std::vector<Scalar> first(dof * dof);
+    std::vector<Scalar> column(steps * dof);
+    for (std::size_t b = 0; b < dof; ++b) {
+      read_column(file, kDenseR, b, steps, dof, column.data());
+      keep(column, b, response, first);
+      response.fingerprints.push_back(fingerprint(column.data(), column.size()));
+    }
+    const auto size = static_cast<Eigen::Index>(dof);
+    const double ratio =
+        settling_ratio(as_single(first, response),
+                       Eigen::Map<const Eigen::MatrixXf>(response.rest.data(), size, size));
+    response.settling = settling_profile(ratio, response.steps);
+    response.first = std::move(first);
+  });
+  return response;
+}
+
+std::size_t number_size(const StreamedResponse& response) {
+  return std::visit([]<typename Scalar>(const std::vector<Scalar>&) { return sizeof(Scalar); },
+                    response.first);
+}
+
+std::size_t resident_bytes(const StreamedResponse& response) {
+  const auto bytes = [](const auto& values) { return values.size() * sizeof(values[0]); };
+  return bytes(response.fingerprints) + std::visit(bytes, response.first) +
+         std::visit(bytes, response.centrifugal) + bytes(response.rest) + bytes(response.scales) +
+         bytes(response.settling);
+}
+
+DenseColumnFile::DenseColumnFile(const std::filesystem::path& path,
+                                 const StreamedResponse& response)
+    : file_(hdf5::File::open(path)),
+      dof_(static_cast<hsize_t>(response.degrees_of_freedom)),
+      steps_(static_cast<hsize_t>(response.steps)),
+      number_size_(number_size(response)),
+      fingerprints_(response.fingerprints),
+      column_(dof_ * steps_ * number_size_) {}
+
+DenseColumnFile::~DenseColumnFile() {
+  const std::lock_guard lock(hdf5::library_mutex());
+  const hdf5::File closed = std::move(file_);
+}
+
+template <typename Scalar>
+void DenseColumnFile::read_as(int node, Scalar* to) {
+  auto* column = reinterpret_cast<Scalar*>(column_.data());
+  for (hsize_t axis = 0; axis < 3; ++axis) {
+    {
+      const std::lock_guard lock(hdf5::library_mutex());
+      hdf5::prepare_library();
+      read_column(file_, kDenseR, 3 * static_cast<hsize_t>(node) + axis, steps_, dof_, column);
+    }
+    require_dense(
+        file_,
+        fingerprint(column, dof_ * steps_) == fingerprints_[3 * static_cast<hsize_t>(node) + axis],
+        std::string(kDenseR) + " has changed since it was opened");
+    turn(column, steps_, dof_, to + axis * dof_ * steps_);
+  }
+}
+
+void DenseColumnFile::read(int node, void* to) {
+  with_number(number_size_,
+              [&]<typename Scalar>(Scalar) { read_as(node, static_cast<Scalar*>(to)); });
+}
+
+}  // namespace irdm

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <vector>
+
+#include "common/hdf5/file.hpp"
+#include "common/model/model.hpp"
+
+/// Dense R in a model file (docs/files.md).
+namespace irdm {
+
+/// Reads all of it and checks shapes and numbers. Throws Error.
+/// @param model its description
+DenseResponse read_dense(const hdf5::File& file, const Model& model);
+
+/// Reads all of it once, column by column, and keeps what is always needed; `columns` is left
+/// empty. Throws Error.
+StreamedResponse read_streamed(const hdf5::File& file, const Model& model);
+
+/// Bytes of one number of R, and of what read_streamed() keeps.
+std::size_t number_size(const StreamedResponse& response);
+std::size_t resident_bytes(const StreamedResponse& response);
+
+/// Reads columns of R one by one while a program runs. One thread; holds hdf5::library_mutex().
+class DenseColumnFile {
+ public:
+  /// Of a file that read_streamed() has read. Throws Error.
+  DenseColumnFile(const std::filesystem::path& path, const StreamedResponse& response);
+  DenseColumnFile(const DenseColumnFile&) = delete;
+  DenseColumnFile& operator=(const DenseColumnFile&) = delete;
+  ~DenseColumnFile();
+
+  /// The three columns of a surface node, as a ColumnSupply has them. Throws Error, also when they
+  /// are not what they were: HDF5 reads zeros where a file has been cut off.
+  /// @param to 3 * 3n * T numbers of number_size()
+  void read(int node, void* to);
+
+ private:
+  template <typename Scalar>
+  void read_as(int node, Scalar* to);
+
+  hdf5::File file_;
+  hsize_t dof_;
+  hsize_t steps_;
+  std::size_t number_size_;
+  std::vector<std::uint64_t> fingerprints_;
+  std::vector<std::byte> column_;  ///< one, as it stands in the file
+};
+
+}  // namespace irdm

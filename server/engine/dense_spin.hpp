@@ -1,0 +1,46 @@
+#pragma once
+
+#include <type_traits>
+#include <variant>
+#include <vector>
+
+#include "common/response/spin_products.hpp"
+#include "server/engine/resident_columns.hpp"
+
+namespace irdm {
+
+/// What the body's own spin adds to a dense response: the products of its components act as if they
+/// were forces on two nodes, each with a column of its own. Real-time safe but for displacement();
+/// one thread.
+template <typename Number>
+class DenseSpin {
+ public:
+  using Values = std::variant<std::vector<float>, std::vector<double>>;
+
+  /// @param values of DenseResponse, numbers of this type; empty: the model has none, and nothing
+  /// is ever added
+  DenseSpin(const Values& values, int dof, int steps);
+
+  bool any() const noexcept { return columns_.values != nullptr; }
+  /// Held throughout the coming step.
+  void hold(const Vector3& w) noexcept;
+  /// Adds what a node does at the end of the coming step, with the spin that is held.
+  void add_coming(int node, Vector3& u) const noexcept;
+  /// The same `shift` steps after the last one, of the steps until then alone.
+  void add_past(int node, int shift, Vector3& u) const noexcept;
+  /// Adds the displacement of all nodes at the end of the last step.
+  void add_all(Points& u) const;
+  void advance() noexcept;
+  void reset() noexcept;
+
+ private:
+  ResidentColumns<Number> columns_;
+  ForceHistory history_;
+  SpinProducts coming_ = SpinProducts::Zero();
+};
+
+/// The numbers of the centrifugal response beside R of these: never of half precision.
+template <typename Scalar>
+using SpinNumber = std::conditional_t<std::is_same_v<Scalar, Half>, float, Scalar>;
+
+}  // namespace irdm

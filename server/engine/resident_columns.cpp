@@ -1,0 +1,48 @@
+#include "server/engine/resident_columns.hpp"
+
+#include <algorithm>
+
+#include "server/engine/force_stretches.hpp"
+#include "server/engine/kernels.hpp"
+
+namespace irdm {
+
+template <typename Number>
+void ResidentColumns<Number>::convolve(const ForceHistory& history, int node, int shift,
+                                       Vector3& u) const noexcept {
+  for (const int source : history.active()) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const ForceHistory::Series series = history.series(source, axis);
+      const int first = series.first_age + shift;
+      const int count = std::min(series.count, static_cast<int>(steps) - first);
+      if (count <= 0) continue;
+      const int b = 3 * source + axis;
+      add_products({row(3 * node, b) + first, steps, 3}, series.force,
+                   static_cast<std::size_t>(count), scale(static_cast<std::size_t>(b)), u.data());
+    }
+  }
+}
+
+// Column after column, as R stands in memory: a thread reads its part of each of them from one end
+// to the other. Each degree of freedom gets its sums in the same order, whichever thread adds them.
+template <typename Number>
+void ResidentColumns<Number>::add_all(const ForceHistory& history, Points& u) const {
+  const std::vector<ForceStretch> stretches = force_stretches(history);
+  const auto blocks = static_cast<int>((dof + kRowBlock - 1) / kRowBlock);
+#pragma omp parallel for schedule(dynamic)
+  for (int block = 0; block < blocks; ++block) {
+    const std::size_t first = static_cast<std::size_t>(block) * kRowBlock;
+    const std::size_t count = std::min(kRowBlock, dof - first);
+    for (const ForceStretch& push : stretches) {
+      const Number* rows = values + (push.column * dof + first) * steps + push.first_age;
+      add_products({rows, steps, count}, push.force, push.count, scale(push.column),
+                   u.data() + first);
+    }
+  }
+}
+
+template struct ResidentColumns<Half>;
+template struct ResidentColumns<float>;
+template struct ResidentColumns<double>;
+
+}  // namespace irdm

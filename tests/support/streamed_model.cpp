@@ -1,0 +1,97 @@
+#include "tests/support/streamed_model.hpp"
+
+#include <numeric>
+
+#include "common/model/model_file.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace irdm::test {
+namespace {
+
+// [s][a] of column b, as the writer wants it.
+template <typename Number, typename Scalar>
+RowMatrix<Number> file_column(const DenseResponse& response, const std::vector<Scalar>& values,
+                              int b) {
+  RowMatrix<Number> column(response.steps, response.degrees_of_freedom);
+  const double scale = response.scales.empty() ? 1.0 : response.scales[static_cast<std::size_t>(b)];
+  std::size_t at = static_cast<std::size_t>(b) * static_cast<std::size_t>(column.size());
+  for (Eigen::Index a = 0; a < column.cols(); ++a) {
+    for (Eigen::Index s = 0; s < column.rows(); ++s) {
+      column(s, a) = static_cast<Number>(scale * to_double(values[at++]));
+    }
+  }
+  return column;
+}
+
+template <typename Number, typename Scalar>
+void write_columns(const DenseResponse& response, const std::vector<Scalar>& values,
+                   ModelFileWriter& writer) {
+  for (int b = 0; b < response.degrees_of_freedom; ++b) {
+    writer.write_dense_column(b, file_column<Number>(response, values, b).data());
+  }
+}
+
+// [product][s][a].
+template <typename Number>
+void write_spin(const DenseResponse& response, const std::vector<Number>& values,
+                ModelFileWriter& writer) {
+  if (values.empty()) return;
+  std::vector<Number> all;
+  DenseResponse unscaled{response.degrees_of_freedom, response.steps, {}};
+  for (int p = 0; p < 6; ++p) {
+    const RowMatrix<Number> column = file_column<Number>(unscaled, values, p);
+    all.insert(all.end(), column.data(), column.data() + column.size());
+  }
+  writer.write_dense_centrifugal(all.data());
+}
+
+}  // namespace
+
+void write_dense_model(const Model& dense, const std::filesystem::path& path) {
+  const auto& response = std::get<DenseResponse>(dense.response);
+  ModelFileWriter writer(path);
+  writer.write_description(dense);
+  if (const auto* half = std::get_if<std::vector<Half>>(&response.values)) {
+    writer.begin_dense_half(response.degrees_of_freedom, response.steps);
+    write_columns<double>(response, *half, writer);
+  } else if (const auto* single = std::get_if<std::vector<float>>(&response.values)) {
+    writer.begin_dense(response.degrees_of_freedom, response.steps, Precision::kSingle);
+    write_columns<float>(response, *single, writer);
+  } else {
+    writer.begin_dense(response.degrees_of_freedom, response.steps, Precision::kDouble);
+    write_columns<double>(response, std::get<std::vector<double>>(response.values), writer);
+  }
+  std::visit([&](const auto& values) { write_spin(response, values, writer); },
+             response.centrifugal);
+  writer.commit();
+}
+
+ScriptedSupply::ScriptedSupply(const DenseResponse& response)
+    : values_(response.values),
+      node_numbers_(3 * static_cast<std::size_t>(response.degrees_of_freedom) *
+                    static_cast<std::size_t>(response.steps)),
+      taken_(static_cast<std::size_t>(response.degrees_of_freedom / 3), 0) {}
+
+const void* ScriptedSupply::take(int node) noexcept {
+  if (!there(node)) return nullptr;
+  const auto index = static_cast<std::size_t>(node);
+  ++taken_[index];
+  return std::visit(
+      [&](const auto& values) -> const void* { return values.data() + index * node_numbers_; },
+      values_);
+}
+
+int ScriptedSupply::taken() const {
+  return std::accumulate(taken_.begin(), taken_.end(), 0);
+}
+
+StreamedModel::StreamedModel(Model model) : dense(std::make_shared<const Model>(std::move(model))) {
+  const TemporaryFolder folder;
+  write_dense_model(*dense, folder.path() / "dense.h5");
+  Model read = read_streamed_model(folder.path() / "dense.h5");
+  supply = std::make_shared<ScriptedSupply>(std::get<DenseResponse>(dense->response));
+  std::get<StreamedResponse>(read.response).columns = supply;
+  streamed = std::make_shared<const Model>(std::move(read));
+}
+
+}  // namespace irdm::test

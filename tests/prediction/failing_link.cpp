@@ -20,8 +20,8 @@ constexpr std::int64_t kStopped = 150 * kMillisecond;
 constexpr std::int64_t kJump = 1'000 * kMillisecond;
 constexpr std::int64_t kWatched = 450 * kMillisecond;
 constexpr int kTicksPerStep = 2;
-constexpr std::uint32_t kSession = 77;
-constexpr double kHalfEdge = 0.06;
+constexpr std::uint32_t kLinkSession = 77;
+constexpr double kTop = 0.06;
 
 SimulationConfig tethered_cube() {
   SimulationConfig config;
@@ -52,7 +52,7 @@ class FailingLink::Device : public HapticDevice {
   void close() noexcept override {}
   StylusPose read(double) noexcept override {
     if (blind) return {.tip = Vector3::Constant(std::numeric_limits<double>::quiet_NaN())};
-    height = std::max(height - 5e-5, kHalfEdge - depth);
+    height = std::max(height - 5e-5, kTop - depth);
     return {.tip = Vector3(0.01, height, 0.005)};
   }
   void write(const Vector3& given) noexcept override { force = given.norm(); }
@@ -60,7 +60,7 @@ class FailingLink::Device : public HapticDevice {
   double duration() const noexcept override { return 1e9; }
 
   double depth = 0.006;
-  double height = kHalfEdge + 0.002;
+  double height = kTop + 0.002;
   double force = 0.0;
   bool blind = false;
 };
@@ -167,7 +167,7 @@ void FailingLink::deliver_down() {
 }
 
 void FailingLink::take(const wire::Frame& frame) {
-  if (frame.header.session != kSession) {
+  if (frame.header.session != kLinkSession) {
     throw wire::ProtocolError(wire::ProtocolFault::kUnexpected, "another session");
   }
   // As wire::Connection does.
@@ -214,7 +214,7 @@ void FailingLink::serve() {
                      .force = record_.stylus[0].force,
                      .proxy = record_.stylus[0].proxy};
   if (wrong(Cause::kForged)) answer.sample_sequence += 1'000'000;
-  const std::uint32_t session = wrong(Cause::kSecondMaster) ? kSession + 1 : kSession;
+  const std::uint32_t session = wrong(Cause::kSecondMaster) ? kLinkSession + 1 : kLinkSession;
   send_down(wire::ForceMessage{0, answer}, session);
   if (!predict_) return;
   bridged_.foresee(model_);

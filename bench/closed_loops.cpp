@@ -5,6 +5,7 @@
 // of the worst.
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
@@ -38,7 +39,7 @@ void report(const std::string& name, std::vector<Outcome> outcomes, bool near) {
   int below = 0;
   for (const Outcome& outcome : outcomes) {
     energies.push_back(-1e3 * outcome.energy);
-    errors.push_back(outcome.error);
+    if (std::isfinite(outcome.error)) errors.push_back(outcome.error);  // else it never touched
     shaking += unstable(outcome) ? 1 : 0;
     below += outcome.energy < -0.02 ? 1 : 0;
   }

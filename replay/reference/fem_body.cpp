@@ -1,0 +1,183 @@
+#include "replay/reference/fem_body.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/error.hpp"
+#include "precompute/fem/mass_properties.hpp"
+
+namespace irdm::replay {
+namespace {
+
+using precompute::as_points;
+
+std::vector<double> tip_radii(const SimulationConfig& config) {
+  std::vector<double> radii;
+  for (const SimulationStylus& stylus : config.styluses) radii.push_back(stylus.radius);
+  return radii;
+}
+
+// Both alpha and beta: every mode's decay rate is then so many times what it was.
+Material damped(Material material, double factor) {
+  material.rayleigh_alpha *= factor;
+  material.rayleigh_beta *= factor;
+  return material;
+}
+
+// dv/dt = a - rate v moves v by this times its value at the start.
+double decayed(double rate, double time) {
+  return rate > 0.0 ? -std::expm1(-rate * time) / rate : time;
+}
+
+}  // namespace
+
+// Rounding must not make one more.
+int fem_parts(double dt, double longest) {
+  return std::max(1, static_cast<int>(std::ceil(dt / longest - 1e-9)));
+}
+
+FemBody::Mesh::Mesh(const Model& model, double damping, double h)
+    : body({model.mesh.nodes, model.mesh.tets, {}}, damped(model.material, damping),
+           precompute::Elasticity::kCorotational),
+      rule(body) {
+  rule.prepare(h);
+}
+
+FemBody::FemBody(const SimulationConfig& config, std::size_t number, double substep)
+    : model_(config.objects[number].model),
+      rigid_(model_->body, model_->dt),
+      surface_(model_->mesh),
+      recorded_forces_(surface_, tip_radii(config)),
+      parts_(fem_parts(model_->dt, substep)),
+      h_(model_->dt / parts_),
+      mesh_(std::make_unique<Mesh>(*model_, 1.0, h_)),
+      force_(Eigen::VectorXd::Zero(model_->mesh.nodes.size())) {
+  const SimulationObject& object = config.objects[number];
+  start_.position = object.position;
+  start_.orientation = object.orientation.normalized();
+  start_.velocity = object.velocity;
+  start_.angular_momentum = rigid_.angular_momentum(start_.orientation, object.angular_velocity);
+  free_forces_ = {config.gravity, object.damping, object.tether, start_.position,
+                  start_.orientation};
+  reset();
+}
+
+void FemBody::reset() {
+  const Matrix3 Q = start_.orientation.toRotationMatrix();
+  const Vector3 w = rigid_.angular_velocity(start_);
+  const Points& X = mesh_->body.rest();
+  state_ = mesh_->body.at_rest();
+  for (Eigen::Index i = 0; i < X.rows(); ++i) {
+    const Vector3 arm = Q * X.row(i).transpose();
+    state_.u.segment<3>(3 * i) = start_.position + arm - X.row(i).transpose();
+    state_.v.segment<3>(3 * i) = start_.velocity + w.cross(arm);
+  }
+}
+
+void FemBody::enter_late(const LateForce& /*late*/) {
+  throw Error("--reference fem", "cannot enter forces that a bridge told of too late",
+              "record the interaction in lockstep");
+}
+
+void FemBody::set(const Vector3& gravity, const ObjectSettings& settings) {
+  free_forces_.gravity = gravity;
+  free_forces_.damping = settings.damping;
+  free_forces_.tether = settings.tether;
+  if (settings.material_damping == material_damping_) return;
+  material_damping_ = settings.material_damping;
+  mesh_ = std::make_unique<Mesh>(*model_, material_damping_, h_);
+  workspace_.solver.reset();
+}
+
+precompute::RigidMotion FemBody::rigid_motion() const {
+  return precompute::extract_rigid_motion(mesh_->body.rest(), as_points(state_.u),
+                                          mesh_->body.mass(), precompute::RotationWeights::kMass);
+}
+
+RigidState FemBody::rigid_state() const {
+  const precompute::RigidMotion motion = rigid_motion();
+  const Vector3 momentum = mesh_->body.momentum(state_.v);
+  RigidState state;
+  state.position = motion.translation;
+  state.orientation = Quaternion(motion.rotation);
+  state.velocity = momentum / mesh_->body.mass().sum();
+  state.angular_momentum =
+      mesh_->body.angular_momentum(state_) - motion.translation.cross(momentum);
+  return state;
+}
+
+// Of the mesh as it is deformed.
+Vector3 FemBody::angular_velocity(const RigidState& state) const {
+  const Points x = mesh_->body.rest() + as_points(state_.u);
+  return precompute::nodal_mass_properties(x, mesh_->body.mass())
+      .inertia.ldlt()
+      .solve(state.angular_momentum);
+}
+
+void FemBody::hold(const ObjectRecord& recorded) {
+  const Quaternion& Q = recorded.start.orientation;
+  force_.setZero();
+  for (const NodalForce& nodal : recorded_forces_.of(recorded)) {
+    const int node = model_->mesh.surface_nodes[static_cast<std::size_t>(nodal.node)];
+    force_.segment<3>(3 * node) += Q * nodal.force;
+  }
+  couples_.clear();
+  for (const ContactRecord& contact : recorded.contact) {
+    if (contact.state == ContactState::kFree) continue;
+    couples_.push_back({contact.offset, Q * contact.force});
+  }
+}
+
+bool FemBody::kicks() const {
+  return !couples_.empty() || !free_forces_.gravity.isZero(0.0) ||
+         !(free_forces_.damping == RigidDamping{}) || !(free_forces_.tether == Tether{});
+}
+
+void FemBody::kick(double time) {
+  if (!kicks()) return;
+  const RigidState state = rigid_state();
+  const FreeMotion free = free_motion(rigid_, free_forces_, state);
+  Vector3 torque = free.torque;
+  for (const OffsetForce& couple : couples_) {
+    torque += (state.orientation * couple.offset).cross(couple.force);
+  }
+  const Points x = mesh_->body.rest() + as_points(state_.u);
+  const Vector3 turning =
+      precompute::nodal_mass_properties(x, mesh_->body.mass()).inertia.ldlt().solve(torque);
+  const Vector3 more = decayed(free_forces_.damping.linear, time) * free.force / rigid_.mass();
+  const Vector3 more_spin = decayed(free_forces_.damping.angular, time) * turning;
+  for (Eigen::Index i = 0; i < x.rows(); ++i) {
+    const Vector3 arm = x.row(i).transpose() - state.position;
+    state_.v.segment<3>(3 * i) += more + more_spin.cross(arm);
+  }
+}
+
+void FemBody::step(ObjectRecord& again) {
+  const Quaternion recorded = again.start.orientation;
+  hold(again);
+  again.start = rigid_state();
+  again.spin.setZero();
+  for (int part = 0; part < parts_; ++part) {
+    kick(0.5 * h_);
+    mesh_->rule.step(state_, force_, h_, workspace_);
+    kick(0.5 * h_);
+  }
+  const Quaternion turn = again.start.orientation.conjugate() * recorded;
+  for (ContactRecord& contact : again.contact) contact.force = turn * contact.force;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(again.floor_count); ++i) {
+    again.floor[i].force = turn.cast<float>() * again.floor[i].force;
+  }
+  const RigidState end = rigid_state();
+  again.position = end.position;
+  again.orientation = end.orientation;
+  again.velocity = end.velocity;
+  again.angular_velocity = angular_velocity(end);
+}
+
+void FemBody::displacement(Points& u) const {
+  const Points all =
+      precompute::elastic_part(mesh_->body.rest(), as_points(state_.u), rigid_motion());
+  u = all(model_->mesh.surface_nodes, Eigen::all);
+}
+
+}  // namespace irdm::replay

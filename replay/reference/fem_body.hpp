@@ -1,0 +1,73 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "precompute/dynamics/implicit_midpoint.hpp"
+#include "precompute/dynamics/rigid_extraction.hpp"
+#include "replay/made_again/forced_body.hpp"
+#include "server/step/recorded_forces.hpp"
+#include "server/step/simulation_config.hpp"
+
+namespace irdm::replay {
+
+/// How many equal sub-steps, none above `longest` [s], a step of dt [s] is cut into.
+int fem_parts(double dt, double longest);
+
+/// By finite elements, without modes, R or rigid body: the whole mesh, corotational, stepped by
+/// ImplicitMidpoint. Recorded forces act in W on the points of the surface that they were recorded
+/// at, constant during a step. What the server does to the rigid motion alone (gravity, damping,
+/// tether, the couple of a contact's offset) is a field of accelerations here that moves the mesh
+/// as a rigid body, taken in by half kicks before and after each sub-step (Strang: second order, as
+/// the rule itself).
+class FemBody final : public ForcedBody {
+ public:
+  /// Throws Error when the object is not what it can be: floating, of linear tetrahedra.
+  /// @param config of the scene  @param number of the object in it
+  /// @param substep longest step of the rule [s], > 0; the server's is cut into equal ones
+  FemBody(const SimulationConfig& config, std::size_t number, double substep);
+
+  void reset() override;
+  /// Throws Error: what has been cannot be changed here.
+  void enter_late(const LateForce& late) override;
+  void set(const Vector3& gravity, const ObjectSettings& settings) override;
+  /// Contact forces and the floor's are written as they stand in B here.
+  void step(ObjectRecord& again) override;
+  void displacement(Points& u) const override;
+
+ private:
+  /// A couple that acts by no node: offset (B) x force (W).
+  struct OffsetForce {
+    Vector3 offset, force;
+  };
+  /// The body with the material as it is now.
+  struct Mesh {
+    Mesh(const Model& model, double damping, double h);
+    precompute::SoftBody body;
+    precompute::ImplicitMidpoint rule;
+  };
+
+  RigidState rigid_state() const;
+  precompute::RigidMotion rigid_motion() const;
+  Vector3 angular_velocity(const RigidState& state) const;
+  void hold(const ObjectRecord& recorded);
+  bool kicks() const;
+  void kick(double time);
+
+  std::shared_ptr<const Model> model_;
+  RigidBody rigid_;
+  RestSurface surface_;
+  RecordedForces recorded_forces_;
+  int parts_;  ///< sub-steps of a step
+  double h_;   ///< [s]
+  RigidState start_;
+  FreeForces free_forces_;
+  double material_damping_ = 1.0;
+  std::unique_ptr<Mesh> mesh_;
+  precompute::BodyState state_;
+  precompute::ImplicitMidpoint::Workspace workspace_;
+  Eigen::VectorXd force_;  ///< of contacts and floor during the step, (3N) [N], W
+  std::vector<OffsetForce> couples_;
+};
+
+}  // namespace irdm::replay

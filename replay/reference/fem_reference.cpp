@@ -1,0 +1,42 @@
+#include "replay/reference/fem_reference.hpp"
+
+#include "common/error.hpp"
+#include "precompute/fem/assembly.hpp"
+#include "replay/made_again/from_forces.hpp"
+#include "replay/reference/fem_body.hpp"
+
+namespace irdm::replay {
+namespace {
+
+void check_model(const Model& model, const std::string& name) {
+  if (model.body.support == Support::kFixed) {
+    throw Error(name, "is of a fixed object, and the reference moves floating ones only",
+                "give a floating object, or leave --reference out");
+  }
+  if (model.mesh.tets.cols() != 4) {
+    throw Error(name, "has quadratic tetrahedra, and the reference knows linear ones only",
+                "precompute a model with mesh.order = 1, record with it, or leave --reference out");
+  }
+  const Eigen::VectorXd mass =
+      precompute::lumped_mass({model.mesh.nodes, model.mesh.tets, {}}, model.material.density);
+  if ((mass - model.mesh.node_mass).cwiseAbs().maxCoeff() <= 1e-9 * mass.maxCoeff()) return;
+  throw Error(name, "has masses that its tetrahedra and density do not give",
+              "precompute it again");
+}
+
+}  // namespace
+
+double fem_substep(double dt, double longest) {
+  return dt / fem_parts(dt, longest);
+}
+
+std::unique_ptr<MadeAgain> fem_reference(const TracedScene& scene, double substep) {
+  std::vector<std::unique_ptr<ForcedBody>> bodies;
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    check_model(*scene.config.objects[i].model, scene.objects[i].model.string());
+    bodies.push_back(std::make_unique<FemBody>(scene.config, i, substep));
+  }
+  return std::make_unique<FromForces>(scene.config, std::move(bodies));
+}
+
+}  // namespace irdm::replay

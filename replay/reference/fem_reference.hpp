@@ -1,0 +1,21 @@
+#pragma once
+
+#include <memory>
+
+#include "replay/made_again/made_again.hpp"
+#include "replay/traced_scene.hpp"
+
+namespace irdm::replay {
+
+/// Longest sub-step of a reference, unless it is given [s]. See docs/reference.md.
+inline constexpr double kReferenceSubstep = 2.5e-4;
+
+/// Sub-steps are equal: the length of one, where `longest` is asked for and the server's is dt [s].
+double fem_substep(double dt, double longest);
+
+/// The same interaction by finite elements (FemBody) from its recorded forces: what the impulse
+/// responses are measured against. Throws Error, naming the model that it cannot be done for.
+/// @param substep [s], > 0
+std::unique_ptr<MadeAgain> fem_reference(const TracedScene& scene, double substep);
+
+}  // namespace irdm::replay

@@ -35,7 +35,8 @@ Recording read_recording(const TracedScene& scene, const std::string& trace) {
 
 std::unique_ptr<MadeAgain> make_again(const TracedScene& scene, const ReplayOptions& options) {
   if (options.fem_reference) {
-    return fem_reference(scene, options.substep.value_or(kReferenceSubstep));
+    return fem_reference(scene, options.substep.value_or(kReferenceSubstep),
+                         options.from_tips);
   }
   if (options.from_tips) return std::make_unique<FromTips>(scene.config, options.solve_bridged);
   return std::make_unique<FromForces>(scene.config);

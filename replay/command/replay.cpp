@@ -14,9 +14,8 @@ void check_reference(const ReplayOptions& options, const std::string& engine) {
     if (!options.substep) return;
     throw Error("--substep", "is of a reference", "give --reference fem, too");
   }
-  if (options.from_tips) {
-    throw Error("--reference fem", "is driven by the recorded forces alone",
-                "leave --from tips out");
+  if (options.solve_bridged) {
+    throw Error("--solve-bridged", "is of the force step", "leave out one of it and --reference");
   }
   if (engine.empty()) return;
   throw Error("--engine " + engine, "means nothing to a reference, which has none",

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "server/step/step_record.hpp"
 
 namespace irdm::replay {
@@ -17,7 +19,8 @@ class ForcedBody {
   virtual void set(const Vector3& gravity, const ObjectSettings& settings) = 0;
   /// @param again the recorded step, whose contacts and floor's forces act; the start of the step
   /// and the motion are written, and forces, where they are not kept in B
-  virtual void step(ObjectRecord& again) = 0;
+  /// @param styluses as they are in the recorded step
+  virtual void step(ObjectRecord& again, std::span<const StylusRecord> styluses) = 0;
   /// Of all surface nodes at the end of the last step, (n, 3) [m], B.
   virtual void displacement(Points& u) const = 0;
 };

@@ -20,7 +20,7 @@ class ForcedObject final : public ForcedBody {
   void reset() override;
   void enter_late(const LateForce& late) override;
   void set(const Vector3& gravity, const ObjectSettings& settings) override;
-  void step(ObjectRecord& again) override;
+  void step(ObjectRecord& again, std::span<const StylusRecord> styluses) override;
   void displacement(Points& u) const override { engine_->displacement(u); }
 
  private:

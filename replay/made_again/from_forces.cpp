@@ -41,7 +41,8 @@ void FromForces::step(const StepRecord& recorded, StepRecord& again) {
       objects_[i]->set(settings_.gravity, settings_.object[i]);
     }
   }
-  for (std::size_t i = 0; i < objects_.size(); ++i) objects_[i]->step(again.object[i]);
+  const std::span styluses(recorded.stylus.data(), static_cast<std::size_t>(recorded.stylus_count));
+  for (std::size_t i = 0; i < objects_.size(); ++i) objects_[i]->step(again.object[i], styluses);
   write_floor_and_styluses(again);
 }
 

@@ -11,6 +11,12 @@ namespace {
 
 using precompute::as_points;
 
+// Of the speed, for a step of the rule: far below what its length costs.
+constexpr double kTolerance = 1e-9;
+// Where that takes more than this, two steps of half the length take less.
+constexpr int kMostIterations = 25;
+constexpr int kMostHalvings = 6;
+
 std::vector<double> tip_radii(const SimulationConfig& config) {
   std::vector<double> radii;
   for (const SimulationStylus& stylus : config.styluses) radii.push_back(stylus.radius);
@@ -39,19 +45,26 @@ int fem_parts(double dt, double longest) {
 FemBody::Mesh::Mesh(const Model& model, double damping, double h)
     : body({model.mesh.nodes, model.mesh.tets, {}}, damped(model.material, damping),
            precompute::Elasticity::kCorotational),
-      rule(body) {
+      rule(body, kTolerance, kMostIterations) {
   rule.prepare(h);
 }
 
-FemBody::FemBody(const SimulationConfig& config, std::size_t number, double substep)
+FemBody::FemBody(const SimulationConfig& config, std::size_t number, double substep,
+                 bool follow_tips)
     : model_(config.objects[number].model),
       rigid_(model_->body, model_->dt),
       surface_(model_->mesh),
       recorded_forces_(surface_, tip_radii(config)),
+      follow_tips_(follow_tips),
       parts_(fem_parts(model_->dt, substep)),
       h_(model_->dt / parts_),
       mesh_(std::make_unique<Mesh>(*model_, 1.0, h_)),
       force_(Eigen::VectorXd::Zero(model_->mesh.nodes.size())) {
+  for (const SimulationStylus& stylus : config.styluses) {
+    masks_.emplace_back(surface_, stylus.radius);
+    spring_compliance_.push_back(
+        stylus.coupling_stiffness > 0.0 ? 1.0 / stylus.coupling_stiffness : 0.0);
+  }
   const SimulationObject& object = config.objects[number];
   start_.position = object.position;
   start_.orientation = object.orientation.normalized();
@@ -66,6 +79,7 @@ void FemBody::reset() {
   const Matrix3 Q = start_.orientation.toRotationMatrix();
   const Vector3 w = rigid_.angular_velocity(start_);
   const Points& X = mesh_->body.rest();
+  followed_.clear();
   state_ = mesh_->body.at_rest();
   for (Eigen::Index i = 0; i < X.rows(); ++i) {
     const Vector3 arm = Q * X.row(i).transpose();
@@ -152,22 +166,47 @@ void FemBody::kick(double time) {
   }
 }
 
-void FemBody::step(ObjectRecord& again) {
-  const Quaternion recorded = again.start.orientation;
-  hold(again);
-  again.start = rigid_state();
-  again.spin.setZero();
+void FemBody::advance(double h, int halvings) {
+  const precompute::BodyState before = state_;
+  const double largest_speed = workspace_.largest_speed;
+  try {
+    mesh_->rule.step(state_, force_, h, workspace_);
+  } catch (const Error&) {
+    if (halvings == 0) throw;
+    state_ = before;
+    workspace_.largest_speed = largest_speed;
+    mesh_->rule.prepare(0.5 * h);
+    advance(0.5 * h, halvings - 1);
+    advance(0.5 * h, halvings - 1);
+  }
+}
+
+// Under the forces of the record.
+void FemBody::move(const ObjectRecord& recorded) {
+  hold(recorded);
   for (int part = 0; part < parts_; ++part) {
     kick(0.5 * h_);
-    mesh_->rule.step(state_, force_, h_, workspace_);
+    advance(h_, kMostHalvings);
     kick(0.5 * h_);
   }
-  const Quaternion turn = again.start.orientation.conjugate() * recorded;
+}
+
+void FemBody::step(ObjectRecord& again, std::span<const StylusRecord> styluses) {
+  const RigidState start = rigid_state();
+  choose_followed(again, styluses);
+  if (followed_.empty()) {
+    move(again);
+  } else {
+    follow(again);
+  }
+  const Quaternion turn = start.orientation.conjugate() * again.start.orientation;
   for (ContactRecord& contact : again.contact) contact.force = turn * contact.force;
   for (std::size_t i = 0; i < static_cast<std::size_t>(again.floor_count); ++i) {
     again.floor[i].force = turn.cast<float>() * again.floor[i].force;
   }
   const RigidState end = rigid_state();
+  again.start = start;
+  again.spin.setZero();
   again.position = end.position;
   again.orientation = end.orientation;
   again.velocity = end.velocity;

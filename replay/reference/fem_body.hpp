@@ -6,6 +6,7 @@
 #include "precompute/dynamics/implicit_midpoint.hpp"
 #include "precompute/dynamics/rigid_extraction.hpp"
 #include "replay/made_again/forced_body.hpp"
+#include "replay/reference/broyden_solver.hpp"
 #include "server/step/recorded_forces.hpp"
 #include "server/step/simulation_config.hpp"
 
@@ -19,26 +20,36 @@ int fem_parts(double dt, double longest);
 /// at, constant during a step. What the server does to the rigid motion alone (gravity, damping,
 /// tether, the couple of a contact's offset) is a field of accelerations here that moves the mesh
 /// as a rigid body, taken in by half kicks before and after each sub-step (Strang: second order, as
-/// the rule itself).
+/// the rule itself). A sub-step that cannot be solved is made in halves.
 class FemBody final : public ForcedBody {
  public:
   /// Throws Error when the object is not what it can be: floating, of linear tetrahedra.
   /// @param config of the scene  @param number of the object in it
   /// @param substep longest step of the rule [s], > 0; the server's is cut into equal ones
-  FemBody(const SimulationConfig& config, std::size_t number, double substep);
+  /// @param follow_tips points that are held follow their tips as in the server's step, with the
+  /// force that this takes here, in place of the recorded one
+  FemBody(const SimulationConfig& config, std::size_t number, double substep,
+          bool follow_tips = false);
 
   void reset() override;
   /// Throws Error: what has been cannot be changed here.
   void enter_late(const LateForce& late) override;
   void set(const Vector3& gravity, const ObjectSettings& settings) override;
   /// Contact forces and the floor's are written as they stand in B here.
-  void step(ObjectRecord& again) override;
+  void step(ObjectRecord& again, std::span<const StylusRecord> styluses) override;
   void displacement(Points& u) const override;
 
  private:
   /// A couple that acts by no node: offset (B) x force (W).
   struct OffsetForce {
     Vector3 offset, force;
+  };
+  /// A contact that follows its tip.
+  struct Followed {
+    std::size_t stylus;
+    Vector3 tip;        ///< at the end of the step [m], W
+    double compliance;  ///< of the coupling spring [m/N]
+    ContactPatch patch;
   };
   /// The body with the material as it is now.
   struct Mesh {
@@ -53,11 +64,23 @@ class FemBody final : public ForcedBody {
   void hold(const ObjectRecord& recorded);
   bool kicks() const;
   void kick(double time);
+  void advance(double h, int halvings);
+  void move(const ObjectRecord& recorded);
+  bool follows(const ContactRecord& contact, const StylusRecord& stylus) const;
+  void choose_followed(const ObjectRecord& recorded, std::span<const StylusRecord> styluses);
+  Eigen::VectorXd misses(const ObjectRecord& moved) const;
+  void follow(ObjectRecord& recorded);
 
   std::shared_ptr<const Model> model_;
   RigidBody rigid_;
   RestSurface surface_;
   RecordedForces recorded_forces_;
+  bool follow_tips_;
+  std::vector<PressureMask> masks_;
+  std::vector<double> spring_compliance_;  ///< of each stylus [m/N]
+  std::vector<Followed> followed_;
+  BroydenSolver tip_forces_;  ///< [N], W, of all followed_
+  std::vector<Eigen::VectorXd> last_forces_;  ///< of the steps before, the last one first
   int parts_;  ///< sub-steps of a step
   double h_;   ///< [s]
   RigidState start_;

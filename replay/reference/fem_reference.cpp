@@ -30,11 +30,12 @@ double fem_substep(double dt, double longest) {
   return dt / fem_parts(dt, longest);
 }
 
-std::unique_ptr<MadeAgain> fem_reference(const TracedScene& scene, double substep) {
+std::unique_ptr<MadeAgain> fem_reference(const TracedScene& scene, double substep,
+                                         bool follow_tips) {
   std::vector<std::unique_ptr<ForcedBody>> bodies;
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     check_model(*scene.config.objects[i].model, scene.objects[i].model.string());
-    bodies.push_back(std::make_unique<FemBody>(scene.config, i, substep));
+    bodies.push_back(std::make_unique<FemBody>(scene.config, i, substep, follow_tips));
   }
   return std::make_unique<FromForces>(scene.config, std::move(bodies));
 }

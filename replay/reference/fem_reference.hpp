@@ -13,9 +13,11 @@ inline constexpr double kReferenceSubstep = 2.5e-4;
 /// Sub-steps are equal: the length of one, where `longest` is asked for and the server's is dt [s].
 double fem_substep(double dt, double longest);
 
-/// The same interaction by finite elements (FemBody) from its recorded forces: what the impulse
+/// The same interaction by finite elements (FemBody): what the impulse
 /// responses are measured against. Throws Error, naming the model that it cannot be done for.
 /// @param substep [s], > 0
-std::unique_ptr<MadeAgain> fem_reference(const TracedScene& scene, double substep);
+/// @param follow_tips held points follow their tips (FemBody)
+std::unique_ptr<MadeAgain> fem_reference(const TracedScene& scene, double substep,
+                                         bool follow_tips = false);
 
 }  // namespace irdm::replay

@@ -23,7 +23,7 @@ int fem_parts(double dt, double longest);
 /// the rule itself). A sub-step that cannot be solved is made in halves.
 class FemBody final : public ForcedBody {
  public:
-  /// Throws Error when the object is not what it can be: floating, of linear tetrahedra.
+  /// Throws Error when the object does not float.
   /// @param config of the scene  @param number of the object in it
   /// @param substep longest step of the rule [s], > 0; the server's is cut into equal ones
   /// @param follow_tips points that are held follow their tips as in the server's step, with the

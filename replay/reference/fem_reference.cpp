@@ -13,10 +13,6 @@ void check_model(const Model& model, const std::string& name) {
     throw Error(name, "is of a fixed object, and the reference moves floating ones only",
                 "give a floating object, or leave --reference out");
   }
-  if (model.mesh.tets.cols() != 4) {
-    throw Error(name, "has quadratic tetrahedra, and the reference knows linear ones only",
-                "precompute a model with mesh.order = 1, record with it, or leave --reference out");
-  }
   const Eigen::VectorXd mass =
       precompute::lumped_mass({model.mesh.nodes, model.mesh.tets, {}}, model.material.density);
   if ((mass - model.mesh.node_mass).cwiseAbs().maxCoeff() <= 1e-9 * mass.maxCoeff()) return;

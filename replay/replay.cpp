@@ -33,10 +33,11 @@ Recording read_recording(const TracedScene& scene, const std::string& trace) {
               "record it again on a disk that is fast enough");
 }
 
-std::unique_ptr<MadeAgain> make_again(const TracedScene& scene, const ReplayOptions& options) {
+std::unique_ptr<MadeAgain> make_again(const TracedScene& scene, const Recording& recording,
+                                      const ReplayOptions& options) {
   if (options.fem_reference) {
     return fem_reference(scene, options.substep.value_or(kReferenceSubstep),
-                         options.from_tips);
+                         options.from_tips, told_late(recording));
   }
   if (options.from_tips) return std::make_unique<FromTips>(scene.config, options.solve_bridged);
   return std::make_unique<FromForces>(scene.config);
@@ -102,7 +103,7 @@ int replay(const ReplayOptions& options) {
   }
   const Recording recording = read_recording(scene, options.trace.string());
   const FrameSteps frames(recording.steps(), scene.dt(), options.rate);
-  const auto made = make_again(scene, options);
+  const auto made = make_again(scene, recording, options);
   LongRun run(recording.steps(), options.fem_reference);
   Outputs outputs = make_outputs(options, scene);
   std::vector<Points> surfaces(scene.config.objects.size());

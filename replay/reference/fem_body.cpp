@@ -50,12 +50,13 @@ FemBody::Mesh::Mesh(const Model& model, double damping, double h)
 }
 
 FemBody::FemBody(const SimulationConfig& config, std::size_t number, double substep,
-                 bool follow_tips)
+                 bool follow_tips, std::vector<ToldLate> told_late)
     : model_(config.objects[number].model),
       rigid_(model_->body, model_->dt),
       surface_(model_->mesh),
       recorded_forces_(surface_, tip_radii(config)),
       follow_tips_(follow_tips),
+      told_late_(std::move(told_late)),
       parts_(fem_parts(model_->dt, substep)),
       h_(model_->dt / parts_),
       mesh_(std::make_unique<Mesh>(*model_, 1.0, h_)),
@@ -86,11 +87,6 @@ void FemBody::reset() {
     state_.u.segment<3>(3 * i) = start_.position + arm - X.row(i).transpose();
     state_.v.segment<3>(3 * i) = start_.velocity + w.cross(arm);
   }
-}
-
-void FemBody::enter_late(const LateForce& /*late*/) {
-  throw Error("--reference fem", "cannot enter forces that a bridge told of too late",
-              "record the interaction in lockstep");
 }
 
 void FemBody::set(const Vector3& gravity, const ObjectSettings& settings) {
@@ -128,17 +124,46 @@ Vector3 FemBody::angular_velocity(const RigidState& state) const {
       .solve(state.angular_momentum);
 }
 
-void FemBody::hold(const ObjectRecord& recorded) {
-  const Quaternion& Q = recorded.start.orientation;
-  force_.setZero();
-  for (const NodalForce& nodal : recorded_forces_.of(recorded)) {
+// In W.
+Vector3 FemBody::place(const ContactPatch& patch) const {
+  return mean(patch, [&](int node) -> Vector3 {
+    const int n = model_->mesh.surface_nodes[static_cast<std::size_t>(node)];
+    return mesh_->body.rest().row(n).transpose() + state_.u.segment<3>(3 * n);
+  });
+}
+
+// Of components in a body frame that stands so.
+void FemBody::add_forces(std::span<const NodalForce> forces, const Quaternion& Q) {
+  for (const NodalForce& nodal : forces) {
     const int node = model_->mesh.surface_nodes[static_cast<std::size_t>(nodal.node)];
     force_.segment<3>(3 * node) += Q * nodal.force;
   }
+}
+
+void FemBody::hold(const ObjectRecord& recorded) {
+  const Quaternion& Q = recorded.start.orientation;
+  force_.setZero();
   couples_.clear();
+  add_forces(recorded_forces_.of(recorded), Q);
   for (const ContactRecord& contact : recorded.contact) {
     if (contact.state == ContactState::kFree) continue;
     couples_.push_back({contact.offset, Q * contact.force});
+  }
+  hold_late();
+}
+
+// What was told late and belongs to this step, unless it is found here anew.
+void FemBody::hold_late() {
+  for (const ToldLate& told : told_late_) {
+    if (told.step != steps_) continue;
+    const auto own = [&](const Followed& f) { return static_cast<int>(f.stylus) == told.late.stylus; };
+    if (std::any_of(followed_.begin(), followed_.end(), own)) continue;
+    add_forces(recorded_forces_.of(told.late), told.orientation);
+    ContactPatch patch;
+    masks_[static_cast<std::size_t>(told.late.stylus)].spread(told.late.point, patch);
+    const RigidState state = rigid_state();
+    const Vector3 arm = state.orientation.conjugate() * (place(patch) - state.position);
+    couples_.push_back({told.late.arm - arm, told.orientation * told.late.force});
   }
 }
 
@@ -204,6 +229,7 @@ void FemBody::step(ObjectRecord& again, std::span<const StylusRecord> styluses) 
   for (std::size_t i = 0; i < static_cast<std::size_t>(again.floor_count); ++i) {
     again.floor[i].force = turn.cast<float>() * again.floor[i].force;
   }
+  ++steps_;
   const RigidState end = rigid_state();
   again.start = start;
   again.spin.setZero();

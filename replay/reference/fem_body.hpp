@@ -15,6 +15,13 @@ namespace irdm::replay {
 /// How many equal sub-steps, none above `longest` [s], a step of dt [s] is cut into.
 int fem_parts(double dt, double longest);
 
+/// A force that a bridge told of after its step.
+struct ToldLate {
+  std::size_t step = 0;  ///< that it belongs to, from the start of the trace
+  LateForce late;
+  Quaternion orientation = Quaternion::Identity();  ///< of the recorded body before that step
+};
+
 /// By finite elements, without modes, R or rigid body: the whole mesh, corotational, stepped by
 /// ImplicitMidpoint. Recorded forces act in W on the points of the surface that they were recorded
 /// at, constant during a step. What the server does to the rigid motion alone (gravity, damping,
@@ -28,12 +35,13 @@ class FemBody final : public ForcedBody {
   /// @param substep longest step of the rule [s], > 0; the server's is cut into equal ones
   /// @param follow_tips points that are held follow their tips as in the server's step, with the
   /// force that this takes here, in place of the recorded one
+  /// @param told_late of this object: they act in the steps that they belong to
   FemBody(const SimulationConfig& config, std::size_t number, double substep,
-          bool follow_tips = false);
+          bool follow_tips = false, std::vector<ToldLate> told_late = {});
 
   void reset() override;
-  /// Throws Error: what has been cannot be changed here.
-  void enter_late(const LateForce& late) override;
+  /// Nothing: it has acted in its own step.
+  void enter_late(const LateForce& /*late*/) override {}
   void set(const Vector3& gravity, const ObjectSettings& settings) override;
   /// Contact forces and the floor's are written as they stand in B here.
   void step(ObjectRecord& again, std::span<const StylusRecord> styluses) override;
@@ -62,6 +70,9 @@ class FemBody final : public ForcedBody {
   precompute::RigidMotion rigid_motion() const;
   Vector3 angular_velocity(const RigidState& state) const;
   void hold(const ObjectRecord& recorded);
+  void add_forces(std::span<const NodalForce> forces, const Quaternion& Q);
+  void hold_late();
+  Vector3 place(const ContactPatch& patch) const;
   bool kicks() const;
   void kick(double time);
   void advance(double h, int halvings);
@@ -81,6 +92,8 @@ class FemBody final : public ForcedBody {
   std::vector<Followed> followed_;
   BroydenSolver tip_forces_;  ///< [N], W, of all followed_
   std::vector<Eigen::VectorXd> last_forces_;  ///< of the steps before, the last one first
+  std::vector<ToldLate> told_late_;
+  std::size_t steps_ = 0;  ///< made so far
   int parts_;  ///< sub-steps of a step
   double h_;   ///< [s]
   RigidState start_;

@@ -41,13 +41,9 @@ Eigen::VectorXd FemBody::misses(const ObjectRecord& moved) const {
   for (std::size_t i = 0; i < followed_.size(); ++i) {
     const Followed& followed = followed_[i];
     const ContactRecord& contact = moved.contact[followed.stylus];
-    const Vector3 point = mean(followed.patch, [&](int node) -> Vector3 {
-      const int n = model_->mesh.surface_nodes[static_cast<std::size_t>(node)];
-      return mesh_->body.rest().row(n).transpose() + state_.u.segment<3>(3 * n);
-    });
     const Vector3 force = moved.start.orientation * contact.force;
     misses.segment<3>(3 * static_cast<Eigen::Index>(i)) =
-        followed.tip - point - Q * contact.offset - followed.compliance * force;
+        followed.tip - place(followed.patch) - Q * contact.offset - followed.compliance * force;
   }
   return misses;
 }

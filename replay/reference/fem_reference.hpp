@@ -1,9 +1,12 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "replay/made_again/made_again.hpp"
+#include "replay/reference/fem_body.hpp"
 #include "replay/traced_scene.hpp"
+#include "server/record/recording.hpp"
 
 namespace irdm::replay {
 
@@ -17,7 +20,13 @@ double fem_substep(double dt, double longest);
 /// responses are measured against. Throws Error, naming the model that it cannot be done for.
 /// @param substep [s], > 0
 /// @param follow_tips held points follow their tips (FemBody)
+/// @param told_late of the trace, for all objects
 std::unique_ptr<MadeAgain> fem_reference(const TracedScene& scene, double substep,
-                                         bool follow_tips = false);
+                                         bool follow_tips = false,
+                                         const std::vector<ToldLate>& told_late = {});
+
+/// What bridges told too late, step by step of the trace. What belongs to a time before it, or
+/// before a reset, is left out, as in the server.
+std::vector<ToldLate> told_late(const Recording& recording);
 
 }  // namespace irdm::replay

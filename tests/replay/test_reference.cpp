@@ -192,7 +192,8 @@ TEST_CASE("the reference has the momentum of the recorded forces, and their coup
 }
 
 // Measured: rms 0.04 %, largest 0.6 % of the peak; of quadratic elements 0.05 % and 1.5 %.
-TEST_CASE("a tap of 0.05 N: finite elements and all modes are within 2 % of the peak for 1 s") {
+TEST_CASE("a tap of 0.05 N: finite elements and all modes are within 2 % of the peak for 1 s",
+          "[slow]") {
   const bool linear = GENERATE(true, false);
   const KeptRun run = linear ? Tap{}.run(one_fem_cube({.cells = 4}))
                              : Tap{.steps = 100}.run(one_fem_cube({.cells = 2, .order = 2}));
@@ -202,7 +203,8 @@ TEST_CASE("a tap of 0.05 N: finite elements and all modes are within 2 % of the 
   CHECK(apart.largest < 0.02 * apart.peak);
 }
 
-TEST_CASE("what sets finite elements and responses apart is as small a share as the force is") {
+TEST_CASE("what sets finite elements and responses apart is as small a share as the force is",
+          "[slow]") {
   const SimulationConfig config = one_fem_cube({.cells = 3});
   const auto share = [&](double peak) {
     const FemDifference apart = fem_against(Tap{.peak = peak, .steps = 50}.run(config), 1e-4);
@@ -214,7 +216,7 @@ TEST_CASE("what sets finite elements and responses apart is as small a share as 
   CHECK(share(0.005) == Approx(0.01 * strong).epsilon(0.1));
 }
 
-TEST_CASE("the reference converges with the square of its sub-step") {
+TEST_CASE("the reference converges with the square of its sub-step", "[slow]") {
   const KeptRun run = Tap{.steps = 50}.run(one_fem_cube({.cells = 3}));
   FemBody finest(run.config, 0, 3.125e-5);
   std::array<std::unique_ptr<FemBody>, 3> bodies;
@@ -398,7 +400,8 @@ double held_force_apart(double dt) {
 // The server takes a body through a step by the velocity at its end, dt/2 ahead of what the forces
 // give: a held object, which swings on its point at some 6 Hz here, is damped by that with up to
 // omega^2 dt / 4 = 0.8 1/s. Measured apart: 14.7 %, 7.5 % and 3.8 % at 2, 1 and 0.5 ms.
-TEST_CASE("a held point of the reference follows its tip, by the server's force as dt goes to 0") {
+TEST_CASE("a held point of the reference follows its tip, by the server's force as dt goes to 0",
+          "[slow]") {
   const double coarse = held_force_apart(0.002);
   const double fine = held_force_apart(0.001);
   CHECK(coarse < 0.2);

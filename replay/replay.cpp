@@ -1,16 +1,21 @@
 #include "replay/replay.hpp"
 
+#include <unistd.h>
+
 #include <iostream>
 #include <memory>
 
 #include "common/error.hpp"
+#include "precompute/progress.hpp"
 #include "replay/frame_steps.hpp"
+#include "replay/interruption.hpp"
 #include "replay/made_again/deviation.hpp"
 #include "replay/made_again/from_forces.hpp"
 #include "replay/made_again/from_tips.hpp"
 #include "replay/output/csv_output.hpp"
 #include "replay/output/run_output.hpp"
 #include "replay/output/vtk_output.hpp"
+#include "replay/reference/fem_reference.hpp"
 #include "replay/traced_scene.hpp"
 #include "server/record/recording.hpp"
 
@@ -28,9 +33,22 @@ Recording read_recording(const TracedScene& scene, const std::string& trace) {
               "record it again on a disk that is fast enough");
 }
 
-std::unique_ptr<MadeAgain> make_again(const TracedScene& scene, const ReplayOptions& options) {
+std::unique_ptr<MadeAgain> make_again(const TracedScene& scene, const Recording& recording,
+                                      const ReplayOptions& options) {
+  if (options.fem_reference) {
+    return fem_reference(scene, options.substep.value_or(kReferenceSubstep),
+                         options.from_tips, told_late(recording));
+  }
   if (options.from_tips) return std::make_unique<FromTips>(scene.config, options.solve_bridged);
   return std::make_unique<FromForces>(scene.config);
+}
+
+std::string how(const TracedScene& scene, const ReplayOptions& options) {
+  if (!options.fem_reference) return "engine " + scene.engine_words();
+  char words[64];
+  std::snprintf(words, sizeof words, "finite elements in sub-steps of %g s",
+                fem_substep(scene.dt(), options.substep.value_or(kReferenceSubstep)));
+  return words;
 }
 
 Outputs make_outputs(const ReplayOptions& options, const TracedScene& scene) {
@@ -40,7 +58,8 @@ Outputs make_outputs(const ReplayOptions& options, const TracedScene& scene) {
   if (options.output) {
     outputs.push_back(std::make_unique<RunOutput>(
         *options.output, scene,
-        RunOrigin{options.trace.filename().string(), options.from_tips ? "tips" : "forces"}));
+        RunOrigin{options.trace.filename().string(), options.from_tips ? "tips" : "forces",
+                  how(scene, options)}));
   }
   return outputs;
 }
@@ -53,6 +72,28 @@ void put_frame(const MadeAgain& made, const StepRecord& record, std::vector<Poin
   for (const auto& output : outputs) output->put({record, surfaces});
 }
 
+/// What a person waits for, and may end: SIGINT and SIGTERM stop it after a step.
+class LongRun {
+ public:
+  /// @param shown whether it takes so long that progress is printed
+  LongRun(std::size_t steps, bool shown) {
+    if (!shown) return;
+    const precompute::Console console{std::cout, ::isatty(STDOUT_FILENO) != 0};
+    progress_.emplace(console, "finite elements", static_cast<int>(steps));
+  }
+  /// Throws Error when a signal has come.
+  void done(std::size_t steps) {
+    if (progress_) progress_->update(static_cast<int>(steps));
+    if (!interruption_.came()) return;
+    throw Error("irdm-replay", "was interrupted after " + std::to_string(steps) + " steps",
+                "start it again for outputs that are whole");
+  }
+
+ private:
+  Interruption interruption_;
+  std::optional<precompute::Progress> progress_;
+};
+
 }  // namespace
 
 int replay(const ReplayOptions& options) {
@@ -62,7 +103,8 @@ int replay(const ReplayOptions& options) {
   }
   const Recording recording = read_recording(scene, options.trace.string());
   const FrameSteps frames(recording.steps(), scene.dt(), options.rate);
-  const auto made = make_again(scene, options);
+  const auto made = make_again(scene, recording, options);
+  LongRun run(recording.steps(), options.fem_reference);
   Outputs outputs = make_outputs(options, scene);
   std::vector<Points> surfaces(scene.config.objects.size());
   Deviation deviation;
@@ -74,11 +116,12 @@ int replay(const ReplayOptions& options) {
     made->step(*recorded, *again);
     deviation.add(*recorded, *again);
     if (frames.has(k)) put_frame(*made, *again, surfaces, outputs);
+    run.done(k + 1);
   }
   for (const auto& output : outputs) output->finish();
   std::cout << options.trace.string() << ": " << recording.steps() << " steps of " << scene.dt()
-            << " s from " << (options.from_tips ? "tips" : "forces") << ", engine "
-            << scene.engine_words() << "; " << frames.count() << " frames\n"
+            << " s from " << (options.from_tips ? "tips" : "forces") << ", "
+            << how(scene, options) << "; " << frames.count() << " frames\n"
             << deviation.text() << std::flush;
   return 0;
 }

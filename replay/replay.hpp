@@ -16,6 +16,8 @@ struct ReplayOptions {
   bool from_tips = false;            ///< the whole step, not only what its forces do
   bool solve_bridged = false;        ///< from tips: what bridges solved, too
   std::optional<EngineKind> engine;  ///< none: the run's own
+  bool fem_reference = false;        ///< by finite elements instead of an engine
+  std::optional<double> substep;     ///< longest one of a reference [s]; none: its default
   std::optional<double> rate;        ///< frames a second [Hz]; none: every step
   std::optional<std::filesystem::path> output;
   std::optional<std::filesystem::path> csv;

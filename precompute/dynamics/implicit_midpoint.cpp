@@ -9,15 +9,15 @@
 namespace irdm::precompute {
 namespace {
 
-constexpr int kMaxIterations = 60;
 // A correction larger than this share of the one before calls for a better matrix.
 constexpr double kSlow = 0.3;
 
 }  // namespace
 
-ImplicitMidpoint::ImplicitMidpoint(const SoftBody& body, double tolerance)
+ImplicitMidpoint::ImplicitMidpoint(const SoftBody& body, double tolerance, int most_iterations)
     : body_(&body),
       tolerance_(tolerance),
+      most_iterations_(most_iterations),
       mass3_(body.mass().replicate(1, 3).transpose().reshaped()) {}
 
 void ImplicitMidpoint::prepare(double h) {
@@ -80,7 +80,7 @@ void ImplicitMidpoint::step(BodyState& state, const Eigen::VectorXd& force, doub
     const double size = speed(delta);
     workspace.largest_speed = std::max(workspace.largest_speed, speed(middle.v));
     if (linear || size <= tolerance_ * workspace.largest_speed) break;
-    if (i >= kMaxIterations || !std::isfinite(size)) {
+    if (i >= most_iterations_ || !std::isfinite(size)) {
       throw Error("time stepping", "a step of " + std::to_string(h) + " s cannot be solved",
                   "use smaller steps or a smaller force");
     }

@@ -30,7 +30,9 @@ class ImplicitMidpoint {
   /// @param body must outlive this
   /// @param tolerance a step is solved when a correction is below this share of the largest speed
   /// that the state has had (mass-weighted), > 0
-  explicit ImplicitMidpoint(const SoftBody& body, double tolerance = 1e-10);
+  /// @param most_iterations after which a step is given up
+  explicit ImplicitMidpoint(const SoftBody& body, double tolerance = 1e-10,
+                            int most_iterations = 60);
 
   /// Factorises for steps of this length [s], > 0. Before the first step of that length, by one
   /// thread.
@@ -56,6 +58,7 @@ class ImplicitMidpoint {
 
   const SoftBody* body_;
   double tolerance_;
+  int most_iterations_;
   Eigen::VectorXd mass3_;  // (3N)
   std::map<double, std::unique_ptr<SparseSolver>> solvers_;
 };

@@ -4,6 +4,7 @@
 #include "precompute/dynamics/polar_rotation.hpp"
 #include "precompute/fem/assembly.hpp"
 #include "precompute/fem/mass_properties.hpp"
+#include "precompute/fem/tet10.hpp"
 
 namespace irdm::precompute {
 SoftBody::SoftBody(const TetMesh& mesh, const Material& material, Elasticity elasticity)
@@ -13,21 +14,26 @@ SoftBody::SoftBody(const TetMesh& mesh, const Material& material, Elasticity ela
       mass_(lumped_mass(mesh, material.density)) {
   rest_ =
       mesh.nodes.rowwise() - nodal_mass_properties(mesh.nodes, mass_).centre_of_mass.transpose();
-  elements_.resize(static_cast<std::size_t>(mesh.tet_count()));
-  for (int e = 0; e < mesh.tet_count(); ++e) {
-    Element& element = elements_[static_cast<std::size_t>(e)];
-    tet4::Corners corners;
-    for (int i = 0; i < 4; ++i) {
-      element.nodes[static_cast<std::size_t>(i)] = mesh.tets(e, i);
-      corners.row(i) = rest_.row(mesh.tets(e, i));
-    }
-    element.geometry = tet4::geometry(corners);
+  tets_ = mesh.tets;
+  for (Eigen::Index e = 0; e < tets_.rows(); ++e) add_element(mesh, e);
+}
+
+void SoftBody::add_element(const TetMesh& mesh, Eigen::Index element) {
+  tet4::Corners corners;
+  for (int i = 0; i < 4; ++i) corners.row(i) = rest_.row(tets_(element, i));
+  const tet4::Geometry geometry = tet4::geometry(corners);
+  if (mesh.order() == 1) {
+    points_.push_back({element, geometry.volume, geometry.gradient});
+    return;
+  }
+  for (const tet10::Barycentric& b : tet10::quadrature_points()) {
+    points_.push_back({element, 0.25 * geometry.volume, tet10::gradients(geometry, b)});
   }
 }
 
 double SoftBody::volume() const {
   double sum = 0.0;
-  for (const Element& element : elements_) sum += element.geometry.volume;
+  for (const Point& point : points_) sum += point.volume;
   return sum;
 }
 
@@ -36,20 +42,18 @@ BodyState SoftBody::at_rest() const {
   return {zero, zero};
 }
 
-Matrix3 SoftBody::gradient(const Element& element, const Eigen::VectorXd& field) const {
+Matrix3 SoftBody::gradient(const Point& point, const Eigen::VectorXd& field) const {
   Matrix3 sum = Matrix3::Zero();
-  for (int i = 0; i < 4; ++i) {
-    sum += field.segment<3>(3 * element.nodes[static_cast<std::size_t>(i)]) *
-           element.geometry.gradient.row(i);
+  for (Eigen::Index i = 0; i < tets_.cols(); ++i) {
+    sum += field.segment<3>(3 * tets_(point.element, i)) * point.gradient.row(i);
   }
   return sum;
 }
 
-void SoftBody::add_force(const Element& element, const Matrix3& P, Eigen::VectorXd& force) const {
-  const Matrix3 weighted = -element.geometry.volume * P;
-  for (int i = 0; i < 4; ++i) {
-    force.segment<3>(3 * element.nodes[static_cast<std::size_t>(i)]) +=
-        weighted * element.geometry.gradient.row(i).transpose();
+void SoftBody::add_force(const Point& point, const Matrix3& P, Eigen::VectorXd& force) const {
+  const Matrix3 weighted = -point.volume * P;
+  for (Eigen::Index i = 0; i < tets_.cols(); ++i) {
+    force.segment<3>(3 * tets_(point.element, i)) += weighted * point.gradient.row(i).transpose();
   }
 }
 
@@ -64,10 +68,10 @@ void SoftBody::add_mass_damping(const BodyState& state, Eigen::VectorXd& force) 
 Eigen::VectorXd SoftBody::internal_force(const BodyState& state) const {
   const double beta = material_.rayleigh_beta;
   Eigen::VectorXd force = Eigen::VectorXd::Zero(state.u.size());
-  for (const Element& element : elements_) {
-    const Matrix3 du_dX = gradient(element, state.u);
-    const Matrix3 dv_dX = gradient(element, state.v);
-    add_force(element,
+  for (const Point& point : points_) {
+    const Matrix3 du_dX = gradient(point, state.u);
+    const Matrix3 dv_dX = gradient(point, state.v);
+    add_force(point,
               elasticity_ == Elasticity::kLinear ? lame_stress(du_dX + beta * dv_dX, lame_)
                                                  : corotational::stress(du_dX, dv_dX, lame_, beta),
               force);
@@ -79,9 +83,9 @@ Eigen::VectorXd SoftBody::internal_force(const BodyState& state) const {
 StepStart SoftBody::start_of_step(const Eigen::VectorXd& u) const {
   StepStart start{u, {}};
   if (elasticity_ == Elasticity::kLinear) return start;
-  start.strains.reserve(elements_.size());
-  for (const Element& element : elements_) {
-    start.strains.push_back(corotational::strain(gradient(element, u)));
+  start.strains.reserve(points_.size());
+  for (const Point& point : points_) {
+    start.strains.push_back(corotational::strain(gradient(point, u)));
   }
   return start;
 }
@@ -92,11 +96,11 @@ Eigen::VectorXd SoftBody::mean_force(const StepStart& start, const Eigen::Vector
   if (elasticity_ == Elasticity::kLinear) return internal_force(middle);
   const Eigen::VectorXd end = start.u + h * w;
   Eigen::VectorXd force = Eigen::VectorXd::Zero(w.size());
-  for (std::size_t e = 0; e < elements_.size(); ++e) {
-    const Element& element = elements_[e];
-    add_force(element,
-              corotational::mean_stress(gradient(element, start.u), start.strains[e],
-                                        gradient(element, end), h, lame_, material_.rayleigh_beta),
+  for (std::size_t p = 0; p < points_.size(); ++p) {
+    const Point& point = points_[p];
+    add_force(point,
+              corotational::mean_stress(gradient(point, start.u), start.strains[p],
+                                        gradient(point, end), h, lame_, material_.rayleigh_beta),
               force);
   }
   add_mass_damping(middle, force);
@@ -105,12 +109,12 @@ Eigen::VectorXd SoftBody::mean_force(const StepStart& start, const Eigen::Vector
 
 double SoftBody::elastic_energy(const Eigen::VectorXd& u) const {
   double sum = 0.0;
-  for (const Element& element : elements_) {
-    const Matrix3 du_dX = gradient(element, u);
+  for (const Point& point : points_) {
+    const Matrix3 du_dX = gradient(point, u);
     const Matrix3 strain = elasticity_ == Elasticity::kLinear
                                ? Matrix3(0.5 * (du_dX + du_dX.transpose()))
                                : corotational::strain(du_dX);
-    sum += element.geometry.volume * corotational::energy_density(strain, lame_);
+    sum += point.volume * corotational::energy_density(strain, lame_);
   }
   return sum;
 }
@@ -134,21 +138,27 @@ Vector3 SoftBody::angular_momentum(const BodyState& state) const {
 
 Eigen::SparseMatrix<double> SoftBody::stiffness(const Eigen::VectorXd& u) const {
   std::vector<Eigen::Triplet<double>> entries;
-  entries.reserve(elements_.size() * 144);
-  for (const Element& element : elements_) {
+  const Eigen::Index nodes = tets_.cols();
+  entries.reserve(points_.size() * static_cast<std::size_t>(9 * nodes * nodes));
+  const auto add = [&](int row, int column, const Matrix3& block) {
+    for (int a = 0; a < 3; ++a) {
+      for (int b = 0; b < 3; ++b) entries.emplace_back(3 * row + a, 3 * column + b, block(a, b));
+    }
+  };
+  for (const Point& point : points_) {
     Matrix3 R = Matrix3::Identity();
     if (elasticity_ == Elasticity::kCorotational) {
-      R = polar_rotation(Matrix3::Identity() + gradient(element, u));
+      R = polar_rotation(Matrix3::Identity() + gradient(point, u));
     }
-    // An isotropic element turns with its shape functions' gradients.
-    tet4::Geometry turned = element.geometry;
-    turned.gradient = element.geometry.gradient * R.transpose();
-    const tet4::Stiffness k = tet4::stiffness(turned, lame_);
-    for (int row = 0; row < 12; ++row) {
-      for (int column = 0; column < 12; ++column) {
-        entries.emplace_back(3 * element.nodes[static_cast<std::size_t>(row / 3)] + row % 3,
-                             3 * element.nodes[static_cast<std::size_t>(column / 3)] + column % 3,
-                             k(row, column));
+    // An isotropic material turns with its shape functions' gradients.
+    const auto g = (point.gradient * R.transpose()).eval();
+    for (Eigen::Index i = 0; i < nodes; ++i) {
+      for (Eigen::Index j = 0; j < nodes; ++j) {
+        // Of f_i = stress g_i under the gradient u_j g_j^T.
+        const Matrix3 dyad = g.row(i).transpose() * g.row(j);
+        add(tets_(point.element, i), tets_(point.element, j),
+            point.volume * (lame_.lambda * dyad + lame_.mu * dyad.transpose() +
+                            lame_.mu * dyad.trace() * Matrix3::Identity()));
       }
     }
   }

@@ -2,13 +2,11 @@
 
 #include <Eigen/Dense>
 #include <Eigen/Sparse>
-#include <array>
 #include <vector>
 
 #include "common/geometry.hpp"
 #include "common/model/model.hpp"
 #include "precompute/fem/material.hpp"
-#include "precompute/fem/tet4.hpp"
 #include "precompute/mesh/tet_mesh.hpp"
 
 namespace irdm::precompute {
@@ -31,13 +29,14 @@ struct BodyState {
 /// The beginning of a time step, see SoftBody::mean_force().
 struct StepStart {
   Eigen::VectorXd u;             ///< displacement (3N) [m], W
-  std::vector<Matrix3> strains;  ///< S - Id of each element; none of a linear body
+  std::vector<Matrix3> strains;  ///< S - Id at each point of SoftBody; none of a linear body
 };
 
-/// A free-floating body of linear tetrahedra: masses, internal forces and energy. Const after
-/// construction, for any number of threads. N nodes.
+/// A free-floating body of tetrahedra: masses, internal forces and energy. Const after
+/// construction, for any number of threads. N nodes. Stresses are summed at points: one in a linear
+/// element, where they are constant, four in a quadratic one.
 ///
-/// Corotational: with F the deformation gradient of an element and R its polar rotation, the nodal
+/// Corotational: with F the deformation gradient at a point and R its polar rotation, the nodal
 /// forces -R K0 (R^T x - X) are those of the stress P = R (2 mu (S - Id) + lambda tr(S - Id) Id),
 /// S = R^T F, and for linear tetrahedra exactly the gradient of the energy
 /// V (mu |S - Id|^2 + lambda/2 tr(S - Id)^2): they are conservative and free of resultant force and
@@ -49,7 +48,7 @@ struct StepStart {
 /// beta R K0 R^T v wherever the strain is small, and without torque where it is not.
 class SoftBody {
  public:
-  /// @param mesh linear tetrahedra of positive volume; moved so that the centre of mass is at 0
+  /// @param mesh tetrahedra of positive volume; moved so that the centre of mass is at 0
   SoftBody(const TetMesh& mesh, const Material& material, Elasticity elasticity);
 
   int node_count() const { return static_cast<int>(rest_.rows()); }
@@ -84,12 +83,16 @@ class SoftBody {
   Eigen::VectorXd rigid_velocity(const Eigen::VectorXd& u, const Eigen::VectorXd& v) const;
 
  private:
-  struct Element {
-    std::array<int, 4> nodes;
-    tet4::Geometry geometry;
+  /// Where stress is looked at, the part of the body that it stands for, and how displacements of
+  /// the element's nodes strain it.
+  struct Point {
+    Eigen::Index element;
+    double volume;                                                  ///< [m^3]
+    Eigen::Matrix<double, Eigen::Dynamic, 3, 0, 10, 3> gradient{};  ///< of shape functions [1/m]
   };
-  Matrix3 gradient(const Element& element, const Eigen::VectorXd& field) const;
-  void add_force(const Element& element, const Matrix3& P, Eigen::VectorXd& force) const;
+  void add_element(const TetMesh& mesh, Eigen::Index element);
+  Matrix3 gradient(const Point& point, const Eigen::VectorXd& field) const;
+  void add_force(const Point& point, const Matrix3& P, Eigen::VectorXd& force) const;
   void add_mass_damping(const BodyState& state, Eigen::VectorXd& force) const;
 
   Elasticity elasticity_;
@@ -97,7 +100,8 @@ class SoftBody {
   Lame lame_;
   Points rest_;
   Eigen::VectorXd mass_;
-  std::vector<Element> elements_;
+  RowMatrix<int> tets_;
+  std::vector<Point> points_;
 };
 
 }  // namespace irdm::precompute

@@ -22,6 +22,15 @@ Gradients gradients(const tet4::Geometry& geometry, const Barycentric& b) {
   return g;
 }
 
+std::array<Barycentric, 4> quadrature_points() {
+  std::array<Barycentric, 4> points;
+  for (int i = 0; i < 4; ++i) {
+    points[static_cast<std::size_t>(i)].setConstant(kFar);
+    points[static_cast<std::size_t>(i)](i) = kNear;
+  }
+  return points;
+}
+
 Matrix3 stress(const tet4::Geometry& geometry, const Barycentric& b, const Lame& lame,
                const Displacements& displacements) {
   return lame_stress(displacements.transpose() * gradients(geometry, b), lame);
@@ -29,9 +38,7 @@ Matrix3 stress(const tet4::Geometry& geometry, const Barycentric& b, const Lame&
 
 Stiffness stiffness(const tet4::Geometry& geometry, const Lame& lame) {
   Stiffness k = Stiffness::Zero();
-  for (int point = 0; point < 4; ++point) {
-    Barycentric b = Barycentric::Constant(kFar);
-    b(point) = kNear;
+  for (const Barycentric& b : quadrature_points()) {
     add_strain_energy<10>(gradients(geometry, b), 0.25 * geometry.volume, lame, k);
   }
   return k;

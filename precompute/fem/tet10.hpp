@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <array>
 
 #include "common/geometry.hpp"
 #include "precompute/fem/material.hpp"
@@ -20,6 +21,9 @@ using Stiffness = Eigen::Matrix<double, 30, 30>;     ///< [N/m], index 3 node + 
 /// Gradients of the shape functions b_i (2 b_i - 1) of the corners and 4 b_i b_j of the mid-side
 /// nodes at a point.
 Gradients gradients(const tet4::Geometry& geometry, const Barycentric& b);
+
+/// The four points, of equal weights, of a rule that integrates quadratics exactly.
+std::array<Barycentric, 4> quadrature_points();
 
 /// Stress [Pa] at a point, at the given displacements.
 Matrix3 stress(const tet4::Geometry& geometry, const Barycentric& b, const Lame& lame,

@@ -7,6 +7,22 @@
 #include "replay/command/command.hpp"
 
 namespace irdm::replay {
+namespace {
+
+void check_reference(const ReplayOptions& options, const std::string& engine) {
+  if (!options.fem_reference) {
+    if (!options.substep) return;
+    throw Error("--substep", "is of a reference", "give --reference fem, too");
+  }
+  if (options.solve_bridged) {
+    throw Error("--solve-bridged", "is of the force step", "leave out one of it and --reference");
+  }
+  if (engine.empty()) return;
+  throw Error("--engine " + engine, "means nothing to a reference, which has none",
+              "leave one of them out");
+}
+
+}  // namespace
 
 Command add_replay_command(CLI::App& app) {
   auto options = std::make_shared<ReplayOptions>();
@@ -27,6 +43,13 @@ Command add_replay_command(CLI::App& app) {
                "From tips: contacts that bridges solved are solved here too");
   app.add_option("--engine", *engine, "Engine to compute with (default: the run's own)")
       ->check(CLI::IsMember({"modal", "dense", "compressed"}));
+  auto reference = std::make_shared<std::string>();
+  app.add_option("--reference", *reference,
+                 "fem: by finite elements on the model's mesh instead of an engine (slow)")
+      ->check(CLI::IsMember({"fem"}));
+  app.add_option("--substep", options->substep,
+                 "Longest step of a reference in s (default: 0.00025)")
+      ->check(positive_number());
   app.add_option("--rate", options->rate, "Frames for a second of the run (default: every step)")
       ->check(positive_number());
   app.add_option("-o,--output", options->output,
@@ -37,11 +60,13 @@ Command add_replay_command(CLI::App& app) {
   app.parse_complete_callback([&app, trace] {
     if (app.get_subcommands().empty() && trace->empty()) throw CLI::RequiredError("trace");
   });
-  return [options, from, engine] {
+  return [options, from, engine, reference] {
     options->from_tips = *from == "tips";
     if (options->solve_bridged && !options->from_tips) {
       throw Error("--solve-bridged", "solves nothing from forces", "give --from tips, too");
     }
+    options->fem_reference = !reference->empty();
+    check_reference(*options, *engine);
     if (!engine->empty()) options->engine = engine_from_word(*engine);
     return replay(*options);
   };

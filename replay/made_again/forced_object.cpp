@@ -75,7 +75,7 @@ RigidPast::Forces ForcedObject::collect(const ObjectRecord& recorded) {
   return forces;
 }
 
-void ForcedObject::step(ObjectRecord& again) {
+void ForcedObject::step(ObjectRecord& again, std::span<const StylusRecord> /*styluses*/) {
   state_ = past_.replay(body_, free_forces_, state_);
   again.start = state_;
   again.spin = feels_spin_ ? body_.mid_step_spin(state_) : Vector3::Zero();

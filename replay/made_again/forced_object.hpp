@@ -4,28 +4,24 @@
 #include <vector>
 
 #include "common/motion/rigid_past.hpp"
+#include "replay/made_again/forced_body.hpp"
 #include "server/step/recorded_forces.hpp"
 #include "server/step/simulation_config.hpp"
 
 namespace irdm::replay {
 
-/// One object under the forces that a trace has of it, as they stand in B: they deform it and move
-/// it, each with the lever arm of the point that it acts on as the engine has it here. Nothing is
-/// solved. Pure; one thread.
-class ForcedObject {
+/// By its response: the forces as they stand in B, each with the lever arm of the point that it
+/// acts on as the engine has it here. Nothing is solved.
+class ForcedObject final : public ForcedBody {
  public:
   /// @param config of the scene, for its styluses  @param number of the object in it
   ForcedObject(const SimulationConfig& config, std::size_t number);
 
-  void reset();
-  /// Before the step: a force that belonged to an earlier one.
-  void enter_late(const LateForce& late);
-  /// From the next step on.
-  void set(const Vector3& gravity, const ObjectSettings& settings);
-  /// @param again the contacts and the floor's forces of the recorded step; the motion is written
-  void step(ObjectRecord& again);
-
-  const ResponseEngine& engine() const { return *engine_; }
+  void reset() override;
+  void enter_late(const LateForce& late) override;
+  void set(const Vector3& gravity, const ObjectSettings& settings) override;
+  void step(ObjectRecord& again, std::span<const StylusRecord> styluses) override;
+  void displacement(Points& u) const override { engine_->displacement(u); }
 
  private:
   Vector3 place(const ContactPatch& patch) const;

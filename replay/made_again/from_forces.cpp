@@ -1,14 +1,27 @@
 #include "replay/made_again/from_forces.hpp"
 
 #include "common/realtime/no_denormals.hpp"
+#include "replay/made_again/forced_object.hpp"
 
 namespace irdm::replay {
 
-FromForces::FromForces(const SimulationConfig& config)
-    : config_(config), settings_(initial_settings(config)) {
+namespace {
+
+std::vector<std::unique_ptr<ForcedBody>> by_response(const SimulationConfig& config) {
+  std::vector<std::unique_ptr<ForcedBody>> objects;
   for (std::size_t i = 0; i < config.objects.size(); ++i) {
-    objects_.push_back(std::make_unique<ForcedObject>(config, i));
+    objects.push_back(std::make_unique<ForcedObject>(config, i));
   }
+  return objects;
+}
+
+}  // namespace
+
+FromForces::FromForces(const SimulationConfig& config) : FromForces(config, by_response(config)) {}
+
+FromForces::FromForces(const SimulationConfig& config,
+                       std::vector<std::unique_ptr<ForcedBody>> objects)
+    : config_(config), objects_(std::move(objects)), settings_(initial_settings(config)) {
   check_settings(config_, settings_);
 }
 
@@ -28,7 +41,8 @@ void FromForces::step(const StepRecord& recorded, StepRecord& again) {
       objects_[i]->set(settings_.gravity, settings_.object[i]);
     }
   }
-  for (std::size_t i = 0; i < objects_.size(); ++i) objects_[i]->step(again.object[i]);
+  const std::span styluses(recorded.stylus.data(), static_cast<std::size_t>(recorded.stylus_count));
+  for (std::size_t i = 0; i < objects_.size(); ++i) objects_[i]->step(again.object[i], styluses);
   write_floor_and_styluses(again);
 }
 

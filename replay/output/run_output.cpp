@@ -34,6 +34,7 @@ void RunOutput::create(const TracedScene& scene, const RunOrigin& origin) {
   file_.write_attribute("/", "created_by", std::string("irdm ") + IRDM_VERSION);
   file_.write_attribute("/", "trace", origin.trace);
   file_.write_attribute("/", "from", origin.from);
+  file_.write_attribute("/", "by", origin.by);
   file_.write_attribute("/", "objects", static_cast<std::int64_t>(names_.size()));
   file_.write_attribute("/", "styluses",
                         static_cast<std::int64_t>(scene.config.styluses.size()));

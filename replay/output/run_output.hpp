@@ -15,6 +15,7 @@ namespace irdm::replay {
 struct RunOrigin {
   std::string trace;  ///< name of the trace file
   std::string from;   ///< "forces" or "tips"
+  std::string by = {};  ///< for people: engines, or a reference and its sub-step
 };
 
 /// A run file (HDF5, format "irdm-run", docs/files.md): poses, displacements and forces of each

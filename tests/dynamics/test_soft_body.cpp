@@ -2,6 +2,7 @@
 
 #include "precompute/dynamics/soft_body.hpp"
 #include "precompute/fem/assembly.hpp"
+#include "precompute/mesh/quadratic_mesh.hpp"
 #include "tests/precompute/meshes.hpp"
 
 using namespace irdm;
@@ -9,10 +10,10 @@ using namespace irdm::precompute;
 
 namespace {
 
-SoftBody body(Elasticity elasticity, double alpha, double beta) {
-  return {test::box_mesh(Vector3(0.12, 0.08, 0.10), {3, 2, 2}),
-          {2000.0, 0.3, 110.0, alpha, beta},
-          elasticity};
+SoftBody body(int order, Elasticity elasticity, double alpha, double beta) {
+  const TetMesh linear = test::box_mesh(Vector3(0.12, 0.08, 0.10), {3, 2, 2});
+  return {
+      order == 1 ? linear : quadratic_mesh(linear), {2000.0, 0.3, 110.0, alpha, beta}, elasticity};
 }
 
 // Turned by 2 rad, stretched at random and in motion.
@@ -41,15 +42,21 @@ Vector3 resultant(const Eigen::VectorXd& force) {
 }  // namespace
 
 TEST_CASE("linear forces are those of the assembled stiffness") {
-  const SoftBody b = body(Elasticity::kLinear, 0.0, 0.1);
+  const int order = GENERATE(1, 2);
+  const SoftBody b = body(order, Elasticity::kLinear, 0.0, 0.1);
   const BodyState state = some_state(b);
   const SparseMatrix k = b.stiffness(state.u);
+  const TetMesh linear = test::box_mesh(Vector3(0.12, 0.08, 0.10), {3, 2, 2});
+  const SparseMatrix assembled = assemble_stiffness(order == 1 ? linear : quadratic_mesh(linear),
+                                                    lame_parameters({2000.0, 0.3, 110.0, 0, 0}));
+  CHECK((k - assembled).norm() < 1e-12 * assembled.norm());
   const Eigen::VectorXd expected = -(k * (state.u + 0.1 * state.v));
   CHECK((b.internal_force(state) - expected).norm() < 1e-12 * expected.norm());
 }
 
 TEST_CASE("corotational elastic force is the gradient of the energy") {
-  const SoftBody b = body(Elasticity::kCorotational, 0.0, 0.0);
+  const int order = GENERATE(1, 2);
+  const SoftBody b = body(order, Elasticity::kCorotational, 0.0, 0.0);
   BodyState state = some_state(b);
   const Eigen::VectorXd force = b.internal_force(state);
   const double step = 1e-7;
@@ -64,9 +71,10 @@ TEST_CASE("corotational elastic force is the gradient of the energy") {
 }
 
 TEST_CASE("corotational forces have neither resultant nor torque, damping included") {
+  const int order = GENERATE(1, 2);
   for (const auto& [alpha, beta] :
        {std::pair(0.0, 0.0), std::pair(8.0, 0.0), std::pair(0.0, 0.1)}) {
-    const SoftBody b = body(Elasticity::kCorotational, alpha, beta);
+    const SoftBody b = body(order, Elasticity::kCorotational, alpha, beta);
     const BodyState state = some_state(b);
     const Eigen::VectorXd force = b.internal_force(state);
     CAPTURE(alpha, beta);
@@ -76,7 +84,8 @@ TEST_CASE("corotational forces have neither resultant nor torque, damping includ
 }
 
 TEST_CASE("a turned undeformed body feels no force and its rigid velocity no damping") {
-  const SoftBody b = body(Elasticity::kCorotational, 8.0, 0.1);
+  const int order = GENERATE(1, 2);
+  const SoftBody b = body(order, Elasticity::kCorotational, 8.0, 0.1);
   const Matrix3 Q = Eigen::AngleAxisd(2.0, Vector3(1, 2, -3).normalized()).matrix();
   const Points x = b.rest() * Q.transpose();
   const Points v =
@@ -86,8 +95,9 @@ TEST_CASE("a turned undeformed body feels no force and its rigid velocity no dam
 }
 
 TEST_CASE("damping takes power at any strain, and near rest it is beta K v") {
-  const SoftBody b = body(Elasticity::kCorotational, 0.0, 0.1);
-  const SoftBody undamped = body(Elasticity::kCorotational, 0.0, 0.0);
+  const int order = GENERATE(1, 2);
+  const SoftBody b = body(order, Elasticity::kCorotational, 0.0, 0.1);
+  const SoftBody undamped = body(order, Elasticity::kCorotational, 0.0, 0.0);
   BodyState state = some_state(b);
   CHECK(state.v.dot(b.internal_force(state) - undamped.internal_force(state)) < 0.0);
   state.u.setZero();
@@ -96,7 +106,8 @@ TEST_CASE("damping takes power at any strain, and near rest it is beta K v") {
 }
 
 TEST_CASE("warped stiffness is the Jacobian of the corotational force where there is no strain") {
-  const SoftBody b = body(Elasticity::kCorotational, 0.0, 0.0);
+  const int order = GENERATE(1, 2);
+  const SoftBody b = body(order, Elasticity::kCorotational, 0.0, 0.0);
   const Matrix3 Q = Eigen::AngleAxisd(2.0, Vector3(1, 2, -3).normalized()).matrix();
   const Eigen::VectorXd u = (b.rest() * Q.transpose() - b.rest()).reshaped<Eigen::RowMajor>();
   const Eigen::VectorXd d = some_state(b).v;

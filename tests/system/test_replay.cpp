@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "replay/compare/run_reader.hpp"
+#include "tests/support/eventually.hpp"
 #include "tests/system/stage.hpp"
 #include "tests/system/trace.hpp"
 
@@ -268,6 +269,33 @@ TEST_CASE("irdm-replay compare says how far engines are apart") {
   CHECK(read.out == "cube 105 105 105 True\n");
 }
 
+TEST_CASE("irdm-replay makes a run again by finite elements, and leaves nothing when interrupted") {
+  const Stage stage;
+  const std::filesystem::path trace = record(stage, true);
+  const std::string fem = stage.path("fem.h5").string();
+  const std::string modal = stage.path("modal.h5").string();
+  ChildProcess interrupted(
+      {IRDM_REPLAY, trace.string(), "--reference", "fem", "--substep", "1e-6", "--output", fem});
+  const std::string part = fem + ".part-" + std::to_string(interrupted.pid());
+  REQUIRE(eventually([&] { return std::filesystem::exists(part); }));
+  interrupted.signal(SIGINT);
+  CHECK(interrupted.wait() == 1);
+  CHECK_THAT(interrupted.err(), Contains("was interrupted after"));
+  CHECK_FALSE(std::filesystem::exists(part));
+  CHECK_FALSE(std::filesystem::exists(fem));
+  const FinishedProgram again =
+      run_replay(trace, {"--reference", "fem", "--substep", "0.001", "--rate", "50", "-o", fem});
+  REQUIRE(again.status == 0);
+  CHECK_THAT(again.out, Contains("from forces, finite elements in sub-steps of 0.001 s"));
+  REQUIRE(run_replay(trace, {"--rate", "50", "-o", modal}).status == 0);
+  const FinishedProgram compared = run_to_end({IRDM_REPLAY, "compare", modal, fem});
+  INFO(compared.out);
+  REQUIRE(compared.status == 0);
+  CHECK(number_after(compared.out, "node displacement  rms") > 1e-6);
+  CHECK(number_after(compared.out, "node displacement  rms") < 1e-3);
+  CHECK(number_after(compared.out, "orientation        rms") < 0.05);
+}
+
 TEST_CASE("irdm-replay refuses what it cannot make again, in one line") {
   const Stage stage;
   const auto refused = [&](const std::vector<std::string>& arguments, const std::string& message) {
@@ -288,6 +316,9 @@ TEST_CASE("irdm-replay refuses what it cannot make again, in one line") {
   record(stage, true);
   refused({"--engine", "compressed"}, "compressed");
   refused({"--rate", "1000"}, "above the rate of the steps");
+  refused({"--reference", "fem", "--from", "tips", "--solve-bridged"}, "leave out one of it");
+  refused({"--reference", "fem", "--engine", "modal"}, "means nothing to a reference");
+  refused({"--substep", "0.001"}, "give --reference fem");
   refused({"--csv", stage.path("scene.toml").string()}, "exists already");
   refused({"--vtk", stage.path(".").string()}, "is not empty");
   refused({"--model", stage.path("scene.toml").string()}, "scene.toml");

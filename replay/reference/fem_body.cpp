@@ -1,0 +1,248 @@
+#include "replay/reference/fem_body.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/error.hpp"
+#include "precompute/fem/mass_properties.hpp"
+
+namespace irdm::replay {
+namespace {
+
+using precompute::as_points;
+
+// Of the speed, for a step of the rule: far below what its length costs.
+constexpr double kTolerance = 1e-9;
+// Where that takes more than this, two steps of half the length take less.
+constexpr int kMostIterations = 25;
+constexpr int kMostHalvings = 6;
+
+std::vector<double> tip_radii(const SimulationConfig& config) {
+  std::vector<double> radii;
+  for (const SimulationStylus& stylus : config.styluses) radii.push_back(stylus.radius);
+  return radii;
+}
+
+// Both alpha and beta: every mode's decay rate is then so many times what it was.
+Material damped(Material material, double factor) {
+  material.rayleigh_alpha *= factor;
+  material.rayleigh_beta *= factor;
+  return material;
+}
+
+// dv/dt = a - rate v moves v by this times its value at the start.
+double decayed(double rate, double time) {
+  return rate > 0.0 ? -std::expm1(-rate * time) / rate : time;
+}
+
+}  // namespace
+
+// Rounding must not make one more.
+int fem_parts(double dt, double longest) {
+  return std::max(1, static_cast<int>(std::ceil(dt / longest - 1e-9)));
+}
+
+FemBody::Mesh::Mesh(const Model& model, double damping, double h)
+    : body({model.mesh.nodes, model.mesh.tets, {}}, damped(model.material, damping),
+           precompute::Elasticity::kCorotational),
+      rule(body, kTolerance, kMostIterations) {
+  rule.prepare(h);
+}
+
+FemBody::FemBody(const SimulationConfig& config, std::size_t number, double substep,
+                 bool follow_tips, std::vector<ToldLate> told_late)
+    : model_(config.objects[number].model),
+      rigid_(model_->body, model_->dt),
+      surface_(model_->mesh),
+      recorded_forces_(surface_, tip_radii(config)),
+      follow_tips_(follow_tips),
+      told_late_(std::move(told_late)),
+      parts_(fem_parts(model_->dt, substep)),
+      h_(model_->dt / parts_),
+      mesh_(std::make_unique<Mesh>(*model_, 1.0, h_)),
+      force_(Eigen::VectorXd::Zero(model_->mesh.nodes.size())) {
+  for (const SimulationStylus& stylus : config.styluses) {
+    masks_.emplace_back(surface_, stylus.radius);
+    spring_compliance_.push_back(
+        stylus.coupling_stiffness > 0.0 ? 1.0 / stylus.coupling_stiffness : 0.0);
+  }
+  const SimulationObject& object = config.objects[number];
+  start_.position = object.position;
+  start_.orientation = object.orientation.normalized();
+  start_.velocity = object.velocity;
+  start_.angular_momentum = rigid_.angular_momentum(start_.orientation, object.angular_velocity);
+  free_forces_ = {config.gravity, object.damping, object.tether, start_.position,
+                  start_.orientation};
+  reset();
+}
+
+void FemBody::reset() {
+  const Matrix3 Q = start_.orientation.toRotationMatrix();
+  const Vector3 w = rigid_.angular_velocity(start_);
+  const Points& X = mesh_->body.rest();
+  followed_.clear();
+  state_ = mesh_->body.at_rest();
+  for (Eigen::Index i = 0; i < X.rows(); ++i) {
+    const Vector3 arm = Q * X.row(i).transpose();
+    state_.u.segment<3>(3 * i) = start_.position + arm - X.row(i).transpose();
+    state_.v.segment<3>(3 * i) = start_.velocity + w.cross(arm);
+  }
+}
+
+void FemBody::set(const Vector3& gravity, const ObjectSettings& settings) {
+  free_forces_.gravity = gravity;
+  free_forces_.damping = settings.damping;
+  free_forces_.tether = settings.tether;
+  if (settings.material_damping == material_damping_) return;
+  material_damping_ = settings.material_damping;
+  mesh_ = std::make_unique<Mesh>(*model_, material_damping_, h_);
+  workspace_.solver.reset();
+}
+
+precompute::RigidMotion FemBody::rigid_motion() const {
+  return precompute::extract_rigid_motion(mesh_->body.rest(), as_points(state_.u),
+                                          mesh_->body.mass(), precompute::RotationWeights::kMass);
+}
+
+RigidState FemBody::rigid_state() const {
+  const precompute::RigidMotion motion = rigid_motion();
+  const Vector3 momentum = mesh_->body.momentum(state_.v);
+  RigidState state;
+  state.position = motion.translation;
+  state.orientation = Quaternion(motion.rotation);
+  state.velocity = momentum / mesh_->body.mass().sum();
+  state.angular_momentum =
+      mesh_->body.angular_momentum(state_) - motion.translation.cross(momentum);
+  return state;
+}
+
+// Of the mesh as it is deformed.
+Vector3 FemBody::angular_velocity(const RigidState& state) const {
+  const Points x = mesh_->body.rest() + as_points(state_.u);
+  return precompute::nodal_mass_properties(x, mesh_->body.mass())
+      .inertia.ldlt()
+      .solve(state.angular_momentum);
+}
+
+// In W.
+Vector3 FemBody::place(const ContactPatch& patch) const {
+  return mean(patch, [&](int node) -> Vector3 {
+    const int n = model_->mesh.surface_nodes[static_cast<std::size_t>(node)];
+    return mesh_->body.rest().row(n).transpose() + state_.u.segment<3>(3 * n);
+  });
+}
+
+// Of components in a body frame that stands so.
+void FemBody::add_forces(std::span<const NodalForce> forces, const Quaternion& Q) {
+  for (const NodalForce& nodal : forces) {
+    const int node = model_->mesh.surface_nodes[static_cast<std::size_t>(nodal.node)];
+    force_.segment<3>(3 * node) += Q * nodal.force;
+  }
+}
+
+void FemBody::hold(const ObjectRecord& recorded) {
+  const Quaternion& Q = recorded.start.orientation;
+  force_.setZero();
+  couples_.clear();
+  add_forces(recorded_forces_.of(recorded), Q);
+  for (const ContactRecord& contact : recorded.contact) {
+    if (contact.state == ContactState::kFree) continue;
+    couples_.push_back({contact.offset, Q * contact.force});
+  }
+  hold_late();
+}
+
+// What was told late and belongs to this step, unless it is found here anew.
+void FemBody::hold_late() {
+  for (const ToldLate& told : told_late_) {
+    if (told.step != steps_) continue;
+    const auto own = [&](const Followed& f) { return static_cast<int>(f.stylus) == told.late.stylus; };
+    if (std::any_of(followed_.begin(), followed_.end(), own)) continue;
+    add_forces(recorded_forces_.of(told.late), told.orientation);
+    ContactPatch patch;
+    masks_[static_cast<std::size_t>(told.late.stylus)].spread(told.late.point, patch);
+    const RigidState state = rigid_state();
+    const Vector3 arm = state.orientation.conjugate() * (place(patch) - state.position);
+    couples_.push_back({told.late.arm - arm, told.orientation * told.late.force});
+  }
+}
+
+bool FemBody::kicks() const {
+  return !couples_.empty() || !free_forces_.gravity.isZero(0.0) ||
+         !(free_forces_.damping == RigidDamping{}) || !(free_forces_.tether == Tether{});
+}
+
+void FemBody::kick(double time) {
+  if (!kicks()) return;
+  const RigidState state = rigid_state();
+  const FreeMotion free = free_motion(rigid_, free_forces_, state);
+  Vector3 torque = free.torque;
+  for (const OffsetForce& couple : couples_) {
+    torque += (state.orientation * couple.offset).cross(couple.force);
+  }
+  const Points x = mesh_->body.rest() + as_points(state_.u);
+  const Vector3 turning =
+      precompute::nodal_mass_properties(x, mesh_->body.mass()).inertia.ldlt().solve(torque);
+  const Vector3 more = decayed(free_forces_.damping.linear, time) * free.force / rigid_.mass();
+  const Vector3 more_spin = decayed(free_forces_.damping.angular, time) * turning;
+  for (Eigen::Index i = 0; i < x.rows(); ++i) {
+    const Vector3 arm = x.row(i).transpose() - state.position;
+    state_.v.segment<3>(3 * i) += more + more_spin.cross(arm);
+  }
+}
+
+void FemBody::advance(double h, int halvings) {
+  const precompute::BodyState before = state_;
+  const double largest_speed = workspace_.largest_speed;
+  try {
+    mesh_->rule.step(state_, force_, h, workspace_);
+  } catch (const Error&) {
+    if (halvings == 0) throw;
+    state_ = before;
+    workspace_.largest_speed = largest_speed;
+    mesh_->rule.prepare(0.5 * h);
+    advance(0.5 * h, halvings - 1);
+    advance(0.5 * h, halvings - 1);
+  }
+}
+
+// Under the forces of the record.
+void FemBody::move(const ObjectRecord& recorded) {
+  hold(recorded);
+  for (int part = 0; part < parts_; ++part) {
+    kick(0.5 * h_);
+    advance(h_, kMostHalvings);
+    kick(0.5 * h_);
+  }
+}
+
+void FemBody::step(ObjectRecord& again, std::span<const StylusRecord> styluses) {
+  const RigidState start = rigid_state();
+  choose_followed(again, styluses);
+  if (followed_.empty()) {
+    move(again);
+  } else {
+    follow(again);
+  }
+  const Quaternion turn = start.orientation.conjugate() * again.start.orientation;
+  for (ContactRecord& contact : again.contact) contact.force = turn * contact.force;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(again.floor_count); ++i) {
+    again.floor[i].force = turn.cast<float>() * again.floor[i].force;
+  }
+  ++steps_;
+  const RigidState end = rigid_state();
+  again.start = start;
+  again.spin.setZero();
+  again.position = end.position;
+  again.orientation = end.orientation;
+  again.velocity = end.velocity;
+  again.angular_velocity = angular_velocity(end);
+}
+
+void FemBody::displacement(Points& u) const {
+  const Points all =
+      precompute::elastic_part(mesh_->body.rest(), as_points(state_.u), rigid_motion());
+  u = all(model_->mesh.surface_nodes, Eigen::all);
+}
+
+}  // namespace irdm::replay

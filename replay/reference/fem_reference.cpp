@@ -1,0 +1,64 @@
+#include "replay/reference/fem_reference.hpp"
+
+#include "common/error.hpp"
+#include "precompute/fem/assembly.hpp"
+#include "replay/made_again/from_forces.hpp"
+#include "replay/reference/fem_body.hpp"
+
+namespace irdm::replay {
+namespace {
+
+void check_model(const Model& model, const std::string& name) {
+  if (model.body.support == Support::kFixed) {
+    throw Error(name, "is of a fixed object, and the reference moves floating ones only",
+                "give a floating object, or leave --reference out");
+  }
+  const Eigen::VectorXd mass =
+      precompute::lumped_mass({model.mesh.nodes, model.mesh.tets, {}}, model.material.density);
+  if ((mass - model.mesh.node_mass).cwiseAbs().maxCoeff() <= 1e-9 * mass.maxCoeff()) return;
+  throw Error(name, "has masses that its tetrahedra and density do not give",
+              "precompute it again");
+}
+
+}  // namespace
+
+double fem_substep(double dt, double longest) {
+  return dt / fem_parts(dt, longest);
+}
+
+std::unique_ptr<MadeAgain> fem_reference(const TracedScene& scene, double substep,
+                                         bool follow_tips,
+                                         const std::vector<ToldLate>& told_late) {
+  std::vector<std::unique_ptr<ForcedBody>> bodies;
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    check_model(*scene.config.objects[i].model, scene.objects[i].model.string());
+    std::vector<ToldLate> own;
+    for (const ToldLate& told : told_late) {
+      if (told.late.object == static_cast<int>(i)) own.push_back(told);
+    }
+    bodies.push_back(
+        std::make_unique<FemBody>(scene.config, i, substep, follow_tips, std::move(own)));
+  }
+  return std::make_unique<FromForces>(scene.config, std::move(bodies));
+}
+
+std::vector<ToldLate> told_late(const Recording& recording) {
+  std::vector<ToldLate> told;
+  std::size_t begin = 0;  // of what has happened since the last reset
+  const auto record = std::make_unique<StepRecord>();
+  const auto own = std::make_unique<StepRecord>();
+  for (std::size_t k = 0; k < recording.steps(); ++k) {
+    recording.step(k, *record);
+    if (record->reset) begin = k;
+    for (const LateForce& late : record->late.view()) {
+      const auto ago = static_cast<std::size_t>(late.age) + 1;
+      if (k < begin + ago) continue;
+      recording.step(k - ago, *own);
+      const ObjectRecord& object = own->object[static_cast<std::size_t>(late.object)];
+      told.push_back({k - ago, late, object.start.orientation});
+    }
+  }
+  return told;
+}
+
+}  // namespace irdm::replay

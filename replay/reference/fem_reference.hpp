@@ -1,0 +1,32 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "replay/made_again/made_again.hpp"
+#include "replay/reference/fem_body.hpp"
+#include "replay/traced_scene.hpp"
+#include "server/record/recording.hpp"
+
+namespace irdm::replay {
+
+/// Longest sub-step of a reference, unless it is given [s]. See docs/reference.md.
+inline constexpr double kReferenceSubstep = 2.5e-4;
+
+/// Sub-steps are equal: the length of one, where `longest` is asked for and the server's is dt [s].
+double fem_substep(double dt, double longest);
+
+/// The same interaction by finite elements (FemBody): what the impulse
+/// responses are measured against. Throws Error, naming the model that it cannot be done for.
+/// @param substep [s], > 0
+/// @param follow_tips held points follow their tips (FemBody)
+/// @param told_late of the trace, for all objects
+std::unique_ptr<MadeAgain> fem_reference(const TracedScene& scene, double substep,
+                                         bool follow_tips = false,
+                                         const std::vector<ToldLate>& told_late = {});
+
+/// What bridges told too late, step by step of the trace. What belongs to a time before it, or
+/// before a reset, is left out, as in the server.
+std::vector<ToldLate> told_late(const Recording& recording);
+
+}  // namespace irdm::replay

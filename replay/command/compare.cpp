@@ -5,6 +5,7 @@
 
 #include "common/error.hpp"
 #include "replay/command/command.hpp"
+#include "replay/compare/comparison_json.hpp"
 #include "replay/compare/comparison_text.hpp"
 #include "replay/output/part_file.hpp"
 
@@ -16,7 +17,7 @@ struct CompareOptions {
   std::optional<std::filesystem::path> json;
 };
 
-void write_json(const std::filesystem::path& path, const std::string& text) {
+void write_text(const std::filesystem::path& path, const std::string& text) {
   PartFile file(path);
   std::ofstream stream(file.part(), std::ios::binary);
   stream << text;
@@ -26,9 +27,12 @@ void write_json(const std::filesystem::path& path, const std::string& text) {
 }
 
 int compare(const CompareOptions& options) {
-  const Comparison comparison = compare_runs(RunReader(options.a), RunReader(options.b));
-  if (options.json) write_json(*options.json, comparison_json(comparison));
-  std::cout << comparison_table(comparison) << std::flush;
+  const RunReader a(options.a);
+  const RunReader b(options.b);
+  const Comparison comparison = compare_runs(a, b);
+  const Measures measures = measure_runs(a, b, comparison);
+  if (options.json) write_text(*options.json, comparison_json(comparison, measures));
+  std::cout << comparison_table(comparison, measures) << std::flush;
   return 0;
 }
 

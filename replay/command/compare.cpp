@@ -8,13 +8,14 @@
 #include "replay/compare/comparison_json.hpp"
 #include "replay/compare/comparison_text.hpp"
 #include "replay/output/part_file.hpp"
+#include "replay/report/comparison_html.hpp"
 
 namespace irdm::replay {
 namespace {
 
 struct CompareOptions {
   std::filesystem::path a, b;
-  std::optional<std::filesystem::path> json;
+  std::optional<std::filesystem::path> json, html;
 };
 
 void write_text(const std::filesystem::path& path, const std::string& text) {
@@ -32,6 +33,7 @@ int compare(const CompareOptions& options) {
   const Comparison comparison = compare_runs(a, b);
   const Measures measures = measure_runs(a, b, comparison);
   if (options.json) write_text(*options.json, comparison_json(comparison, measures));
+  if (options.html) write_text(*options.html, comparison_html(comparison, measures));
   std::cout << comparison_table(comparison, measures) << std::flush;
   return 0;
 }
@@ -46,6 +48,8 @@ Command add_compare_command(CLI::App& app) {
   command->add_option("b", options->b, "Another one, of the same scene")->required();
   command->add_option("--json", options->json,
                       "File for all of it, frame by frame; must not exist");
+  command->add_option("--html", options->html,
+                      "File for a report with figures, to open in a browser; must not exist");
   return [options] { return compare(*options); };
 }
 

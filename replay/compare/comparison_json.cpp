@@ -16,6 +16,10 @@ JsonObject json(const Apart& apart, const char* unit) {
       .add("max_over_time", apart.largest);
 }
 
+JsonObject size_json(const SignalPair& pair, const char* unit) {
+  return JsonObject().add("unit", unit).add("a", pair.size_a).add("b", pair.size_b);
+}
+
 JsonObject spectrum_json(const Spectrum& a, const Spectrum& b, const char* unit) {
   return JsonObject()
       .add("unit", unit)
@@ -73,6 +77,7 @@ JsonObject object_json(const ObjectComparison& object, const SignalPair& node,
   if (!object.same_nodes) return all.add_null("node");
   return all.add("node", JsonObject()
                              .add("number", static_cast<std::size_t>(object.node))
+                             .add("size_over_time", size_json(node, "m"))
                              .add("spectrum", spectrum_json(node.spectrum_a, node.spectrum_b, "m"))
                              .add("ringing", ringing_json(node, times)));
 }
@@ -142,6 +147,7 @@ JsonObject stylus_json(const Apart& force, const StylusMeasures& stylus, const M
                        const std::vector<double>& times) {
   return JsonObject()
       .add("force", json(force, "N"))
+      .add("size_over_time", size_json(stylus.force, "N"))
       .add("spectrum", spectrum_json(stylus.force.spectrum_a, stylus.force.spectrum_b, "N"))
       .add("ringing", ringing_json(stylus.force, times))
       .add("perception", JsonObject()

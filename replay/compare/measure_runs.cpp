@@ -55,15 +55,23 @@ std::vector<bool> free_frames(const Side& a, const Side& b) {
   return free;
 }
 
-SignalPair pair_of(const Points& a, const Points& b, double dt, const Stretch& stretch) {
+std::vector<double> sizes_of(const Points& signal) {
+  const Eigen::VectorXd sizes = signal.rowwise().norm();
+  return {sizes.begin(), sizes.end()};
+}
+
+SignalPair pair_of(const Points& a, const Points& b, const Measures& all, const Stretch& stretch) {
   SignalPair pair;
-  pair.spectrum_a = amplitude_spectrum(a, dt, kSpectrumSegment, Hold::kMean);
-  pair.spectrum_b = amplitude_spectrum(b, dt, kSpectrumSegment, Hold::kMean);
+  pair.size_a = sizes_of(a);
+  pair.size_b = sizes_of(b);
+  if (!all.evenly_spaced) return pair;
+  pair.spectrum_a = amplitude_spectrum(a, all.interval, kSpectrumSegment, Hold::kMean);
+  pair.spectrum_b = amplitude_spectrum(b, all.interval, kSpectrumSegment, Hold::kMean);
   pair.stretch = stretch;
   const auto first = static_cast<Eigen::Index>(stretch.first);
   const auto count = static_cast<Eigen::Index>(stretch.count);
-  pair.ringing_a = find_ringing(a.middleRows(first, count), dt);
-  pair.ringing_b = find_ringing(b.middleRows(first, count), dt);
+  pair.ringing_a = find_ringing(a.middleRows(first, count), all.interval);
+  pair.ringing_b = find_ringing(b.middleRows(first, count), all.interval);
   return pair;
 }
 
@@ -104,8 +112,8 @@ StylusMeasures measure_stylus(const Points& a, const Points& b, const std::vecto
   StylusMeasures found;
   found.difference = force_difference(a, b, all.interval);
   found.onsets = onset_delays(onsets_of(a, times), onsets_of(b, times));
+  found.force = pair_of(a, b, all, longest_stretch(frames_in_contact(a, b)));
   if (!all.evenly_spaced) return found;
-  found.force = pair_of(a, b, all.interval, longest_stretch(frames_in_contact(a, b)));
   found.vibration_a = vibration_of(a, all.interval, all.hand);
   found.vibration_b = vibration_of(b, all.interval, all.hand);
   found.vibration_difference = vibration_of(b - a, all.interval, all.hand);
@@ -150,9 +158,8 @@ Measures measure_runs(const RunReader& a, const RunReader& b, const Comparison& 
   for (std::size_t i = 0; i < comparison.objects.size(); ++i) {
     const ObjectComparison& object = comparison.objects[i];
     SignalPair& pair = found.nodes.emplace_back();
-    if (!object.same_nodes || !found.evenly_spaced) continue;
-    pair = pair_of(node_of(side_a, i, object.node), node_of(side_b, i, object.node), found.interval,
-                   free);
+    if (!object.same_nodes) continue;
+    pair = pair_of(node_of(side_a, i, object.node), node_of(side_b, i, object.node), found, free);
   }
   for (std::size_t s = 0; s < side_a.forces.size(); ++s) {
     found.styluses.push_back(measure_stylus(side_a.forces[s], side_b.forces[s], times, found));

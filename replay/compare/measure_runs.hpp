@@ -14,9 +14,10 @@
 
 namespace irdm::replay {
 
-/// A signal of both runs: its spectrum over the whole time that they have in common, and what rings
-/// in one stretch of it.
+/// A signal of both runs: its size in each frame, its spectrum over the whole time that they have
+/// in common, and what rings in one stretch of it.
 struct SignalPair {
+  std::vector<double> size_a, size_b;
   Spectrum spectrum_a, spectrum_b;
   Stretch stretch;  ///< of common frames
   std::vector<Ringing> ringing_a, ringing_b;
@@ -39,7 +40,7 @@ struct Measures {
   double interval = 0.0;       ///< between frames, on average [s]
   perception::Hand hand;
   /// Of each object the node that is displaced most in A: displacement in B [m]. Rings where no
-  /// stylus exerts a force in either run, longest. Empty spectra where the meshes differ.
+  /// stylus exerts a force in either run, longest. Empty where the meshes differ.
   std::vector<SignalPair> nodes;
   std::vector<StylusMeasures> styluses;
 };

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "common/error.hpp"
+#include "common/program/program.hpp"
 #include "replay/command/command.hpp"
 #include "replay/compare/comparison_json.hpp"
 #include "replay/compare/comparison_text.hpp"
@@ -16,6 +17,7 @@ namespace {
 struct CompareOptions {
   std::filesystem::path a, b;
   std::optional<std::filesystem::path> json, html;
+  std::vector<double> hand;  // mass, damping, stiffness; or empty
 };
 
 void write_text(const std::filesystem::path& path, const std::string& text) {
@@ -27,11 +29,16 @@ void write_text(const std::filesystem::path& path, const std::string& text) {
   file.finish();
 }
 
+perception::Hand hand_of(const CompareOptions& options) {
+  if (options.hand.empty()) return {};
+  return {options.hand[0], options.hand[1], options.hand[2]};
+}
+
 int compare(const CompareOptions& options) {
   const RunReader a(options.a);
   const RunReader b(options.b);
   const Comparison comparison = compare_runs(a, b);
-  const Measures measures = measure_runs(a, b, comparison);
+  const Measures measures = measure_runs(a, b, comparison, hand_of(options));
   if (options.json) write_text(*options.json, comparison_json(comparison, measures));
   if (options.html) write_text(*options.html, comparison_html(comparison, measures));
   std::cout << comparison_table(comparison, measures) << std::flush;
@@ -50,6 +57,12 @@ Command add_compare_command(CLI::App& app) {
                       "File for all of it, frame by frame; must not exist");
   command->add_option("--html", options->html,
                       "File for a report with figures, to open in a browser; must not exist");
+  command
+      ->add_option("--hand", options->hand,
+                   "Mass with the device's (kg), damping (N s/m) and stiffness (N/m) of the hand "
+                   "that feels vibrations (default: 0.12 2 300)")
+      ->expected(3)
+      ->check(positive_number());
   return [options] { return compare(*options); };
 }
 

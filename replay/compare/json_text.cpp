@@ -14,7 +14,7 @@ std::string number(double value) {
   return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   std::string all = "\"";
   for (const char letter : text) {
     const auto code = static_cast<unsigned char>(letter);
@@ -33,7 +33,7 @@ std::string quoted(std::string_view text) {
 }  // namespace
 
 JsonObject& JsonObject::put(std::string_view key, const std::string& value) {
-  text_ += (text_.empty() ? "" : ", ") + quoted(key) + ": " + value;
+  text_ += (text_.empty() ? "" : ", ") + in_quotes(key) + ": " + value;
   return *this;
 }
 
@@ -50,7 +50,7 @@ JsonObject& JsonObject::add(std::string_view key, bool value) {
 }
 
 JsonObject& JsonObject::add(std::string_view key, const std::string& value) {
-  return put(key, quoted(value));
+  return put(key, in_quotes(value));
 }
 
 JsonObject& JsonObject::add(std::string_view key, const std::vector<double>& values) {

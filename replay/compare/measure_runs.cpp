@@ -139,7 +139,8 @@ std::optional<bool> StylusMeasures::noticeable_compliance() const {
   return compliance_share() > perception::kComplianceShare;
 }
 
-Measures measure_runs(const RunReader& a, const RunReader& b, const Comparison& comparison) {
+Measures measure_runs(const RunReader& a, const RunReader& b, const Comparison& comparison,
+                      const perception::Hand& hand) {
   std::vector<std::size_t> frames_a;
   std::vector<std::size_t> frames_b;
   for (const auto& pair : comparison.frames) {
@@ -150,6 +151,7 @@ Measures measure_runs(const RunReader& a, const RunReader& b, const Comparison& 
   const Side side_b = side_of(b, std::move(frames_b));
   const std::vector<double>& times = comparison.times;
   Measures found;
+  found.hand = hand;
   found.evenly_spaced = evenly_spaced(times);
   if (times.size() > 1) {
     found.interval = (times.back() - times.front()) / static_cast<double>(times.size() - 1);

@@ -45,6 +45,8 @@ struct Measures {
   std::vector<StylusMeasures> styluses;
 };
 
-Measures measure_runs(const RunReader& a, const RunReader& b, const Comparison& comparison);
+/// @param hand that holds the styluses
+Measures measure_runs(const RunReader& a, const RunReader& b, const Comparison& comparison,
+                      const perception::Hand& hand = {});
 
 }  // namespace irdm::replay

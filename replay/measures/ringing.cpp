@@ -11,8 +11,8 @@
 namespace irdm::replay {
 namespace {
 
-constexpr Eigen::Index kFewest = 24;
-constexpr Eigen::Index kMost = 512;
+constexpr Eigen::Index kFewestRows = 24;
+constexpr Eigen::Index kMostRows = 512;
 constexpr Eigen::Index kMostPoles = 32;
 constexpr std::size_t kMostKept = 8;
 constexpr double kSmallestSingular = 1e-4;  // of the largest
@@ -65,8 +65,8 @@ const Ringing& nearest(const std::vector<Ringing>& list, double frequency) {
 }  // namespace
 
 std::vector<Ringing> find_ringing(const Points& signal, double dt) {
-  if (signal.rows() < kFewest || !signal.allFinite()) return {};
-  const Points looked_at = signal.topRows(std::min(signal.rows(), kMost));
+  if (signal.rows() < kFewestRows || !signal.allFinite()) return {};
+  const Points looked_at = signal.topRows(std::min(signal.rows(), kMostRows));
   const Eigen::VectorXcd z = poles(looked_at);
   if (z.size() == 0) return {};
   const Eigen::VectorXd sizes = sizes_of(z, looked_at);

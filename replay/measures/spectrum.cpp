@@ -8,7 +8,7 @@
 namespace irdm::replay {
 namespace {
 
-constexpr Eigen::Index kFewest = 8;
+constexpr Eigen::Index kFewestSamples = 8;
 
 Eigen::VectorXd hann(Eigen::Index n) {
   const double step = 2.0 * std::numbers::pi / static_cast<double>(n);
@@ -43,9 +43,9 @@ std::vector<Eigen::Index> segment_starts(Eigen::Index rows, Eigen::Index length)
 }  // namespace
 
 Spectrum amplitude_spectrum(const Points& signal, double dt, double segment, Hold hold) {
-  if (signal.rows() < kFewest) return {};
+  if (signal.rows() < kFewestSamples) return {};
   const auto wanted = static_cast<Eigen::Index>(std::lround(segment / dt));
-  const Eigen::Index n = std::clamp(wanted, kFewest, signal.rows());
+  const Eigen::Index n = std::clamp(wanted, kFewestSamples, signal.rows());
   const Eigen::VectorXd window = hann(n);
   const auto starts = segment_starts(signal.rows(), n);
   Eigen::FFT<double> fft;

@@ -8,7 +8,7 @@
 namespace irdm::replay {
 namespace {
 
-constexpr double kRounding = 1e-9;
+constexpr double kTickRounding = 1e-9;
 
 // 1, 2 or 5 times a power of ten, so that there are about five to eight of them in a range.
 double round_step(double range) {
@@ -20,8 +20,8 @@ double round_step(double range) {
 std::vector<double> linear_ticks(double low, double high) {
   const double step = round_step(high - low);
   std::vector<double> ticks;
-  const double first = std::ceil(low / step - kRounding);
-  const double last = std::floor(high / step + kRounding);
+  const double first = std::ceil(low / step - kTickRounding);
+  const double last = std::floor(high / step + kTickRounding);
   for (double k = first; k <= last; k += 1.0) ticks.push_back(k * step + 0.0);  // no -0
   return ticks;
 }
@@ -32,7 +32,7 @@ std::vector<double> logarithmic_ticks(double low, double high) {
   for (double power = std::floor(std::log10(low)); power <= std::log10(high); power += 1.0) {
     for (const double factor : {1.0, 2.0, 5.0}) {
       const double tick = factor * std::pow(10.0, power);
-      const bool within = tick >= low * (1 - kRounding) && tick <= high * (1 + kRounding);
+      const bool within = tick >= low * (1 - kTickRounding) && tick <= high * (1 + kTickRounding);
       if (within && (few || factor == 1.0)) ticks.push_back(tick);
     }
   }

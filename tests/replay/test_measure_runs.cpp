@@ -124,6 +124,13 @@ TEST_CASE("a tap is not noticeably different from itself") {
   CHECK(stylus.vibration_difference.noticeable() == std::optional(false));
   CHECK(stylus.onsets.noticeable(taps.measures.interval) == std::optional(false));
   CHECK(stylus.vibration_a.level > 1.0);  // the tap itself is felt
+  // Above the hand's own resonance twice the mass moves half as far.
+  const RunReader run(taps.folder.path() / "a.h5");
+  const Measures heavy = measure_runs(run, run, taps.comparison, {.mass = 0.24});
+  const auto last = [](const Measures& all) {
+    return all.styluses[0].vibration_a.spectrum.amplitude.back();
+  };
+  CHECK(last(heavy) == Approx(0.5 * last(taps.measures)).epsilon(1e-3));
   const std::string table = comparison_table(taps.comparison, taps.measures);
   CHECK_THAT(table, Contains("12 Hz, damping 5.298 % (B 12 Hz, 5.298 %)") &&
                         Contains("ms), 0 in one alone: not noticeable"));

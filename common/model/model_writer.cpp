@@ -9,6 +9,7 @@
 #include "common/error.hpp"
 #include "common/model/content_checksum.hpp"
 #include "common/model/half_column.hpp"
+#include "common/model/model_units.hpp"
 #include "common/model/residual_file.hpp"
 #include "common/response/spin_products.hpp"
 
@@ -199,6 +200,7 @@ void ModelFileWriter::write_dense_centrifugal(const double* values) {
 
 void ModelFileWriter::commit() {
   if (!scales_.empty()) finish_half();
+  write_model_units(*file_);
   store_content_checksum(*file_);
   file_->close();
   wait_for_disk(temporary_);

@@ -2,15 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "common/error.hpp"
 #include "replay/made_again/deviation.hpp"
 
 namespace irdm::replay {
 namespace {
-
-using FramePairs = std::vector<std::pair<std::size_t, std::size_t>>;
 
 FramePairs common_frames(const std::vector<double>& a, const std::vector<double>& b) {
   constexpr double kSame = 1e-9;
@@ -27,8 +24,7 @@ FramePairs common_frames(const std::vector<double>& a, const std::vector<double>
 
 // The same rest shape within a millionth of its size.
 bool same_nodes(const Points& a, const Points& b) {
-  return a.rows() == b.rows() &&
-         (a - b).cwiseAbs().maxCoeff() <= 1e-6 * a.cwiseAbs().maxCoeff();
+  return a.rows() == b.rows() && (a - b).cwiseAbs().maxCoeff() <= 1e-6 * a.cwiseAbs().maxCoeff();
 }
 
 void add(Apart& apart, double difference) {
@@ -64,8 +60,11 @@ ObjectComparison compare_object(const RunReader& a, const RunReader& b, std::siz
     b.displacement(i, frame_b, u_b);
     add(found.displacement, Points(u_a - u_b));
     add(found.place, Points(places_of(pose_a, a.rest(i), u_a) - places_of(pose_b, b.rest(i), u_b)));
-    found.displacement.reference =
-        std::max(found.displacement.reference, u_a.rowwise().norm().maxCoeff());
+    Eigen::Index most = 0;
+    const double largest = u_a.rowwise().norm().maxCoeff(&most);
+    if (largest <= found.displacement.reference) continue;
+    found.displacement.reference = largest;
+    found.node = most;
   }
   return found;
 }
@@ -108,8 +107,11 @@ Comparison compare_runs(const RunReader& a, const RunReader& b) {
     throw Error(b.name(), "has no frame at a time of one of " + a.name(),
                 "make both with the same --rate");
   }
-  Comparison found{a.name(), b.name(), {}, a.times().size() + b.times().size() - 2 * frames.size(),
-                   {},       {}};
+  Comparison found;
+  found.a = a.name();
+  found.b = b.name();
+  found.frames = frames;
+  found.alone = a.times().size() + b.times().size() - 2 * frames.size();
   for (const auto& pair : frames) found.times.push_back(a.times()[pair.first]);
   for (std::size_t i = 0; i < a.objects().size(); ++i) {
     found.objects.push_back(compare_object(a, b, i, frames));

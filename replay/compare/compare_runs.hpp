@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "replay/compare/run_reader.hpp"
@@ -16,7 +17,8 @@ struct Apart {
   /// Of all frames.
   double rms_over_time() const;
   double maximum() const;
-  std::size_t worst_frame() const;  ///< where maximum() is
+  double last() const { return rms.empty() ? 0.0 : rms.back(); }  ///< of the last frame: the drift
+  std::size_t worst_frame() const;                                ///< where maximum() is
 };
 
 struct ObjectComparison {
@@ -26,10 +28,15 @@ struct ObjectComparison {
   Apart place;              ///< of the nodes [m], W
   Apart centre_of_mass;     ///< [m], W
   Apart orientation;        ///< angle between [rad]
+  Eigen::Index node = 0;    ///< surface node that is displaced most in A, at any time
 };
+
+/// Frames of A and B that belong together.
+using FramePairs = std::vector<std::pair<std::size_t, std::size_t>>;
 
 struct Comparison {
   std::string a, b;
+  FramePairs frames;
   std::vector<double> times;  ///< of the common frames [s]
   std::size_t alone = 0;      ///< frames of A and B that the other has not
   std::vector<ObjectComparison> objects;

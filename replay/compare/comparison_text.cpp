@@ -1,7 +1,5 @@
 #include "replay/compare/comparison_text.hpp"
 
-#include <charconv>
-#include <cmath>
 #include <cstdio>
 
 namespace irdm::replay {
@@ -22,59 +20,76 @@ std::string line(const std::string& what, const Apart& apart, const char* unit,
   return all + "\n";
 }
 
-// What is not finite is null: JSON knows no other word for it.
-std::string number(double value) {
-  if (!std::isfinite(value)) return "null";
+// Four digits.
+std::string digits(double value) {
   char text[32];
-  return {text, std::to_chars(text, text + sizeof text, value).ptr};
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
 }
 
-std::string quoted(const std::string& text) {
-  std::string all = "\"";
-  for (const char letter : text) {
-    const auto code = static_cast<unsigned char>(letter);
-    if (letter == '"' || letter == '\\') all += '\\';
-    if (code < 0x20) {
-      char escape[8];
-      std::snprintf(escape, sizeof escape, "\\u%04x", code);
-      all += escape;
-    } else {
-      all += letter;
-    }
+std::string percent(double share) {
+  return digits(100.0 * share) + " %";
+}
+
+std::string verdict(const std::optional<bool>& noticeable, const std::string& why_not) {
+  if (!noticeable) return "not judged: " + why_not;
+  return *noticeable ? "noticeable" : "not noticeable";
+}
+
+std::string ringing_line(const SignalPair& pair) {
+  std::string text;
+  for (const auto& [a, b] : pairs_of(pair.ringing_a, pair.ringing_b)) {
+    text += (text.empty() ? "" : "; ") + digits(a.frequency) + " Hz, damping " +
+            percent(a.damping_ratio) + " (B " + digits(b.frequency) + " Hz, " +
+            percent(b.damping_ratio) + ")";
   }
-  return all + "\"";
+  return text.empty() ? "" : "  both ring with     " + text + "\n";
 }
 
-std::string list(const std::vector<double>& values) {
-  std::string all;
-  for (const double value : values) all += (all.empty() ? "" : ", ") + number(value);
-  return "[" + all + "]";
+std::string force_finding(const ForceDifference& force, const std::vector<double>& times) {
+  return "force: apart by up to " + percent(force.largest) + ", at " +
+         digits(times[force.worst_frame]) + " s (limit " + percent(perception::kForceShare) +
+         "), above that in " + percent(force.noticeable_time) +
+         " of the contact: " + verdict(force.noticeable(), "");
 }
 
-std::string json(const Apart& apart, const char* unit) {
-  return std::string("{\"unit\": \"") + unit + "\", \"rms\": " + number(apart.rms_over_time()) +
-         ", \"max\": " + number(apart.maximum()) + ", \"reference\": " + number(apart.reference) +
-         ",\n     \"rms_over_time\": " + list(apart.rms) +
-         ",\n     \"max_over_time\": " + list(apart.largest) + "}";
+std::string compliance_finding(const StylusMeasures& stylus) {
+  return "compliance: " + digits(1e3 * stylus.compliance_a.value()) + " and " +
+         digits(1e3 * stylus.compliance_b.value()) + " mm/N, apart by " +
+         percent(stylus.compliance_share()) + " (limit " + percent(perception::kComplianceShare) +
+         "): " + verdict(stylus.noticeable_compliance(), "no contact in both");
 }
 
-std::string json(const ObjectComparison& object) {
-  std::string text = "  {\"name\": " + quoted(object.name);
-  if (object.same_nodes) {
-    text += ",\n   \"displacement\": " + json(object.displacement, "m") +
-            ",\n   \"place\": " + json(object.place, "m");
-  }
-  return text + ",\n   \"centre_of_mass\": " + json(object.centre_of_mass, "m") +
-         ",\n   \"orientation\": " + json(object.orientation, "rad") + "}";
+std::string vibration_finding(const Vibration& difference, bool evenly_spaced) {
+  return "vibration: the difference is " + digits(difference.level) +
+         " times the least that is felt, at " + digits(difference.frequency) + " Hz: " +
+         verdict(difference.noticeable(),
+                 evenly_spaced ? "too few frames a second" : "the frames are not evenly spaced");
+}
+
+std::string onset_finding(const OnsetDelays& onsets, double interval) {
+  return "onset: " + std::to_string(onsets.onsets.size()) + " in both, apart by up to " +
+         digits(1e3 * onsets.largest) + " ms (limit " + digits(1e3 * perception::kOnsetDelay) +
+         " ms), " + std::to_string(onsets.alone) + " in one alone: " +
+         verdict(onsets.noticeable(interval),
+                 onsets.onsets.empty() ? "none in both" : "the frames are too far apart");
 }
 
 }  // namespace
 
-std::string comparison_table(const Comparison& comparison) {
+std::vector<std::string> perceptual_findings(const StylusMeasures& stylus, const Measures& measures,
+                                             const std::vector<double>& times) {
+  return {force_finding(stylus.difference, times), compliance_finding(stylus),
+          vibration_finding(stylus.vibration_difference, measures.evenly_spaced),
+          onset_finding(stylus.onsets, measures.interval)};
+}
+
+std::string comparison_table(const Comparison& comparison, const Measures& measures) {
   std::string text = comparison.a + " and " + comparison.b + ": " +
                      std::to_string(comparison.times.size()) + " frames in common, " +
                      std::to_string(comparison.alone) + " of one alone\n";
-  for (const ObjectComparison& object : comparison.objects) {
+  for (std::size_t i = 0; i < comparison.objects.size(); ++i) {
+    const ObjectComparison& object = comparison.objects[i];
     text += "object " + object.name + "\n";
     if (object.same_nodes) {
       text += line("node displacement", object.displacement, "m", comparison.times) +
@@ -83,29 +98,19 @@ std::string comparison_table(const Comparison& comparison) {
       text += "  nodes              not compared: the meshes differ\n";
     }
     text += line("centre of mass", object.centre_of_mass, "m", comparison.times) +
-            line("orientation", object.orientation, "rad", comparison.times);
+            line("orientation", object.orientation, "rad", comparison.times) +
+            ringing_line(measures.nodes[i]);
   }
   for (std::size_t s = 0; s < comparison.forces.size(); ++s) {
     text += "stylus " + std::to_string(s) + "\n" +
-            line("force", comparison.forces[s], "N", comparison.times);
+            line("force", comparison.forces[s], "N", comparison.times) +
+            ringing_line(measures.styluses[s].force);
+    for (const std::string& each :
+         perceptual_findings(measures.styluses[s], measures, comparison.times)) {
+      text += "  " + each + "\n";
+    }
   }
   return text;
-}
-
-std::string comparison_json(const Comparison& comparison) {
-  std::string text = "{\"a\": " + quoted(comparison.a) + ", \"b\": " + quoted(comparison.b) +
-                     ",\n \"frames\": " + std::to_string(comparison.times.size()) +
-                     ", \"frames_alone\": " + std::to_string(comparison.alone) +
-                     ",\n \"time\": " + list(comparison.times) + ",\n \"objects\": [\n";
-  for (std::size_t i = 0; i < comparison.objects.size(); ++i) {
-    text += (i > 0 ? ",\n" : "") + json(comparison.objects[i]);
-  }
-  text += "],\n \"styluses\": [\n";
-  for (std::size_t s = 0; s < comparison.forces.size(); ++s) {
-    text += (s > 0 ? ",\n" : "") + std::string("  {\"force\": ") +
-            json(comparison.forces[s], "N") + "}";
-  }
-  return text + "]}\n";
 }
 
 }  // namespace irdm::replay

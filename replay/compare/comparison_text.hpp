@@ -1,15 +1,17 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
-#include "replay/compare/compare_runs.hpp"
+#include "replay/compare/measure_runs.hpp"
 
 namespace irdm::replay {
 
 /// A table for people.
-std::string comparison_table(const Comparison& comparison);
+std::string comparison_table(const Comparison& comparison, const Measures& measures);
 
-/// The same with every frame, as JSON (docs/replay.md).
-std::string comparison_json(const Comparison& comparison);
+/// What a hand would notice of the differences on a stylus, one line each.
+std::vector<std::string> perceptual_findings(const StylusMeasures& stylus, const Measures& measures,
+                                             const std::vector<double>& times);
 
 }  // namespace irdm::replay

@@ -79,6 +79,17 @@ void RunReader::displacement(std::size_t object, std::size_t frame, Points& u) c
       u.data());
 }
 
+Points RunReader::node_displacement(std::size_t object, Eigen::Index node) const {
+  const std::string set = run::object_path(object) + "/displacement";
+  const hdf5::Shape shape{times_.size(), static_cast<hsize_t>(rest_[object].rows()), 3};
+  if (file_.shape(set) != shape || node < 0 || node >= rest_[object].rows()) {
+    throw Error(file_.name(), set + " has not the right shape", "make it again");
+  }
+  Points u(static_cast<Eigen::Index>(times_.size()), 3);
+  file_.read_slab<double>(set, {0, static_cast<hsize_t>(node), 0}, {times_.size(), 1, 3}, u.data());
+  return u;
+}
+
 Vector3 RunReader::force(std::size_t stylus, std::size_t frame) const {
   Vector3 force;
   row(run::stylus_path(stylus) + "/force", frame, {3}, force.data());

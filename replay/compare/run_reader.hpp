@@ -29,7 +29,8 @@ class RunReader {
 
   RunPose pose(std::size_t object, std::size_t frame) const;
   void displacement(std::size_t object, std::size_t frame, Points& u) const;  ///< (n, 3) [m], B
-  Vector3 force(std::size_t stylus, std::size_t frame) const;  ///< on the stylus [N], W
+  Points node_displacement(std::size_t object, Eigen::Index node) const;  ///< (frames, 3) [m], B
+  Vector3 force(std::size_t stylus, std::size_t frame) const;             ///< on the stylus [N], W
 
  private:
   void row(const std::string& set, std::size_t frame, const hdf5::Shape& row, double* values) const;

@@ -5,6 +5,7 @@
 
 #include "common/error.hpp"
 #include "server/record/trace_paths.hpp"
+#include "server/record/trace_units.hpp"
 
 namespace irdm {
 
@@ -21,6 +22,13 @@ void put(double* row, const Vector3& v) {
 }
 
 }  // namespace
+
+template <typename T>
+void TraceWriter::create(const std::string& path, const hdf5::Shape& row) {
+  file_.create_growing<T>(path, row, kChunkRows);
+  const std::string unit = trace::unit_of(path);
+  if (!unit.empty()) file_.write_attribute(path, "unit", unit);
+}
 
 TraceWriter::TraceWriter(const std::filesystem::path& path, const TraceHeader& header)
     : file_(hdf5::File::create_for_swmr(path)),
@@ -46,13 +54,14 @@ void TraceWriter::write_header(const TraceHeader& header) {
   file_.write_attribute("/", "model_checksum", header.objects.front().model_checksum);
   file_.write_attribute("/", "scene", header.scene);
   file_.write_attribute("/", "dt", header.dt);
+  file_.write_attribute("/", "units", std::string("dt: s"));
 }
 
 void TraceWriter::create_datasets() {
   file_.write<std::uint64_t>(trace::kCommitted, {1}, &rows_);
-  file_.create_growing<double>("/step/time", {}, kChunkRows);
-  file_.create_growing<std::uint64_t>("/step/force_step", {}, kChunkRows);
-  file_.create_growing<std::uint8_t>("/step/reset", {}, kChunkRows);
+  create<double>("/step/time", {});
+  create<std::uint64_t>("/step/force_step", {});
+  create<std::uint8_t>("/step/reset", {});
   create_settings();
   create_late();
   create_bridged();
@@ -63,35 +72,35 @@ void TraceWriter::create_datasets() {
     file_.write_attribute(group, "model_file", objects_[i].model_file);
     file_.write_attribute(group, "model_checksum", objects_[i].model_checksum);
     for (std::size_t s = 0; s < static_cast<std::size_t>(stylus_count_); ++s) {
-      file_.create_growing<double>(group + stylus_path(s) + "/proxy", {3}, kChunkRows);
-      file_.create_growing<double>(group + stylus_path(s) + "/force", {3}, kChunkRows);
+      create<double>(group + stylus_path(s) + "/proxy", {3});
+      create<double>(group + stylus_path(s) + "/force", {3});
       create_contact(group + stylus_path(s));
     }
   }
   for (std::size_t s = 0; s < static_cast<std::size_t>(stylus_count_); ++s) {
     const std::string path = stylus_path(s);
     for (const char* name : {"/tip", "/proxy", "/force"}) {
-      file_.create_growing<double>(path + name, {3}, kChunkRows);
+      create<double>(path + name, {3});
     }
     create_contact(path);
-    file_.create_growing<std::uint8_t>(path + "/present", {}, kChunkRows);
-    file_.create_growing<std::int32_t>(path + "/buttons", {}, kChunkRows);
-    if (several()) file_.create_growing<std::int32_t>(path + "/object", {}, kChunkRows);
+    create<std::uint8_t>(path + "/present", {});
+    create<std::int32_t>(path + "/buttons", {});
+    if (several()) create<std::int32_t>(path + "/object", {});
   }
 }
 
 // One row for the first step and one for every change.
 void TraceWriter::create_settings() {
-  file_.create_growing<std::uint64_t>("/settings/force_step", {}, kChunkRows);
-  file_.create_growing<double>("/settings/gravity", {3}, kChunkRows);
+  create<std::uint64_t>("/settings/force_step", {});
+  create<double>("/settings/gravity", {3});
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     const std::string group = settings_path(i);
     for (const char* name : {"/friction", "/damping", "/tether"}) {
-      file_.create_growing<double>(group + name, {2}, kChunkRows);
+      create<double>(group + name, {2});
     }
-    file_.create_growing<double>(group + "/material_damping", {}, kChunkRows);
-    file_.create_growing<std::uint8_t>(group + "/dense", {}, kChunkRows);
-    file_.create_growing<std::uint8_t>(group + "/inertial_loading", {}, kChunkRows);
+    create<double>(group + "/material_damping", {});
+    create<std::uint8_t>(group + "/dense", {});
+    create<std::uint8_t>(group + "/inertial_loading", {});
   }
 }
 
@@ -123,17 +132,17 @@ void TraceWriter::append_settings(std::span<const StepRecord> records) {
 
 // One row for every force that was entered late.
 void TraceWriter::create_late() {
-  file_.create_growing<std::uint64_t>("/late/force_step", {}, kChunkRows);
+  create<std::uint64_t>("/late/force_step", {});
   for (const char* name : {"/late/age", "/late/object", "/late/stylus"}) {
-    file_.create_growing<std::int32_t>(name, {}, kChunkRows);
+    create<std::int32_t>(name, {});
   }
-  file_.create_growing<std::int32_t>("/late/contact_nodes", {3}, kChunkRows);
+  create<std::int32_t>("/late/contact_nodes", {3});
   for (const char* name :
        {"/late/contact_weights", "/late/force", "/late/arm", "/late/body_position",
         "/late/body_velocity", "/late/body_angular_momentum"}) {
-    file_.create_growing<double>(name, {3}, kChunkRows);
+    create<double>(name, {3});
   }
-  file_.create_growing<double>("/late/body_orientation", {4}, kChunkRows);
+  create<double>("/late/body_orientation", {4});
 }
 
 void TraceWriter::append_late(std::span<const StepRecord> records) {
@@ -160,11 +169,11 @@ void TraceWriter::append_late(std::span<const StepRecord> records) {
 
 // One row for every step in which a bridge solved the contact of a stylus.
 void TraceWriter::create_bridged() {
-  file_.create_growing<std::uint64_t>("/bridged/force_step", {}, kChunkRows);
-  file_.create_growing<std::int32_t>("/bridged/stylus", {}, kChunkRows);
-  file_.create_growing<std::int32_t>("/bridged/object", {}, kChunkRows);
-  file_.create_growing<double>("/bridged/force", {3}, kChunkRows);
-  file_.create_growing<double>("/bridged/arm", {3}, kChunkRows);
+  create<std::uint64_t>("/bridged/force_step", {});
+  create<std::int32_t>("/bridged/stylus", {});
+  create<std::int32_t>("/bridged/object", {});
+  create<double>("/bridged/force", {3});
+  create<double>("/bridged/arm", {3});
 }
 
 void TraceWriter::append_bridged(std::span<const StepRecord> records) {
@@ -197,25 +206,25 @@ std::string TraceWriter::object_path(std::size_t object) const {
 }
 
 void TraceWriter::create_object(const std::string& group) {
-  file_.create_growing<double>(group + "/body_position", {3}, kChunkRows);
-  file_.create_growing<double>(group + "/body_orientation", {4}, kChunkRows);
-  file_.create_growing<double>(group + "/body_velocity", {3}, kChunkRows);
-  file_.create_growing<double>(group + "/body_angular_velocity", {3}, kChunkRows);
-  file_.create_growing<double>(group + "/residual", {}, kChunkRows);
-  file_.create_growing<std::int32_t>(group + "/sweeps", {}, kChunkRows);
+  create<double>(group + "/body_position", {3});
+  create<double>(group + "/body_orientation", {4});
+  create<double>(group + "/body_velocity", {3});
+  create<double>(group + "/body_angular_velocity", {3});
+  create<double>(group + "/residual", {});
+  create<std::int32_t>(group + "/sweeps", {});
   if (!floor_) return;
   const std::string floor = floor_path(group);
-  file_.create_growing<std::int32_t>(floor + "/count", {}, kChunkRows);
-  file_.create_growing<std::int32_t>(floor + "/node", {}, kChunkRows);
-  file_.create_growing<float>(floor + "/force", {3}, kChunkRows);
+  create<std::int32_t>(floor + "/count", {});
+  create<std::int32_t>(floor + "/node", {});
+  create<float>(floor + "/force", {3});
 }
 
 void TraceWriter::create_contact(const std::string& group) {
-  file_.create_growing<double>(group + "/contact_weights", {3}, kChunkRows);
-  file_.create_growing<double>(group + "/offset", {3}, kChunkRows);
-  file_.create_growing<std::uint8_t>(group + "/contact", {}, kChunkRows);
-  file_.create_growing<std::uint8_t>(group + "/slipping", {}, kChunkRows);
-  file_.create_growing<std::int32_t>(group + "/contact_nodes", {3}, kChunkRows);
+  create<double>(group + "/contact_weights", {3});
+  create<double>(group + "/offset", {3});
+  create<std::uint8_t>(group + "/contact", {});
+  create<std::uint8_t>(group + "/slipping", {});
+  create<std::int32_t>(group + "/contact_nodes", {3});
 }
 
 template <typename T, typename Fill>

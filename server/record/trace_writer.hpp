@@ -57,6 +57,9 @@ class TraceWriter {
   void append_late(std::span<const StepRecord> records);
   void create_bridged();
   void append_bridged(std::span<const StepRecord> records);
+  /// A set that grows, with its unit.
+  template <typename T>
+  void create(const std::string& path, const hdf5::Shape& row);
   void append_settings(std::span<const StepRecord> records);
   void append_stylus(std::span<const StepRecord> records, std::size_t stylus);
   template <typename Contact>

@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "common/error.hpp"
+#include "replay/compare/comparison_json.hpp"
 #include "replay/compare/comparison_text.hpp"
 #include "replay/output/run_output.hpp"
 #include "tests/support/synthetic_model.hpp"
@@ -60,6 +61,7 @@ struct TwoRuns {
     write_run(b, one_cube(), off, first);
   }
   Comparison compared() const { return compare_runs(RunReader(a), RunReader(b)); }
+  Measures measured() const { return measure_runs(RunReader(a), RunReader(b), compared()); }
 
   TemporaryFolder folder;
   std::filesystem::path a = folder.path() / "a.h5";
@@ -124,7 +126,10 @@ TEST_CASE("runs with other meshes are compared as bodies, with other objects not
       compare_runs(RunReader(runs.a), RunReader(runs.folder.path() / "fine.h5"));
   CHECK_FALSE(found.objects.at(0).same_nodes);
   CHECK(found.objects.at(0).centre_of_mass.maximum() == 0.0);
-  CHECK_THAT(comparison_table(found), Contains("the meshes differ"));
+  const Measures measures =
+      measure_runs(RunReader(runs.a), RunReader(runs.folder.path() / "fine.h5"), found);
+  CHECK(measures.nodes.at(0).spectrum_a.frequency.empty());
+  CHECK_THAT(comparison_table(found, measures), Contains("the meshes differ"));
   TracedScene other = one_cube();
   other.objects[0].name = "ball";
   write_run(runs.folder.path() / "ball.h5", other);
@@ -134,7 +139,7 @@ TEST_CASE("runs with other meshes are compared as bodies, with other objects not
 
 TEST_CASE("a comparison as JSON has its numbers and quotes its words") {
   const TwoRuns runs({.force = {0.3, 0.0, 0.4}});
-  const std::string json = comparison_json(runs.compared());
+  const std::string json = comparison_json(runs.compared(), runs.measured());
   CHECK_THAT(json, Contains("\"name\": \"the \\\"cube\\\"\"") && Contains("\"unit\": \"rad\"") &&
                        Contains("\"frames\": 4,"));
 }

@@ -36,7 +36,7 @@ constexpr PathQuality kBadPath{
     .delay_ms = 5.0, .jitter_ms = 10.0, .loss = 0.05, .duplicates = 0.01, .corrupt = 0.01};
 
 /// What the fake driver wrote down of one frame.
-struct Frame {
+struct LinkFrame {
   std::int64_t begun_ns = 0;  ///< monotonic clock
   double force = 0.0;         ///< asked for [N]
 };
@@ -86,10 +86,10 @@ class DistantStage : public Stage {
                                          "FAKE_HD_EVENT=tell", "FAKE_HD_EVENT_AFTER=100"}});
   }
   /// Of the bridge that has ended.
-  std::vector<Frame> frames() const {
-    std::vector<Frame> found;
+  std::vector<LinkFrame> frames() const {
+    std::vector<LinkFrame> found;
     std::istringstream text(file_content(path("frames.txt")));
-    Frame frame;
+    LinkFrame frame;
     double ignored = 0.0;
     for (double x = 0, y = 0, z = 0; text >> ignored >> ignored >> ignored >> ignored >> ignored >>
                                      x >> y >> z >> frame.begun_ns;) {
@@ -103,9 +103,9 @@ class DistantStage : public Stage {
   const TwoNamespaces& both_;
 };
 
-double largest_force(const std::vector<Frame>& frames) {
+double largest_link_force(const std::vector<LinkFrame>& frames) {
   double largest = 0.0;
-  for (const Frame& frame : frames) largest = std::max(largest, frame.force);
+  for (const LinkFrame& frame : frames) largest = std::max(largest, frame.force);
   return largest;
 }
 
@@ -151,11 +151,11 @@ TEST_CASE("a path that becomes a black hole: no force in time, and the session i
   CHECK_THAT(bridge.out(), Contains("protocol errors 0"));
   CHECK((bridge.out().find("datagrams: ") != std::string::npos) == (stream == "udp"));
 
-  const std::vector<Frame> frames = stage.frames();
-  CHECK(largest_force(frames) > 0.2);
-  CHECK(largest_force(frames) < kDeviceLimit * (1.0 + 1e-9));
+  const std::vector<LinkFrame> frames = stage.frames();
+  CHECK(largest_link_force(frames) > 0.2);
+  CHECK(largest_link_force(frames) < kDeviceLimit * (1.0 + 1e-9));
   std::size_t without = 0;
-  for (const Frame& frame : frames) {
+  for (const LinkFrame& frame : frames) {
     const std::int64_t since_ns = frame.begun_ns - cut_ns;
     if (since_ns <= longest_force_ns(mode) || since_ns > kCut) continue;
     REQUIRE(frame.force == 0.0);
@@ -177,7 +177,7 @@ TEST_CASE("a bad path: forces within limits, or the bridge says why there are no
   CHECK(path.corrupted() > 0);
   CHECK_THAT(bridge.out(), Contains("protocol errors 0"));
   CHECK(number_after(bridge.out(), "forces: ") > 0);
-  const double largest = largest_force(stage.frames());
+  const double largest = largest_link_force(stage.frames());
   CHECK(largest < kDeviceLimit * (1.0 + 1e-9));
   const bool told = bridge.err().find("no force yet: ") != std::string::npos ||
                     bridge.err().find("connection lost: no answers any more") != std::string::npos;
@@ -198,7 +198,7 @@ TEST_CASE("a bad path by UDP: a bridge that predicts arms, and the cube is felt"
   CHECK_THAT(bridge.out(), Contains("in contact"));
   // One way takes 10 ms on average, there and back 20 ms, and a step.
   CHECK(number_after(bridge.out(), "round trip: p50 ") < 30.0);
-  const double largest = largest_force(stage.frames());
+  const double largest = largest_link_force(stage.frames());
   CHECK(largest > 0.5);
   CHECK(largest < kDeviceLimit * (1.0 + 1e-9));
   server.process.signal(SIGTERM);

@@ -67,9 +67,9 @@ struct Play {
 
 #ifndef IRDM_SANITIZED
 /// Follows the system calls of one thread.
-class Trace {
+class SystemCalls {
  public:
-  Trace(const fs::path& folder, pid_t thread)
+  SystemCalls(const fs::path& folder, pid_t thread)
       : output_(folder / ("calls-" + std::to_string(thread))),
         strace_({"/usr/bin/strace", "-o", output_.string(), "-p", std::to_string(thread)}) {}
 
@@ -107,7 +107,7 @@ class Trace {
 };
 
 void check_calls(const Play& play, pid_t thread) {
-  Trace trace(play.stage.path(""), thread);
+  SystemCalls trace(play.stage.path(""), thread);
   auto calls = trace.calls();
   if (!calls) {
     WARN("skipped: strace cannot watch a thread here: " << trace.why());

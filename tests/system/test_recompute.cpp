@@ -17,7 +17,7 @@ using namespace irdm::test;
 
 namespace {
 
-constexpr std::uint8_t kFree = 0;
+constexpr std::uint8_t kNoContact = 0;
 constexpr double kHeldUntil = 1.0;  // of press_and_swing(), here [s]
 constexpr double kAgain = 1.3;      // when it begins anew [s]
 
@@ -147,7 +147,7 @@ void check_forces(const Trace& trace, std::size_t least_touching, std::size_t le
   for (std::size_t k = 0; k < trace.rows(); ++k) {
     std::vector<NodalForce> nodal;
     if (trace.reset[k] != 0) engine->reset();
-    if (trace.contact[k] != kFree) {
+    if (trace.contact[k] != kNoContact) {
       const Body body = body_before(trace, object, k);
       const SurfacePoint point = contact_point(trace, k);
       const Vector3 force = trace.vector("/stylus/0/force", k);  // on the stylus, W
@@ -263,7 +263,7 @@ TEST_CASE("poses are recomputed from the forces of a trace, those of the floor i
     const Body body = body_before(trace, object, k);
     std::vector<NodalForce> nodal;
     for (std::int32_t c = 0; c < floor.count[k]; ++c) nodal.push_back(floor.row(row++));
-    if (trace.contact[k] != kFree) {
+    if (trace.contact[k] != kNoContact) {
       const SurfacePoint point = contact_point(trace, k);
       const Vector3 force = -(body.orientation.conjugate() * trace.vector("/stylus/0/force", k));
       for (std::size_t i = 0; i < 3; ++i) {
@@ -273,7 +273,7 @@ TEST_CASE("poses are recomputed from the forces of a trace, those of the floor i
     }
     Vector3 force = Vector3::Zero();
     Vector3 torque = Vector3::Zero();
-    if (trace.contact[k] != kFree) {  // it acts where the tip is felt
+    if (trace.contact[k] != kNoContact) {  // it acts where the tip is felt
       torque -= trace.vector("/stylus/0/offset", k)
                     .cross(body.orientation.conjugate() * trace.vector("/stylus/0/force", k));
     }
@@ -357,7 +357,7 @@ TEST_CASE("the touched point's place is recomputed from a trace, inertial loadin
   for (std::size_t k = 0; k < trace.rows(); ++k) {
     const Body before = body_before(trace, object, k);
     const SurfacePoint point = contact_point(trace, k);
-    const bool free = trace.contact[k] == kFree;
+    const bool free = trace.contact[k] == kNoContact;
     std::vector<NodalForce> nodal;
     const Vector3 force = -(before.orientation.conjugate() * trace.vector("/stylus/0/force", k));
     for (std::size_t i = 0; i < 3 && !free; ++i) {

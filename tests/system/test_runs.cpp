@@ -16,7 +16,7 @@ using namespace irdm::test;
 namespace {
 
 constexpr int kTouching = 1;
-constexpr int kHeld = 2;
+constexpr int kHolding = 2;
 
 std::size_t rows_in(const Trace& trace, int contact) {
   return static_cast<std::size_t>(std::count(trace.contact.begin(), trace.contact.end(), contact));
@@ -70,7 +70,7 @@ TEST_CASE("a run in real time: both end in order, and the trace says what they s
   CHECK_THAT(bridge.out(), Contains(" 0 not believed"));
   if (!kKeepsPace) return;
   CHECK(rows_in(trace, kTouching) > 0);
-  CHECK(rows_in(trace, kHeld) > 0);
+  CHECK(rows_in(trace, kHolding) > 0);
   CHECK(number_after(bridge.out(), "peak force: ") > 0.1);
 }
 
@@ -140,7 +140,7 @@ TEST_CASE("SIGINT and SIGTERM, to either of them first, leave a whole trace and 
   CAPTURE(number, server_first);
   Server server = stage.start_server({"--record", path.string()});
   ChildProcess bridge = stage.start_bridge(server);
-  REQUIRE(eventually([&] { return rows_so_far(path, "contact", kHeld) > 50; }));
+  REQUIRE(eventually([&] { return rows_so_far(path, "contact", kHolding) > 50; }));
   ChildProcess& first = server_first ? server.process : bridge;
   ChildProcess& second = server_first ? bridge : server.process;
   first.signal(number);
@@ -151,7 +151,7 @@ TEST_CASE("SIGINT and SIGTERM, to either of them first, leave a whole trace and 
   CHECK_THAT(bridge.out(), Contains("sessions 1"));
   const Trace trace = read_trace(path);
   check_whole(trace, server.process.out());
-  CHECK(rows_in(trace, kHeld) > 50);
+  CHECK(rows_in(trace, kHolding) > 50);
 }
 
 TEST_CASE("a file that exists is not recorded over") {

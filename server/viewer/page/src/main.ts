@@ -8,7 +8,7 @@ import { Notices } from "./notices";
 import { copy, isOnlooker, onlookerLink } from "./onlooker_link";
 import { HealthPanel } from "./panel";
 import { PlaybackBar } from "./playback_bar";
-import { encodeSettings, encodeStylus, type Frame, type Scene, type ServerMessage, type State } from "./protocol";
+import { Command, encodeCommand, encodeSettings, encodeStylus, type Frame, type Scene, type ServerMessage, type State } from "./protocol";
 import { RunControls } from "./run_controls";
 import { SettingsPanel } from "./settings_panel";
 import { listenForShortcuts } from "./shortcuts";
@@ -196,6 +196,7 @@ Object.assign(window, {
     scene: () => scene,
     frame: () => newest,
     state: () => state,
+    seek: (time: number) => send(encodeCommand(Command.Seek, 0, time)),
     onFrame: (listener: (frame: Frame) => void) => listeners.push(listener),
   },
 });

@@ -1,0 +1,47 @@
+#include "replay/measures/force_difference.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "replay/measures/perception.hpp"
+
+namespace irdm::replay {
+
+Points smoothed(const Points& signal, double dt, double time) {
+  if (!(dt > 0.0)) return signal;
+  const auto reach = static_cast<Eigen::Index>(std::floor(0.5 * time / dt * (1 + 1e-9)));
+  Points means(signal.rows(), 3);
+  for (Eigen::Index k = 0; k < signal.rows(); ++k) {
+    const Eigen::Index first = std::max<Eigen::Index>(k - reach, 0);
+    const Eigen::Index last = std::min(k + reach, signal.rows() - 1);
+    means.row(k) = signal.middleRows(first, last - first + 1).colwise().mean();
+  }
+  return means;
+}
+
+ForceDifference force_difference(const Points& a, const Points& b, double dt) {
+  using namespace perception;
+  const Points slow_a = smoothed(a, dt, kForceTime);
+  const Points slow_b = smoothed(b, dt, kForceTime);
+  ForceDifference found;
+  std::size_t in_contact = 0;
+  std::size_t above = 0;
+  for (Eigen::Index k = 0; k < a.rows(); ++k) {
+    const double apart = (slow_a.row(k) - slow_b.row(k)).norm();
+    const double share = apart / std::max(slow_a.row(k).norm(), kSmallForce);
+    found.share.push_back(share);
+    if (!a.row(k).isZero(0.0) || !b.row(k).isZero(0.0)) ++in_contact;
+    if (share > kForceShare) ++above;
+    if (share > found.largest) {
+      found.largest = share;
+      found.worst_frame = static_cast<std::size_t>(k);
+    }
+  }
+  if (above > 0) {
+    const auto of = static_cast<double>(std::max<std::size_t>(in_contact, 1));
+    found.noticeable_time = std::min(1.0, static_cast<double>(above) / of);
+  }
+  return found;
+}
+
+}  // namespace irdm::replay

@@ -1,0 +1,105 @@
+#include "replay/measures/ringing.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+namespace irdm::replay {
+namespace {
+
+constexpr Eigen::Index kFewestRows = 24;
+constexpr Eigen::Index kMostRows = 512;
+constexpr Eigen::Index kMostPoles = 32;
+constexpr std::size_t kMostKept = 8;
+constexpr double kSmallestSingular = 1e-4;  // of the largest
+constexpr double kSmallestAmplitude = 0.05;
+constexpr double kLargestDamping = 0.7;
+constexpr double kFewestPeriods = 2.0;
+
+// Windows of `length` rows of all components, one a column.
+Eigen::MatrixXd windows(const Points& signal, Eigen::Index length) {
+  const Eigen::Index count = signal.rows() - length + 1;
+  Eigen::MatrixXd all(length, 3 * count);
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    for (Eigen::Index start = 0; start < count; ++start) {
+      all.col(axis * count + start) = signal.col(axis).segment(start, length);
+    }
+  }
+  return all;
+}
+
+// z of each term z^k that the signal is the sum of.
+Eigen::VectorXcd poles(const Points& signal) {
+  const Eigen::BDCSVD<Eigen::MatrixXd> svd(windows(signal, signal.rows() / 3), Eigen::ComputeThinU);
+  const Eigen::VectorXd& sizes = svd.singularValues();
+  if (!(sizes[0] > 0.0)) return {};
+  const Eigen::Index above = (sizes.array() > kSmallestSingular * sizes[0]).count();
+  const Eigen::Index rank = std::min({above, kMostPoles, svd.matrixU().rows() - 1});
+  const Eigen::MatrixXd U = svd.matrixU().leftCols(rank);
+  const Eigen::Index rows = U.rows() - 1;
+  const Eigen::MatrixXd shift = U.topRows(rows).colPivHouseholderQr().solve(U.bottomRows(rows));
+  return Eigen::EigenSolver<Eigen::MatrixXd>(shift, false).eigenvalues();
+}
+
+// Of each pole, the size of its term in the first row, over components.
+Eigen::VectorXd sizes_of(const Eigen::VectorXcd& z, const Points& signal) {
+  Eigen::MatrixXcd powers(signal.rows(), z.size());
+  powers.row(0).setOnes();
+  for (Eigen::Index k = 1; k < signal.rows(); ++k) {
+    powers.row(k) = powers.row(k - 1).cwiseProduct(z.transpose());
+  }
+  const Eigen::MatrixXcd values = signal.cast<std::complex<double>>();
+  return Eigen::MatrixXcd(powers.colPivHouseholderQr().solve(values)).rowwise().norm();
+}
+
+const Ringing& nearest(const std::vector<Ringing>& list, double frequency) {
+  return *std::min_element(list.begin(), list.end(), [&](const Ringing& a, const Ringing& b) {
+    return std::abs(a.frequency - frequency) < std::abs(b.frequency - frequency);
+  });
+}
+
+}  // namespace
+
+std::vector<Ringing> find_ringing(const Points& signal, double dt) {
+  if (signal.rows() < kFewestRows || !signal.allFinite()) return {};
+  const Points looked_at = signal.topRows(std::min(signal.rows(), kMostRows));
+  const Eigen::VectorXcd z = poles(looked_at);
+  if (z.size() == 0) return {};
+  const Eigen::VectorXd sizes = sizes_of(z, looked_at);
+  const double lowest = kFewestPeriods / (static_cast<double>(looked_at.rows()) * dt);
+  std::vector<Ringing> found;
+  for (Eigen::Index i = 0; i < z.size(); ++i) {
+    const std::complex<double> s = std::log(z[i]) / dt;
+    const double frequency = s.imag() / (2.0 * std::numbers::pi);
+    const double damping = -s.real() / std::abs(s);
+    if (!(frequency >= lowest) || !(damping > 0.0 && damping <= kLargestDamping)) continue;
+    found.push_back({frequency, damping, 2.0 * sizes[i]});
+  }
+  std::sort(found.begin(), found.end(),
+            [](const Ringing& a, const Ringing& b) { return a.amplitude > b.amplitude; });
+  const double least = found.empty() ? 0.0 : kSmallestAmplitude * found.front().amplitude;
+  std::erase_if(found, [&](const Ringing& each) { return each.amplitude < least; });
+  if (found.size() > kMostKept) found.resize(kMostKept);
+  std::sort(found.begin(), found.end(),
+            [](const Ringing& a, const Ringing& b) { return a.frequency < b.frequency; });
+  return found;
+}
+
+std::vector<RingingPair> pairs_of(const std::vector<Ringing>& a, const std::vector<Ringing>& b) {
+  constexpr double kWithin = 0.15;
+  std::vector<RingingPair> pairs;
+  if (b.empty()) return pairs;
+  for (const Ringing& each : a) {
+    const Ringing& other = nearest(b, each.frequency);
+    const bool mutual = &nearest(a, other.frequency) == &each;
+    if (!mutual || std::abs(other.frequency - each.frequency) > kWithin * each.frequency) continue;
+    pairs.push_back({each, other});
+  }
+  return pairs;
+}
+
+}  // namespace irdm::replay

@@ -36,4 +36,5 @@ configure_package_config_file(cmake/irdm-config.cmake.in ${PROJECT_BINARY_DIR}/i
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/irdm-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/irdm-config.cmake ${PROJECT_BINARY_DIR}/irdm-config-version.cmake
   DESTINATION ${package} COMPONENT development)
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/doc/irdm-dev RENAME copyright COMPONENT development)
 install(DIRECTORY examples/embed DESTINATION ${data}/examples COMPONENT development)

@@ -4,16 +4,19 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-preset=release arguments=()
+preset=release plays=no arguments=()
 while [ $# -gt 0 ]; do
   case $1 in
     --preset) preset=${2:?play: --preset needs a name}; shift ;;
-    *) arguments+=("$1") ;;
+    *)
+      [ ! -f "configs/scenes/$1.toml" ] || plays=yes
+      arguments+=("$1")
+      ;;
   esac
   shift
 done
 export IRDM_PROGRAMS=$PWD/build/$preset/bin IRDM_DATA=$PWD
-if [ ${#arguments[@]} -gt 0 ] && [ -f "configs/scenes/${arguments[0]}.toml" ]; then
+if [ $plays = yes ]; then
   scripts/build.sh "$preset" irdm-precompute irdm-server irdm-bridge ||
     { echo "play: the build failed; see scripts/setup.sh" >&2; exit 1; }
 fi

@@ -17,6 +17,8 @@ page() {
   # Subcommands have no --version of their own.
   help2man --no-info --section=1 --manual=irdm --source="irdm $version" --version-string="$version" \
     --name="$line" --include="$(dirname "$0")/man_sections.h2m" --output="$folder/$name.1" "$command"
+  # Of "irdm-precompute check" help2man makes two words, of which man knows nothing.
+  sed -i -e "s/^\.TH .* \"1\" /.TH ${name^^} \"1\" /" -e "/^\.SH NAME/{n;s/^.* \\\\-/$name \\\\-/}" "$folder/$name.1"
   gzip -9n "$folder/$name.1"
 }
 

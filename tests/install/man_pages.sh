@@ -9,6 +9,8 @@ check() {
   local page=$pages/$1.1.gz options option text
   shift
   [ -f "$page" ] || { echo "there is no $page" >&2; exit 1; }
+  # What `whatis` goes by.
+  zcat "$page" | grep -A1 '^\.SH NAME' | grep -q "^$(basename "$page" .1.gz) " || { echo "$page has another name" >&2; exit 1; }
   text=$(zcat "$page" | sed 's/\\-/-/g; s/\\f[BRI]//g')
   options=$("$@" --help | sed -n '/^Options:/,/^$/s/^  \(-[^ ]*\).*/\1/p' | tr ',' '\n')
   for option in $options; do

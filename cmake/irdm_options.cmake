@@ -1,16 +1,20 @@
 # One interface target that every target of the project links: warnings, sanitizers, include root.
 add_library(irdm_options INTERFACE)
-target_include_directories(irdm_options INTERFACE ${PROJECT_SOURCE_DIR})
-target_compile_options(irdm_options INTERFACE
+target_include_directories(irdm_options INTERFACE
+  $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/irdm>)
+set(warnings
   -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wcast-align
   -Wunused -Wdouble-promotion -Wformat=2
   $<$<BOOL:${IRDM_WERROR}>:-Werror>)
+target_compile_options(irdm_options INTERFACE "$<BUILD_INTERFACE:${warnings}>")
 # Identical inputs give identical bits: no contraction that depends on the optimiser's mood.
 target_compile_options(irdm_options INTERFACE -ffp-contract=off)
-target_compile_definitions(irdm_options INTERFACE IRDM_VERSION="${PROJECT_VERSION}")
+target_compile_definitions(irdm_options INTERFACE $<BUILD_INTERFACE:IRDM_VERSION="${PROJECT_VERSION}">)
 # Eigen's own threads wait in a spin that is a data race, and its sums would depend on their number.
 # Large products go to OpenBLAS; our own loops say themselves when they are parallel.
 target_compile_definitions(irdm_options INTERFACE EIGEN_DONT_PARALLELIZE)
+# An embedding program may be built for a newer processor: its matrices must be laid out as those of the libraries.
+target_compile_definitions(irdm_options INTERFACE $<INSTALL_INTERFACE:EIGEN_MAX_ALIGN_BYTES=16>)
 
 if(IRDM_SANITIZE)
   # Half the time to compile of -O2 -g, and reports still name functions and lines.
@@ -50,5 +54,5 @@ endfunction()
 function(irdm_add_program name library)
   add_executable(${name} main.cpp)
   target_link_libraries(${name} PRIVATE ${library})
-  install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime)
 endfunction()

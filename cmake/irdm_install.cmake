@@ -1,0 +1,40 @@
+# What is installed, in two components: `runtime` (programs, page, configurations, documents) and `development`
+# (libraries and headers for programs that embed the renderer; docs/embedding.md).
+include(CMakePackageConfigHelpers)
+
+set(data ${CMAKE_INSTALL_DATADIR}/irdm)
+set(package ${CMAKE_INSTALL_LIBDIR}/cmake/irdm)
+
+install(DIRECTORY configs/ DESTINATION ${data}/configs COMPONENT runtime)
+install(PROGRAMS scripts/plot_force.py DESTINATION ${data}/scripts COMPONENT runtime)
+install(DIRECTORY examples/tutorial DESTINATION ${data}/examples COMPONENT runtime)
+install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT runtime)
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)
+
+# irdm::common, irdm::simulation and irdm::files.
+set(embedded irdm_common irdm_simulation irdm_server_files)
+set_target_properties(irdm_common PROPERTIES EXPORT_NAME common)
+set_target_properties(irdm_simulation PROPERTIES EXPORT_NAME simulation)
+set_target_properties(irdm_server_files PROPERTIES EXPORT_NAME files)
+set_target_properties(irdm_options PROPERTIES EXPORT_NAME options)
+install(TARGETS ${embedded} irdm_options EXPORT irdm_targets
+  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
+install(EXPORT irdm_targets NAMESPACE irdm:: FILE irdm-targets.cmake
+  DESTINATION ${package} COMPONENT development)
+
+foreach(folder common server/collision server/columns server/config server/contact server/deformation
+    server/engine server/record server/step)
+  get_filename_component(parent ${folder} DIRECTORY)
+  install(DIRECTORY ${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/irdm/${parent}
+    COMPONENT development FILES_MATCHING PATTERN "*.hpp")
+endforeach()
+install(FILES server/scene_simulation.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/irdm/server COMPONENT development)
+
+configure_package_config_file(cmake/irdm-config.cmake.in ${PROJECT_BINARY_DIR}/irdm-config.cmake
+  INSTALL_DESTINATION ${package})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/irdm-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/irdm-config.cmake ${PROJECT_BINARY_DIR}/irdm-config-version.cmake
+  DESTINATION ${package} COMPONENT development)
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/doc/irdm-dev RENAME copyright COMPONENT development)
+install(DIRECTORY examples/embed DESTINATION ${data}/examples COMPONENT development)

@@ -36,8 +36,8 @@ Recording read_recording(const TracedScene& scene, const std::string& trace) {
 std::unique_ptr<MadeAgain> make_again(const TracedScene& scene, const Recording& recording,
                                       const ReplayOptions& options) {
   if (options.fem_reference) {
-    return fem_reference(scene, options.substep.value_or(kReferenceSubstep),
-                         options.from_tips, told_late(recording));
+    return fem_reference(scene, options.substep.value_or(kReferenceSubstep), options.from_tips,
+                         told_late(recording));
   }
   if (options.from_tips) return std::make_unique<FromTips>(scene.config, options.solve_bridged);
   return std::make_unique<FromForces>(scene.config);
@@ -120,8 +120,8 @@ int replay(const ReplayOptions& options) {
   }
   for (const auto& output : outputs) output->finish();
   std::cout << options.trace.string() << ": " << recording.steps() << " steps of " << scene.dt()
-            << " s from " << (options.from_tips ? "tips" : "forces") << ", "
-            << how(scene, options) << "; " << frames.count() << " frames\n"
+            << " s from " << (options.from_tips ? "tips" : "forces") << ", " << how(scene, options)
+            << "; " << frames.count() << " frames\n"
             << deviation.text() << std::flush;
   return 0;
 }

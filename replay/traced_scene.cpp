@@ -39,14 +39,15 @@ std::optional<std::filesystem::path> given_model(const std::vector<std::string>&
 void check_given(const std::vector<std::string>& models, const SceneConfig& scene) {
   if (scene.objects.size() == 1 && models.size() <= 1) return;
   for (const std::string& model : models) {
-    if (std::any_of(
-            scene.objects.begin(), scene.objects.end(),
-            [&](const ObjectConfig& object) { return model.starts_with(object.name + "="); })) {
+    if (std::any_of(scene.objects.begin(), scene.objects.end(), [&](const ObjectConfig& object) {
+          return model.starts_with(object.name + "=");
+        })) {
       continue;
     }
-    throw Error("--model " + model, "names none of the " + std::to_string(scene.objects.size()) +
-                                        " objects of the trace",
-                "give NAME=FILE, for instance " + scene.objects.front().name + "=" + model);
+    throw Error(
+        "--model " + model,
+        "names none of the " + std::to_string(scene.objects.size()) + " objects of the trace",
+        "give NAME=FILE, for instance " + scene.objects.front().name + "=" + model);
   }
 }
 
@@ -148,8 +149,8 @@ TracedScene read_traced_scene(const std::filesystem::path& trace,
   }
   TracedScene traced = std::move(reading.traced);
   traced.other_engine = engine.has_value();
-  traced.config = simulation_config(
-      scene, recorded_viewer_stylus(scene, header.stylus_count, trace.string()));
+  traced.config =
+      simulation_config(scene, recorded_viewer_stylus(scene, header.stylus_count, trace.string()));
   check_dt(traced, header.dt, trace.string());
   return traced;
 }

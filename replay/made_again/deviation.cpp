@@ -14,7 +14,8 @@ double angle_between(const Quaternion& a, const Quaternion& b) noexcept {
 
 void Deviation::add(const StepRecord& recorded, const StepRecord& again) {
   const auto grow = [](double& largest, double value) {
-    largest = std::isnan(value) ? std::numeric_limits<double>::infinity() : std::max(largest, value);
+    largest =
+        std::isnan(value) ? std::numeric_limits<double>::infinity() : std::max(largest, value);
   };
   for (std::size_t i = 0; i < static_cast<std::size_t>(recorded.object_count); ++i) {
     const ObjectRecord& a = recorded.object[i];

@@ -19,9 +19,7 @@ class FromForces final : public MadeAgain {
   FromForces(const SimulationConfig& config, std::vector<std::unique_ptr<ForcedBody>> objects);
 
   void step(const StepRecord& recorded, StepRecord& again) override;
-  void displacement(std::size_t i, Points& u) const override {
-    objects_[i]->displacement(u);
-  }
+  void displacement(std::size_t i, Points& u) const override { objects_[i]->displacement(u); }
 
  private:
   void write_floor_and_styluses(StepRecord& again) const;

@@ -36,8 +36,7 @@ void RunOutput::create(const TracedScene& scene, const RunOrigin& origin) {
   file_.write_attribute("/", "from", origin.from);
   file_.write_attribute("/", "by", origin.by);
   file_.write_attribute("/", "objects", static_cast<std::int64_t>(names_.size()));
-  file_.write_attribute("/", "styluses",
-                        static_cast<std::int64_t>(scene.config.styluses.size()));
+  file_.write_attribute("/", "styluses", static_cast<std::int64_t>(scene.config.styluses.size()));
   create_set("/time", {}, "s");
   for (std::size_t i = 0; i < names_.size(); ++i) {
     const std::string group = run::object_path(i);

@@ -39,10 +39,10 @@ std::string triangle_cells(const Triangles& triangles) {
 std::string poly_data(double time, const Points& points, std::size_t vertices, std::size_t polygons,
                       const std::string& cell_text, const std::string& point_data) {
   const std::vector<double> times{time};
-  const std::string piece =
-      "Piece NumberOfPoints=\"" + std::to_string(points.rows()) + "\" NumberOfVerts=\"" +
-      std::to_string(vertices) + "\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"" +
-      std::to_string(polygons) + "\"";
+  const std::string piece = "Piece NumberOfPoints=\"" + std::to_string(points.rows()) +
+                            "\" NumberOfVerts=\"" + std::to_string(vertices) +
+                            "\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"" +
+                            std::to_string(polygons) + "\"";
   const std::string content =
       tag("FieldData", vtk_array("TimeValue", times, 1, " NumberOfTuples=\"1\"")) +
       tag(piece, point_data + tag("Points", vtk_array("Points", numbers(points), 3)) + cell_text);
@@ -83,17 +83,17 @@ std::string VtkOutput::surface_text(const Surface& surface, const ObjectRecord& 
   Points force = Points::Zero(count, 3);
   for (Eigen::Index i = 0; i < count; ++i) {
     const Vector3 u = displacement.row(i).transpose();
-    place.row(i) = object.position + object.orientation * (mesh.rest_position(static_cast<int>(i)) + u);
+    place.row(i) =
+        object.position + object.orientation * (mesh.rest_position(static_cast<int>(i)) + u);
     moved.row(i) = object.orientation * u;
   }
   for (const NodalForce& each : surface.forces->of(object)) {
     force.row(each.node) += (object.start.orientation * each.force).transpose();
   }
-  return poly_data(time, place, 0, static_cast<std::size_t>(mesh.triangles.rows()),
-                   surface.triangles,
-                   tag("PointData Vectors=\"displacement\"",
-                       vtk_array("displacement", numbers(moved), 3) +
-                           vtk_array("force", numbers(force), 3)));
+  return poly_data(
+      time, place, 0, static_cast<std::size_t>(mesh.triangles.rows()), surface.triangles,
+      tag("PointData Vectors=\"displacement\"",
+          vtk_array("displacement", numbers(moved), 3) + vtk_array("force", numbers(force), 3)));
 }
 
 std::string VtkOutput::styluses_text(const StepRecord& record) const {
@@ -114,11 +114,11 @@ std::string VtkOutput::styluses_text(const StepRecord& record) const {
   }
   std::vector<std::int32_t> points(count);
   std::iota(points.begin(), points.end(), 0);
-  return poly_data(record.time, tip, count, 0, cells("Verts", points, 1),
-                   tag("PointData Vectors=\"force\"", vtk_array("force", numbers(force), 3) +
-                                                          vtk_array("proxy", numbers(proxy), 3) +
-                                                          vtk_array("contact", contact, 1) +
-                                                          vtk_array("present", present, 1)));
+  return poly_data(
+      record.time, tip, count, 0, cells("Verts", points, 1),
+      tag("PointData Vectors=\"force\"",
+          vtk_array("force", numbers(force), 3) + vtk_array("proxy", numbers(proxy), 3) +
+              vtk_array("contact", contact, 1) + vtk_array("present", present, 1)));
 }
 
 void VtkOutput::write(const std::string& name, const std::string& text) const {

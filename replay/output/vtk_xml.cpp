@@ -45,8 +45,8 @@ std::string vtk_array(const std::string& name, std::span<const double> values, i
   return array("Float64", name, std::as_bytes(values), components, more);
 }
 
-std::string vtk_array(const std::string& name, std::span<const std::int32_t> values,
-                      int components, const std::string& more) {
+std::string vtk_array(const std::string& name, std::span<const std::int32_t> values, int components,
+                      const std::string& more) {
   return array("Int32", name, std::as_bytes(values), components, more);
 }
 

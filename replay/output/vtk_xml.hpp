@@ -15,7 +15,7 @@ std::string vtk_file(const std::string& type, const std::string& content);
 /// A <DataArray> of as many components a row. @param more further attributes
 std::string vtk_array(const std::string& name, std::span<const double> values, int components,
                       const std::string& more = "");
-std::string vtk_array(const std::string& name, std::span<const std::int32_t> values,
-                      int components, const std::string& more = "");
+std::string vtk_array(const std::string& name, std::span<const std::int32_t> values, int components,
+                      const std::string& more = "");
 
 }  // namespace irdm::replay

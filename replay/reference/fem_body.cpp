@@ -63,8 +63,8 @@ FemBody::FemBody(const SimulationConfig& config, std::size_t number, double subs
       force_(Eigen::VectorXd::Zero(model_->mesh.nodes.size())) {
   for (const SimulationStylus& stylus : config.styluses) {
     masks_.emplace_back(surface_, stylus.radius);
-    spring_compliance_.push_back(
-        stylus.coupling_stiffness > 0.0 ? 1.0 / stylus.coupling_stiffness : 0.0);
+    spring_compliance_.push_back(stylus.coupling_stiffness > 0.0 ? 1.0 / stylus.coupling_stiffness
+                                                                 : 0.0);
   }
   const SimulationObject& object = config.objects[number];
   start_.position = object.position;
@@ -156,7 +156,9 @@ void FemBody::hold(const ObjectRecord& recorded) {
 void FemBody::hold_late() {
   for (const ToldLate& told : told_late_) {
     if (told.step != steps_) continue;
-    const auto own = [&](const Followed& f) { return static_cast<int>(f.stylus) == told.late.stylus; };
+    const auto own = [&](const Followed& f) {
+      return static_cast<int>(f.stylus) == told.late.stylus;
+    };
     if (std::any_of(followed_.begin(), followed_.end(), own)) continue;
     add_forces(recorded_forces_.of(told.late), told.orientation);
     ContactPatch patch;

@@ -90,12 +90,12 @@ class FemBody final : public ForcedBody {
   std::vector<PressureMask> masks_;
   std::vector<double> spring_compliance_;  ///< of each stylus [m/N]
   std::vector<Followed> followed_;
-  BroydenSolver tip_forces_;  ///< [N], W, of all followed_
+  BroydenSolver tip_forces_;                  ///< [N], W, of all followed_
   std::vector<Eigen::VectorXd> last_forces_;  ///< of the steps before, the last one first
   std::vector<ToldLate> told_late_;
   std::size_t steps_ = 0;  ///< made so far
-  int parts_;  ///< sub-steps of a step
-  double h_;   ///< [s]
+  int parts_;              ///< sub-steps of a step
+  double h_;               ///< [s]
   RigidState start_;
   FreeForces free_forces_;
   double material_damping_ = 1.0;

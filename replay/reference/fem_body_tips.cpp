@@ -5,8 +5,8 @@
 namespace irdm::replay {
 namespace {
 
-constexpr double kMiss = 1e-8;         // [m]
-constexpr double kTrialForce = 1e-3;   // [N]
+constexpr double kMiss = 1e-8;        // [m]
+constexpr double kTrialForce = 1e-3;  // [N]
 
 }  // namespace
 
@@ -26,9 +26,9 @@ void FemBody::choose_followed(const ObjectRecord& recorded,
         followed_.emplace_back(Followed{s, styluses[s].tip, spring_compliance_[s], {}});
     masks_[s].spread(recorded.contact[s].point, followed.patch);
   }
-  const bool same = std::equal(
-      before.begin(), before.end(), followed_.begin(), followed_.end(),
-      [](const Followed& a, const Followed& b) { return a.stylus == b.stylus; });
+  const bool same =
+      std::equal(before.begin(), before.end(), followed_.begin(), followed_.end(),
+                 [](const Followed& a, const Followed& b) { return a.stylus == b.stylus; });
   if (same) return;
   tip_forces_.forget();
   last_forces_.clear();

@@ -26,8 +26,7 @@ double fem_substep(double dt, double longest) {
   return dt / fem_parts(dt, longest);
 }
 
-std::unique_ptr<MadeAgain> fem_reference(const TracedScene& scene, double substep,
-                                         bool follow_tips,
+std::unique_ptr<MadeAgain> fem_reference(const TracedScene& scene, double substep, bool follow_tips,
                                          const std::vector<ToldLate>& told_late) {
   std::vector<std::unique_ptr<ForcedBody>> bodies;
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {

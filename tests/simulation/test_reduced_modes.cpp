@@ -17,7 +17,7 @@ using namespace irdm::test;
 
 namespace {
 
-std::shared_ptr<const Model> share(Model model) {
+std::shared_ptr<const Model> shared_model(Model model) {
   return std::make_shared<const Model>(std::move(model));
 }
 
@@ -48,19 +48,19 @@ std::vector<Vector3> pressed_forces(const FemCube& cube, double x, double z) {
 }
 
 /// What two runs of the same press differ by, as shares of the largest force.
-struct ForceDifference {
+struct StepwiseDifference {
   double step = 0.0;         ///< of a step
   double mean = 0.0;         ///< without what goes to and fro from step to step (binomial, 5 steps)
   double alternation = 0.0;  ///< by which the first run's force goes to and fro from step to step
 };
 
-ForceDifference force_difference(const FemCube& all, const FemCube& some, double x, double z) {
+StepwiseDifference force_difference(const FemCube& all, const FemCube& some, double x, double z) {
   const std::vector<Vector3> expected = pressed_forces(all, x, z);
   const std::vector<Vector3> found = pressed_forces(some, x, z);
   double peak = 0.0;
   for (const Vector3& force : expected) peak = std::max(peak, force.norm());
   REQUIRE(peak > 0.1);
-  ForceDifference worst;
+  StepwiseDifference worst;
   const auto difference = [&](std::size_t k) -> Vector3 { return found[k] - expected[k]; };
   for (std::size_t k = 2; k + 2 < expected.size(); ++k) {
     const Vector3 mean = (difference(k - 2) + 4.0 * difference(k - 1) + 6.0 * difference(k) +
@@ -80,8 +80,8 @@ TEST_CASE("reduced modes: the engine answers as R does that the model stands for
   const int modes = GENERATE(20, 1100);  // the engine takes 512 at a time
   CAPTURE(modes);
   const Model model = with_residual(modes);
-  const auto modal = make_engine(share(model));
-  const auto dense = make_engine(share(with_dense_response<double>(model)));
+  const auto modal = make_engine(shared_model(model));
+  const auto dense = make_engine(shared_model(with_dense_response<double>(model)));
   const std::array<ContactPatch, 3> patches{
       ContactPatch(SurfacePoint{{0, 1, 2}, {0.2, 0.3, 0.5}}),
       ContactPatch(SurfacePoint{{3, 7, 9}, {1.0, 0.0, 0.0}}),
@@ -126,7 +126,7 @@ TEST_CASE("reduced modes: the engine answers as R does that the model stands for
 }
 
 TEST_CASE("reduced modes: the surface is the same bits with any number of threads") {
-  const auto engine = make_engine(share(with_residual()));
+  const auto engine = make_engine(shared_model(with_residual()));
   for (int k = 0; k < 5; ++k) engine->advance(forces_of_step(k));
   Points one, many;
   const int before = omp_get_max_threads();
@@ -162,7 +162,7 @@ TEST_CASE(
   all.poisson_ratio = 0.4;
   FemCube some = all;
   some.modes = 200;
-  const ForceDifference difference = force_difference(all, some, 0.003, 0.004);
+  const StepwiseDifference difference = force_difference(all, some, 0.003, 0.004);
   std::cout << "200 of " << std::get<ModalResponse>(fem_cube(all)->response).mode_count()
             << " modes: force off by " << difference.step << "\n";
   const double stated =
@@ -182,7 +182,7 @@ TEST_CASE("reduced modes: the same on a finer mesh, in the middle, at an edge an
   some.modes = 600;
   for (const double x : {0.003, 0.055}) {
     for (const double z : {0.004, 0.055}) {
-      const ForceDifference difference = force_difference(all, some, x, z);
+      const StepwiseDifference difference = force_difference(all, some, x, z);
       std::cout << some.modes << " of "
                 << std::get<ModalResponse>(fem_cube(all)->response).mode_count() << " modes, at "
                 << x << ", " << z << ": force off by " << difference.step << ", in the mean by "

@@ -11,6 +11,7 @@
 #include "server/step/simulation.hpp"
 #include "tests/simulation/pressed_cube.hpp"
 #include "tests/support/fem_cube.hpp"
+#include "tests/support/shared_model.hpp"
 #include "tests/support/spinning_fem.hpp"
 #include "tests/support/synthetic_model.hpp"
 
@@ -21,10 +22,6 @@ using namespace irdm::test;
 namespace {
 
 constexpr double kTwoTurns = 4.0 * 3.14159265358979323846;  // 2 revolutions a second [rad/s]
-
-std::shared_ptr<const Model> shared_model(Model model) {
-  return std::make_shared<const Model>(std::move(model));
-}
 
 SimulationConfig spinning(std::shared_ptr<const Model> model, const Vector3& w,
                           bool inertial_loading = true) {
@@ -157,8 +154,8 @@ TEST_CASE("inertial loading: both engines equal the direct sum over the products
   add_centrifugal(modal);
   const auto& response = std::get<ModalResponse>(modal.response);
   const auto& shapes = std::get<RowMatrix<double>>(response.shapes);
-  const auto by_modes = make_engine(shared_model(modal));
-  const auto by_history = make_engine(shared_model(with_dense_response<double>(modal)));
+  const auto by_modes = make_engine(share(modal));
+  const auto by_history = make_engine(share(with_dense_response<double>(modal)));
   Eigen::MatrixXd h(response.mode_count(), 4 * kSteps);
   for (int i = 0; i < response.mode_count(); ++i) {
     h.row(i) = held_force_response(held_force_oscillator(response.angular_frequency(i),
@@ -201,7 +198,7 @@ TEST_CASE("inertial loading: the predicted displacement has the spin of the comi
   Model modal = synthetic_cube(2, 20, 60);
   add_centrifugal(modal);
   for (const Model& model : {modal, with_dense_response<double>(modal)}) {
-    const auto engine = make_engine(shared_model(model));
+    const auto engine = make_engine(share(model));
     for (int k = 0; k < 20; ++k) {
       engine->hold_spin(Vector3(1.0, -2.0, 0.1 * k));
       const Vector3 free = engine->free_displacement(5);
@@ -263,7 +260,7 @@ TEST_CASE("inertial loading: off, a model that has the data gives the bits of on
     }
     REQUIRE_FALSE(has_centrifugal(stripped));
     Simulation a(spinning(with, Vector3(2, 5, -3), false));
-    Simulation b(spinning(shared_model(stripped), Vector3(2, 5, -3), false));
+    Simulation b(spinning(share(stripped), Vector3(2, 5, -3), false));
     StepRecord of_a;
     StepRecord of_b;
     for (int k = 0; k < 400; ++k) {
@@ -361,7 +358,7 @@ TEST_CASE("inertial loading: the surface is computed again from what was recorde
 TEST_CASE(
     "inertial loading: without the data it is refused with the way out, unless nothing spins") {
   Model model = synthetic_cube(2, 5, 10);
-  CHECK_THROWS_WITH(Simulation(spinning(shared_model(model), Vector3::Zero())),
+  CHECK_THROWS_WITH(Simulation(spinning(share(model), Vector3::Zero())),
                     Contains("no centrifugal response for engine = \"modal\"") &&
                         Contains("method = \"modal\"") && Contains("inertial_loading"));
   CHECK_THROWS_WITH(
@@ -369,5 +366,5 @@ TEST_CASE(
       Contains("scene/cube.h5") && Contains("engine = \"dense\""));
   CHECK_NOTHROW(check_inertial_loading(model, false, "cube.h5"));
   model.body.support = Support::kFixed;
-  CHECK_NOTHROW(Simulation(spinning(shared_model(model), Vector3::Zero())));
+  CHECK_NOTHROW(Simulation(spinning(share(model), Vector3::Zero())));
 }

@@ -10,16 +10,13 @@
 #include "server/engine/response_engine.hpp"
 #include "tests/simulation/pressed_cube.hpp"
 #include "tests/support/allocation_guard.hpp"
+#include "tests/support/shared_model.hpp"
 #include "tests/support/synthetic_model.hpp"
 
 using namespace irdm;
 using namespace irdm::test;
 
 namespace {
-
-std::shared_ptr<const Model> kept_model(Model model) {
-  return std::make_shared<const Model>(std::move(model));
-}
 
 Model with_residual(int modes = 20) {
   Model model = synthetic_cube(3, modes, 200);
@@ -80,8 +77,8 @@ TEST_CASE("reduced modes: the engine answers as R does that the model stands for
   const int modes = GENERATE(20, 1100);  // the engine takes 512 at a time
   CAPTURE(modes);
   const Model model = with_residual(modes);
-  const auto modal = make_engine(kept_model(model));
-  const auto dense = make_engine(kept_model(with_dense_response<double>(model)));
+  const auto modal = make_engine(share(model));
+  const auto dense = make_engine(share(with_dense_response<double>(model)));
   const std::array<ContactPatch, 3> patches{
       ContactPatch(SurfacePoint{{0, 1, 2}, {0.2, 0.3, 0.5}}),
       ContactPatch(SurfacePoint{{3, 7, 9}, {1.0, 0.0, 0.0}}),
@@ -126,7 +123,7 @@ TEST_CASE("reduced modes: the engine answers as R does that the model stands for
 }
 
 TEST_CASE("reduced modes: the surface is the same bits with any number of threads") {
-  const auto engine = make_engine(kept_model(with_residual()));
+  const auto engine = make_engine(share(with_residual()));
   for (int k = 0; k < 5; ++k) engine->advance(forces_of_step(k));
   Points one, many;
   const int before = omp_get_max_threads();

@@ -5,21 +5,19 @@
 #include "server/deformation/deformation.hpp"
 #include "server/engine/static_compliance.hpp"
 #include "server/step/simulation.hpp"
+#include "tests/support/shared_model.hpp"
 #include "tests/support/synthetic_model.hpp"
 
 using Catch::Matchers::Contains;
 using namespace irdm;
 using irdm::test::add_centrifugal;
+using irdm::test::share;
 using irdm::test::synthetic_cube;
 using irdm::test::with_dense_response;
 
 namespace {
 
 constexpr double kSettingsDt = 0.002;
-
-std::shared_ptr<const Model> share(Model model) {
-  return std::make_shared<const Model>(std::move(model));
-}
 
 /// A cube with both forms of its response.
 SimulationConfig with_both_engines() {

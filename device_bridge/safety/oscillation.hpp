@@ -5,7 +5,7 @@ namespace irdm {
 struct OscillationLimits {
   double swing = 2e-5;   ///< energy that comes and goes without counting as a cycle [J]
   double longest = 0.5;  ///< of a cycle [s]; slower is a hand that moves, or is moved
-  double active = 1.0;   ///< share of what it took that it gives beyond it, at least
+  double active = 0.5;   ///< share of what it took that it gives beyond it, at least
   double debt = 1e-3;    ///< given by cycles on balance at which the gain is cut [J]
   double cut = 0.5;      ///< what is left of the gain
   double least = 1.0 / 64;
@@ -16,7 +16,7 @@ struct OscillationLimits {
 /// cycle of an oscillation, the more the stiffer the object, and bounded damping does not always
 /// hold it. Cycles are told by the lows of the energy that the device has taken: where these sink
 /// from one to the next by much of what came and went, soon after each other, the loop is active (a
-/// spring whose force is late by a third of a radian or more; what lags less is left to damping);
+/// spring whose force is late by a sixth of a radian or more; what lags less is left to damping);
 /// half the force is half the stiffness, until it is not. Another hand's push, or a weight that is
 /// let down, gives energy without such cycles. Pure, real-time safe.
 class Oscillation {

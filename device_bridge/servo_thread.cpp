@@ -10,8 +10,6 @@
 namespace irdm {
 namespace {
 
-constexpr double kNanosecondsPerSecond = 1e9;
-
 std::int64_t to_ns(double seconds) noexcept {
   return std::llround(seconds * kNanosecondsPerSecond);
 }

@@ -13,7 +13,6 @@
 namespace irdm {
 namespace {
 
-constexpr double kProbeSecond = 1e9;
 constexpr std::int64_t kWarmUpNs = 100'000'000;      // of a session, not measured
 constexpr std::int64_t kPatienceNs = 5'000'000'000;  // for the first session
 const Vector3 kFarAway(0.0, 500.0, 0.0);             // where a tip touches nothing [m], W
@@ -58,7 +57,7 @@ void ProbeLoop::say(std::int64_t now_ns) noexcept {
 
 void ProbeLoop::run() noexcept {
   const std::int64_t begin_ns = monotonic_ns();
-  PeriodicSchedule schedule(begin_ns, std::llround(kProbeSecond / rate_));
+  PeriodicSchedule schedule(begin_ns, std::llround(kNanosecondsPerSecond / rate_));
   std::int64_t from_ns = 0;  // 0: no session yet
   std::uint64_t missed_before = 0;
   while (!stop_) {
@@ -78,7 +77,7 @@ void ProbeLoop::run() noexcept {
     measured_.predict = link_.state.front().predict;
     measured_.tick(now_ns, now_ns - deadline_ns, link_.styluses[0].input.front());
     measured_.missed = schedule.missed() - missed_before;
-    measured_.duration = static_cast<double>(now_ns - from_ns) / kProbeSecond;
+    measured_.duration = static_cast<double>(now_ns - from_ns) / kNanosecondsPerSecond;
     if (measured_.duration >= duration_) break;
   }
   done_.signal();

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 
+#include "common/realtime/clock.hpp"
+
 namespace irdm {
 namespace {
 
-constexpr double kSecondsPerNanosecond = 1e-9;
 // Two ticks can follow one another closely after a late one; no speed is told from less [s].
 constexpr double kShortest = 5e-4;
 
@@ -28,8 +29,8 @@ ReadingVerdict ReadingCheck::look_at_clock(std::int64_t now_ns) noexcept {
   const std::uint64_t gap =
       static_cast<std::uint64_t>(now_ns) - static_cast<std::uint64_t>(last_ns);
   const bool long_gap = gap > static_cast<std::uint64_t>(limits_.gap_ns);
-  elapsed_ = kSecondsPerNanosecond *
-             static_cast<double>(std::min(gap, static_cast<std::uint64_t>(limits_.gap_ns)));
+  elapsed_ =
+      kNanosecond * static_cast<double>(std::min(gap, static_cast<std::uint64_t>(limits_.gap_ns)));
   return long_gap && guards_.on(Guard::kClock) ? ReadingVerdict::kTrip : ReadingVerdict::kGood;
 }
 
@@ -46,7 +47,7 @@ ReadingVerdict ReadingCheck::look_at_tip(std::int64_t now_ns, const Vector3& tip
   if (last_good_ns_) {
     displacement_ = tip - tip_;
     const double seconds =
-        kSecondsPerNanosecond * (static_cast<double>(now_ns) - static_cast<double>(*last_good_ns_));
+        kNanosecond * (static_cast<double>(now_ns) - static_cast<double>(*last_good_ns_));
     velocity_ = displacement_ / std::max(seconds, kShortest);
   }
   tip_ = tip;

@@ -6,6 +6,8 @@
 #include <fstream>
 
 #include "common/error.hpp"
+#include "common/process/child_program.hpp"
+#include "common/process/temporary_folder.hpp"
 #include "replay/output/new_folder.hpp"
 #include "replay/output/part_file.hpp"
 #include "server/step/settings.hpp"
@@ -14,7 +16,8 @@
 namespace irdm::replay {
 namespace {
 
-constexpr double kLiveRate = 60.0;  // of what a person sees [Hz]
+constexpr double kLiveRate = 60.0;             // of what a person sees [Hz]
+constexpr double kLongestVideo = 24 * 3600.0;  // to make it [s]
 
 void need(const std::string& program, const std::string& why) {
   if (program_exists(program)) return;
@@ -29,18 +32,29 @@ viewer::ViewerSettings served() {
               "build with -DIRDM_BUILD_PAGE=ON, or install irdm");
 }
 
+std::string first_line(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  std::string line;
+  std::getline(file, line);
+  return line;
+}
+
 void make_video(const std::filesystem::path& folder, const std::filesystem::path& video,
                 double rate) {
   PartFile file(video);
   char rate_text[32];
   std::snprintf(rate_text, sizeof rate_text, "%.9g", rate);
-  ChildProgram ffmpeg(
-      {"ffmpeg", "-loglevel", "error", "-framerate", rate_text, "-i",
-       (folder / "frame_%05d.png").string(), "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-c:v",
-       "libx264", "-pix_fmt", "yuv420p", "-f", "mp4", "-y", file.part().string()},
-      {}, false);
-  if (ffmpeg.wait() != 0) {
-    throw Error(video.string(), "could not be made by ffmpeg", "see what it says above");
+  const TemporaryFolder folder_of_log("irdm-video");
+  const std::filesystem::path log = folder_of_log.path() / "log";
+  const ChildEnd end =
+      run_child("ffmpeg",
+                {"-loglevel", "error", "-framerate", rate_text, "-i", "frame_%05d.png", "-vf",
+                 "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-c:v", "libx264", "-pix_fmt", "yuv420p", "-f",
+                 "mp4", "-y", std::filesystem::absolute(file.part()).string()},
+                folder, log, kLongestVideo);
+  if (end != ChildEnd::kSuccess) {
+    throw Error(video.string(), "could not be made by ffmpeg: " + first_line(log),
+                "make it of the pictures in " + folder.string());
   }
   file.finish();
 }

@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <boost/property_tree/json_parser.hpp>
-#include <cstdlib>
 #include <sstream>
 #include <utility>
 
@@ -57,21 +56,9 @@ struct Browser::Answer {
   boost::property_tree::ptree result;
 };
 
-Browser::Profile::Profile() {
-  std::string name = (std::filesystem::temp_directory_path() / "irdm-pictures-XXXXXX").string();
-  if (::mkdtemp(name.data()) == nullptr) {
-    throw Error(name, "cannot be made a folder", "set TMPDIR to a folder that can be written to");
-  }
-  folder = name;
-}
-
-Browser::Profile::~Profile() {
-  std::error_code ignored;
-  std::filesystem::remove_all(folder, ignored);
-}
-
 Browser::Browser(const BrowserWindow& window) {
-  chromium_.emplace(command(profile_.folder), its_descriptors(pipe_), true);
+  chromium_.emplace(command(profile_.path()),
+                    ChildSettings{.own_group = true, .descriptors = its_descriptors(pipe_)});
   pipe_.close_its_ends();
   const Answer targets = call("Target.getTargets", "{}");
   std::string page;

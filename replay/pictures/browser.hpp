@@ -1,10 +1,10 @@
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <string>
 
-#include "replay/pictures/child_program.hpp"
+#include "common/process/child_program.hpp"
+#include "common/process/temporary_folder.hpp"
 #include "replay/pictures/zero_ended_pipe.hpp"
 
 namespace irdm::replay {
@@ -33,19 +33,11 @@ class Browser {
 
  private:
   struct Answer;
-  /// A folder for what Chromium keeps, removed with this object.
-  struct Profile {
-    Profile();
-    Profile(const Profile&) = delete;
-    Profile& operator=(const Profile&) = delete;
-    ~Profile();
-    std::filesystem::path folder;
-  };
 
   Answer call(const std::string& method, const std::string& parameters);
 
   // In this order: Chromium ends when its pipe does.
-  Profile profile_;
+  TemporaryFolder profile_{"irdm-pictures"};
   std::optional<ChildProgram> chromium_;
   ZeroEndedPipe pipe_;
   std::string session_;

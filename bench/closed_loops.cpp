@@ -1,10 +1,12 @@
 // Hands, objects and links of any kind, closed over the link and the safety filter:
 // bench_closed_loops [RUNS]. For the contact at the bridge and for held forces: the lowest energy
 // that the device's port has taken from the hand, whether the hand comes to rest when what it wants
-// does, compared with the same loop without delay, and how far the force is off it. A line for each
-// of the worst.
+// does, compared with the same loop without delay, how far the force is off it, and how often the
+// safety filter lowered its gain. Held forces also without that guard. A line for each of the
+// worst.
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
@@ -24,6 +26,7 @@ struct Outcome {
   double speed = 0.0;         ///< of the hand at the end [m/s]
   double direct_speed = 0.0;  ///< the same without delay
   double error = 0.0;         ///< of the force, as a share of the peak
+  double gain = 1.0;          ///< lowest of the filter
 };
 
 // Still moving at the end, and much more so than without delay.
@@ -36,17 +39,20 @@ void report(const std::string& name, std::vector<Outcome> outcomes, bool near) {
   std::vector<double> errors;
   int shaking = 0;
   int below = 0;
+  int lowered = 0;
   for (const Outcome& outcome : outcomes) {
     energies.push_back(-1e3 * outcome.energy);
-    errors.push_back(outcome.error);
+    if (std::isfinite(outcome.error)) errors.push_back(outcome.error);  // else it never touched
     shaking += unstable(outcome) ? 1 : 0;
     below += outcome.energy < -0.02 ? 1 : 0;
+    lowered += outcome.gain < 1.0 ? 1 : 0;
   }
   std::printf(
-      "%s: %zu runs, %d unstable, %d below -20 mJ; energy given by the port [mJ]: p50 %.3f, p99 "
+      "%s: %zu runs, %d unstable, %d below -20 mJ, %d with a lower gain; energy given by the port "
+      "[mJ]: p50 %.3f, p99 "
       "%.3f, "
       "p99.9 %.3f, max %.3f; error of the force, share of the peak: p50 %.3f, p99 %.3f\n",
-      name.c_str(), outcomes.size(), shaking, below, bench::percentile(energies, 0.5),
+      name.c_str(), outcomes.size(), shaking, below, lowered, bench::percentile(energies, 0.5),
       bench::percentile(energies, 0.99), bench::percentile(energies, 0.999),
       bench::percentile(energies, 1.0), bench::percentile(errors, 0.5),
       bench::percentile(errors, 0.99));
@@ -64,16 +70,24 @@ void report(const std::string& name, std::vector<Outcome> outcomes, bool near) {
   }
 }
 
-Outcome outcome_of(std::uint64_t seed, const RandomLoop& loop, const LoopRun& direct,
-                   LoopMode mode) {
-  const LoopRun run = run_loop(loop.setup, mode, loop.link);
-  return {seed, run.lowest_energy[0], unrest(run, 0.002).speed, unrest(direct, 0.002).speed,
-          largest_error(run, direct)};
+Outcome outcome_of(std::uint64_t seed, const RandomLoop& loop, const LoopRun& direct, LoopMode mode,
+                   Guards guards = {}) {
+  LoopSetup setup = loop.setup;
+  setup.guards = guards;
+  const LoopRun run = run_loop(setup, mode, loop.link);
+  const bool lowers = guards.on(Guard::kOscillation);
+  return {seed,
+          run.lowest_energy[0],
+          unrest(run, 0.002).speed,
+          unrest(direct, 0.002).speed,
+          largest_error(run, direct),
+          lowers ? run.lowest_gain[0] : 1.0};
 }
 
 void run(int runs, bool near) {
   std::vector<Outcome> predicted(static_cast<std::size_t>(runs));
   std::vector<Outcome> held(predicted.size());
+  std::vector<Outcome> unguarded(predicted.size());
 #pragma omp parallel for schedule(dynamic, 16)
   for (int i = 0; i < runs; ++i) {
     const auto seed = static_cast<std::uint64_t>(i);
@@ -82,10 +96,13 @@ void run(int runs, bool near) {
     const LoopRun direct = run_loop(loop.setup, LoopMode::kDirect);
     predicted[index] = outcome_of(seed, loop, direct, LoopMode::kPredict);
     held[index] = outcome_of(seed, loop, direct, LoopMode::kHold);
+    unguarded[index] =
+        outcome_of(seed, loop, direct, LoopMode::kHold, Guards{}.without(Guard::kOscillation));
   }
   const std::string of = near ? ", round trip at most 2 ms, at most 400 N/m" : "";
   report("contact at the bridge" + of, predicted, near);
   report("forces held" + of, held, near);
+  report("forces held, without the guard of oscillation" + of, unguarded, near);
 }
 
 }  // namespace

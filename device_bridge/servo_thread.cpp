@@ -196,6 +196,7 @@ void ServoThread::write_down(std::size_t i, std::int64_t now_ns) noexcept {
                       .counts = loop.counts(),
                       .success_rate = filter.success_rate(),
                       .port_energy = filter.port_energy(),
+                      .gain = filter.gain(),
                       .warmth = filter.warmth(),
                       .force = loop.shown()});
 }

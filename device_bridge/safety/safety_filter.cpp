@@ -29,6 +29,7 @@ SafetyFilter::SafetyFilter(const FilterLimits& limits, Guards guards)
       reading_(limits.reading, guards),
       arming_(limits.arming, guards),
       passivity_(limits.passivity),
+      oscillation_(limits.oscillation),
       thermal_({.peak = limits.max_force, .continuous = limits.continuous_force}) {
   // A limit of force that becomes lower takes its share of the falling rate.
   limits_.rate.fall -= ThermalLimits{}.slew;
@@ -43,6 +44,7 @@ void SafetyFilter::arm() noexcept {
 
 void SafetyFilter::disarm() noexcept {
   waits_ = false;
+  oscillation_.reset();
   arming_.disarm();
 }
 
@@ -55,9 +57,10 @@ void SafetyFilter::fail() noexcept {
 Vector3 SafetyFilter::step(std::int64_t now_ns, const DeviceReading& reading,
                            const ForceDemand& demand) noexcept {
   const ReadingVerdict verdict = check(now_ns, reading);
-  passivity_.observe(reading_.displacement(), sent_);
+  observe();
   thermal_.heat(sent_.norm(), reading_.elapsed(), reading.motor_warmth);
   accept(now_ns, demand);
+  age_ = age(now_ns);
   const double fresh_share = fresh(now_ns);
   watch_link(fresh_share);
   const Vector3 force = wanted();
@@ -79,6 +82,12 @@ ReadingVerdict SafetyFilter::check(std::int64_t now_ns, const DeviceReading& rea
   return verdict;
 }
 
+// What the hand did against the force that was really sent.
+void SafetyFilter::observe() noexcept {
+  passivity_.observe(reading_.displacement(), sent_);
+  oscillation_.observe(-sent_.dot(reading_.displacement()), reading_.elapsed(), age_);
+}
+
 // The newest demand. One that is not used changes nothing: the one before stays, and grows old.
 void SafetyFilter::accept(std::int64_t now_ns, const ForceDemand& demand) noexcept {
   if (!demand.linked) {
@@ -96,6 +105,12 @@ void SafetyFilter::accept(std::int64_t now_ns, const ForceDemand& demand) noexce
   }
   held_ = demand;
   lost_since_ns_.reset();
+}
+
+// How far the force lags behind the tip that it answers [s].
+double SafetyFilter::age(std::int64_t now_ns) const noexcept {
+  if (!held_.any || held_.solved_here) return 0.0;
+  return 1e-9 * static_cast<double>(difference(now_ns, held_.sample_time_ns));
 }
 
 // The share that its age leaves of a demand.
@@ -126,7 +141,8 @@ Vector3 SafetyFilter::wanted() const noexcept {
       held_.force.dot(held_.normal) < 0.0) {
     return Vector3::Zero();
   }
-  return guards_.on(Guard::kForceLimit) ? shortened(held_.force) : held_.force;
+  const double gain = guards_.on(Guard::kOscillation) ? oscillation_.gain() : 1.0;
+  return gain * (guards_.on(Guard::kForceLimit) ? shortened(held_.force) : held_.force);
 }
 
 // What passivity asks for, and damping while the force fades. It fades as well.

@@ -8,6 +8,7 @@
 #include "device_bridge/safety/arming.hpp"
 #include "device_bridge/safety/guards.hpp"
 #include "device_bridge/safety/link_gate.hpp"
+#include "device_bridge/safety/oscillation.hpp"
 #include "device_bridge/safety/passivity.hpp"
 #include "device_bridge/safety/rate_limit.hpp"
 #include "device_bridge/safety/reading_check.hpp"
@@ -26,6 +27,7 @@ struct FilterLimits {
   ReadingLimits reading = {};
   ArmingLimits arming = {};
   PassivityLimits passivity = {};
+  OscillationLimits oscillation = {};
   RateLimits rate = {};
 };
 
@@ -43,6 +45,7 @@ struct ForceDemand {
   bool any = false;                          ///< the rest means something
   std::int64_t sample_time_ns = 0;           ///< of the newest stylus sample that it contains
   std::int64_t horizon_ns = kHoldHorizonNs;  ///< how long after that it is good
+  bool solved_here = false;                  ///< from the tip as it is now, not from that sample's
   ContactState contact = ContactState::kFree;
   Vector3 force = Vector3::Zero();   ///< on the stylus [N], D
   Vector3 normal = Vector3::Zero();  ///< outward, of the surface; unit, D; zero: not known
@@ -57,10 +60,10 @@ struct FilterCounts {
 };
 
 /// The last word before the device. Each tick, in this order: sanity of the reading; newest demand;
-/// its age; no pull unless held; passivity; rate limit; largest force; warmth of the motors. The
-/// observer of passivity is told the force that was really sent. Whatever comes in, no force that
-/// goes out is beyond the limits of magnitude and rate. Pure: knows no clock, thread or file; what
-/// it does depends on its arguments alone. Real-time safe. One thread.
+/// its age; no pull unless held; gain; passivity; rate limit; largest force; warmth of the motors.
+/// The observer of passivity is told the force that was really sent. Whatever comes in, no force
+/// that goes out is beyond the limits of magnitude and rate. Pure: knows no clock, thread or file;
+/// what it does depends on its arguments alone. Real-time safe. One thread.
 class SafetyFilter {
  public:
   /// @param guards all but in tests
@@ -84,13 +87,16 @@ class SafetyFilter {
   const FilterCounts& counts() const noexcept { return counts_; }
   double success_rate() const noexcept { return gate_.success_rate(); }
   double port_energy() const noexcept { return passivity_.energy(); }  ///< see Passivity [J]
+  double gain() const noexcept { return oscillation_.gain(); }         ///< see Oscillation
   double warmth() const noexcept { return thermal_.warmth(); }
 
  private:
   ReadingVerdict check(std::int64_t now_ns, const DeviceReading& reading) noexcept;
   void accept(std::int64_t now_ns, const ForceDemand& demand) noexcept;
+  double age(std::int64_t now_ns) const noexcept;
   double fresh(std::int64_t now_ns) const noexcept;
   void watch_link(double fresh) noexcept;
+  void observe() noexcept;
   Vector3 wanted() const noexcept;
   Vector3 damped(const Vector3& force, double share) const noexcept;
   Vector3 limited(const Vector3& force) const noexcept;
@@ -103,9 +109,11 @@ class SafetyFilter {
   LinkGate gate_;
   bool waits_ = false;  ///< told to arm, and the link is not good enough yet
   Passivity passivity_;
+  Oscillation oscillation_;
   ThermalDerating thermal_;
   ForceDemand held_;  ///< the newest that was accepted
   std::optional<std::int64_t> lost_since_ns_;
+  double age_ = 0.0;  ///< of the tip that it answers, at the last tick [s]
   Vector3 sent_ = Vector3::Zero();
   FilterCounts counts_;
 };

@@ -140,18 +140,23 @@ bool a_touch_does_not_pull(Guards guards) {
   return rig.ticks(20, Vector3(0.1, -1, 0)).isApprox(Vector3(0.1, -1, 0));
 }
 
-// A hand presses on a wall whose force arrives late; the lowest energy that the port has had [J].
-double lowest_port_energy(Guards guards, int delay_ticks, double stiffness) {
+struct Pressed {
+  double lowest = 0.0;  ///< energy that the port has had [J]
+  double gain = 1.0;    ///< at the end
+};
+
+// A hand presses on a wall whose force arrives late.
+Pressed press(Guards guards, int delay_ticks, double stiffness) {
   FilterRig rig(guards);
   VirtualHand hand({.mass = 0.12, .damping = 2.0, .stiffness = 300.0}, Vector3(0, 0.005, 0));
   std::deque<Vector3> on_the_way(static_cast<std::size_t>(delay_ticks), Vector3::Zero());
   double energy = 0.0;
-  double lowest = 0.0;
+  Pressed pressed;
   for (int i = 0; i < 3000; ++i) {
     const Vector3 before = hand.position();
     hand.advance(1e-3, Vector3(0, i < 100 ? 0.005 : -0.01, 0), rig.shown);
     energy -= rig.shown.dot(hand.position() - before);
-    lowest = std::min(lowest, energy);
+    pressed.lowest = std::min(pressed.lowest, energy);
     rig.tip = hand.position();
     on_the_way.emplace_back(0.0, std::max(0.0, -stiffness * rig.tip.y()), 0.0);
     rig.demand_now(on_the_way.front());
@@ -159,11 +164,20 @@ double lowest_port_energy(Guards guards, int delay_ticks, double stiffness) {
     on_the_way.pop_front();
     rig.tick();
   }
-  return lowest;
+  pressed.gain = rig.filter.gain();
+  return pressed;
+}
+
+double lowest_port_energy(Guards guards, int delay_ticks, double stiffness) {
+  return press(guards, delay_ticks, stiffness).lowest;
 }
 
 bool a_late_wall_gives_no_energy(Guards guards) {
   return lowest_port_energy(guards, 2, 400.0) > -1e-3;
+}
+
+bool a_stiff_wall_that_is_late_does_not_shake_the_hand(Guards guards) {
+  return lowest_port_energy(guards, 10, 1500.0) > -20e-3;
 }
 
 bool a_force_that_fades_damps(Guards guards) {
@@ -239,6 +253,7 @@ constexpr std::array<Case, kGuardCount> kCases{{
     {Guard::kLatch, "latch", a_fault_stays},
     {Guard::kPushOnly, "push only", a_touch_does_not_pull},
     {Guard::kPassivity, "passivity", a_late_wall_gives_no_energy},
+    {Guard::kOscillation, "oscillation", a_stiff_wall_that_is_late_does_not_shake_the_hand},
     {Guard::kFadeDamping, "damping of a fade", a_force_that_fades_damps},
     {Guard::kRiseLimit, "rise", a_force_rises_by_at_most_300_N_a_second},
     {Guard::kFallLimit, "fall", a_force_falls_by_at_most_1200_N_a_second},
@@ -267,5 +282,16 @@ TEST_CASE("safety filter: a late wall gives next to no energy, however late") {
     }
   }
   // Without the controller it shakes the hand.
-  CHECK(lowest_port_energy(Guards{}.without(Guard::kPassivity), 10, 400.0) < -1.0);
+  const Guards no_gain = Guards{}.without(Guard::kOscillation);
+  CHECK(lowest_port_energy(no_gain.without(Guard::kPassivity), 10, 400.0) < -1.0);
+}
+
+TEST_CASE("safety filter: a wall that is near is shown in full, however stiff") {
+  for (const int delay : {0, 1, 2, 4}) {
+    for (const double stiffness : {100.0, 200.0, 400.0, 1000.0, 2000.0}) {
+      CAPTURE(delay, stiffness);
+      CHECK(press({}, delay, stiffness).gain == 1.0);
+    }
+  }
+  CHECK(press({}, 10, 2000.0).gain < 1.0);
 }

@@ -115,4 +115,5 @@ TEST_CASE("a million servo ticks touch neither heap, locks, exceptions nor files
   CHECK(violations.empty());
   CHECK(ticks_in_contact > 100'000);
   CHECK((told > 0) == predicts);
+  CHECK(loop.demanded().solved_here == predicts);
 }

@@ -55,6 +55,7 @@ constexpr double kGrabTime = 0.05;
 
 struct Up {
   std::uint64_t sequence = 0;
+  double time = 0.0;  ///< [s]
   std::uint32_t buttons = 0;
   Vector3 tip = Vector3::Zero();
   AppliedForces applied;
@@ -62,6 +63,7 @@ struct Up {
 
 struct Down {
   int step = 0;
+  double sample_time = 0.0;  ///< of the newest sample that it contains [s]
   Vector3 force = Vector3::Zero();
   ContactState contact = ContactState::kFree;
   ContactModel model;
@@ -70,12 +72,13 @@ struct Down {
 /// One stylus: its hand and device, the way to the server and back, and what is known at either
 /// end.
 struct Stylus {
-  Stylus(const LoopHand& loop_hand, const LoopLink& link, std::uint64_t seed, double dt)
+  Stylus(const LoopHand& loop_hand, const LoopLink& link, std::uint64_t seed, double dt,
+         Guards guards)
       : hand(loop_hand.hand, loop_hand.target(0.0)),
         up(link, 100 + seed),
         down(link, 200 + seed),
         contact(dt, std::llround(1e9 * dt)),
-        filter({}) {
+        filter({}, guards) {
     filter.arm();
   }
 
@@ -91,6 +94,7 @@ struct Stylus {
   // At the server:
   AppliedHistory history{kSession};
   std::uint64_t newest_up = 0;
+  double sample_time = 0.0;
   StylusCommand command;
 };
 
@@ -100,13 +104,14 @@ class Loop {
       : setup_(setup), mode_(mode), simulation_(setup.config), dt_(simulation_.dt()) {
     const std::size_t count = setup.hands.size();
     for (std::size_t s = 0; s < count; ++s) {
-      styluses_.push_back(std::make_unique<Stylus>(setup.hands[s], link, s, dt_));
+      styluses_.push_back(std::make_unique<Stylus>(setup.hands[s], link, s, dt_, setup.guards));
       bridged_.emplace_back(simulation_, s);
     }
     commands_.resize(count);
     run_.force.resize(count);
     run_.tip.resize(count);
     run_.lowest_energy.assign(count, 0.0);
+    run_.lowest_gain.assign(count, 1.0);
   }
 
   LoopRun run() {
@@ -139,7 +144,7 @@ class Loop {
     run_.lowest_energy[s] = std::min(run_.lowest_energy[s], stylus.energy);
     run_.tip[s].push_back(tip);
     const bool grab = setup_.hands[s].grab && now > kGrabTime;
-    Up message{static_cast<std::uint64_t>(t), grab ? kGrabButton : 0, tip, {}};
+    Up message{static_cast<std::uint64_t>(t), now, grab ? kGrabButton : 0, tip, {}};
     if (mode_ == LoopMode::kPredict && stylus.contact.tick(to_ns(now), tip)) {
       message.applied = stylus.contact.applied();
     }
@@ -156,21 +161,23 @@ class Loop {
     stylus.asked = {.any = wanted.any,
                     .sample_time_ns = wanted.content_ns,
                     .horizon_ns = wanted.horizon_ns,
+                    .solved_here = true,
                     .contact = wanted.contact,
                     .force = wanted.force,
                     .normal = wanted.normal};
     stylus.shown = old ? Vector3::Zero() : wanted.force;
   }
 
-  // The age of what a held demand contains is none of this loop's business.
+  // What is held is good for as long as the filter allows at most: how it fades is not asked here.
   void filter(std::size_t s, double now) {
     Stylus& stylus = *styluses_[s];
     stylus.asked.linked = true;
     if (mode_ != LoopMode::kPredict) {
       stylus.asked.any = true;
-      stylus.asked.sample_time_ns = to_ns(now);
+      stylus.asked.horizon_ns = FilterLimits{}.max_horizon_ns;
     }
     stylus.shown = stylus.filter.step(to_ns(now), {.tip = run_.tip[s].back()}, stylus.asked);
+    run_.lowest_gain[s] = std::min(run_.lowest_gain[s], stylus.filter.gain());
   }
 
   void take(std::size_t s, const Down& message, double now) {
@@ -183,6 +190,7 @@ class Loop {
       stylus.newest_down = message.step;
       stylus.asked.force = stylus.shown = message.force;
       stylus.asked.contact = message.contact;
+      stylus.asked.sample_time_ns = to_ns(message.sample_time);
     }
   }
 
@@ -194,6 +202,7 @@ class Loop {
       stylus.command.tip = message.tip;
       stylus.command.buttons = message.buttons;
       stylus.newest_up = message.sequence;
+      stylus.sample_time = message.time;
     });
   }
 
@@ -212,11 +221,13 @@ class Loop {
     Stylus& stylus = *styluses_[s];
     Down message;
     message.step = t;
+    message.sample_time = stylus.sample_time;
     message.force = record_.stylus[s].force;
     message.contact = record_.stylus[s].contact;
     if (mode_ == LoopMode::kDirect) {
       stylus.asked.force = stylus.shown = message.force;
       stylus.asked.contact = message.contact;
+      stylus.asked.sample_time_ns = to_ns(now);
       return;
     }
     if (mode_ == LoopMode::kPredict) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "common/contact/applied_forces.hpp"
+#include "device_bridge/safety/guards.hpp"
 #include "device_bridge/virtual_hand.hpp"
 #include "server/step/simulation.hpp"
 
@@ -34,6 +35,7 @@ struct LoopSetup {
   std::vector<LoopHand> hands;
   int steps = 1500;
   bool filtered = false;  ///< a safety filter before each device, a tick a step
+  Guards guards;          ///< of that filter
 };
 
 /// What happened, per hand and step.
@@ -41,6 +43,7 @@ struct LoopRun {
   std::vector<std::vector<Vector3>> force;  ///< on the hand [N], W
   std::vector<std::vector<Vector3>> tip;    ///< [m], W
   std::vector<double> lowest_energy;        ///< that the device had taken from the hand [J]
+  std::vector<double> lowest_gain;          ///< of the filter, see Oscillation
   int refused = 0;                          ///< models that check() refused
   int unknown = 0;                          ///< steps whose newest model was too old
   int late = 0;                             ///< forces that the server entered afterwards

@@ -6,15 +6,46 @@
 
 using namespace irdm::test;
 
+namespace {
+
+void check_at_rest(const LoopRun& run, const RandomLoop& loop) {
+  const LoopRun direct = run_loop(loop.setup, LoopMode::kDirect);
+  CHECK(unrest(run, 0.002).speed < std::max(0.02, 3.0 * unrest(direct, 0.002).speed));
+}
+
+}  // namespace
+
 TEST_CASE(
     "random loops: with the contact at the bridge none shakes, and the port gives no energy") {
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     const RandomLoop loop(seed);
     CAPTURE(loop.words);
-    const LoopRun direct = run_loop(loop.setup, LoopMode::kDirect);
     const LoopRun run = run_loop(loop.setup, LoopMode::kPredict, loop.link);
     CHECK(run.refused == 0);
     CHECK(run.lowest_energy[0] > -0.02);
-    CHECK(unrest(run, 0.002).speed < std::max(0.02, 3.0 * unrest(direct, 0.002).speed));
+    CHECK(run.lowest_gain[0] == 1.0);
+    check_at_rest(run, loop);
+  }
+}
+
+// Younger forces are not watched, see Oscillation; older ones shake a third of these hands without.
+TEST_CASE("random loops: forces that are held over a delay shake no hand for long") {
+  constexpr double kWatched = 0.002;  // one way [s]
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    const RandomLoop loop(seed);
+    CAPTURE(loop.words);
+    const LoopRun run = run_loop(loop.setup, LoopMode::kHold, loop.link);
+    CHECK(run.lowest_energy[0] > -0.02);
+    if (loop.link.delay > kWatched) check_at_rest(run, loop);
+  }
+}
+
+TEST_CASE("random loops: near the server taps, presses and swings are shown in full") {
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    const RandomLoop loop(seed, true);
+    CAPTURE(loop.words);
+    const LoopRun run = run_loop(loop.setup, LoopMode::kHold, loop.link);
+    CHECK(run.lowest_gain[0] == 1.0);
+    CHECK(run.lowest_energy[0] > -1e-3);
   }
 }

@@ -1,0 +1,49 @@
+#include "device_bridge/safety/oscillation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace irdm {
+
+void Oscillation::observe(double work, double elapsed, double age) noexcept {
+  time_ += elapsed;
+  ages_ += age * elapsed;
+  gain_ = std::min(1.0, gain_ * (1.0 + elapsed / limits_.recovery));
+  if (!std::isfinite(work)) return;
+  energy_ += work;
+  high_ = std::max(high_, energy_);
+  extreme_ = rising_ ? std::max(extreme_, energy_) : std::min(extreme_, energy_);
+  if (cycling_ && active(energy_) && debt_ - energy_ >= limits_.debt) cut();
+  if (std::abs(energy_ - extreme_) < limits_.swing) return;
+  rising_ = !rising_;
+  if (rising_) pass_low();
+  extreme_ = energy_;
+}
+
+// `extreme_` is the low, counted from the one before.
+void Oscillation::pass_low() noexcept {
+  cycling_ = time_ <= limits_.longest;
+  if (!cycling_) debt_ = 0.0;
+  if (extreme_ > 0.0 || active(extreme_)) debt_ = std::max(0.0, debt_ - extreme_);
+  energy_ -= extreme_;
+  high_ = energy_;
+  time_ = 0.0;
+  ages_ = 0.0;
+}
+
+// A cycle that ends with this low.
+bool Oscillation::active(double low) const noexcept {
+  return time_ <= limits_.longest && ages_ > limits_.fresh * time_ &&
+         -low >= limits_.active * high_;
+}
+
+// What comes after it is counted anew.
+void Oscillation::cut() noexcept {
+  gain_ = std::max(limits_.least, limits_.cut * gain_);
+  debt_ = 0.0;
+  energy_ = 0.0;
+  high_ = 0.0;
+  extreme_ = 0.0;
+}
+
+}  // namespace irdm

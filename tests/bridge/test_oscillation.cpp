@@ -1,0 +1,113 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "device_bridge/safety/oscillation.hpp"
+
+using namespace irdm;
+
+namespace {
+
+constexpr double kTick = 1e-3;  // [s]
+constexpr double kLate = 0.01;  // [s]
+
+// A tip that goes by `way(t)` against the force `force(t)` on it [m, N], for so many seconds. A
+// force that stood for its tick would be late by half of one, which is enough from 15 Hz on.
+template <class Way, class Force>
+Oscillation watched(double seconds, const Way& way, const Force& force, double age = kLate) {
+  Oscillation oscillation{OscillationLimits{}};
+  for (double t = 0.0; t < seconds; t += kTick) {
+    oscillation.observe(-force(t + 0.5 * kTick) * (way(t + kTick) - way(t)), kTick, age);
+  }
+  return oscillation;
+}
+
+double sine(double t, double frequency) {
+  return std::sin(2.0 * M_PI * frequency * t);
+}
+
+}  // namespace
+
+TEST_CASE("oscillation: a force that lags behind its own motion is cut, one that leads is not") {
+  for (const double frequency : {3.0, 10.0, 20.0, 40.0}) {
+    CAPTURE(frequency);
+    // A spring of 300 N/m; what it gives in a cycle is pi k a^2 sin(lag).
+    const double amplitude = 3e-3;
+    const auto way = [=](double t) { return amplitude * sine(t, frequency); };
+    const auto late_by = [=](double lag) {
+      return [=](double t) { return -300.0 * way(t - lag / (2.0 * M_PI * frequency)); };
+    };
+    const double given = M_PI * 300.0 * amplitude * amplitude * std::sin(0.6);
+    const double cycles_to_a_cut = OscillationLimits{}.debt / given;
+    // The first low ends no cycle.
+    const double seconds = (2.5 + cycles_to_a_cut) / frequency;
+    CHECK(watched(seconds, way, late_by(0.6)).gain() < 0.6);
+    CHECK(watched(3.0, way, late_by(-0.6)).gain() == 1.0);
+    CHECK(watched(3.0, way, late_by(0.0)).gain() == 1.0);
+  }
+}
+
+TEST_CASE("oscillation: a force that is fresh is let alone, by the mean of its age in a cycle") {
+  const auto way = [](double t) { return 3e-3 * sine(t, 10.0); };
+  const auto late = [&](double t) { return -300.0 * way(t - 0.01); };
+  CHECK(watched(3.0, way, late, 4.9e-3).gain() == 1.0);
+  CHECK(watched(3.0, way, late, 5.1e-3).gain() < 0.6);
+  for (const double other : {7e-3, 9e-3}) {
+    Oscillation oscillation{OscillationLimits{}};
+    for (int i = 0; i < 3000; ++i) {
+      const double t = i * kTick;
+      oscillation.observe(-late(t) * (way(t + kTick) - way(t)), kTick, i % 2 == 0 ? 2e-3 : other);
+    }
+    CHECK((oscillation.gain() < 0.6) == (other > 8e-3));
+  }
+}
+
+TEST_CASE("oscillation: neither a push by another hand nor a weight that is let down is cut") {
+  const auto constant = [](double) { return 1.0; };
+  CHECK(watched(
+            2.0, [](double t) { return 0.1 * t; }, constant)
+            .gain() == 1.0);
+  // With the tremor of a hand, 0.1 mm at 10 Hz.
+  CHECK(watched(
+            2.0, [](double t) { return 0.05 * t + 1e-4 * sine(t, 10.0); }, constant)
+            .gain() == 1.0);
+  // To and fro, slowly, pushed one way only.
+  const auto push = [](double t) { return sine(t - 1e-9, 0.7) > 0.0 ? 0.5 : 0.0; };
+  CHECK(watched(
+            6.0, [](double t) { return -0.02 * std::cos(2 * M_PI * 0.7 * t); }, push)
+            .gain() == 1.0);
+}
+
+TEST_CASE("oscillation: the noise of a sensor is no oscillation") {
+  std::mt19937_64 random(1);
+  Oscillation oscillation{OscillationLimits{}};
+  double before = 0.0;
+  for (int i = 0; i < 100'000; ++i) {
+    const double now = 5e-5 * static_cast<double>(random() % 3);
+    oscillation.observe(-3.0 * (now - before), kTick, kLate);
+    before = now;
+  }
+  CHECK(oscillation.gain() == 1.0);
+}
+
+TEST_CASE("oscillation: the gain comes back, slowly, and work that is no number is none") {
+  Oscillation oscillation{OscillationLimits{}};
+  const auto shake = [&](int ticks) {
+    for (int i = 0; i < ticks; ++i) oscillation.observe(i % 100 < 50 ? -1e-4 : 4e-5, kTick, kLate);
+  };
+  shake(1000);
+  const double cut = oscillation.gain();
+  CHECK(cut < 0.6);
+  CHECK(cut >= OscillationLimits{}.least);
+  oscillation.observe(std::numeric_limits<double>::quiet_NaN(), kTick, kLate);
+  oscillation.observe(std::numeric_limits<double>::infinity(), kTick, kLate);
+  for (int i = 0; i < 5000; ++i) oscillation.observe(0.0, kTick, kLate);
+  const double expected = cut * std::exp(5.0 / OscillationLimits{}.recovery);
+  CHECK(oscillation.gain() == Approx(expected).epsilon(1e-3));
+  for (int i = 0; i < 100'000; ++i) oscillation.observe(0.0, kTick, kLate);
+  CHECK(oscillation.gain() == 1.0);
+  shake(1000);
+  oscillation.reset();
+  CHECK(oscillation.gain() == 1.0);
+}

@@ -167,6 +167,7 @@ void ServoThread::tick(std::int64_t now_ns) noexcept {
     const SafetyFilter& filter = loops_[i].filter();
     link_.styluses[i].armed = filter.state() != FilterState::kDisarmed;
     link_.styluses[i].success_rate = filter.success_rate();
+    link_.styluses[i].gain = filter.gain();
   }
   link_.samples_ready.signal();
   if (lost) return end(ServoEnd::kDeviceLost, now_ns);

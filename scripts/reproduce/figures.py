@@ -62,7 +62,7 @@ def impulse_figures(folder, model):
             axes.set_title(f"{1000 * time:.0f} ms", fontsize=10)
         if not wires:
             bar = figure.colorbar(colours, ax=rows, shrink=0.8, pad=0.02)
-            bar.set_label("displacement (mm) after 1 N during 2 ms")
+            bar.set_label("displacement (mm) after 1 N during 2 ms", labelpad=8)
             bar.ax.yaxis.set_major_locator(matplotlib.ticker.MaxNLocator(5))
         save(figure, folder, name)
     return factor
@@ -119,7 +119,7 @@ def sequence(folder, name, rows, times, camera, exaggeration, like=None):
             draw.frame_scene(axes, limits, 0.05 if axes is line[0] else None)
         line[0].set_ylabel(label, fontsize=9)
     bar = figure.colorbar(colours, ax=grid, shrink=0.9, pad=0.01)
-    bar.set_label("displacement (mm)", fontsize=9)
+    bar.set_label("displacement (mm)", fontsize=9, labelpad=6)
     bar.ax.yaxis.set_major_locator(matplotlib.ticker.MaxNLocator(5))
     bar.ax.tick_params(labelsize=8)
     save(figure, folder, name)

@@ -8,7 +8,7 @@
 namespace irdm {
 namespace {
 
-std::string percentiles(const Histogram& histogram) {
+std::string percentiles_text(const Histogram& histogram) {
   if (histogram.count() == 0) return "none";
   const auto ms = [](std::int64_t ns) {
     return static_cast<double>(ns) / static_cast<double>(kNanosecondsPerMillisecond);
@@ -43,13 +43,13 @@ std::string to_text(const BridgeReport& report) {
     text << "datagrams: " << client.datagrams << " received in " << client.datagram_sessions
          << " sessions, " << client.datagrams_dropped << " dropped\n";
   }
-  text << "round trip: " << percentiles(servo.lockstep ? servo.round_trip : client.round_trip)
+  text << "round trip: " << percentiles_text(servo.lockstep ? servo.round_trip : client.round_trip)
        << '\n';
   if (servo.lockstep) {
     text << "servo: " << servo.ticks << " steps\n";
   } else {
     text << "servo: " << servo.ticks << " ticks, " << servo.missed << " missed, wake-up "
-         << percentiles(servo.wakeup) << ", scheduling " << scheduling << '\n';
+         << percentiles_text(servo.wakeup) << ", scheduling " << scheduling << '\n';
   }
   text << "peak force: " << peak_force << " N; safety filter: " << filter.demands << " forces and "
        << filter.readings << " readings not used, force dropped " << filter.trips

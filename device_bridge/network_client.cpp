@@ -21,8 +21,6 @@ namespace irdm {
 using boost::asio::ip::tcp;
 using boost::system::error_code;
 
-namespace {}  // namespace
-
 class NetworkClient::Impl {
  public:
   Impl(ServoLink& link, const ClientSettings& settings, Wakeup& gave_up);

@@ -45,7 +45,6 @@ struct ServoLink {
     Mailbox<LinkedForces> applied;          ///< servo writes, then
     std::atomic<bool> armed{false};         ///< servo writes; and the next
     std::atomic<double> success_rate{0.0};  ///< LinkGate's
-    std::atomic<double> gain{1.0};          ///< Oscillation's
   };
   explicit ServoLink(std::size_t count) : styluses(count) {}
 

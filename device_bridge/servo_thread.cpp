@@ -10,8 +10,6 @@
 namespace irdm {
 namespace {
 
-constexpr double kNanosecondsPerSecond = 1e9;
-
 std::int64_t to_ns(double seconds) noexcept {
   return std::llround(seconds * kNanosecondsPerSecond);
 }
@@ -169,7 +167,6 @@ void ServoThread::tick(std::int64_t now_ns) noexcept {
     const SafetyFilter& filter = loops_[i].filter();
     link_.styluses[i].armed = filter.state() != FilterState::kDisarmed;
     link_.styluses[i].success_rate = filter.success_rate();
-    link_.styluses[i].gain = filter.gain();
   }
   link_.samples_ready.signal();
   if (lost) return end(ServoEnd::kDeviceLost, now_ns);
@@ -199,7 +196,6 @@ void ServoThread::write_down(std::size_t i, std::int64_t now_ns) noexcept {
                       .counts = loop.counts(),
                       .success_rate = filter.success_rate(),
                       .port_energy = filter.port_energy(),
-                      .gain = filter.gain(),
                       .warmth = filter.warmth(),
                       .force = loop.shown()});
 }

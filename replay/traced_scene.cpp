@@ -9,6 +9,7 @@
 #include "replay/replay.hpp"
 #include "server/config/scene.hpp"
 #include "server/record/recording.hpp"
+#include "server/record/trace_header.hpp"
 #include "server/scene_simulation.hpp"
 
 namespace irdm {

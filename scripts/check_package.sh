@@ -4,6 +4,7 @@
 # Needs root, debootstrap and Debian's mirror; takes a few minutes and 1.5 GB. Changes nothing outside its root.
 #   scripts/check_package.sh [--keep] [FOLDER]
 #     FOLDER: where scripts/package.sh left the packages (default: out/package)
+#     IRDM_DEBIAN_MIRROR: address of the mirror; unless set, debootstrap takes its own
 #     --keep: the clean root stays for the next time, in /var/tmp/irdm-debian-12
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -25,7 +26,6 @@ command -v debootstrap >/dev/null || fail "there is no debootstrap; apt-get inst
 packages=("$folder"/irdm_*.deb "$folder"/irdm-dev_*.deb)
 [ ${#packages[@]} -eq 2 ] && [ -f "${packages[0]}" ] && [ -f "${packages[1]}" ] ||
   fail "there are no packages in $folder; make them with scripts/package.sh"
-mirror=${IRDM_DEBIAN_MIRROR:-http://deb.debian.org/debian}
 
 clean=/var/tmp/irdm-debian-12
 work=$(mktemp -d /var/tmp/irdm-package.XXXXXX)
@@ -41,9 +41,9 @@ finish() {
 trap finish EXIT
 
 if [ ! -f "$clean/.complete" ]; then
-  say "making a minimal Debian 12 from $mirror"
+  say "making a minimal Debian 12"
   rm -rf --one-file-system "$clean"
-  debootstrap --variant=minbase bookworm "$clean" "$mirror" >"$work/debootstrap.log" ||
+  debootstrap --variant=minbase bookworm "$clean" ${IRDM_DEBIAN_MIRROR:+"$IRDM_DEBIAN_MIRROR"} >"$work/debootstrap.log" ||
     { tail -5 "$work/debootstrap.log" >&2; fail "debootstrap failed"; }
   touch "$clean/.complete"
 fi

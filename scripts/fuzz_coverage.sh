@@ -10,7 +10,8 @@ decoders=(
   common/wire/frame.cpp common/wire/payload.cpp common/wire/contact_payload.cpp common/wire/secret_key.cpp
   common/wire/datagram_channel.cpp common/wire/frame_parts.cpp common/wire/stream_order.cpp
   common/contact/contact_model.cpp common/config/toml_reader.cpp common/model/model_file.cpp
-  server/network/session.cpp server/config/scene.cpp server/record/recording.cpp
+  server/network/session.cpp server/config/scene.cpp server/record/trace_header.cpp server/record/trace_rows.cpp server/record/trace_sets.hpp
+  server/record/recording.cpp
   server/viewer/message_parts.cpp server/viewer/client_message.cpp server/viewer/scene_message.cpp
   server/viewer/health_message.cpp server/viewer/state_message.cpp server/viewer/frame_message.cpp
   server/viewer/request_rules.cpp server/viewer/connection.cpp

@@ -10,6 +10,7 @@
 #include "common/program/stop_signal.hpp"
 #include "common/realtime/wakeup.hpp"
 #include "server/record/recording.hpp"
+#include "server/record/trace_header.hpp"
 #include "server/scene_simulation.hpp"
 #include "server/viewed_run/recorded_run.hpp"
 #include "server/viewed_run/viewer_scene.hpp"

@@ -4,9 +4,7 @@
 #include <ctime>
 
 namespace irdm {
-namespace {
-constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
-}
+namespace {}
 
 std::int64_t monotonic_ns() noexcept {
   timespec now{};

@@ -5,6 +5,8 @@
 namespace irdm {
 
 inline constexpr std::int64_t kNanosecondsPerMillisecond = 1'000'000;
+inline constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
+inline constexpr double kNanosecond = 1e-9;  // [s]
 
 /// Monotonic time of this machine [ns]. Any thread, real-time safe.
 std::int64_t monotonic_ns() noexcept;

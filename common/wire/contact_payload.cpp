@@ -15,7 +15,7 @@ constexpr std::uint16_t kStanding = 1u << 2;
 constexpr std::uint16_t kFixed = 1u << 3;
 constexpr std::uint16_t kAllFlags = kValid | kSlipping | kStanding | kFixed;
 
-[[noreturn]] void bad_value(const std::string& what) {
+[[noreturn]] void bad_contact_value(const std::string& what) {
   throw ProtocolError(ProtocolFault::kBadValue, what);
 }
 
@@ -148,17 +148,18 @@ ContactModelMessage decode_contact_model(ByteReader& in) {
   ContactModel& model = message.model;
   message.stylus = in.get<std::uint16_t>();
   const auto bits = in.get<std::uint16_t>();
-  if ((bits & ~unsigned{kAllFlags}) != 0) bad_value("the flags are " + std::to_string(bits));
+  if ((bits & ~unsigned{kAllFlags}) != 0)
+    bad_contact_value("the flags are " + std::to_string(bits));
   model.valid = (bits & kValid) != 0;
   model.slipping = (bits & kSlipping) != 0;
   model.standing = (bits & kStanding) != 0;
   model.body.support = (bits & kFixed) != 0 ? Support::kFixed : Support::kFloating;
   const auto state = in.get<std::uint16_t>();
-  if (state > 2) bad_value("the contact state is " + std::to_string(state));
+  if (state > 2) bad_contact_value("the contact state is " + std::to_string(state));
   model.state = static_cast<ContactState>(state);
   model.horizon = in.get<std::uint16_t>();
   if (model.horizon > kMaxHorizon || (model.horizon == 0) == model.valid) {
-    bad_value("the horizon is " + std::to_string(model.horizon));
+    bad_contact_value("the horizon is " + std::to_string(model.horizon));
   }
   model.step = in.get<std::uint64_t>();
   model.missing = in.get<std::uint64_t>();
@@ -208,19 +209,19 @@ AppliedForcesMessage decode_applied_forces(ByteReader& in) {
   applied.step = in.get<std::uint64_t>();
   applied.base = in.get<std::uint64_t>();
   if (applied.count < 1 || applied.count > AppliedForces::kSteps) {
-    bad_value("the count of forces is " + std::to_string(applied.count));
+    bad_contact_value("the count of forces is " + std::to_string(applied.count));
   }
   if (applied.step == kNoStep || applied.step + 1 < static_cast<std::uint64_t>(applied.count)) {
-    bad_value("forces of steps before the first");
+    bad_contact_value("forces of steps before the first");
   }
   for (int i = 0; i < applied.count; ++i) {
     AppliedForce& each = applied.past[static_cast<std::size_t>(i)];
     each.force = get_finite_vector(in, "a force");
     each.tip = get_finite_vector(in, "the tip");
-    if (each.force.cwiseAbs().maxCoeff() > kMaxForce) bad_value("a force is too large");
+    if (each.force.cwiseAbs().maxCoeff() > kMaxForce) bad_contact_value("a force is too large");
     each.arm = get_finite_vector(in, "the arm");
-    if (each.tip.cwiseAbs().maxCoeff() > kMaxCoordinate) bad_value("the tip is too far");
-    if (each.arm.cwiseAbs().maxCoeff() > kMaxCoordinate) bad_value("the arm is too long");
+    if (each.tip.cwiseAbs().maxCoeff() > kMaxCoordinate) bad_contact_value("the tip is too far");
+    if (each.arm.cwiseAbs().maxCoeff() > kMaxCoordinate) bad_contact_value("the arm is too long");
   }
   return message;
 }

@@ -9,7 +9,7 @@ using boost::system::error_code;
 
 namespace {
 
-constexpr int kSendBuffer = 65536;
+constexpr int kDatagramSendBuffer = 65536;
 constexpr int kAtOnce = 64;  // then it is others' turn
 
 }  // namespace
@@ -17,7 +17,7 @@ constexpr int kAtOnce = 64;  // then it is others' turn
 DatagramSocket::DatagramSocket(const boost::asio::any_io_executor& executor, const Endpoint& local)
     : socket_(executor, local) {
   error_code ignored;
-  socket_.set_option(udp::socket::send_buffer_size(kSendBuffer), ignored);
+  socket_.set_option(udp::socket::send_buffer_size(kDatagramSendBuffer), ignored);
   socket_.non_blocking(true);
 }
 

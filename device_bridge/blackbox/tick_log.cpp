@@ -68,7 +68,6 @@ void write_force(ColumnGroup<TickRow>& columns, std::int64_t origin_ns) {
   columns.number<std::uint64_t>("faults", "", [](const TickRow& row) { return row.counts.faults; });
   columns.number<double>("success_rate", "", [](const TickRow& row) { return row.success_rate; });
   columns.number<double>("port_energy", "J", [](const TickRow& row) { return row.port_energy; });
-  columns.number<double>("gain", "", [](const TickRow& row) { return row.gain; });
   columns.number<double>("warmth", "", [](const TickRow& row) { return row.warmth; });
   columns.vector("force", "N", [](const TickRow& row) { return row.force; });
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/contact/contact_model.hpp"
+#include "common/realtime/clock.hpp"
 
 namespace irdm {
 
@@ -19,7 +20,6 @@ void LinkMeasurement::tick(std::int64_t now_ns, std::int64_t late_ns,
 }
 
 std::int64_t LinkMeasurement::predict_limit_ns() const noexcept {
-  constexpr double kNanosecondsPerSecond = 1e9;
   if (!(dt > 0.0)) return kPredictNs;
   return std::min<std::int64_t>(kPredictNs, std::llround(kNanosecondsPerSecond * kMaxHorizon * dt));
 }

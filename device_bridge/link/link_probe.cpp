@@ -13,7 +13,6 @@
 namespace irdm {
 namespace {
 
-constexpr double kNanosecondsPerSecond = 1e9;
 constexpr std::int64_t kWarmUpNs = 100'000'000;      // of a session, not measured
 constexpr std::int64_t kPatienceNs = 5'000'000'000;  // for the first session
 const Vector3 kFarAway(0.0, 500.0, 0.0);             // where a tip touches nothing [m], W

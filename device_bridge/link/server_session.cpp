@@ -107,7 +107,6 @@ void ServerSession::welcomed(const wire::Welcome& welcome) {
                  .dt = welcome.dt};
   for (ServoLink::Stylus& stylus : shared_.link.styluses) {
     intakes_.emplace_back(welcome.lockstep);
-    told_of_shaking_.push_back(false);
     stylus.sample.receive();  // what was taken before the session is no part of it
     stylus.applied.receive();
   }
@@ -225,21 +224,6 @@ void ServerSession::tell_of_arming(std::int64_t now_ns) {
   }
 }
 
-// Nor should one who feels less than there is be left to guess. Once a session.
-void ServerSession::tell_of_shaking() {
-  constexpr double kMuchLess = 0.75;
-  for (std::size_t i = 0; i < shared_.link.styluses.size(); ++i) {
-    const double gain = shared_.link.styluses[i].gain;
-    if (gain > kMuchLess || told_of_shaking_[i]) continue;
-    told_of_shaking_[i] = true;
-    spdlog::warn(
-        "stylus {}: its force shook the hand and is shown at {:.0f} % for now, what it touches "
-        "feels softer than it is; bridge.mode = \"predict\" or a faster link helps, or a smaller "
-        "coupling_stiffness",
-        i, 100.0 * gain);
-  }
-}
-
 void ServerSession::check_time(std::int64_t now_ns) {
   const auto older = [now_ns](std::optional<std::int64_t> since, int limit_ms) {
     return since && now_ns - *since > limit_ms * kNanosecondsPerMillisecond;
@@ -255,7 +239,6 @@ void ServerSession::check_time(std::int64_t now_ns) {
     case State::kLinked:
       send_reports(now_ns);
       tell_of_arming(now_ns);
-      tell_of_shaking();
       if (datagrams_) datagrams_->check_time(now_ns);
       if (!link_state_.lockstep && now_ns - answered_ns_ > silence_ns_) {
         ++shared_.report.stalls;

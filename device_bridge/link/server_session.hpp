@@ -70,7 +70,6 @@ class ServerSession {
   void leave();
   void send_reports(std::int64_t now_ns);
   void tell_of_arming(std::int64_t now_ns);
-  void tell_of_shaking();
   void publish();
   void deadline_in(int milliseconds);
   std::uint16_t slot(std::size_t stylus) const noexcept;
@@ -89,8 +88,7 @@ class ServerSession {
   std::unique_ptr<ServerDatagrams> datagrams_;
   bool reports_ = false;  ///< the server takes them
   std::int64_t next_report_ns_ = 0;
-  std::vector<ForceIntake> intakes_;   ///< one a stylus, from Welcome on
-  std::vector<bool> told_of_shaking_;  ///< the same
+  std::vector<ForceIntake> intakes_;  ///< one a stylus, from Welcome on
 };
 
 }  // namespace irdm

@@ -2,12 +2,9 @@
 
 #include <algorithm>
 
+#include "common/realtime/clock.hpp"
+
 namespace irdm {
-namespace {
-
-constexpr double kNanosecond = 1e-9;
-
-}  // namespace
 
 void Arming::arm() noexcept {
   if (state_ != FilterState::kDisarmed && state_ != FilterState::kArmed) return;

@@ -19,14 +19,13 @@ enum class Guard : std::uint32_t {
   kLatch,          ///< a fault stays
   kPushOnly,       ///< a touching contact does not pull
   kPassivity,      ///< energy that the device would give out of nowhere is damped away
-  kOscillation,    ///< a force that shakes the hand becomes smaller
   kFadeDamping,    ///< a force that fades damps
   kRiseLimit,      ///< of the force per time, away from zero
   kFallLimit,      ///< the same, towards zero
   kForceLimit,     ///< largest force; what is not finite becomes zero
   kThermal,        ///< a warm motor is not overheated
 };
-inline constexpr std::uint32_t kGuardCount = 19;
+inline constexpr std::uint32_t kGuardCount = 18;
 
 /// Which guards are on: all of them. Only tests take one off, to see that it is missed.
 class Guards {

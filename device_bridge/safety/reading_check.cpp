@@ -2,10 +2,11 @@
 
 #include <algorithm>
 
+#include "common/realtime/clock.hpp"
+
 namespace irdm {
 namespace {
 
-constexpr double kNanosecond = 1e-9;
 // Two ticks can follow one another closely after a late one; no speed is told from less [s].
 constexpr double kShortest = 5e-4;
 

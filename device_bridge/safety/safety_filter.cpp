@@ -29,7 +29,6 @@ SafetyFilter::SafetyFilter(const FilterLimits& limits, Guards guards)
       reading_(limits.reading, guards),
       arming_(limits.arming, guards),
       passivity_(limits.passivity),
-      oscillation_(limits.oscillation),
       thermal_({.peak = limits.max_force, .continuous = limits.continuous_force}) {
   // A limit of force that becomes lower takes its share of the falling rate.
   limits_.rate.fall -= ThermalLimits{}.slew;
@@ -44,7 +43,6 @@ void SafetyFilter::arm() noexcept {
 
 void SafetyFilter::disarm() noexcept {
   waits_ = false;
-  oscillation_.reset();
   arming_.disarm();
 }
 
@@ -57,7 +55,7 @@ void SafetyFilter::fail() noexcept {
 Vector3 SafetyFilter::step(std::int64_t now_ns, const DeviceReading& reading,
                            const ForceDemand& demand) noexcept {
   const ReadingVerdict verdict = check(now_ns, reading);
-  observe();
+  passivity_.observe(reading_.displacement(), sent_);
   thermal_.heat(sent_.norm(), reading_.elapsed(), reading.motor_warmth);
   accept(now_ns, demand);
   const double fresh_share = fresh(now_ns);
@@ -79,12 +77,6 @@ ReadingVerdict SafetyFilter::check(std::int64_t now_ns, const DeviceReading& rea
   counts_.readings = reading_.unused();
   if (verdict == ReadingVerdict::kFault) fail();
   return verdict;
-}
-
-// What the hand did against the force that was really sent.
-void SafetyFilter::observe() noexcept {
-  passivity_.observe(reading_.displacement(), sent_);
-  oscillation_.observe(-sent_.dot(reading_.displacement()), reading_.elapsed());
 }
 
 // The newest demand. One that is not used changes nothing: the one before stays, and grows old.
@@ -134,8 +126,7 @@ Vector3 SafetyFilter::wanted() const noexcept {
       held_.force.dot(held_.normal) < 0.0) {
     return Vector3::Zero();
   }
-  const double gain = guards_.on(Guard::kOscillation) ? oscillation_.gain() : 1.0;
-  return gain * (guards_.on(Guard::kForceLimit) ? shortened(held_.force) : held_.force);
+  return guards_.on(Guard::kForceLimit) ? shortened(held_.force) : held_.force;
 }
 
 // What passivity asks for, and damping while the force fades. It fades as well.

@@ -8,7 +8,6 @@
 #include "device_bridge/safety/arming.hpp"
 #include "device_bridge/safety/guards.hpp"
 #include "device_bridge/safety/link_gate.hpp"
-#include "device_bridge/safety/oscillation.hpp"
 #include "device_bridge/safety/passivity.hpp"
 #include "device_bridge/safety/rate_limit.hpp"
 #include "device_bridge/safety/reading_check.hpp"
@@ -27,7 +26,6 @@ struct FilterLimits {
   ReadingLimits reading = {};
   ArmingLimits arming = {};
   PassivityLimits passivity = {};
-  OscillationLimits oscillation = {};
   RateLimits rate = {};
 };
 
@@ -59,10 +57,10 @@ struct FilterCounts {
 };
 
 /// The last word before the device. Each tick, in this order: sanity of the reading; newest demand;
-/// its age; no pull unless held; gain; passivity; rate limit; largest force; warmth of the motors.
-/// The observer of passivity is told the force that was really sent. Whatever comes in, no force
-/// that goes out is beyond the limits of magnitude and rate. Pure: knows no clock, thread or file;
-/// what it does depends on its arguments alone. Real-time safe. One thread.
+/// its age; no pull unless held; passivity; rate limit; largest force; warmth of the motors. The
+/// observer of passivity is told the force that was really sent. Whatever comes in, no force that
+/// goes out is beyond the limits of magnitude and rate. Pure: knows no clock, thread or file; what
+/// it does depends on its arguments alone. Real-time safe. One thread.
 class SafetyFilter {
  public:
   /// @param guards all but in tests
@@ -86,7 +84,6 @@ class SafetyFilter {
   const FilterCounts& counts() const noexcept { return counts_; }
   double success_rate() const noexcept { return gate_.success_rate(); }
   double port_energy() const noexcept { return passivity_.energy(); }  ///< see Passivity [J]
-  double gain() const noexcept { return oscillation_.gain(); }         ///< see Oscillation
   double warmth() const noexcept { return thermal_.warmth(); }
 
  private:
@@ -94,7 +91,6 @@ class SafetyFilter {
   void accept(std::int64_t now_ns, const ForceDemand& demand) noexcept;
   double fresh(std::int64_t now_ns) const noexcept;
   void watch_link(double fresh) noexcept;
-  void observe() noexcept;
   Vector3 wanted() const noexcept;
   Vector3 damped(const Vector3& force, double share) const noexcept;
   Vector3 limited(const Vector3& force) const noexcept;
@@ -107,7 +103,6 @@ class SafetyFilter {
   LinkGate gate_;
   bool waits_ = false;  ///< told to arm, and the link is not good enough yet
   Passivity passivity_;
-  Oscillation oscillation_;
   ThermalDerating thermal_;
   ForceDemand held_;  ///< the newest that was accepted
   std::optional<std::int64_t> lost_since_ns_;

@@ -14,7 +14,7 @@
 namespace irdm::precompute {
 namespace {
 
-using Parts = std::vector<std::unique_ptr<ColumnFileReader>>;
+using ColumnFiles = std::vector<std::unique_ptr<ColumnFileReader>>;
 
 void check_same(const ColumnFileReader& first, const ColumnFileReader& part) {
   const ColumnFileHeader& a = first.header();
@@ -34,7 +34,7 @@ void check_same(const ColumnFileReader& first, const ColumnFileReader& part) {
   }
 }
 
-void check_complete(const Parts& parts) {
+void check_complete(const ColumnFiles& parts) {
   int next = 0;
   const auto missing = [](const ColumnFileReader& part, int from, int to) {
     throw Error(part.name(), "columns " + to_text(ColumnRange{from, to}) + " are in no part",
@@ -55,8 +55,8 @@ void check_complete(const Parts& parts) {
   if (next < all) missing(*parts.back(), next, all);
 }
 
-Parts open_parts(const std::vector<std::filesystem::path>& paths) {
-  Parts parts;
+ColumnFiles open_parts(const std::vector<std::filesystem::path>& paths) {
+  ColumnFiles parts;
   for (const auto& path : paths) parts.push_back(std::make_unique<ColumnFileReader>(path));
   for (const auto& part : parts) check_same(*parts.front(), *part);
   std::sort(parts.begin(), parts.end(), [](const auto& a, const auto& b) {
@@ -68,7 +68,7 @@ Parts open_parts(const std::vector<std::filesystem::path>& paths) {
 
 // Calls visit(b, values) for each column in order, values being (T, 3n) floats or doubles.
 template <typename Visit>
-void for_each_column(const Parts& parts, const Visit& visit) {
+void for_each_column(const ColumnFiles& parts, const Visit& visit) {
   for (const auto& part : parts) {
     const ColumnFileHeader& header = part->header();
     part->rewind();
@@ -84,14 +84,14 @@ void for_each_column(const Parts& parts, const Visit& visit) {
 }
 
 // Of the driving point of one column: R[s](b, b) over s.
-struct DrivingPoint {
+struct PartPeak {
   double peak = 0.0;
   double tail = 0.0;  // in the last tenth of the steps
 };
 
 template <typename Scalar>
-DrivingPoint driving_point(int b, const Scalar* values, const ColumnFileHeader& header) {
-  DrivingPoint point;
+PartPeak driving_point(int b, const Scalar* values, const ColumnFileHeader& header) {
+  PartPeak point;
   const int tail = header.steps - (header.steps + 9) / 10;
   for (int s = 0; s < header.steps; ++s) {
     const auto at =
@@ -117,7 +117,7 @@ void copy_centrifugal(ColumnFileReader& part, ModelFileWriter& writer) {
   writer.write_dense_centrifugal(columns.data());
 }
 
-double peak_of(const Parts& parts, const ColumnFileHeader& header) {
+double peak_of(const ColumnFiles& parts, const ColumnFileHeader& header) {
   double peak = 0.0;
   for_each_column(parts, [&](int b, const auto* values) {
     peak = std::max(peak, driving_point(b, values, header).peak);
@@ -149,7 +149,7 @@ void check_compression(double share, const std::filesystem::path& output) {
 double assemble(const std::vector<std::filesystem::path>& paths,
                 const std::filesystem::path& output, const std::filesystem::path& temporary,
                 const Console& console) {
-  const Parts parts = open_parts(paths);
+  const ColumnFiles parts = open_parts(paths);
   const ColumnFileHeader& header = parts.front()->header();
   check_compression(header.compression_error, output);
   const Model model = read_description(
@@ -171,7 +171,7 @@ double assemble(const std::vector<std::filesystem::path>& paths,
   double left = 0.0;
   for_each_column(parts, [&](int b, const auto* values) {
     writer.write_dense_column(b, values);
-    const DrivingPoint point = driving_point(b, values, header);
+    const PartPeak point = driving_point(b, values, header);
     if (point.peak > 0.0) left = std::max(left, point.tail / point.peak);
     progress.update(b + 1);
   });

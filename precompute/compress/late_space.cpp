@@ -11,11 +11,11 @@
 namespace irdm::precompute {
 namespace {
 
-constexpr int kSampledColumns = 250;
+constexpr int kLateSamples = 250;
 
 // Not a multiple of 3: all axes are sampled.
 int sample_stride(int dof) {
-  const int stride = std::max(1, dof / kSampledColumns);
+  const int stride = std::max(1, dof / kLateSamples);
   return stride % 3 == 0 ? stride + 1 : stride;
 }
 

@@ -10,7 +10,7 @@
 namespace irdm::precompute {
 namespace {
 
-constexpr int kColumnsAtOnce = 8;
+constexpr int kDenseColumnsAtOnce = 8;
 constexpr Eigen::Index kStepsAtOnce = 32;
 
 // c = a b^T with the first columns of b, as many as a has; all with contiguous rows.
@@ -61,7 +61,7 @@ DenseColumns<Scalar>::DenseColumns(const ModalResponse& response, double dt, int
   shapes_ = shapes.template cast<Scalar>();
   responses_ = responses.template cast<Scalar>();
   centrifugal_ = response.centrifugal.transpose().template cast<Scalar>();
-  block_size_ = limited_block_size(kColumnsAtOnce, steps, columns(), sizeof(Scalar));
+  block_size_ = limited_block_size(kDenseColumnsAtOnce, steps, columns(), sizeof(Scalar));
   constexpr double kEpsilon = static_cast<double>(std::numeric_limits<Scalar>::epsilon());
   modes_ = needed_modes(shapes, responses, kEpsilon / 8.0);
 }

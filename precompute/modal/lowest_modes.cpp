@@ -12,9 +12,9 @@ namespace irdm::precompute {
 namespace {
 
 constexpr int kMostRestarts = 1000;
-constexpr double kTolerance = 1e-10;
+constexpr double kLanczosTolerance = 1e-10;
 // Of the largest stiffness over mass; up to here omega^2 is zero.
-constexpr double kZeroShare = 1e-12;
+constexpr double kRigidShare = 1e-12;
 
 // What Spectra asks for: M^1/2 K^+ M^1/2.
 class Flexibility {
@@ -33,7 +33,7 @@ class Flexibility {
 };
 
 void check_lowest(const Eigen::VectorXd& omega, double largest_square) {
-  if (omega(0) * omega(0) > kZeroShare * largest_square) return;
+  if (omega(0) * omega(0) > kRigidShare * largest_square) return;
   throw Error("mesh", "there are motions without elastic energy besides the rigid ones",
               "check for elements that hang on a single node or edge, and for very thin parts");
 }
@@ -51,7 +51,7 @@ ElasticModes lowest_modes(const ElasticStatics& statics, int count) {
   const auto basis = std::min<Eigen::Index>(2 * count + 20, statics.elastic_modes());
   Spectra::SymEigsSolver<Flexibility> solver(flexibility, count, basis);
   solver.init();
-  solver.compute(Spectra::SortRule::LargestAlge, kMostRestarts, kTolerance);
+  solver.compute(Spectra::SortRule::LargestAlge, kMostRestarts, kLanczosTolerance);
   if (solver.info() != Spectra::CompInfo::Successful) {
     throw Error("eigensolver", std::to_string(count) + " modes do not converge",
                 "ask for fewer modes, or check the mesh for extremely distorted elements");

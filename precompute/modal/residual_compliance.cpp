@@ -12,7 +12,7 @@
 namespace irdm::precompute {
 namespace {
 
-constexpr int kNodesAtOnce = 16;
+constexpr int kSolvedAtOnce = 16;
 constexpr double kTolerance = 1e-5;  // of the vector; that of the eigenvalue is its square
 constexpr double kMargin = 1e-7;
 
@@ -146,8 +146,8 @@ ResidualCompliance residual_compliance(const ElasticStatics& statics, const Mode
   int done = 0;
   std::exception_ptr failure;  // an exception must not leave a parallel region
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
-  for (int first = 0; first < nodes; first += kNodesAtOnce) {
-    const int count = std::min(kNodesAtOnce, nodes - first);
+  for (int first = 0; first < nodes; first += kSolvedAtOnce) {
+    const int count = std::min(kSolvedAtOnce, nodes - first);
     std::exception_ptr mine;
     try {
       add_rows(statics, mesh, modes, radius, first, count, rows);

@@ -9,7 +9,7 @@
 namespace irdm {
 namespace {
 
-constexpr std::array<std::array<std::size_t, 2>, 6> kPairs{
+constexpr std::array<std::array<std::size_t, 2>, 6> kCompressedPairs{
     {{0, 0}, {1, 0}, {1, 1}, {2, 0}, {2, 1}, {2, 2}}};
 
 Matrix3 block(const CompressedResponse& response, int i, int j, std::size_t s) noexcept {
@@ -125,9 +125,10 @@ void CompressedEngine::foresee(const ContactPatch& patch, std::span<const NodalF
           dot(contact_shapes_.data() + axis * shapes, late_.path(), shapes);
     }
   }
-  for (std::size_t k = 0; k < kPairs.size(); ++k) {
-    multiply(contact_shapes_.data() + kPairs[k][0] * shapes,
-             contact_shapes_.data() + kPairs[k][1] * shapes, products_.data() + k * shapes, shapes);
+  for (std::size_t k = 0; k < kCompressedPairs.size(); ++k) {
+    multiply(contact_shapes_.data() + kCompressedPairs[k][0] * shapes,
+             contact_shapes_.data() + kCompressedPairs[k][1] * shapes,
+             products_.data() + k * shapes, shapes);
   }
   for (std::size_t n = 0; n < response.size(); ++n) {
     if (n < early_steps) {

@@ -46,15 +46,9 @@ auto DenseEngine<Scalar>::after(std::size_t step, const ContactPatch& a,
 template <typename Scalar>
 void DenseEngine<Scalar>::predict(std::span<const ContactPatch> patches, std::span<Vector3> h,
                                   ContactMatrix& compliance) noexcept {
-  const auto size = static_cast<Eigen::Index>(3 * patches.size());
-  compliance.resize(size, size);
-  for (std::size_t a = 0; a < patches.size(); ++a) {
-    h[a] = mean(patches[a], [&](int node) { return free_displacement(node); });
-    for (std::size_t b = 0; b < patches.size(); ++b) {
-      compliance.block<3, 3>(static_cast<Eigen::Index>(3 * a), static_cast<Eigen::Index>(3 * b)) =
-          after(0, patches[a], patches[b]);
-    }
-  }
+  predict_patches(
+      patches, [&](int node) { return free_displacement(node); },
+      [&](int i, int j) { return entry(0, i, j); }, h, compliance);
 }
 
 template <typename Scalar>

@@ -38,6 +38,22 @@ Vector3 patch_response(const ContactPatch& to, const NodalForce& from, const Ent
   return u;
 }
 
+/// ResponseEngine::predict from where nodes will be and how they answer.
+/// @param free displacement of a node without further force [m]  @param entry as above
+template <typename Free, typename Entry>
+void predict_patches(std::span<const ContactPatch> patches, const Free& free, const Entry& entry,
+                     std::span<Vector3> h, ContactMatrix& compliance) {
+  const auto size = static_cast<Eigen::Index>(3 * patches.size());
+  compliance.resize(size, size);
+  for (std::size_t a = 0; a < patches.size(); ++a) {
+    h[a] = mean(patches[a], free);
+    for (std::size_t b = 0; b < patches.size(); ++b) {
+      compliance.block<3, 3>(static_cast<Eigen::Index>(3 * a), static_cast<Eigen::Index>(3 * b)) =
+          patch_response(patches[a], patches[b], entry);
+    }
+  }
+}
+
 /// All of R[0] from its entries, (3n, 3n).
 template <typename Entry>
 Eigen::MatrixXd whole_response(int dof, const Entry& entry) {

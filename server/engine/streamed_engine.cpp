@@ -177,15 +177,9 @@ Vector3 StreamedEngine<Scalar>::free_displacement(int node) const noexcept {
 template <typename Scalar>
 void StreamedEngine<Scalar>::predict(std::span<const ContactPatch> patches, std::span<Vector3> h,
                                      ContactMatrix& compliance) noexcept {
-  const auto size = static_cast<Eigen::Index>(3 * patches.size());
-  compliance.resize(size, size);
-  for (std::size_t a = 0; a < patches.size(); ++a) {
-    h[a] = mean(patches[a], [&](int node) { return free_displacement(node); });
-    for (std::size_t b = 0; b < patches.size(); ++b) {
-      compliance.block<3, 3>(static_cast<Eigen::Index>(3 * a), static_cast<Eigen::Index>(3 * b)) =
-          patch_response(patches[a], patches[b], [&](int i, int j) { return first(i, j); });
-    }
-  }
+  predict_patches(
+      patches, [&](int node) { return free_displacement(node); },
+      [&](int i, int j) { return first(i, j); }, h, compliance);
 }
 
 template <typename Scalar>

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "common/realtime/clock.hpp"
+
 namespace irdm {
 
 /// So many of something in a second, and a burst when there were few before. Pure.
@@ -15,7 +17,6 @@ class Allowance {
   /// Takes one; false when there is none left.
   /// @param now_ns monotonic
   bool take(std::int64_t now_ns) noexcept {
-    constexpr double kNanosecond = 1e-9;
     if (now_ns > last_ns_) {
       const double elapsed = kNanosecond * static_cast<double>(now_ns - last_ns_);
       left_ = std::min(burst_, left_ + rate_ * elapsed);

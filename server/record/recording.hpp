@@ -5,17 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "server/record/trace_writer.hpp"
 #include "server/step/simulation_config.hpp"
+#include "server/step/step_record.hpp"
 
 namespace irdm {
-
-/// The head of a trace file. Throws Error when it is none, or one that cannot be understood.
-TraceHeader read_trace_header(const std::filesystem::path& path);
-
-/// What it says of each object, in the scene's order: its models may differ. Throws Error.
-std::vector<TraceObject> read_trace_objects(const std::filesystem::path& path,
-                                            const std::vector<std::string>& names);
 
 /// A recorded run, read back whole: what each step did to the objects. Takes some 500 bytes a step.
 class Recording {

@@ -8,7 +8,7 @@ namespace irdm {
 namespace {
 
 // Nodes as near as this are given to the solver, which leaves them alone unless they come down.
-constexpr double kNear = 1e-4;
+constexpr double kNearFloor = 1e-4;
 constexpr double kLeastMargin = 2e-3;
 
 }  // namespace
@@ -47,7 +47,7 @@ int FloorContacts::find(const FreeMotion& motion, DeformedSurface& surface) noex
     if (!foot.down && offset + up.dot(rest_.node(i)) > margin_) continue;
     const Vector3& r = surface.node(i);
     largest = std::max(largest, std::abs(up.dot(r - rest_.node(i))));
-    if (!foot.down && offset + up.dot(r) > kNear) continue;
+    if (!foot.down && offset + up.dot(r) > kNearFloor) continue;
     if (!foot.down) {
       const Vector3 x = motion.to_world(r);
       foot.anchor = x - height(x) * floor_.normal;

@@ -12,7 +12,6 @@
 namespace irdm {
 namespace {
 
-constexpr double kNanosecondsPerSecond = 1e9;
 constexpr int kStatusPeriodMs = 1000;
 
 wire::Quantiles quantiles(const Histogram& histogram) {

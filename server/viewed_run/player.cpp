@@ -58,7 +58,6 @@ void Player::ask(const Request& request) {
 
 void Player::run() {
   constexpr int kIdleMs = 1000;
-  constexpr double kNanosecond = 1e-9;
   omp_set_num_threads(threads_);
   std::int64_t last_ns = monotonic_ns();
   while (!stopping_.load()) {

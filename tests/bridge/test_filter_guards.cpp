@@ -163,11 +163,7 @@ double lowest_port_energy(Guards guards, int delay_ticks, double stiffness) {
 }
 
 bool a_late_wall_gives_no_energy(Guards guards) {
-  return lowest_port_energy(guards.without(Guard::kOscillation), 2, 400.0) > -1e-3;
-}
-
-bool a_stiff_wall_that_is_late_does_not_shake_the_hand(Guards guards) {
-  return lowest_port_energy(guards, 10, 1500.0) > -20e-3;
+  return lowest_port_energy(guards, 2, 400.0) > -1e-3;
 }
 
 bool a_force_that_fades_damps(Guards guards) {
@@ -243,7 +239,6 @@ constexpr std::array<Case, kGuardCount> kCases{{
     {Guard::kLatch, "latch", a_fault_stays},
     {Guard::kPushOnly, "push only", a_touch_does_not_pull},
     {Guard::kPassivity, "passivity", a_late_wall_gives_no_energy},
-    {Guard::kOscillation, "oscillation", a_stiff_wall_that_is_late_does_not_shake_the_hand},
     {Guard::kFadeDamping, "damping of a fade", a_force_that_fades_damps},
     {Guard::kRiseLimit, "rise", a_force_rises_by_at_most_300_N_a_second},
     {Guard::kFallLimit, "fall", a_force_falls_by_at_most_1200_N_a_second},
@@ -272,6 +267,5 @@ TEST_CASE("safety filter: a late wall gives next to no energy, however late") {
     }
   }
   // Without the controller it shakes the hand.
-  const Guards no_gain = Guards{}.without(Guard::kOscillation);
-  CHECK(lowest_port_energy(no_gain.without(Guard::kPassivity), 10, 400.0) < -1.0);
+  CHECK(lowest_port_energy(Guards{}.without(Guard::kPassivity), 10, 400.0) < -1.0);
 }

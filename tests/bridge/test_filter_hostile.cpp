@@ -117,8 +117,8 @@ double since(std::int64_t earlier, std::int64_t later) {
   return 1e-9 * static_cast<double>(std::min(way, std::uint64_t{2'000'000}));
 }
 
-Extremes run(std::uint64_t seed, int ticks, Guards guards) {
-  SafetyFilter filter({.max_force = kMaxForce}, guards);
+Extremes run(std::uint64_t seed, int ticks) {
+  SafetyFilter filter({.max_force = kMaxForce});
   Hostility hostility(seed);
   Extremes most;
   Vector3 before = Vector3::Zero();
@@ -138,26 +138,22 @@ Extremes run(std::uint64_t seed, int ticks, Guards guards) {
   return most;
 }
 
-Extremes check(std::uint64_t seed, int ticks, Guards guards = {}) {
-  const Extremes most = run(seed, ticks, guards);
+void check(std::uint64_t seed, int ticks) {
+  const Extremes most = run(seed, ticks);
   CHECK(most.finite);
   CHECK(most.force <= kMaxForce * (1.0 + 1e-12));
+  CHECK(most.force > 0.99 * kMaxForce);
   CHECK(most.rise <= 1e-12);
   CHECK(most.change <= 1e-12);
   CHECK(most.engaged > static_cast<std::uint64_t>(ticks) / 10);
-  return most;
 }
 
 }  // namespace
 
 TEST_CASE("safety filter: nothing that comes in gets a force out that is beyond the limits") {
-  for (const std::uint64_t seed : {1u, 2u}) check(seed, 300'000);
-  // Hostile forces shake the hand, so that hardly any is shown in full with all guards.
-  CHECK(check(3, 300'000, Guards{}.without(Guard::kOscillation)).force > 0.99 * kMaxForce);
+  for (const std::uint64_t seed : {1u, 2u, 3u}) check(seed, 300'000);
 }
 
 TEST_CASE("safety filter: the same for a hundred million ticks", "[slow]") {
   for (std::uint64_t seed = 10; seed < 20; ++seed) check(seed, 10'000'000);
-  const Guards no_gain = Guards{}.without(Guard::kOscillation);
-  CHECK(check(20, 10'000'000, no_gain).force > 0.99 * kMaxForce);
 }

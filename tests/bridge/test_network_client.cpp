@@ -1,10 +1,5 @@
-#include <spdlog/sinks/ringbuffer_sink.h>
-#include <spdlog/spdlog.h>
-
-#include <algorithm>
 #include <catch2/catch.hpp>
 #include <limits>
-#include <memory>
 #include <optional>
 #include <string>
 
@@ -90,27 +85,6 @@ TEST_CASE("client says hello, sends samples of its slot and takes their forces")
           .force_step = 10, .sample_sequence = 4, .sample_time_ns = 9, .force = Vector3(1, 0, 0)}});
   REQUIRE(server.wait_for([&] { return server.input().any_force; }));
   CHECK(server.input().force.force == Vector3(1, 0, 0));
-}
-
-TEST_CASE("client says once a session that a force which shook the hand is shown in part") {
-  const auto kept = std::make_shared<spdlog::sinks::ringbuffer_sink_mt>(100);
-  const std::shared_ptr<spdlog::logger> before = spdlog::default_logger();
-  spdlog::set_default_logger(std::make_shared<spdlog::logger>("", kept));
-  const auto told = [&] {
-    const std::vector<std::string> lines = kept->last_formatted();
-    return std::count_if(lines.begin(), lines.end(), [](const std::string& line) {
-      return line.find("stylus 0: its force shook the hand and is shown at 30 %") !=
-             std::string::npos;
-    });
-  };
-  ScriptedServer server;
-  server.link.styluses[0].gain = 0.8;
-  RawPeer peer = server.welcome();
-  server.link.styluses[0].gain = 0.3;
-  CHECK(eventually([&] { return told() == 1; }));
-  server.end();
-  CHECK(told() == 1);
-  spdlog::set_default_logger(before);
 }
 
 TEST_CASE("client solves the contact only where it is asked to and the server can") {

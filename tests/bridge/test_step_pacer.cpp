@@ -12,8 +12,8 @@ using irdm::test::kMs;
 
 namespace {
 
-constexpr std::int64_t kTickNs = kMs;
-constexpr double kDt = 0.002;
+constexpr std::int64_t kPacerTickNs = kMs;
+constexpr double kPacerDt = 0.002;
 constexpr std::int64_t kStepNs = 2 * kMs;
 
 /// A bridge and a server, each with a clock of its own, and what lies between them.
@@ -29,7 +29,7 @@ class Pair {
 
   /// One tick of the bridge; the server's steps fall in between.
   void tick() {
-    now_ns_ += kTickNs;
+    now_ns_ += kPacerTickNs;
     for (; server_due() <= now_ns_; ++server_step_) serve();
     deliver(down_, [&](const Down& it) { pacer.hear(it.step, it.newest, in_contact, now_ns_); });
     const int count = pacer.due(now_ns_);
@@ -46,7 +46,7 @@ class Pair {
   void stall(int steps) { stalled_ns_ += steps * kStepNs; }
   void set(const Way& way) { way_ = way; }
 
-  StepPacer pacer{kDt, kTickNs};
+  StepPacer pacer{kPacerDt, kPacerTickNs};
   int most_at_once = 0;
   bool in_contact = false;
 
@@ -158,15 +158,15 @@ TEST_CASE(
 }
 
 TEST_CASE("step pacer: after a sleep it begins anew with what it hears") {
-  StepPacer pacer(kDt, kTickNs);
+  StepPacer pacer(kPacerDt, kPacerTickNs);
   CHECK(pacer.due(0) == 0);
-  pacer.hear(100, std::nullopt, false, -kTickNs);
+  pacer.hear(100, std::nullopt, false, -kPacerTickNs);
   CHECK(pacer.due(0) == 1);
   CHECK(pacer.step() == 102);
-  CHECK(pacer.due(kTickNs) == 0);
-  CHECK(pacer.due(2 * kTickNs) == 1);
-  CHECK(pacer.end_of(103, 2 * kTickNs) == 2 * kTickNs);
-  CHECK(pacer.end_of(102, 2 * kTickNs) == 0);
+  CHECK(pacer.due(kPacerTickNs) == 0);
+  CHECK(pacer.due(2 * kPacerTickNs) == 1);
+  CHECK(pacer.end_of(103, 2 * kPacerTickNs) == 2 * kPacerTickNs);
+  CHECK(pacer.end_of(102, 2 * kPacerTickNs) == 0);
   CHECK(pacer.due(1000 * kMs) == 0);
   CHECK_FALSE(pacer.running());
   pacer.hear(600, 103, false, 999 * kMs);

@@ -20,7 +20,7 @@ StylusScript parse(const std::string& text) {
 }
 
 /// That the text is refused, with these words in the message.
-void check_refused(const std::string& text, const std::string& words) {
+void check_script_refused(const std::string& text, const std::string& words) {
   CHECK_THROWS_WITH(parse(text), Catch::Contains(words));
   CHECK_THROWS_AS(parse(text), Error);
 }
@@ -66,29 +66,30 @@ TEST_CASE("script may have comments, blank lines, spaces and all columns") {
 }
 
 TEST_CASE("script refuses what does not fit, with file and line") {
-  check_refused("", "motion.csv: is empty");
-  check_refused("# nothing\n", "is empty");
-  check_refused(kHeader, "has no rows");
-  check_refused("0,0,0,0\n", "motion.csv:1: '0,0,0,0' is not a header");
-  check_refused("time,x,y\n", "is not a header");
-  check_refused("time,x,y,z,qw\n", "is not a header");
-  check_refused("time,x,y,z,button,qw,qx,qy,qz\n", "is not a header");
-  check_refused(kHeader + "0,0,0\n", "motion.csv:2: has 3 values");
-  check_refused(kHeader + "0,0,0,0,0\n", "has 5 values");
-  check_refused(kHeader + "0,0,zero,0\n", "'zero' is not a number");
-  check_refused(kHeader + "0,0,,0\n", "'' is not a number");
-  check_refused(kHeader + "0,0,1m,0\n", "'1m' is not a number");
-  check_refused(kHeader + "0,0,nan,0\n", "'nan' is not finite");
-  check_refused(kHeader + "0,0,inf,0\n", "'inf' is not finite");
-  check_refused(kHeader + "0,0,1e999,0\n", "is not finite");
-  check_refused(kHeader + "0,1001,0,0\n", "motion.csv:2: is out of reach");
-  check_refused(kHeader + "0,0,0,-1e308\n", "is out of reach");
-  check_refused(kHeader + "-1e308,0,0,0\n", "is out of reach");
-  check_refused(kHeader + std::string("0,0,1\0x,0\n", 11), "is not a number");
-  check_refused(kHeader + "0,0,0,0\n\n0,0,0,0\n", "motion.csv:4: time 0 does not come after");
-  check_refused(kHeader + "1,0,0,0\n0.5,0,0,0\n", "does not come after");
-  check_refused("time,x,y,z,qw,qx,qy,qz\n0,0,0,0,0,0,0,0\n", "not of norm 1");
-  check_refused("time,x,y,z,button\n0,0,0,0,-1\n", "button '-1'");
-  check_refused("time,x,y,z,button\n0,0,0,0,0.5\n", "button '0.5'");
+  check_script_refused("", "motion.csv: is empty");
+  check_script_refused("# nothing\n", "is empty");
+  check_script_refused(kHeader, "has no rows");
+  check_script_refused("0,0,0,0\n", "motion.csv:1: '0,0,0,0' is not a header");
+  check_script_refused("time,x,y\n", "is not a header");
+  check_script_refused("time,x,y,z,qw\n", "is not a header");
+  check_script_refused("time,x,y,z,button,qw,qx,qy,qz\n", "is not a header");
+  check_script_refused(kHeader + "0,0,0\n", "motion.csv:2: has 3 values");
+  check_script_refused(kHeader + "0,0,0,0,0\n", "has 5 values");
+  check_script_refused(kHeader + "0,0,zero,0\n", "'zero' is not a number");
+  check_script_refused(kHeader + "0,0,,0\n", "'' is not a number");
+  check_script_refused(kHeader + "0,0,1m,0\n", "'1m' is not a number");
+  check_script_refused(kHeader + "0,0,nan,0\n", "'nan' is not finite");
+  check_script_refused(kHeader + "0,0,inf,0\n", "'inf' is not finite");
+  check_script_refused(kHeader + "0,0,1e999,0\n", "is not finite");
+  check_script_refused(kHeader + "0,1001,0,0\n", "motion.csv:2: is out of reach");
+  check_script_refused(kHeader + "0,0,0,-1e308\n", "is out of reach");
+  check_script_refused(kHeader + "-1e308,0,0,0\n", "is out of reach");
+  check_script_refused(kHeader + std::string("0,0,1\0x,0\n", 11), "is not a number");
+  check_script_refused(kHeader + "0,0,0,0\n\n0,0,0,0\n",
+                       "motion.csv:4: time 0 does not come after");
+  check_script_refused(kHeader + "1,0,0,0\n0.5,0,0,0\n", "does not come after");
+  check_script_refused("time,x,y,z,qw,qx,qy,qz\n0,0,0,0,0,0,0,0\n", "not of norm 1");
+  check_script_refused("time,x,y,z,button\n0,0,0,0,-1\n", "button '-1'");
+  check_script_refused("time,x,y,z,button\n0,0,0,0,0.5\n", "button '0.5'");
   CHECK_THROWS_WITH(StylusScript::load("/nowhere/motion.csv"), Catch::Contains("no such"));
 }

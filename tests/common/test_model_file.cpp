@@ -44,17 +44,17 @@ ResidualCompliance small_residual() {
   return residual;
 }
 
-struct TemporaryFolder {
+struct ModelFolder {
   std::filesystem::path path =
       std::filesystem::temp_directory_path() / ("irdm-test-model-" + std::to_string(::getpid()));
-  TemporaryFolder() { std::filesystem::create_directories(path); }
-  ~TemporaryFolder() { std::filesystem::remove_all(path); }
+  ModelFolder() { std::filesystem::create_directories(path); }
+  ~ModelFolder() { std::filesystem::remove_all(path); }
 };
 
 }  // namespace
 
 TEST_CASE("model file gives back what was written, modal and dense") {
-  const TemporaryFolder folder;
+  const ModelFolder folder;
   const auto path = folder.path / "model.h5";
   const Model model = small_model();
   const auto& modal = std::get<ModalResponse>(model.response);
@@ -107,7 +107,7 @@ TEST_CASE("model file gives back what was written, modal and dense") {
 }
 
 TEST_CASE("model file gives back what modes that are left out add") {
-  const TemporaryFolder folder;
+  const ModelFolder folder;
   const auto path = folder.path / "model.h5";
   Model model = small_model();
   const ResidualCompliance residual = small_residual();
@@ -133,7 +133,7 @@ TEST_CASE("model file gives back what modes that are left out add") {
 }
 
 TEST_CASE("model file of before there were centrifugal responses is read as ever") {
-  const TemporaryFolder folder;
+  const ModelFolder folder;
   const auto path = folder.path / "model.h5";
   Model model = small_model();
   std::get<ModalResponse>(model.response).centrifugal.resize(0, 0);
@@ -153,13 +153,13 @@ TEST_CASE("model file of before there were centrifugal responses is read as ever
 }
 
 TEST_CASE("model file without commit leaves nothing behind") {
-  const TemporaryFolder folder;
+  const ModelFolder folder;
   { ModelFileWriter(folder.path / "model.h5").write_description(small_model()); }
   CHECK(std::filesystem::is_empty(folder.path));
 }
 
 TEST_CASE("model file that is missing, truncated, foreign or damaged is refused with its name") {
-  const TemporaryFolder folder;
+  const ModelFolder folder;
   const auto path = folder.path / "model.h5";
   CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal), Contains("no such file"));
 

@@ -83,7 +83,7 @@ void frame(Input input) {
 }  // namespace
 
 void viewer_message(Input input) {
-  constexpr std::array kKinds = {client, scene, health, state, frame};
+  constexpr std::array<void (*)(Input), 5> kKinds = {client, scene, health, state, frame};
   if (!input.empty()) kKinds[input[0] % kKinds.size()](input.subspan(1));
 }
 

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kHalfEdge = 0.06;
 constexpr double kRest = 1.2;  // when the hand's wish comes to rest [s]
-constexpr double kEnd = 3.0;   // [s]
+constexpr double kEnd = 1.8;   // [s]
 
 class Dice {
  public:

@@ -17,7 +17,7 @@ using namespace irdm::test;
 namespace {
 
 /// A stylus presses node 5 in along y and lets go; then it rings.
-struct Tap {
+struct StruckRun {
   int onset = 100;           ///< first frame with a force
   double force = 1.0;        ///< [N]
   double compliance = 5e-3;  ///< [m/N]
@@ -39,7 +39,7 @@ TracedScene tapped_cube() {
   return scene;
 }
 
-double displacement(const Tap& tap, int k) {
+double displacement(const StruckRun& tap, int k) {
   const double pressed = tap.compliance * tap.force;
   if (k < tap.onset) return 0.0;
   if (k < kRelease) return -pressed;
@@ -47,7 +47,7 @@ double displacement(const Tap& tap, int k) {
   return -pressed * std::exp(-tap.decay * t) * std::cos(2 * std::numbers::pi * tap.frequency * t);
 }
 
-void write_tap(const std::filesystem::path& path, const Tap& tap) {
+void write_tap(const std::filesystem::path& path, const StruckRun& tap) {
   const TracedScene scene = tapped_cube();
   RunOutput output(path, scene, {"trace.h5", "tips"});
   const int nodes = scene.config.objects[0].model->mesh.surface_node_count();
@@ -67,7 +67,7 @@ void write_tap(const std::filesystem::path& path, const Tap& tap) {
 }
 
 struct TwoTaps {
-  TwoTaps(const Tap& tap_a, const Tap& tap_b) {
+  TwoTaps(const StruckRun& tap_a, const StruckRun& tap_b) {
     write_tap(folder.path() / "a.h5", tap_a);
     write_tap(folder.path() / "b.h5", tap_b);
     const RunReader a(folder.path() / "a.h5");
@@ -84,8 +84,9 @@ struct TwoTaps {
 }  // namespace
 
 TEST_CASE("a tap on a softer object that answers later is told from the other") {
-  const Tap a;
-  const Tap b{.onset = 104, .force = 1.2, .compliance = 6e-3, .frequency = 12.6, .decay = 6.0};
+  const StruckRun a;
+  const StruckRun b{
+      .onset = 104, .force = 1.2, .compliance = 6e-3, .frequency = 12.6, .decay = 6.0};
   const TwoTaps taps(a, b);
   REQUIRE(taps.measures.evenly_spaced);
   CHECK(taps.measures.interval == Approx(0.002));
@@ -98,7 +99,7 @@ TEST_CASE("a tap on a softer object that answers later is told from the other") 
   REQUIRE(node.ringing_b.size() == 1);
   CHECK(node.ringing_a[0].frequency == Approx(12.0).epsilon(1e-6));
   CHECK(node.ringing_b[0].frequency == Approx(12.6).epsilon(1e-6));
-  const auto ratio = [](const Tap& tap) {
+  const auto ratio = [](const StruckRun& tap) {
     return tap.decay / std::hypot(tap.decay, 2 * std::numbers::pi * tap.frequency);
   };
   CHECK(node.ringing_a[0].damping_ratio == Approx(ratio(a)).epsilon(1e-5));

@@ -1,6 +1,7 @@
 // Columns that come from a disk, or do not.
 #include <atomic>
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <cstring>
 #include <stdexcept>
 #include <thread>
@@ -138,8 +139,11 @@ TEST_CASE("two threads take and give back while tips wander: each always has wha
   store.start();
   std::atomic<bool> wrong{false};
   std::atomic<int> had{0};
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::milliseconds(kDeadlineMs);
+  // However late the loader begins.
+  const auto waits = [&] { return had == 0 && std::chrono::steady_clock::now() < deadline; };
   const auto use = [&](int seed) {
-    for (int k = 0; k < 20000; ++k) {
+    for (int k = 0; k < 20000 || waits(); ++k) {
       const int node = (seed * 7 + k / 50) % kNodes;
       if (seed == 0 && k % 100 == 0) expect_at(store, node);
       const void* columns = store.take(node);

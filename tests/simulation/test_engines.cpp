@@ -7,17 +7,15 @@
 #include "common/model/half_column.hpp"
 #include "common/response/oscillator.hpp"
 #include "server/engine/response_engine.hpp"
+#include "tests/support/shared_model.hpp"
 #include "tests/support/synthetic_model.hpp"
 
 using namespace irdm;
+using irdm::test::share;
 using irdm::test::synthetic_cube;
 using irdm::test::with_dense_response;
 
 namespace {
-
-std::shared_ptr<const Model> share(Model model) {
-  return std::make_shared<const Model>(std::move(model));
-}
 
 // As a file of half precision would give it.
 Model in_half_precision(const Model& modal) {

@@ -13,7 +13,7 @@ using namespace irdm::test;
 
 namespace {
 
-const Vector3 kUp(0, 1, 0);
+const Vector3 kOutward(0, 1, 0);
 
 ContactPatch patch_at(const RestSurface& surface, double radius, double x, double z) {
   PressureMask mask(surface, radius);
@@ -125,7 +125,8 @@ TEST_CASE("fingertip: the force at an indentation does not depend on the mesh", 
       const RestSurface surface(mesh);
       const auto force = [&](double radius) {
         return 0.01 /
-               kUp.dot(cube.compliance(patch_at(surface, radius, place.x(), place.z())) * kUp);
+               kOutward.dot(cube.compliance(patch_at(surface, radius, place.x(), place.z())) *
+                            kOutward);
       };
       tip.push_back(force(0.015));
       point.push_back(force(0.0));

@@ -11,6 +11,7 @@
 #include "server/step/simulation.hpp"
 #include "tests/simulation/pressed_cube.hpp"
 #include "tests/support/fem_cube.hpp"
+#include "tests/support/shared_model.hpp"
 #include "tests/support/spinning_fem.hpp"
 #include "tests/support/synthetic_model.hpp"
 
@@ -21,10 +22,6 @@ using namespace irdm::test;
 namespace {
 
 constexpr double kTwoTurns = 4.0 * 3.14159265358979323846;  // 2 revolutions a second [rad/s]
-
-std::shared_ptr<const Model> share(Model model) {
-  return std::make_shared<const Model>(std::move(model));
-}
 
 SimulationConfig spinning(std::shared_ptr<const Model> model, const Vector3& w,
                           bool inertial_loading = true) {

@@ -10,16 +10,13 @@
 #include "server/engine/response_engine.hpp"
 #include "tests/simulation/pressed_cube.hpp"
 #include "tests/support/allocation_guard.hpp"
+#include "tests/support/shared_model.hpp"
 #include "tests/support/synthetic_model.hpp"
 
 using namespace irdm;
 using namespace irdm::test;
 
 namespace {
-
-std::shared_ptr<const Model> share(Model model) {
-  return std::make_shared<const Model>(std::move(model));
-}
 
 Model with_residual(int modes = 20) {
   Model model = synthetic_cube(3, modes, 200);
@@ -48,19 +45,19 @@ std::vector<Vector3> pressed_forces(const FemCube& cube, double x, double z) {
 }
 
 /// What two runs of the same press differ by, as shares of the largest force.
-struct ForceDifference {
+struct StepwiseDifference {
   double step = 0.0;         ///< of a step
   double mean = 0.0;         ///< without what goes to and fro from step to step (binomial, 5 steps)
   double alternation = 0.0;  ///< by which the first run's force goes to and fro from step to step
 };
 
-ForceDifference force_difference(const FemCube& all, const FemCube& some, double x, double z) {
+StepwiseDifference force_difference(const FemCube& all, const FemCube& some, double x, double z) {
   const std::vector<Vector3> expected = pressed_forces(all, x, z);
   const std::vector<Vector3> found = pressed_forces(some, x, z);
   double peak = 0.0;
   for (const Vector3& force : expected) peak = std::max(peak, force.norm());
   REQUIRE(peak > 0.1);
-  ForceDifference worst;
+  StepwiseDifference worst;
   const auto difference = [&](std::size_t k) -> Vector3 { return found[k] - expected[k]; };
   for (std::size_t k = 2; k + 2 < expected.size(); ++k) {
     const Vector3 mean = (difference(k - 2) + 4.0 * difference(k - 1) + 6.0 * difference(k) +
@@ -162,7 +159,7 @@ TEST_CASE(
   all.poisson_ratio = 0.4;
   FemCube some = all;
   some.modes = 200;
-  const ForceDifference difference = force_difference(all, some, 0.003, 0.004);
+  const StepwiseDifference difference = force_difference(all, some, 0.003, 0.004);
   std::cout << "200 of " << std::get<ModalResponse>(fem_cube(all)->response).mode_count()
             << " modes: force off by " << difference.step << "\n";
   const double stated =
@@ -182,7 +179,7 @@ TEST_CASE("reduced modes: the same on a finer mesh, in the middle, at an edge an
   some.modes = 600;
   for (const double x : {0.003, 0.055}) {
     for (const double z : {0.004, 0.055}) {
-      const ForceDifference difference = force_difference(all, some, x, z);
+      const StepwiseDifference difference = force_difference(all, some, x, z);
       std::cout << some.modes << " of "
                 << std::get<ModalResponse>(fem_cube(all)->response).mode_count() << " modes, at "
                 << x << ", " << z << ": force off by " << difference.step << ", in the mean by "

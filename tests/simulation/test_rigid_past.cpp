@@ -17,7 +17,7 @@ RigidBody brick_body() {
   return {properties, kDt};
 }
 
-FreeForces tethered() {
+FreeForces tethered_body() {
   FreeForces free;
   free.gravity = Vector3(0, -9.81, 0);
   free.damping = {1.0, 2.0};
@@ -60,7 +60,7 @@ class Pushed {
   void replay() { state = past.replay(body, free, state); }
 
   RigidBody body = brick_body();
-  FreeForces free = tethered();
+  FreeForces free = tethered_body();
   std::vector<Push> pushes;
   std::size_t count = 0;
   RigidState state;

@@ -5,21 +5,19 @@
 #include "server/deformation/deformation.hpp"
 #include "server/engine/static_compliance.hpp"
 #include "server/step/simulation.hpp"
+#include "tests/support/shared_model.hpp"
 #include "tests/support/synthetic_model.hpp"
 
 using Catch::Matchers::Contains;
 using namespace irdm;
 using irdm::test::add_centrifugal;
+using irdm::test::share;
 using irdm::test::synthetic_cube;
 using irdm::test::with_dense_response;
 
 namespace {
 
-constexpr double kDt = 0.002;
-
-std::shared_ptr<const Model> share(Model model) {
-  return std::make_shared<const Model>(std::move(model));
-}
+constexpr double kSettingsDt = 0.002;
 
 /// A cube with both forms of its response.
 SimulationConfig with_both_engines() {
@@ -41,7 +39,7 @@ SimulationConfig plain(const Model& model) {
 }
 
 /// Presses on the top, and holds it from step 50 to 100.
-StylusCommand press(int k) {
+StylusCommand press_and_hold(int k) {
   const double depth = std::min(1e-4 * k, 5e-3);
   return {true, k >= 50 && k < 100 ? kGrabButton : 0, Vector3(0.01, 0.061 - depth, 0.005), {}};
 }
@@ -49,7 +47,7 @@ StylusCommand press(int k) {
 StepRecord run(Simulation& simulation, int from, int to) {
   StepRecord record;
   for (int k = from; k < to; ++k) {
-    const StylusCommand command = press(k);
+    const StylusCommand command = press_and_hold(k);
     simulation.step({&command, 1}, record);
   }
   return record;
@@ -71,19 +69,19 @@ TEST_CASE("settings: gravity, tether and damping act from the next step on") {
   simulation.step({&nobody, 1}, record);
   CHECK(record.settings_change == 1);
   CHECK(record.settings == settings);
-  CHECK(record.object[0].velocity.y() == Approx(-2 * kDt));
+  CHECK(record.object[0].velocity.y() == Approx(-2 * kSettingsDt));
   settings.gravity.setZero();
   settings.object[0].damping.linear = 10.0;
   simulation.set(settings);
   simulation.step({&nobody, 1}, record);
-  CHECK(record.object[0].velocity.y() == Approx(-2 * kDt * (1 - 10.0 * kDt)));
+  CHECK(record.object[0].velocity.y() == Approx(-2 * kSettingsDt * (1 - 10.0 * kSettingsDt)));
   const Vector3 before = record.object[0].velocity;
   const double height = record.object[0].position.y();
   settings.object[0].damping.linear = 0.0;
   settings.object[0].tether.stiffness = 3.0;
   simulation.set(settings);
   simulation.step({&nobody, 1}, record);
-  CHECK(record.object[0].velocity.y() == Approx(before.y() - kDt * 3.0 * height / mass));
+  CHECK(record.object[0].velocity.y() == Approx(before.y() - kSettingsDt * 3.0 * height / mass));
 }
 
 TEST_CASE("settings: friction decides from the next step on whether a tip slips") {
@@ -163,7 +161,7 @@ TEST_CASE("settings: the deformation follows them") {
       settings.object[0].material_damping = k == 90 ? 4.0 : 0.5;
       simulation.set(settings);
     }
-    const StylusCommand command = press(k);
+    const StylusCommand command = press_and_hold(k);
     simulation.step({&command, 1}, record);
     deformation.follow(record);
   }

@@ -216,12 +216,6 @@ TEST_CASE("a trace that cannot be made is told, and nothing of it is left") {
                   "nowhere/trace.h5: cannot be created; check that the folder exists");
     CHECK_FALSE(std::filesystem::exists(stage.path("nowhere")));
   }
-  SECTION("a scene too long for the trace") {
-    // HDF5 keeps no attribute of more than 64 KiB; the file is there by then.
-    stage.write("scene.toml", scene_text("# " + std::string(100'000, 'x') + "\n"));
-    check_refusal(record("trace.h5"), "irdm-server", "trace.h5: ");
-    CHECK_FALSE(std::filesystem::exists(stage.path("trace.h5")));
-  }
   SECTION("a port that is taken") {
     const RawListener taken;
     stage.write("scene.toml",

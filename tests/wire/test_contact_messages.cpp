@@ -18,8 +18,8 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
+constexpr double kEndless = std::numeric_limits<double>::infinity();
 
 /// Payload alone, in a frame that is whole otherwise.
 Bytes payload_of(const Message& message) {
@@ -170,10 +170,10 @@ TEST_CASE("a contact model is refused for each number that is not finite, and fo
   for (std::size_t at = 32; at < good.size(); at += 8) {
     const bool friction = at == 408 || at == 416;
     if (friction) continue;
-    CHECK(fault_of<M>(with(good, at, kNan)) == ProtocolFault::kNotFinite);
-    CHECK(fault_of<M>(with(good, at, kInfinity)) == ProtocolFault::kNotFinite);
+    CHECK(fault_of<M>(with(good, at, kNoNumber)) == ProtocolFault::kNotFinite);
+    CHECK(fault_of<M>(with(good, at, kEndless)) == ProtocolFault::kNotFinite);
   }
-  CHECK(read_back<M>(with(good, 408, kInfinity)).model.friction.static_ == kInfinity);
+  CHECK(read_back<M>(with(good, 408, kEndless)).model.friction.static_ == kEndless);
   CHECK(fault_of<M>(with(good, 2, std::uint16_t{0x11})) == ProtocolFault::kBadValue);
   CHECK(fault_of<M>(with(good, 4, std::uint16_t{3})) == ProtocolFault::kBadValue);
   CHECK(fault_of<M>(with(good, 6, std::uint16_t{51})) == ProtocolFault::kBadValue);
@@ -207,7 +207,7 @@ TEST_CASE("applied forces are refused that are none, too many, of no step, too l
   CHECK(read_back<M>(with(good, 8, std::uint64_t{15})).applied.step == 15);
   CHECK(fault_of<M>(with(good, 8, ~std::uint64_t{0})) == ProtocolFault::kBadValue);
   for (std::size_t at = 24; at < good.size(); at += 8) {
-    CHECK(fault_of<M>(with(good, at, kNan)) == ProtocolFault::kNotFinite);
+    CHECK(fault_of<M>(with(good, at, kNoNumber)) == ProtocolFault::kNotFinite);
     CHECK(fault_of<M>(with(good, at, -1000.1)) == ProtocolFault::kBadValue);
   }
 }

@@ -22,7 +22,7 @@ constexpr std::size_t kTypeAt = 6;
 constexpr std::size_t kSizeAt = 8;
 constexpr std::size_t kCrcAt = 32;
 
-Bytes encoded(const Message& message, std::uint64_t sequence = 0) {
+Bytes encoded_bytes(const Message& message, std::uint64_t sequence = 0) {
   const FrameBytes frame = encode_frame(message, 1, sequence, 2);
   return {frame.view().begin(), frame.view().end()};
 }
@@ -66,11 +66,11 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 }  // namespace
 
 TEST_CASE("reader refuses a wrong magic") {
-  CHECK(fault_of(with(encoded(Goodbye{}), 0, 'X', 1)) == ProtocolFault::kWrongMagic);
+  CHECK(fault_of(with(encoded_bytes(Goodbye{}), 0, 'X', 1)) == ProtocolFault::kWrongMagic);
 }
 
 TEST_CASE("reader refuses another version and names both") {
-  const Bytes bytes = with(encoded(Hello{}), kVersionAt, 99, 2);
+  const Bytes bytes = with(encoded_bytes(Hello{}), kVersionAt, 99, 2);
   CHECK(fault_of(bytes) == ProtocolFault::kWrongVersion);
   CHECK(fault_of(with(bytes, kVersionAt, 0, 2)) == ProtocolFault::kWrongVersion);
   FrameReader reader;
@@ -87,13 +87,14 @@ TEST_CASE("reader refuses another version and names both") {
 
 TEST_CASE("reader refuses types that are not defined, reserved ones included") {
   for (const std::uint64_t type : {0, 8, 15, 19, 65535}) {
-    CHECK(fault_of(with(encoded(Goodbye{}), kTypeAt, type, 2)) == ProtocolFault::kUnknownType);
+    CHECK(fault_of(with(encoded_bytes(Goodbye{}), kTypeAt, type, 2)) ==
+          ProtocolFault::kUnknownType);
   }
 }
 
 TEST_CASE("reader refuses a length beyond the bound from the header alone") {
   for (const std::uint64_t size : {kMaxPayload + 1, std::size_t{0xFFFFFFFF}}) {
-    Bytes bytes = with(encoded(Goodbye{}), kSizeAt, size, 4);
+    Bytes bytes = with(encoded_bytes(Goodbye{}), kSizeAt, size, 4);
     bytes.resize(kHeaderSize);  // no payload follows: it is not waited for
     CHECK(fault_of(bytes) == ProtocolFault::kTooLong);
   }
@@ -102,14 +103,14 @@ TEST_CASE("reader refuses a length beyond the bound from the header alone") {
 TEST_CASE(
     "reader refuses a length that is not the type's, below and above, from the header alone") {
   for (const std::uint64_t size : {std::size_t{0}, std::size_t{79}, std::size_t{81}, kMaxPayload}) {
-    Bytes bytes = with(encoded(SampleMessage{}), kSizeAt, size, 4);
+    Bytes bytes = with(encoded_bytes(SampleMessage{}), kSizeAt, size, 4);
     bytes.resize(kHeaderSize);
     CHECK(fault_of(bytes) == ProtocolFault::kWrongLength);
   }
 }
 
 TEST_CASE("reader refuses every single flipped bit of a frame") {
-  const Bytes good = encoded(SampleMessage{});
+  const Bytes good = encoded_bytes(SampleMessage{});
   for (std::size_t bit = 0; bit < 8 * good.size(); ++bit) {
     Bytes bad = good;
     bad[bit / 8] = static_cast<std::uint8_t>(bad[bit / 8] ^ (1u << (bit % 8)));
@@ -119,34 +120,34 @@ TEST_CASE("reader refuses every single flipped bit of a frame") {
 }
 
 TEST_CASE("reader refuses values outside their range") {
-  const Bytes hello = encoded(Hello{});
+  const Bytes hello = encoded_bytes(Hello{});
   CHECK(fault_of(with_value(hello, 0, 2, 2)) == ProtocolFault::kBadValue);   // empty version range
   CHECK(fault_of(with_value(hello, 8, 0, 2)) == ProtocolFault::kBadValue);   // no stylus
   CHECK(fault_of(with_value(hello, 10, 2, 1)) == ProtocolFault::kBadValue);  // flag
-  const Bytes welcome = encoded(Welcome{.session = 1, .dt = 0.002});
+  const Bytes welcome = encoded_bytes(Welcome{.session = 1, .dt = 0.002});
   CHECK(fault_of(with_value(welcome, 8, 0, 4)) == ProtocolFault::kBadValue);   // session
   CHECK(fault_of(with_value(welcome, 12, 2, 1)) == ProtocolFault::kBadValue);  // flag
   CHECK(fault_of(with_value(welcome, 16, bits(0.0), 8)) == ProtocolFault::kBadValue);
   CHECK(fault_of(with_value(welcome, 16, bits(-0.002), 8)) == ProtocolFault::kBadValue);
   CHECK(fault_of(with_value(welcome, 16, bits(1.001), 8)) == ProtocolFault::kBadValue);
   CHECK(fault_of(with_value(welcome, 16, bits(kNan), 8)) == ProtocolFault::kNotFinite);
-  const Bytes report = encoded(Report{});
+  const Bytes report = encoded_bytes(Report{});
   for (const std::size_t at : {8, 12, 16, 20, 24, 28}) {  // singles: -1, NaN
     CHECK(fault_of(with_value(report, at, 0xBF800000, 4)) == ProtocolFault::kBadValue);
     CHECK(fault_of(with_value(report, at, 0x7FC00000, 4)) == ProtocolFault::kNotFinite);
   }
-  const Bytes status = encoded(Status{});
+  const Bytes status = encoded_bytes(Status{});
   for (const std::size_t at : {32, 36, 40, 44, 48, 52, 56}) {
     CHECK(fault_of(with_value(status, at, 0xBF800000, 4)) == ProtocolFault::kBadValue);
     CHECK(fault_of(with_value(status, at, 0x7FC00000, 4)) == ProtocolFault::kNotFinite);
   }
-  CHECK(fault_of(with_value(encoded(Refuse{}), 0, 0, 2)) == ProtocolFault::kBadValue);
-  CHECK(fault_of(with_value(encoded(Refuse{}), 0, 7, 2)) == ProtocolFault::kBadValue);
-  CHECK(fault_of(with_value(encoded(Goodbye{}), 0, 4, 2)) == ProtocolFault::kBadValue);
+  CHECK(fault_of(with_value(encoded_bytes(Refuse{}), 0, 0, 2)) == ProtocolFault::kBadValue);
+  CHECK(fault_of(with_value(encoded_bytes(Refuse{}), 0, 7, 2)) == ProtocolFault::kBadValue);
+  CHECK(fault_of(with_value(encoded_bytes(Goodbye{}), 0, 4, 2)) == ProtocolFault::kBadValue);
 }
 
 TEST_CASE("reader refuses each number of a sample that is not finite or too large") {
-  const Bytes sample = encoded(SampleMessage{});
+  const Bytes sample = encoded_bytes(SampleMessage{});
   for (const std::size_t at : {24, 32, 40}) {
     CHECK(fault_of(with_value(sample, at, bits(kNan), 8)) == ProtocolFault::kNotFinite);
     CHECK(fault_of(with_value(sample, at, bits(-kInfinity), 8)) == ProtocolFault::kNotFinite);
@@ -160,7 +161,7 @@ TEST_CASE("reader refuses each number of a sample that is not finite or too larg
 }
 
 TEST_CASE("reader refuses each number of a force that is not finite, and an unknown contact") {
-  const Bytes force = encoded(ForceMessage{});
+  const Bytes force = encoded_bytes(ForceMessage{});
   for (std::size_t at = 32; at < 80; at += 8) {
     CHECK(fault_of(with_value(force, at, bits(kNan), 8)) == ProtocolFault::kNotFinite);
     CHECK(fault_of(with_value(force, at, bits(kInfinity), 8)) == ProtocolFault::kNotFinite);
@@ -169,7 +170,7 @@ TEST_CASE("reader refuses each number of a force that is not finite, and an unkn
 }
 
 TEST_CASE("reserved bytes are not looked at") {
-  const Bytes bytes = with_value(encoded(Goodbye{}), 2, 0xFFFF, 2);
+  const Bytes bytes = with_value(encoded_bytes(Goodbye{}), 2, 0xFFFF, 2);
   FrameReader reader;
   std::span<const std::uint8_t> rest(bytes);
   CHECK(reader.read(rest));
@@ -179,7 +180,7 @@ TEST_CASE("reader puts frames together from any pieces") {
   Bytes stream;
   for (std::uint64_t i = 0; i < 50; ++i) {
     const Message message = i % 2 == 0 ? Message(SampleMessage{}) : Message(Goodbye{});
-    const Bytes frame = encoded(message, i);
+    const Bytes frame = encoded_bytes(message, i);
     stream.insert(stream.end(), frame.begin(), frame.end());
   }
   std::mt19937 random(1);
@@ -202,7 +203,7 @@ TEST_CASE("reader puts frames together from any pieces") {
 }
 
 TEST_CASE("reader tells a frame that is not complete") {
-  const Bytes bytes = encoded(Goodbye{});
+  const Bytes bytes = encoded_bytes(Goodbye{});
   std::span<const std::uint8_t> rest = std::span(bytes).first(bytes.size() - 1);
   FrameReader reader;
   CHECK_FALSE(reader.partial());
@@ -218,7 +219,7 @@ TEST_CASE("reader refuses garbage, whatever it is") {
     for (std::uint8_t& each : garbage) each = static_cast<std::uint8_t>(byte(random));
     // From the start, and after a good frame.
     CHECK(fault_of(garbage) == ProtocolFault::kWrongMagic);
-    Bytes after = encoded(SampleMessage{});
+    Bytes after = encoded_bytes(SampleMessage{});
     after.insert(after.end(), garbage.begin(), garbage.end());
     CHECK(fault_of(after) == ProtocolFault::kWrongMagic);
   }

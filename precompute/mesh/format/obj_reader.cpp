@@ -12,7 +12,7 @@
 namespace irdm::precompute {
 namespace {
 
-const std::set<std::string, std::less<>> kSkipped{
+const std::set<std::string, std::less<>> kSkippedKeywords{
     "vt", "vn", "vp", "g", "o", "s", "l", "p", "mg", "usemtl", "mtllib", "usemap", "maplib"};
 
 // The vertex of a corner that is written as 3, 3/1, 3//2 or 3/1/2, from 1, or from -1 backwards.
@@ -50,7 +50,7 @@ SurfaceMesh read_obj(const std::filesystem::path& path) {
       in.rest_of_line();  // a weight or a colour
     } else if (keyword == "f") {
       read_face(in, surface);
-    } else if (kSkipped.contains(keyword)) {
+    } else if (kSkippedKeywords.contains(keyword)) {
       in.rest_of_line();
     } else {
       in.fail(in_quotes(keyword) + " stands where v or f should", "write the surface again");

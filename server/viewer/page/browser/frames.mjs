@@ -108,7 +108,16 @@ async function goTo(page, time) {
 async function moveOn(page, before, time) {
   for (let k = Math.floor(before * DISPLAY) + 1; k < time * DISPLAY; ++k) await goTo(page, k / DISPLAY);
   await goTo(page, time);
-  await page.evaluate(() => window.irdm.world.drawNow());
+  // The picture is taken of what the browser has put on the screen: one frame after it was drawn.
+  await page.evaluate(
+    () =>
+      new Promise((resolve) =>
+        requestAnimationFrame(() => {
+          window.irdm.world.drawNow();
+          requestAnimationFrame(() => requestAnimationFrame(resolve));
+        }),
+      ),
+  );
 }
 
 async function takeAll(page) {

@@ -1,0 +1,39 @@
+#include "server/record/trace_header.hpp"
+
+#include "common/error.hpp"
+#include "common/hdf5/file.hpp"
+#include "server/record/trace_paths.hpp"
+
+namespace irdm {
+
+TraceHeader read_trace_header(const std::filesystem::path& path) {
+  const hdf5::File file = hdf5::File::open(path);
+  if (file.read_string_attribute("/", "format") != "irdm-trace") {
+    throw Error(path.string(), "is not a trace", "give a file that irdm-server --record has made");
+  }
+  if (file.read_integer_attribute("/", "version") != 1) {
+    throw Error(path.string(), "is a trace of another version", "record it again");
+  }
+  TraceHeader header;
+  header.scene = file.read_string_attribute("/", "scene");
+  header.dt = file.read_double_attribute("/", "dt");
+  header.stylus_count = 0;
+  while (file.exists("/stylus/" + std::to_string(header.stylus_count))) ++header.stylus_count;
+  header.objects.push_back({"", file.read_string_attribute("/", "model_file"),
+                            file.read_string_attribute("/", "model_checksum")});
+  return header;
+}
+
+std::vector<TraceObject> read_trace_objects(const std::filesystem::path& path,
+                                            const std::vector<std::string>& names) {
+  const hdf5::File file = hdf5::File::open(path);
+  std::vector<TraceObject> objects;
+  for (const std::string& name : names) {
+    const std::string group = names.size() > 1 ? trace::object_path(true, name) : "/";
+    objects.push_back({name, file.read_string_attribute(group, "model_file"),
+                       file.read_string_attribute(group, "model_checksum")});
+  }
+  return objects;
+}
+
+}  // namespace irdm

@@ -1,0 +1,168 @@
+#include "server/record/trace_rows.hpp"
+
+#include <algorithm>
+
+#include "common/error.hpp"
+
+namespace irdm::trace {
+namespace {
+
+EngineKind engine_of(std::uint8_t number) {
+  if (number == static_cast<std::uint8_t>(EngineKind::kCompressed)) return EngineKind::kCompressed;
+  return number != 0 ? EngineKind::kDense : EngineKind::kModal;
+}
+
+void check_late(const LateForce& late, const SimulationConfig& config, const std::string& file) {
+  const auto within = [](int value, std::size_t count) {
+    return value >= 0 && static_cast<std::size_t>(value) < count;
+  };
+  bool good = within(late.object, config.objects.size()) &&
+              within(late.stylus, config.styluses.size()) && within(late.age, kMaxHorizon);
+  for (const int node : late.point.nodes) {
+    good =
+        good && node >= 0 &&
+        node <
+            config.objects[static_cast<std::size_t>(late.object)].model->mesh.surface_node_count();
+  }
+  if (!good) {
+    throw Error(file, "/late has a force on something that the model or the scene does not have",
+                "use the scene and the model that it was recorded with");
+  }
+}
+
+}  // namespace
+
+ContactRows::ContactRows(const hdf5::File& file, const RowReader& reader, const std::string& path,
+                         int node_count)
+    : state(reader.read<std::uint8_t>(path + "/contact")),
+      slipping(reader.read<std::uint8_t>(path + "/slipping")),
+      nodes(reader.read<std::int32_t>(path + "/contact_nodes", 3)),
+      weights(reader.read<double>(path + "/contact_weights", 3)),
+      force(reader.read<double>(path + "/force", 3)),
+      proxy(reader.read<double>(path + "/proxy", 3)),
+      offset(reader.read<double>(path + "/offset", 3)) {
+  for (std::size_t k = 0; k < state.size(); ++k) {
+    if (state[k] == 0) continue;
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (state[k] <= 2 && nodes[3 * k + i] >= 0 && nodes[3 * k + i] < node_count) continue;
+      throw Error(file.name(), path + " touches a node that the model does not have",
+                  "use the model that it was recorded with");
+    }
+  }
+}
+
+FloorRows read_floor(const hdf5::File& file, const RowReader& reader, const std::string& path,
+                     int node_count) {
+  FloorRows rows;
+  rows.first.assign(1, 0);
+  if (!file.exists(path + "/count")) {
+    rows.first.resize(reader.rows() + 1, 0);
+    return rows;
+  }
+  rows.node = file.read<std::int32_t>(path + "/node", {0});
+  rows.force = file.read<float>(path + "/force", {rows.node.size(), 3});
+  for (const std::int32_t count : reader.read<std::int32_t>(path + "/count")) {
+    const std::size_t next = rows.first.back() + static_cast<std::size_t>(std::max(count, 0));
+    if (count < 0 || count > kMaxFloorContacts || next > rows.node.size()) {
+      throw Error(file.name(), path + "/count does not fit the rows that are there",
+                  "record it again");
+    }
+    rows.first.push_back(next);
+  }
+  for (const std::int32_t node : rows.node) {
+    if (node >= 0 && node < node_count) continue;
+    throw Error(file.name(), path + " touches a node that the model does not have",
+                "use the model that it was recorded with");
+  }
+  return rows;
+}
+
+SettingsRows read_settings(const hdf5::File& file, const SimulationConfig& config) {
+  SettingsRows rows;
+  if (!file.exists("/settings/force_step")) {  // an older trace
+    rows.force_step = {0};
+    rows.settings = {initial_settings(config)};
+    return rows;
+  }
+  rows.force_step = file.read<std::uint64_t>("/settings/force_step", {0});
+  const hsize_t count = rows.force_step.size();
+  if (count == 0) throw Error(file.name(), "/settings has no row", "record it again");
+  rows.settings.resize(count);
+  const auto gravity = file.read<double>("/settings/gravity", {count, 3});
+  for (std::size_t e = 0; e < count; ++e) rows.settings[e].gravity = vector_of(gravity, e);
+  for (std::size_t i = 0; i < config.objects.size(); ++i) {
+    const std::string group = settings_path(i);
+    const auto friction = file.read<double>(group + "/friction", {count, 2});
+    const auto damping = file.read<double>(group + "/damping", {count, 2});
+    const auto tether = file.read<double>(group + "/tether", {count, 2});
+    const auto material = file.read<double>(group + "/material_damping", {count});
+    const auto dense = file.read<std::uint8_t>(group + "/dense", {count});
+    const auto loading = file.read<std::uint8_t>(group + "/inertial_loading", {count});
+    for (std::size_t e = 0; e < count; ++e) {
+      rows.settings[e].object[i] = {{friction[2 * e], friction[2 * e + 1]},
+                                    {damping[2 * e], damping[2 * e + 1]},
+                                    {tether[2 * e], tether[2 * e + 1]},
+                                    material[e],
+                                    engine_of(dense[e]),
+                                    loading[e] != 0};
+    }
+  }
+  return rows;
+}
+
+LateRows read_late(const hdf5::File& file, const SimulationConfig& config) {
+  LateRows rows;
+  if (!file.exists("/late/force_step")) return rows;  // an older trace
+  const EventReader reader(
+      file, "/late",
+      {"/force_step", "/age", "/object", "/stylus", "/contact_nodes", "/contact_weights", "/force",
+       "/arm", "/body_position", "/body_orientation", "/body_velocity", "/body_angular_momentum"});
+  rows.force_step = reader.read<std::uint64_t>("/force_step");
+  const hsize_t count = reader.rows();
+  const auto age = reader.read<std::int32_t>("/age");
+  const auto object = reader.read<std::int32_t>("/object");
+  const auto stylus = reader.read<std::int32_t>("/stylus");
+  const auto nodes = reader.read<std::int32_t>("/contact_nodes", 3);
+  const auto weights = reader.read<double>("/contact_weights", 3);
+  const auto force = reader.read<double>("/force", 3);
+  const auto arm = reader.read<double>("/arm", 3);
+  rows.position = reader.read<double>("/body_position", 3);
+  rows.orientation = reader.read<double>("/body_orientation", 4);
+  rows.velocity = reader.read<double>("/body_velocity", 3);
+  rows.angular_momentum = reader.read<double>("/body_angular_momentum", 3);
+  for (std::size_t e = 0; e < count; ++e) {
+    LateForce late{object[e], stylus[e], age[e], {}, vector_of(force, e), vector_of(arm, e)};
+    for (std::size_t i = 0; i < 3; ++i) {
+      late.point.nodes[i] = nodes[3 * e + i];
+      late.point.weights[i] = weights[3 * e + i];
+    }
+    check_late(late, config, file.name());
+    rows.late.push_back(late);
+  }
+  return rows;
+}
+
+BridgedRows read_bridged(const hdf5::File& file, const SimulationConfig& config) {
+  BridgedRows rows;
+  if (!file.exists("/bridged/force_step")) return rows;  // an older trace
+  const EventReader reader(file, "/bridged",
+                           {"/force_step", "/stylus", "/object", "/force", "/arm"});
+  rows.force_step = reader.read<std::uint64_t>("/force_step");
+  const hsize_t count = reader.rows();
+  rows.stylus = reader.read<std::int32_t>("/stylus");
+  const auto object = reader.read<std::int32_t>("/object");
+  const auto force = reader.read<double>("/force", 3);
+  const auto arm = reader.read<double>("/arm", 3);
+  for (std::size_t e = 0; e < count; ++e) {
+    const std::int32_t stylus = rows.stylus[e];
+    if (stylus < 0 || stylus >= static_cast<std::int32_t>(config.styluses.size()) ||
+        object[e] < -1 || object[e] >= static_cast<std::int32_t>(config.objects.size())) {
+      throw Error(file.name(), "/bridged speaks of a stylus or an object that the scene lacks",
+                  "use the scene that it was recorded with");
+    }
+    rows.bridged.push_back({vector_of(force, e), vector_of(arm, e), object[e]});
+  }
+  return rows;
+}
+
+}  // namespace irdm::trace

@@ -2,17 +2,18 @@
 # Makes docs/reproduction.md and its figures: the paper's table and figures, and what it could not show. Precomputes,
 # plays the gallery's swing and tap in lockstep, replays, makes references by finite elements, compares and draws.
 #   scripts/reproduce.sh [--small] [--work FOLDER] [--docs FOLDER] [--preset PRESET]
-#     --small: a cube of 6 cells an edge instead of the paper's 12; the page goes to the work folder
+#     --small: a cube of 6 cells an edge instead of the paper's 12, shorter motions; the page goes to the work folder
 #     --work: for models, traces and runs (out/reproduction, with --small out/reproduction-small)
 #     --docs: for reproduction.md and images/reproduction (docs)
 #     --preset: the build whose programs are used (release); IRDM_PROGRAMS names a folder of finished ones instead
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-preset=release cells=12 own_cells=6 work="" docs="" columns=8
+preset=release cells=12 own_cells=6 work="" docs="" columns=8 substep=0.0005
+declare -A end=([swing]=9 [tap]=9) # s, of the motions: as they are
 while [ $# -gt 0 ]; do
   case $1 in
-    --small) cells=6 own_cells=4 columns=2 ;;
+    --small) cells=6 own_cells=3 columns=2 substep=0.001 end=([swing]=3.2 [tap]=1.2) ;;
     --work) work=${2:?reproduce: --work needs a folder}; shift ;;
     --docs) docs=${2:?reproduce: --docs needs a folder}; shift ;;
     --preset) preset=${2:?reproduce: --preset needs a name}; shift ;;
@@ -24,7 +25,7 @@ small=""
 [ $cells = 12 ] || small=-small
 work=${work:-out/reproduction$small}
 if [ -n "$small" ]; then docs=${docs:-$work/docs}; else docs=${docs:-docs}; fi
-mkdir -p "$work"/{configs/{models,scenes,bridges},scripts,models} "$docs/images/reproduction"
+mkdir -p "$work"/{configs/{models,scenes,bridges,scripts},scripts,models} "$docs/images/reproduction"
 work=$(realpath "$work")
 python="/usr/bin/python3 -B"
 
@@ -38,8 +39,10 @@ say() { echo "reproduce: $SECONDS s: $1"; }
 if [ -z "${IRDM_PROGRAMS:-}" ]; then
   scripts/build.sh "$preset" irdm-precompute irdm-server irdm-bridge irdm-replay ||
     fail "the build failed; see scripts/setup.sh"
-  export IRDM_PROGRAMS=$PWD/build/$preset/bin
+  IRDM_PROGRAMS=$PWD/build/$preset/bin
 fi
+IRDM_PROGRAMS=$(realpath "$IRDM_PROGRAMS")
+export IRDM_PROGRAMS
 $python -c 'import h5py, matplotlib, numpy' 2>/dev/null || fail "needs python3-h5py and python3-matplotlib; see scripts/setup.sh"
 
 # A model's configuration: model NAME CELLS [SED]. What was there and is the same keeps its date, and so its model.
@@ -56,7 +59,7 @@ scene() {
   grep -q '^\[\[stylus\]\]' "$file" || sed -i 's/^\[\[object\]\]/[[stylus]]\n\n&/' "$file"
   sed -i 's/^\[\[stylus\]\]/&\nradius = 0.015/' "$file"
   [ -z "${4:-}" ] || echo "$4" >>"$file"
-  sed "s|\.\./scripts|$PWD/configs/scripts|" "configs/bridges/$2.toml" >"$work/configs/bridges/$1.toml"
+  cp "configs/bridges/$2.toml" "$work/configs/bridges/$1.toml"
 }
 play() { # NAME [PROGRAMS]
   IRDM_PROGRAMS=${2:-$IRDM_PROGRAMS} IRDM_DATA=$work scripts/irdm-play "$1" --lockstep --out "$work" \
@@ -74,7 +77,30 @@ compare() { # A B JSON, in the work folder
   "$IRDM_PROGRAMS/irdm-replay" compare "$work/$1" "$work/$2" --json "$work/$3" >"$work/$3.log" 2>&1 ||
     fail "a comparison failed" "$work/$3.log"
 }
+# By finite elements, from forces: reference NAME. On one core, since two run at a time.
+reference() {
+  OMP_NUM_THREADS=1 replay "$1" fem --reference fem --substep $substep
+  compare "$1/run.h5" "$1/fem.h5" "$1/fem.json"
+}
+# A held point can be led along the same path, so that forces can be compared; takes several times as long.
+led_reference() {
+  OMP_NUM_THREADS=1 replay swing-modes fem --reference fem --from tips --substep $substep
+  mkdir -p "$work/swing-fem"
+  compare swing-modes/run.h5 swing-modes/fem.h5 swing-fem/compare.json
+}
+beside() { # COMMAND: runs in the background, in a process group of its own, until `wait $other`
+  set -m
+  "$@" &
+  set +m
+  other=$!
+  trap 'kill -- -$other 2>/dev/null || true' EXIT
+}
 
+# The motions, to their end or cut short.
+for motion in swing tap; do
+  awk -F, -v OFS=, -v end="${end[$motion]}" '!/^[0-9]/ || $1 < end { print; last = $0; next } { cut = 1 }
+    END { if (cut) { $0 = last; $1 = end; print } }' "configs/scripts/$motion.csv" >"$work/configs/scripts/$motion.csv"
+done
 ln -sfn "$PWD/scripts/plot_force.py" "$work/scripts/plot_force.py"
 model cube "$cells"
 model cube-stiff "$cells" 's/^youngs_modulus = 2000.0/youngs_modulus = 20000.0/'
@@ -89,20 +115,27 @@ say "by the paper's own method, $columns columns"
   --method time-stepping --storage dense --columns 0:"$columns" >"$work/models/stepped.log" 2>&1 ||
   fail "time stepping failed" "$work/models/stepped.log"
 
-say "the cube, swung and tapped; a stiff one, tapped"
+say "the cube, swung and tapped; a stiff one, tapped; a smaller one"
 for motion in swing tap; do
   scene $motion $motion cube
   play $motion
 done
 scene tap-stiff tap cube-stiff
 play tap-stiff
+for motion in swing tap; do
+  scene $motion-modes $motion own
+  play $motion-modes
+done
 "$IRDM_PROGRAMS/irdm-precompute" check "$work/models/cube.h5" >"$work/models/check.log" 2>&1 || true # coarse meshes fail
 
-say "finite elements"
-for motion in swing tap tap-stiff; do
-  replay $motion fem --reference fem --substep 0.0005
-  compare $motion/run.h5 $motion/fem.h5 $motion/fem.json
-done
+say "finite elements; those of the swing beside all that follows"
+swing_references() {
+  reference swing
+  led_reference
+}
+beside swing_references
+reference tap
+reference tap-stiff
 
 say "what else there is: elements, inertial loading, 1 kHz"
 for motion in swing tap; do
@@ -127,16 +160,7 @@ for motion in swing tap; do
   done
 done
 
-say "a smaller cube: finite elements led by the tips, compressed R"
-for motion in swing tap; do
-  scene $motion-modes $motion own
-  play $motion-modes
-done
-# A held point can be led along the same path, so that forces can be compared; minutes, and so not of the paper's cube.
-replay swing-modes fem --reference fem --from tips --substep 0.0005
-mkdir -p "$work/swing-fem"
-compare swing-modes/run.h5 swing-modes/fem.h5 swing-fem/compare.json
-
+say "the smaller cube: compressed R"
 errors=(0.1 0.02)
 for i in 1 2; do
   compressed=$work/models/own-$i.h5
@@ -151,6 +175,10 @@ for i in 1 2; do
     compare $motion-modes/run.h5 $motion-own-$i/run.h5 $motion-own-$i/compare.json
   done
 done
+
+say "the rest of the finite elements"
+wait "$other" || exit 1
+trap - EXIT
 
 say "page and figures"
 $python scripts/reproduce/make_page.py "$work" "$docs"

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """A bridge over a link that delays, in lockstep: every force reaches the hand some steps late. It speaks the protocol
-(docs/protocol.md) itself, with the virtual hand of irdm-bridge, without a safety filter.
+(docs/protocol.md) itself, with the virtual hand of irdm-bridge, and of its safety filter the limit on how fast a force
+may change, which also acts without delay: a stiff contact that begins asks for more than 300 N/s.
 
 usage: delayed_bridge.py BRIDGE.toml --server HOST:PORT    IRDM_DELAY_STEPS: round trip in force steps, 0 unless given
 """
@@ -18,6 +19,7 @@ import numpy as np
 HEADER = struct.Struct("<4sHHIIQq")
 HELLO, WELCOME, GOODBYE, SAMPLE, FORCE = 1, 2, 4, 5, 6
 SERVO = 0.001  # s, of irdm-bridge
+RISE, FALL = 300.0, 1200.0 - 20.0  # N/s; device_bridge/safety/rate_limit.hpp, less the slew of the thermal limit
 
 
 def checksum(data):
@@ -77,6 +79,22 @@ class Hand:
         self.position, self.velocity, self.target = target + sag + y, speed + u, target
 
 
+def limit_rate(shown, wanted):
+    """The next force shown, SERVO later (device_bridge/safety/rate_limit.cpp)."""
+    way = wanted - shown
+    length = np.linalg.norm(way)
+    if length == 0:
+        return wanted
+    falling = np.clip(-shown @ way / length, 0, length)
+    size = np.linalg.norm(shown)
+    blend = np.clip(2 - 2 * np.linalg.norm(wanted) / size, 0, 1) if size else 0
+    fall = RISE + blend * (FALL - RISE)
+    travelled = fall * SERVO
+    if travelled > falling:
+        travelled = falling + RISE * (SERVO - falling / fall)
+    return wanted if travelled >= length else shown + travelled / length * way
+
+
 def read_script(path):
     rows = [row for row in csv.reader(open(path)) if row and not row[0].startswith("#")][1:]
     return np.array([[float(value) for value in row] for row in rows])  # time, x, y, z, button
@@ -102,10 +120,12 @@ def main():
     dt, = struct.unpack_from("<d", welcome, 16)
     parts = round(dt / SERVO)
     hand = Hand(**device["hand"], start=target(0.0))
-    forces = [np.zeros(3)] * (delay + 1)  # those under way, and the one that is felt
+    forces = [np.zeros(3)] * (delay + 1)  # those under way, and the one that has come
+    shown = np.zeros(3)
     for k in range(round(script[-1, 0] / dt)):
         for part in range(parts):
-            hand.advance(target(k * dt + (part + 1) * SERVO), forces[0])
+            shown = limit_rate(shown, forces[0])
+            hand.advance(target(k * dt + (part + 1) * SERVO), shown)
         time = (k + 1) * dt
         link.send(SAMPLE, struct.pack("<HHIQq3d4d", stylus, 0, button(time), k, round(1e9 * time),
                                       *hand.position, 1, 0, 0, 0))

@@ -1,6 +1,7 @@
 """Draws deformed surfaces: seen from far away, shaded, coloured by a value at each node."""
 
 import matplotlib
+import matplotlib.ticker
 from matplotlib.collections import LineCollection, PolyCollection
 import numpy as np
 
@@ -82,3 +83,12 @@ def limits_of(clouds, margin=0.012):
 def colour_scale(largest, power=1.0):
     norm = matplotlib.colors.PowerNorm(power, 0, largest, clip=True)
     return matplotlib.cm.ScalarMappable(norm, matplotlib.colormaps["YlGnBu"])
+
+
+def colour_bar(figure, colours, grid, label, **place):
+    """Marks at round values, none above the largest: a mark there would be drawn at the end of the bar."""
+    bar = figure.colorbar(colours, ax=grid, **place)
+    largest = colours.norm.vmax
+    bar.set_ticks([value for value in matplotlib.ticker.MaxNLocator(5).tick_values(0, largest) if value <= largest])
+    bar.set_label(label, fontsize=9, labelpad=6)
+    bar.ax.tick_params(labelsize=8)

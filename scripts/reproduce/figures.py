@@ -4,7 +4,6 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
-import matplotlib.ticker
 import numpy as np
 from PIL import Image
 
@@ -61,9 +60,7 @@ def impulse_figures(folder, model):
             draw.frame_scene(axes, limits, 0.05)
             axes.set_title(f"{1000 * time:.0f} ms", fontsize=10)
         if not wires:
-            bar = figure.colorbar(colours, ax=rows, shrink=0.8, pad=0.02)
-            bar.set_label("displacement (mm) after 1 N during 2 ms", labelpad=8)
-            bar.ax.yaxis.set_major_locator(matplotlib.ticker.MaxNLocator(5))
+            draw.colour_bar(figure, colours, rows, "displacement (mm) after 1 N during 2 ms", shrink=0.8, pad=0.02)
         save(figure, folder, name)
     return factor
 
@@ -118,10 +115,7 @@ def sequence(folder, name, rows, times, camera, exaggeration, like=None):
             axes.plot(*tip, "o", color="tab:red", markersize=4)
             draw.frame_scene(axes, limits, 0.05 if axes is line[0] else None)
         line[0].set_ylabel(label, fontsize=9)
-    bar = figure.colorbar(colours, ax=grid, shrink=0.9, pad=0.01)
-    bar.set_label("displacement (mm)", fontsize=9, labelpad=6)
-    bar.ax.yaxis.set_major_locator(matplotlib.ticker.MaxNLocator(5))
-    bar.ax.tick_params(labelsize=8)
+    draw.colour_bar(figure, colours, grid, "displacement (mm)", shrink=0.9, pad=0.01)
     save(figure, folder, name)
 
 

@@ -90,7 +90,9 @@ def ringing(work):
     return table(["cube", "irdm: loudest oscillation, its damping", "finite elements"], rows)
 
 
-def verdict(perception):
+def verdict(perception, force):
+    if force["max"] > 3 * force["reference"]:
+        return "**unstable**"
     noticed = [measure for measure in MEASURES if perception[measure]["noticeable"]]
     unjudged = [measure for measure in MEASURES if perception[measure]["noticeable"] is None]
     words = "**noticeable: " + ", ".join(noticed) + "**" if noticed else "not noticeable"
@@ -119,7 +121,7 @@ def variants(work):
                          number(perception["vibration"]["level"]),
                          number(1000 * (perception["onset"]["largest"] or 0)) + " ms",
                          percent(u["max"] / u["reference"]) if u else "other mesh",
-                         number(np.degrees(thing["orientation"]["max"])) + "°", verdict(perception)])
+                         number(np.degrees(thing["orientation"]["max"])) + "°", verdict(perception, force)])
     return table(["variant", "motion", "force, largest, of the peak", "force, as felt (limit 10 %)",
                   "compliance (limit 15 %)", "vibration (limit 1)", "onset (limit 5.5 ms)", "node displacement, largest",
                   "orientation, largest", "a hand"], rows)

@@ -37,8 +37,8 @@ fail() {
 say() { echo "reproduce: $SECONDS s: $1"; }
 
 if [ -z "${IRDM_PROGRAMS:-}" ]; then
-  scripts/build.sh "$preset" irdm-precompute irdm-server irdm-bridge irdm-replay ||
-    fail "the build failed; see scripts/setup.sh"
+  scripts/setup.sh
+  scripts/build.sh "$preset" irdm-precompute irdm-server irdm-bridge irdm-replay || fail "the build failed"
   IRDM_PROGRAMS=$PWD/build/$preset/bin
 fi
 IRDM_PROGRAMS=$(realpath "$IRDM_PROGRAMS")

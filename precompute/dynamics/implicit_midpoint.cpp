@@ -1,6 +1,8 @@
 #include "precompute/dynamics/implicit_midpoint.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "common/error.hpp"
 #include "precompute/dynamics/rigid_extraction.hpp"
@@ -31,6 +33,13 @@ double ImplicitMidpoint::speed(const Eigen::VectorXd& v) const {
   return std::sqrt(v.dot(mass3_.cwiseProduct(v)));
 }
 
+// A correction below this moves nodes by less than their positions are rounded by: they are where
+// they should be, however slow the body is.
+double ImplicitMidpoint::speed_of_rounding(const Eigen::VectorXd& u, double h) const {
+  const Eigen::VectorXd x = body_->rest().reshaped<Eigen::RowMajor>() + u;
+  return std::numeric_limits<double>::epsilon() * speed(x) * 2.0 / h;
+}
+
 Eigen::VectorXd ImplicitMidpoint::correction(const SparseSolver& solver, const Matrix3& Q,
                                              const BodyState& middle,
                                              const Eigen::VectorXd& residual, double h) const {
@@ -59,6 +68,7 @@ void ImplicitMidpoint::step(BodyState& state, const Eigen::VectorXd& force, doub
     Q = extract_rigid_motion(body_->rest(), u, body_->mass(), RotationWeights::kMass).rotation;
   }
   workspace.largest_speed = std::max(workspace.largest_speed, speed(state.v));
+  const double rounding = speed_of_rounding(state.u, h);
   const StepStart start = body_->start_of_step(state.u);
   BodyState middle{state.u + 0.5 * h * state.v, state.v};  // velocity: w
   double last = 0.0;
@@ -79,7 +89,7 @@ void ImplicitMidpoint::step(BodyState& state, const Eigen::VectorXd& force, doub
     middle.u = state.u + 0.5 * h * middle.v;
     const double size = speed(delta);
     workspace.largest_speed = std::max(workspace.largest_speed, speed(middle.v));
-    if (linear || size <= tolerance_ * workspace.largest_speed) break;
+    if (linear || size <= std::max(tolerance_ * workspace.largest_speed, rounding)) break;
     if (i >= most_iterations_ || !std::isfinite(size)) {
       throw Error("time stepping", "a step of " + std::to_string(h) + " s cannot be solved",
                   "use smaller steps or a smaller force");

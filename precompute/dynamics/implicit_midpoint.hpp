@@ -29,7 +29,7 @@ class ImplicitMidpoint {
  public:
   /// @param body must outlive this
   /// @param tolerance a step is solved when a correction is below this share of the largest speed
-  /// that the state has had (mass-weighted), > 0
+  /// that the state has had (mass-weighted), or moves nodes by less than rounding does, > 0
   /// @param most_iterations after which a step is given up
   explicit ImplicitMidpoint(const SoftBody& body, double tolerance = 1e-10,
                             int most_iterations = 60);
@@ -53,6 +53,7 @@ class ImplicitMidpoint {
 
  private:
   double speed(const Eigen::VectorXd& v) const;
+  double speed_of_rounding(const Eigen::VectorXd& u, double h) const;
   Eigen::VectorXd correction(const SparseSolver& solver, const Matrix3& Q, const BodyState& middle,
                              const Eigen::VectorXd& residual, double h) const;
 

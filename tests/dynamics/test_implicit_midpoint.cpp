@@ -166,3 +166,24 @@ TEST_CASE("a step that cannot be solved is told") {
   CHECK_THROWS_WITH(stepper.step(state, Eigen::VectorXd::Zero(state.u.size()), 0.1, workspace),
                     Contains("cannot be solved"));
 }
+
+TEST_CASE("a body at rest anywhere stays there: what rounding its positions moves is no motion") {
+  const TetMesh mesh = test::box_mesh(Vector3(0.12, 0.12, 0.12), {6, 6, 6});
+  const Matrix3 turn = Eigen::AngleAxisd(0.7, Vector3(1, 2, 3).normalized()).toRotationMatrix();
+  const double away = GENERATE(0.0, 0.1, 10.0);
+  const double youngs_modulus = GENERATE(2e3, 1e6);
+  const double h = GENERATE(5e-4, 0.01);
+  CAPTURE(away, youngs_modulus, h);
+  const SoftBody b(mesh, {youngs_modulus, 0.49, 110.0, 8.0, 2e-4}, Elasticity::kCorotational);
+  ImplicitMidpoint stepper(b, 1e-9);
+  stepper.prepare(h);
+  const Points x = (b.rest() * turn.transpose()).rowwise() + Eigen::RowVector3d(away, 0.02, 0.0);
+  BodyState state = b.at_rest();
+  state.u = (x - b.rest()).reshaped<Eigen::RowMajor>();
+  const Eigen::VectorXd start = state.u;
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(start.size());
+  ImplicitMidpoint::Workspace workspace;
+  constexpr int kSteps = 20;
+  for (int k = 0; k < kSteps; ++k) stepper.step(state, none, h, workspace);
+  CHECK((state.u - start).cwiseAbs().maxCoeff() < kSteps * 1e-15 * (1.0 + away));
+}

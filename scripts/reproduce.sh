@@ -13,7 +13,7 @@ preset=release cells=12 own_cells=6 work="" docs="" columns=8 substep=0.0005
 declare -A end=([swing]=9 [tap]=9) # s, of the motions: as they are
 while [ $# -gt 0 ]; do
   case $1 in
-    --small) cells=6 own_cells=3 columns=2 substep=0.001 end=([swing]=3.2 [tap]=1.2) ;;
+    --small) cells=6 own_cells=3 columns=2 substep=0.001 end=([swing]=3.08 [tap]=1.04) ;;
     --work) work=${2:?reproduce: --work needs a folder}; shift ;;
     --docs) docs=${2:?reproduce: --docs needs a folder}; shift ;;
     --preset) preset=${2:?reproduce: --preset needs a name}; shift ;;

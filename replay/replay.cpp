@@ -13,6 +13,7 @@
 #include "replay/made_again/from_forces.hpp"
 #include "replay/made_again/from_tips.hpp"
 #include "replay/output/csv_output.hpp"
+#include "replay/output/picture_output.hpp"
 #include "replay/output/run_output.hpp"
 #include "replay/output/vtk_output.hpp"
 #include "replay/reference/fem_reference.hpp"
@@ -51,10 +52,19 @@ std::string how(const TracedScene& scene, const ReplayOptions& options) {
   return words;
 }
 
+std::optional<double> frame_rate(const ReplayOptions& options) {
+  constexpr double kOfPictures = 25.0;
+  return options.rate || !options.frames ? options.rate : kOfPictures;
+}
+
 Outputs make_outputs(const ReplayOptions& options, const TracedScene& scene) {
   Outputs outputs;
   if (options.csv) outputs.push_back(std::make_unique<CsvOutput>(*options.csv, scene));
   if (options.vtk) outputs.push_back(std::make_unique<VtkOutput>(*options.vtk, scene));
+  if (options.frames) {
+    outputs.push_back(std::make_unique<PictureOutput>(PicturePlaces{*options.frames, options.video},
+                                                      options.look, scene, *frame_rate(options)));
+  }
   if (options.output) {
     outputs.push_back(std::make_unique<RunOutput>(
         *options.output, scene,
@@ -102,7 +112,7 @@ int replay(const ReplayOptions& options) {
     std::cerr << "irdm-replay: warning: " << warning << '\n';
   }
   const Recording recording = read_recording(scene, options.trace.string());
-  const FrameSteps frames(recording.steps(), scene.dt(), options.rate);
+  const FrameSteps frames(recording.steps(), scene.dt(), frame_rate(options), options.part);
   const auto made = make_again(scene, recording, options);
   LongRun run(recording.steps(), options.fem_reference);
   Outputs outputs = make_outputs(options, scene);

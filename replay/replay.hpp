@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "replay/frame_steps.hpp"
+#include "replay/pictures/picture_look.hpp"
 #include "server/engine/response_engine.hpp"
 
 namespace irdm::replay {
@@ -18,10 +20,14 @@ struct ReplayOptions {
   std::optional<EngineKind> engine;  ///< none: the run's own
   bool fem_reference = false;        ///< by finite elements instead of an engine
   std::optional<double> substep;     ///< longest one of a reference [s]; none: its default
-  std::optional<double> rate;        ///< frames a second [Hz]; none: every step
+  std::optional<double> rate;        ///< frames a second [Hz]; none: every step, or 25 of pictures
   std::optional<std::filesystem::path> output;
   std::optional<std::filesystem::path> csv;
   std::optional<std::filesystem::path> vtk;
+  std::optional<std::filesystem::path> frames;  ///< folder of pictures
+  std::optional<std::filesystem::path> video;   ///< of them
+  PictureLook look;
+  RunPart part;  ///< that there are frames of
 };
 
 /// "modal", "dense" or "compressed".

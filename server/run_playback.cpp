@@ -40,7 +40,7 @@ int run_playback(const ServerOptions& options) {
   for (const ObjectConfig& object : scene.objects) names.push_back(object.name);
   Recording(*options.play, config, names);  // so that what is wrong with it is said here
   Player player(config, names, scene.server.deformation_rate, std::max(1, omp_get_num_procs()));
-  RecordedRun run(viewer_scene(scene, config, false), config, player, *options.play);
+  RecordedRun run(viewer_scene(names, config), config, player, *options.play);
   viewer::ViewerServer viewers(viewer_settings(scene.viewer), run);
   columns.start(false);
   player.start();

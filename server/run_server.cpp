@@ -145,7 +145,7 @@ class Viewers {
           RunControl& control, NetworkServer& network)
       : player_(config, names_of(scene), scene.server.deformation_rate,
                 deformation_threads(scene.server)),
-        run_(live_scene(viewer_scene(scene, config, viewer_stylus), lockstep), config,
+        run_(live_scene(scene, config, viewer_stylus, lockstep), config,
              {deformation, force, control, network, recordings, player_}),
         server_(viewer_settings(scene.viewer), run_) {}
 
@@ -160,9 +160,13 @@ class Viewers {
   }
 
  private:
-  static viewer::Scene live_scene(viewer::Scene scene, bool lockstep) {
-    scene.lockstep = lockstep;
-    return scene;
+  static viewer::Scene live_scene(const SceneConfig& scene, const SimulationConfig& config,
+                                  bool viewer_stylus, bool lockstep) {
+    viewer::Scene seen = viewer_scene(names_of(scene), config);
+    seen.lockstep = lockstep;
+    seen.viewer_stylus = viewer_stylus;
+    seen.max_force = static_cast<float>(scene.viewer.max_force);
+    return seen;
   }
 
   Player player_;

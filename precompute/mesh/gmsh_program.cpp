@@ -5,10 +5,10 @@
 #include <limits>
 
 #include "common/error.hpp"
+#include "common/process/child_program.hpp"
+#include "common/process/temporary_folder.hpp"
 #include "precompute/mesh/format/gmsh_reader.hpp"
 #include "precompute/mesh/mesh_report.hpp"
-#include "precompute/process/child_process.hpp"
-#include "precompute/process/temporary_folder.hpp"
 
 namespace irdm::precompute {
 namespace {

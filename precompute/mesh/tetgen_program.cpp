@@ -9,10 +9,10 @@
 #include <set>
 
 #include "common/error.hpp"
+#include "common/process/child_program.hpp"
+#include "common/process/temporary_folder.hpp"
 #include "precompute/mesh/format/tetgen_reader.hpp"
 #include "precompute/mesh/surface.hpp"
-#include "precompute/process/child_process.hpp"
-#include "precompute/process/temporary_folder.hpp"
 
 namespace irdm::precompute {
 namespace {

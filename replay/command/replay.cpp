@@ -22,6 +22,38 @@ void check_reference(const ReplayOptions& options, const std::string& engine) {
               "leave one of them out");
 }
 
+/// What is read from words once the command line is whole.
+struct PictureWords {
+  std::string size;
+  std::string camera;
+};
+
+void add_picture_options(CLI::App& app, ReplayOptions& options, PictureWords& words) {
+  PictureLook& look = options.look;
+  CLI::Option* const frames = app.add_option(
+      "--frames", options.frames,
+      "Folder for pictures (PNG) with the look of the viewer, drawn by chromium; new or empty");
+  const std::vector<CLI::Option*> of_pictures{
+      app.add_option("--video", options.video,
+                     "Video of the pictures (MP4), made by ffmpeg; must not exist"),
+      app.add_option("--size", words.size,
+                     "WIDTHxHEIGHT of a picture in pixels (default: 1280x720)"),
+      app.add_option("--camera", words.camera,
+                     "AZIMUTH,ELEVATION that it is seen from, in degrees: round the vertical from "
+                     "the z axis towards x, and above the horizon (default: the page's own, about "
+                     "29,20)"),
+      app.add_flag("--still", look.still, "The camera does not go along"),
+      app.add_option("--exaggeration", look.exaggeration, "Of the deformation")
+          ->check(CLI::Range(0.0, 20.0))
+          ->capture_default_str(),
+      app.add_flag("--rigid", look.rigid, "The rigid body as a wireframe"),
+      app.add_option("--colour", look.colour, "What colours tell")
+          ->check(CLI::IsMember({"none", "displacement", "velocity", "compliance"}))
+          ->capture_default_str(),
+      app.add_flag("--dark", look.dark, "Dark colours")};
+  for (CLI::Option* const option : of_pictures) option->needs(frames);
+}
+
 }  // namespace
 
 Command add_replay_command(CLI::App& app) {
@@ -50,17 +82,26 @@ Command add_replay_command(CLI::App& app) {
   app.add_option("--substep", options->substep,
                  "Longest step of a reference in s (default: 0.00025)")
       ->check(positive_number());
-  app.add_option("--rate", options->rate, "Frames for a second of the run (default: every step)")
+  app.add_option("--rate", options->rate,
+                 "Frames for a second of the run (default: every step; with --frames 25)")
+      ->check(positive_number());
+  app.add_option("--begin", options->part.begin, "Time in s before which there are no frames")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--end", options->part.end, "Time in s after which there are no frames")
       ->check(positive_number());
   app.add_option("-o,--output", options->output,
                  "Run file to write, for compare (HDF5); must not exist");
   app.add_option("--csv", options->csv, "Table of motion and forces to write; must not exist");
   app.add_option("--vtk", options->vtk,
                  "Folder for surfaces that ParaView opens (run.pvd); new or empty");
+  auto words = std::make_shared<PictureWords>();
+  add_picture_options(app, *options, *words);
   app.parse_complete_callback([&app, trace] {
     if (app.get_subcommands().empty() && trace->empty()) throw CLI::RequiredError("trace");
   });
-  return [options, from, engine, reference] {
+  return [options, from, engine, reference, words] {
+    if (!words->size.empty()) read_size(words->size, options->look);
+    if (!words->camera.empty()) options->look.camera = read_camera(words->camera);
     options->from_tips = *from == "tips";
     if (options->solve_bridged && !options->from_tips) {
       throw Error("--solve-bridged", "solves nothing from forces", "give --from tips, too");

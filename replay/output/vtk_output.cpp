@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "common/error.hpp"
+#include "replay/output/new_folder.hpp"
 #include "replay/output/plain_names.hpp"
 #include "replay/output/vtk_xml.hpp"
 
@@ -53,14 +54,7 @@ std::string poly_data(double time, const Points& points, std::size_t vertices, s
 
 VtkOutput::VtkOutput(const std::filesystem::path& folder, const TracedScene& scene)
     : folder_(folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder_, error);
-  if (error || !std::filesystem::is_directory(folder_)) {
-    throw Error(folder_.string(), "cannot be made a folder", "give another place");
-  }
-  if (!std::filesystem::is_empty(folder_)) {
-    throw Error(folder_.string(), "is not empty", "give a new folder, or empty it");
-  }
+  make_new_folder(folder_);
   std::vector<double> radii;
   for (const SimulationStylus& stylus : scene.config.styluses) radii.push_back(stylus.radius);
   const std::vector<std::string> names = plain_names(scene);

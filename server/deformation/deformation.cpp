@@ -17,6 +17,12 @@ SurfaceFrame rest_frame(const SimulationConfig& config) {
   return frame;
 }
 
+StylusContact contact_on(const ModelMesh& mesh, const ContactRecord& contact) {
+  if (contact.state == ContactState::kFree) return {};
+  return {interpolate(contact.point, [&](int node) -> Vector3 { return mesh.rest_position(node); }),
+          contact.slipping};
+}
+
 Deformation::Deformation(const SimulationConfig& config, double tolerance) {
   std::vector<double> radii;
   for (const SimulationStylus& stylus : config.styluses) radii.push_back(stylus.radius);
@@ -73,11 +79,7 @@ StylusContact Deformation::contact(std::size_t s) const {
   const int object = last_.stylus[s].object;
   if (object < 0) return {};
   const auto i = static_cast<std::size_t>(object);
-  const ContactRecord& contact = last_.object[i].contact[s];
-  if (contact.state == ContactState::kFree) return {};
-  const RestSurface& surface = *objects_[i].surface;
-  return {interpolate(contact.point, [&](int node) -> Vector3 { return surface.node(node); }),
-          contact.slipping};
+  return contact_on(objects_[i].model->mesh, last_.object[i].contact[s]);
 }
 
 void Deformation::compute(SurfaceFrame& frame) const {

@@ -30,6 +30,9 @@ struct StylusContact {
   bool slipping = false;
 };
 
+/// @param mesh of the object that is touched
+StylusContact contact_on(const ModelMesh& mesh, const ContactRecord& contact);
+
 /// All deformed objects at the end of a step, and the styluses among them.
 struct SurfaceFrame {
   std::uint64_t force_step = 0;

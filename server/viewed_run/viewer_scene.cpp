@@ -31,16 +31,13 @@ viewer::SceneObject viewer_object(const std::string& name, const Model& model) {
 
 }  // namespace
 
-viewer::Scene viewer_scene(const SceneConfig& scene, const SimulationConfig& config,
-                           bool viewer_stylus) {
+viewer::Scene viewer_scene(const std::vector<std::string>& names, const SimulationConfig& config) {
   viewer::Scene seen;
   seen.dt = config.objects.at(0).model->dt;
   seen.floor = config.floor;
   seen.styluses = config.styluses;
-  seen.viewer_stylus = viewer_stylus;
-  seen.max_force = static_cast<float>(scene.viewer.max_force);
   for (std::size_t i = 0; i < config.objects.size(); ++i) {
-    seen.objects.push_back(viewer_object(scene.objects.at(i).name, *config.objects[i].model));
+    seen.objects.push_back(viewer_object(names.at(i), *config.objects[i].model));
   }
   return seen;
 }

@@ -6,9 +6,9 @@
 
 namespace irdm {
 
-/// What viewers are told of a scene at first.
-viewer::Scene viewer_scene(const SceneConfig& scene, const SimulationConfig& config,
-                           bool viewer_stylus);
+/// What viewers are told of a scene at first: of one that is looked at, without a stylus of theirs.
+/// @param names of its objects
+viewer::Scene viewer_scene(const std::vector<std::string>& names, const SimulationConfig& config);
 
 /// Where and for whom the viewer listens, with the page that was built with this program.
 viewer::ViewerSettings viewer_settings(const ViewerConfig& config);

@@ -4,13 +4,13 @@
 #include <fstream>
 #include <string_view>
 
-#include "precompute/process/temporary_folder.hpp"
+#include "common/process/temporary_folder.hpp"
 
 namespace irdm::fuzz {
 
 /// A file with this content, in a folder of this process; the next one of the name takes its place.
 inline std::filesystem::path scratch_file(const char* name, std::string_view content) {
-  static const precompute::TemporaryFolder folder("irdm-fuzz");
+  static const irdm::TemporaryFolder folder("irdm-fuzz");
   const std::filesystem::path path = folder.path() / name;
   std::ofstream(path, std::ios::binary)
       .write(content.data(), static_cast<std::streamsize>(content.size()));

@@ -7,8 +7,8 @@
 #include <iterator>
 #include <string>
 
+#include "common/process/temporary_folder.hpp"
 #include "precompute/mesh/tet_mesh.hpp"
-#include "precompute/process/temporary_folder.hpp"
 
 namespace irdm::precompute::test {
 

@@ -1,11 +1,11 @@
 #include <catch2/catch.hpp>
 #include <map>
 
+#include "common/process/temporary_folder.hpp"
 #include "precompute/mesh/box_mesh.hpp"
 #include "precompute/mesh/mesh_check.hpp"
 #include "precompute/mesh/surface.hpp"
 #include "precompute/mesh/tetgen_program.hpp"
-#include "precompute/process/temporary_folder.hpp"
 
 using Catch::Matchers::Contains;
 using namespace irdm;

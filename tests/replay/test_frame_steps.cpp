@@ -35,3 +35,19 @@ TEST_CASE("a frame is at the end of the step that its time falls into") {
 TEST_CASE("there are no more frames than steps") {
   CHECK_THROWS_WITH(FrameSteps(100, 0.002, 501.0), Contains("at most 500"));
 }
+
+TEST_CASE("frames of a part of a run are those of the whole run that are in it") {
+  const FrameSteps whole(1050, 0.002, 60.0);
+  const FrameSteps part(1050, 0.002, 60.0, {0.5, 1.0});
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < 1050; ++k) {
+    const double end_of_step = 0.002 * static_cast<double>(k + 1);
+    const bool within = end_of_step > 0.5 - 1e-9 && end_of_step < 1.0 + 1e-9;
+    REQUIRE(part.has(k) == (within && whole.has(k)));
+    count += part.has(k) ? 1 : 0;
+  }
+  CHECK(part.count() == count);
+  CHECK(count > 25);
+  CHECK(FrameSteps(10, 0.002, std::nullopt, {0.0, 0.002}).count() == 1);
+  CHECK_THROWS_WITH(FrameSteps(10, 0.002, std::nullopt, {1.0}), Contains("0.02"));
+}

@@ -1,4 +1,4 @@
-"""Looks at the pictures of scripts/frames.sh: how many, how large, and of all the least of what a picture that is not
+"""Looks at the pictures of irdm-replay --frames: how many, how large, and of all the least of what a picture that is not
 blank has: colours, the share of the picture that is no background; and how many are like the one before."""
 
 import pathlib

@@ -1,4 +1,5 @@
 // Pictures of a recorded run, as another program than ours sees them.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <iostream>
 
@@ -10,33 +11,26 @@ using namespace irdm::test;
 
 namespace {
 
-const std::filesystem::path kSource = IRDM_SOURCE_DIR;
-
 bool can_draw() {
   const char* lacks = nullptr;
   if (run_to_end({"/bin/sh", "-c", "command -v chromium"}).status != 0) lacks = "no chromium";
-  if (!std::filesystem::exists(kSource / "server/viewer/page/node_modules/playwright-core")) {
-    lacks = "the page's packages are not installed";
-  }
   if (!IRDM_PAGE_BUILT) lacks = "the page is not built";
   if (lacks != nullptr) std::cout << "test left out: " << lacks << std::endl;
   return lacks == nullptr;
 }
 
 FinishedProgram take(const Stage& stage, const std::string& folder,
-                     std::vector<std::string> options = {}) {
-  std::vector<std::string> command{"/usr/bin/env", std::string("IRDM_SERVER=") + IRDM_SERVER,
-                                   (kSource / "scripts/frames.sh").string()};
+                     const std::vector<std::string>& options = {}) {
+  std::vector<std::string> command{IRDM_REPLAY, stage.path("trace.h5").string(), "--frames",
+                                   stage.path(folder).string()};
   command.insert(command.end(), options.begin(), options.end());
-  for (const std::string& name : {std::string("scene.toml"), std::string("trace.h5"), folder}) {
-    command.push_back(stage.path(name).string());
-  }
   return run_to_end(command);
 }
 
 FinishedProgram look_at(const std::filesystem::path& folder) {
-  return run_to_end(
-      {"/usr/bin/python3", (kSource / "tests/system/read_frames.py").string(), folder.string()});
+  return run_to_end({"/usr/bin/python3",
+                     std::string(IRDM_SOURCE_DIR) + "/tests/system/read_frames.py",
+                     folder.string()});
 }
 
 }  // namespace
@@ -50,14 +44,14 @@ TEST_CASE("frames of a recorded run show the object, from frame to frame another
   REQUIRE(bridge.wait() == 0);
   REQUIRE(server.process.wait() == 0);
 
-  const std::vector<std::string> options{"--size", "480x360", "--rate", "5",
-                                         "--from", "0.4",     "--to",   "1.2"};
+  const std::vector<std::string> options{"--size",  "480x360", "--rate", "5",
+                                         "--begin", "0.4",     "--end",  "1.2"};
   const FinishedProgram taken = take(stage, "plain", options);
   INFO(taken.err);
   REQUIRE(taken.status == 0);
   const FinishedProgram seen = look_at(stage.path("plain"));
   INFO(seen.out << seen.err);
-  CHECK_THAT(taken.out, Contains("frames: 5 of 480 x 360"));
+  CHECK_THAT(taken.out, Contains("; 5 frames"));
   CHECK(number_after(seen.out, "frames ") == 5);
   CHECK_THAT(seen.out, Contains("480 x 360"));
   // Of all frames the least: colours of a shaded object, and how much of the picture it takes.
@@ -77,4 +71,25 @@ TEST_CASE("frames of a recorded run show the object, from frame to frame another
   const FinishedProgram again = take(stage, "plain", options);
   CHECK(again.status == 1);
   CHECK_THAT(again.err, Contains("is not empty"));
+}
+
+TEST_CASE("pictures without a browser, or a video without ffmpeg, are refused in one line") {
+  const Stage stage;
+  Server server = stage.start_server(
+      {"--no-viewer", "--lockstep", "--record", stage.path("trace.h5").string()});
+  ChildProcess bridge = stage.start_bridge(server);
+  REQUIRE(bridge.wait() == 0);
+  REQUIRE(server.process.wait() == 0);
+  ChildOptions nowhere;
+  nowhere.environment = {"PATH=" + stage.path("").string()};
+  const FinishedProgram refused = run_to_end(
+      {IRDM_REPLAY, stage.path("trace.h5").string(), "--frames", stage.path("pictures").string()},
+      nowhere);
+  CHECK(refused.status == 1);
+  CHECK_THAT(refused.err, Contains("Debian's package chromium") || Contains("IRDM_BUILD_PAGE"));
+  CHECK(std::count(refused.err.begin(), refused.err.end(), '\n') == 1);
+  CHECK_FALSE(std::filesystem::exists(stage.path("pictures")));
+  const FinishedProgram wrong = take(stage, "pictures", {"--size", "10x10"});
+  CHECK(wrong.status == 1);
+  CHECK_THAT(wrong.err, Contains("WIDTHxHEIGHT"));
 }

@@ -1,11 +1,11 @@
-#include "precompute/process/temporary_folder.hpp"
+#include "common/process/temporary_folder.hpp"
 
 #include <cstdlib>
 #include <system_error>
 
 #include "common/error.hpp"
 
-namespace irdm::precompute {
+namespace irdm {
 
 TemporaryFolder::TemporaryFolder(const std::string& prefix) {
   std::error_code error;
@@ -21,4 +21,4 @@ TemporaryFolder::~TemporaryFolder() {
   std::filesystem::remove_all(path_, ignored);
 }
 
-}  // namespace irdm::precompute
+}  // namespace irdm

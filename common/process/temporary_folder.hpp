@@ -3,12 +3,12 @@
 #include <filesystem>
 #include <string>
 
-namespace irdm::precompute {
+namespace irdm {
 
 /// A new empty folder that is removed with all its content. Throws Error when none can be made.
 class TemporaryFolder {
  public:
-  explicit TemporaryFolder(const std::string& prefix);
+  explicit TemporaryFolder(const std::string& prefix = "irdm");
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
   ~TemporaryFolder();
@@ -19,4 +19,4 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-}  // namespace irdm::precompute
+}  // namespace irdm

@@ -1,0 +1,123 @@
+#include "replay/pictures/browser.hpp"
+
+#include <openssl/evp.h>
+#include <unistd.h>
+
+#include <boost/property_tree/json_parser.hpp>
+#include <sstream>
+#include <utility>
+
+#include "common/error.hpp"
+#include "replay/compare/json_text.hpp"
+
+namespace irdm::replay {
+namespace {
+
+constexpr int kPatienceMs = 60'000;  // without a GPU a large picture takes seconds
+
+[[noreturn]] void fail(const std::string& problem) {
+  throw Error("chromium", problem, "see whether `chromium --headless --screenshot` works");
+}
+
+std::vector<std::string> command(const std::filesystem::path& profile) {
+  std::vector<std::string> words{"chromium",
+                                 "--headless",
+                                 "--remote-debugging-pipe",
+                                 "--user-data-dir=" + profile.string(),
+                                 "--no-first-run",
+                                 "--disable-background-networking",
+                                 "--use-angle=swiftshader",
+                                 "--enable-unsafe-swiftshader",
+                                 "--hide-scrollbars",
+                                 "about:blank"};
+  if (::geteuid() == 0) words.insert(words.begin() + 1, "--no-sandbox");  // root has no other way
+  return words;
+}
+
+std::string from_base64(const std::string& text) {
+  std::string bytes(text.size() / 4 * 3, '\0');
+  const int length = EVP_DecodeBlock(reinterpret_cast<unsigned char*>(bytes.data()),
+                                     reinterpret_cast<const unsigned char*>(text.data()),
+                                     static_cast<int>(text.size()));
+  if (length < 0) fail("sent a picture that is none");
+  const std::size_t padding = text.ends_with("==") ? 2 : text.ends_with("=") ? 1 : 0;
+  bytes.resize(static_cast<std::size_t>(length) - padding);
+  return bytes;
+}
+
+// The descriptors of --remote-debugging-pipe.
+std::map<int, int> its_descriptors(const ZeroEndedPipe& pipe) {
+  return {{3, pipe.its_input()}, {4, pipe.its_output()}};
+}
+
+}  // namespace
+
+struct Browser::Answer {
+  boost::property_tree::ptree result;
+};
+
+Browser::Browser(const BrowserWindow& window) {
+  chromium_.emplace(command(profile_.path()),
+                    ChildSettings{.own_group = true, .descriptors = its_descriptors(pipe_)});
+  pipe_.close_its_ends();
+  const Answer targets = call("Target.getTargets", "{}");
+  std::string page;
+  for (const auto& [key, target] : targets.result.get_child("targetInfos")) {
+    if (target.get<std::string>("type") == "page") page = target.get<std::string>("targetId");
+  }
+  if (page.empty()) fail("has opened no page");
+  JsonObject target;
+  target.add("targetId", page).add("flatten", true);
+  session_ = call("Target.attachToTarget", target.text()).result.get<std::string>("sessionId");
+  JsonObject size;
+  size.add("width", static_cast<std::size_t>(window.width));
+  size.add("height", static_cast<std::size_t>(window.height));
+  size.add("deviceScaleFactor", std::size_t{1}).add("mobile", false);
+  call("Emulation.setDeviceMetricsOverride", size.text());
+  JsonObject colours;
+  colours.add("name", "prefers-color-scheme").add("value", window.dark ? "dark" : "light");
+  call("Emulation.setEmulatedMedia",
+       JsonObject().add("features", std::vector<JsonObject>{colours}).text());
+}
+
+void Browser::open(const std::string& url) {
+  call("Page.navigate", JsonObject().add("url", url).text());
+}
+
+std::string Browser::evaluate(const std::string& expression) {
+  JsonObject parameters;
+  parameters.add("expression", expression).add("awaitPromise", true).add("returnByValue", true);
+  const Answer answer = call("Runtime.evaluate", parameters.text());
+  if (const auto exception = answer.result.get_child_optional("exceptionDetails")) {
+    fail("the page says: " +
+         exception->get("exception.description", exception->get<std::string>("text")));
+  }
+  return answer.result.get("result.value", "");
+}
+
+std::string Browser::picture() {
+  const Answer answer = call("Page.captureScreenshot", JsonObject().add("format", "png").text());
+  return from_base64(answer.result.get<std::string>("data"));
+}
+
+// Between a call and its answer there may be events, which have no number.
+Browser::Answer Browser::call(const std::string& method, const std::string& parameters) {
+  const std::string number = std::to_string(++calls_);
+  const std::string session = session_.empty() ? "" : ",\"sessionId\":\"" + session_ + "\"";
+  std::string text = "{\"id\":" + number + ",\"method\":\"" + method + "\"" + session +
+                     ",\"params\":" + parameters + "}";
+  if (!pipe_.write(text, kPatienceMs)) fail("takes no commands");
+  for (;;) {
+    if (!pipe_.read(text, kPatienceMs)) fail("does not answer " + method);
+    std::istringstream input(text);
+    boost::property_tree::ptree message;
+    boost::property_tree::read_json(input, message);
+    if (message.get("id", "") != number) continue;
+    if (const auto error = message.get_child_optional("error")) {
+      fail("refuses " + method + ": " + error->get("message", ""));
+    }
+    return {std::move(message.get_child("result"))};
+  }
+}
+
+}  // namespace irdm::replay

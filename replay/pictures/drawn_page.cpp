@@ -1,0 +1,89 @@
+#include "replay/pictures/drawn_page.hpp"
+
+#include <cstdio>
+
+#include "common/error.hpp"
+
+namespace irdm::replay {
+namespace {
+
+// What the page is asked in: `until` waits for something, `painted` for what is on the screen,
+// which is one frame after it was drawn.
+constexpr const char* kWords = R"(
+  window.until = (holds) => new Promise((resolve, reject) => {
+    const end = performance.now() + 50000;
+    const look = () => holds() ? resolve() :
+      performance.now() > end ? reject(new Error("what is to be drawn does not come")) : setTimeout(look, 2);
+    look();
+  });
+  window.painted = () => new Promise((resolve) => requestAnimationFrame(() => {
+    irdm.world.drawNow();
+    requestAnimationFrame(() => requestAnimationFrame(resolve));
+  }));
+)";
+
+// The scene alone. A sheet that is made by a script is permitted by the page's own rules.
+constexpr const char* kSceneAlone = R"(
+  const sheet = new CSSStyleSheet();
+  sheet.replaceSync("body { display: block !important } .panel { display: none !important } " +
+    ".stage { position: fixed !important; inset: 0; height: auto !important } " +
+    ".bar, .status, #playback, #notices, #tools, #hint { display: none !important }");
+  document.adoptedStyleSheets = [sheet];
+)";
+
+std::string number_text(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.17g", value);
+  return text;
+}
+
+std::string promise(const std::string& statements) {
+  return "(async () => {" + statements + "})()";
+}
+
+std::string controls(const PictureLook& look) {
+  const auto flag = [](bool value) { return value ? "true" : "false"; };
+  return "const control = (name, key, value) => { const input = document.getElementById(name); "
+         "input[key] = value; input.dispatchEvent(new Event('input')); };"
+         "control('exaggeration', 'value', " +
+         number_text(look.exaggeration) + "); control('rigid', 'checked', " + flag(look.rigid) +
+         "); control('follow', 'checked', " + flag(!look.still) +
+         "); control('colour', 'value', '" + look.colour + "');";
+}
+
+// In the picture as a whole, and then turned.
+std::string camera(const PictureLook& look) {
+  if (!look.camera) return "irdm.world.fit();";
+  return "irdm.world.fit(); { const turn = Math.PI / 180; "
+         "const { x, y, z } = irdm.world.camera.position.clone().sub(irdm.world.controls.target); "
+         "irdm.world.move(" +
+         number_text(look.camera->azimuth) + " * turn - Math.atan2(x, z), Math.PI / 2 - " +
+         number_text(look.camera->elevation) +
+         " * turn - Math.acos(y / Math.hypot(x, y, z)), 1); }";
+}
+
+}  // namespace
+
+DrawnPage::DrawnPage(const std::string& url, const PictureLook& look)
+    : browser_({look.width, look.height, look.dark}), look_(look) {
+  browser_.open(url);
+  browser_.evaluate(promise(std::string(kWords) + "await until(() => window.irdm?.state());"));
+  if (browser_.evaluate("irdm.world === null") == "true") {
+    throw Error("chromium", "has no WebGL, with which the page draws",
+                "install a Chromium that can draw without a GPU, as Debian's can");
+  }
+  browser_.evaluate(promise(kSceneAlone + controls(look)));
+}
+
+std::string DrawnPage::picture(std::uint64_t force_step, int frames) {
+  browser_.evaluate(
+      promise("await until(() => irdm.frame()?.step === " + std::to_string(force_step) + ");" +
+              (first_ ? camera(look_)
+                      : "for (let k = 1; k < " + std::to_string(frames) +
+                            "; ++k) irdm.world.follow(irdm.frame());") +
+              "await painted();"));
+  first_ = false;
+  return browser_.picture();
+}
+
+}  // namespace irdm::replay

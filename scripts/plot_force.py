@@ -29,11 +29,12 @@ def main():
     for axis, colour in zip(range(3), ("tab:red", "tab:green", "tab:blue")):
         axes.plot(time, force[:, axis], color=colour, linewidth=0.9, label=f"F{'xyz'[axis]}")
     axes.plot(time, np.linalg.norm(force, axis=1), color="black", linewidth=1.1, label="|F|")
-    top = axes.get_ylim()
+    bottom, top = axes.get_ylim()
+    limits = bottom, top + 0.12 * (top - bottom)  # room for the legend
     for state, colour, label in ((1, "tab:orange", "touching"), (2, "tab:purple", "held")):
-        axes.fill_between(time, *top, where=contact == state, step="mid", color=colour,
+        axes.fill_between(time, *limits, where=contact == state, step="mid", color=colour,
                           alpha=0.12, linewidth=0, label=label)
-    axes.set_ylim(top)
+    axes.set_ylim(limits)
     axes.set_xlim(time[0], time[-1])
     axes.set_xlabel("time (s)")
     axes.set_ylabel("force on the stylus (N)")

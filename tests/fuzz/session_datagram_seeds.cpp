@@ -26,6 +26,11 @@ class Events {
   Events& again() { return add(4, 0); }
   Events& spoilt(std::size_t bit) { return add(5, bit); }
   Events& lost(std::size_t count) { return add(6, count); }
+  /// The next frame gets this number and one.
+  Events& at(std::uint64_t sequence) {
+    sequence_ = sequence;
+    return *this;
+  }
   Events& traffic(std::size_t number) { return add(7, number); }
   Events& time(std::size_t milliseconds) { return add(8, milliseconds); }
   const SeedBytes& bytes() const { return bytes_; }
@@ -69,7 +74,8 @@ void write_bridge_datagrams(const Seeds& seeds) {
                      .frame(sample(9)));
   write("not_finite", Events(0).frame(sample(3)).traffic(1).traffic(1));
   write("by_tcp", Events(2).stream(sample(3)).traffic(0).traffic(0).stream(sample(3)));
-  write("overtaken", Events(0).frame(sample(9)).stream(sample(3)).stream(sample(12)));
+  write("overtaken",
+        Events(0).at(10).frame(sample(9)).at(0).stream(sample(3)).stream(wire::Report{}));
   write("no_part", Events(0).sealed(std::span(anything).first(2)).traffic(0));
   write("goodbye", Events(0).frame(wire::Goodbye{}));
   write("others_sample", Events(0).frame(sample(3, 9)));

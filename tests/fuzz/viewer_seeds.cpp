@@ -19,6 +19,10 @@ void write_client_messages(const Seeds& seeds) {
   write_viewer(seeds, 0, "put_back", put_back);
   write_viewer(seeds, 0, "seek",
                encode(viewer::ClientMessage(viewer::Command{viewer::CommandKind::kSeek, 0, 1.5})));
+  write_viewer(
+      seeds, 0, "too_fast",
+      encode(viewer::ClientMessage(viewer::Command{viewer::CommandKind::kSetSpeed, 0, 99.0})));
+  write_viewer(seeds, 0, "onlooker", encode(viewer::ClientMessage(viewer::Hello{"a", true})));
   write_viewer(seeds, 0, "stylus",
                encode(viewer::ClientMessage(viewer::StylusRequest{true, 1, Vector3(1, 2, 3)})));
   write_viewer(
@@ -43,8 +47,9 @@ std::string browser(const std::vector<viewer::ClientMessage>& messages) {
 void write_connections(const Seeds& seeds) {
   const viewer::ClientMessage stylus = viewer::StylusRequest{true, 1, Vector3(1, 2, 3)};
   const viewer::ClientMessage command = viewer::Command{};
+  const viewer::ClientMessage settings = viewer::SettingsRequest{test::example_state().settings, 1};
   const auto viewer = [&](const std::string& token) {
-    return browser({viewer::Hello{token}, command, stylus, command});
+    return browser({viewer::Hello{token}, command, stylus, settings, command});
   };
   seeds.write("http_connection", "viewer", viewer(""));
   seeds.write("http_connection", "stylus_first", browser({stylus}));

@@ -42,7 +42,7 @@ else
   scripts/build.sh asan
   build_ahead tsan
   run_tests asan --label-exclude slow --parallel 2
-  IRDM_FUZZ_SEED=1 scripts/fuzz.sh 30
+  IRDM_FUZZ_SEED=1 scripts/fuzz.sh 60
   finish_build_ahead
   build_ahead ci
   run_tests tsan --label-exclude slow --parallel 2

@@ -397,7 +397,12 @@ void File::transfer_slab(const std::string& dataset, const Shape& start, const S
   const Handle set = open_dataset(dataset);
   const Handle space(H5Dget_space(set.get()), H5Sclose);
   const Handle memory = make_space(count);
-  H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr);
+  // HDF5 takes as many numbers of start and count as the set has axes.
+  if (H5Sget_simple_extent_ndims(space.get()) != static_cast<int>(start.size()) ||
+      H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(),
+                          nullptr) < 0) {
+    fail_read("dataset " + dataset + " has not " + std::to_string(start.size()) + " axes");
+  }
   if (source != nullptr) {
     if (H5Dwrite(set.get(), type, memory.get(), space.get(), H5P_DEFAULT, source) < 0) {
       fail_write("cannot write into " + dataset);

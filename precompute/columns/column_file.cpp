@@ -35,27 +35,37 @@ bool parse_options(std::istream& text, ColumnFileHeader& header) {
   return false;
 }
 
-// The lengths of settings and description go into the strings themselves. False: not such a text.
-bool parse_text(std::istream& text, ColumnFileHeader& header) {
-  std::string magic;
-  int number_bytes = 0;
+// Of what comes after the text.
+struct Lengths {
   std::size_t settings = 0;
   std::size_t description = 0;
+};
+
+// False: not such a text.
+bool parse_text(std::istream& text, ColumnFileHeader& header, Lengths& lengths) {
+  constexpr std::size_t kMost = 1U << 30;
+  std::string magic;
+  int number_bytes = 0;
   std::getline(text, magic);
-  const bool good = magic == kMagic && read_word(text, "columns") &&
-                    text >> header.range.begin >> header.range.end && read_word(text, "shape") &&
-                    text >> header.degrees_of_freedom >> header.steps >> number_bytes &&
-                    read_word(text, "compression_error") && text >> header.compression_error &&
-                    parse_options(text, header) && text >> settings &&
-                    read_word(text, "description") && text >> description && text.get() == '\n' &&
-                    (number_bytes == 4 || number_bytes == 8) && header.steps > 0 &&
-                    header.range.begin >= 0 && header.range.begin < header.range.end &&
-                    header.range.end <= header.degrees_of_freedom;
-  if (!good || settings > (1U << 30) || description > (1U << 30)) return false;
+  const bool good =
+      magic == kMagic && read_word(text, "columns") &&
+      text >> header.range.begin >> header.range.end && read_word(text, "shape") &&
+      text >> header.degrees_of_freedom >> header.steps >> number_bytes &&
+      read_word(text, "compression_error") && text >> header.compression_error &&
+      parse_options(text, header) && text >> lengths.settings && read_word(text, "description") &&
+      text >> lengths.description && text.get() == '\n' &&
+      (number_bytes == 4 || number_bytes == 8) && header.steps > 0 && header.range.begin >= 0 &&
+      header.range.begin < header.range.end && header.range.end <= header.degrees_of_freedom;
+  if (!good || lengths.settings > kMost || lengths.description > kMost) return false;
   header.precision = number_bytes == 4 ? Precision::kSingle : Precision::kDouble;
-  header.settings.resize(settings);
-  header.description.resize(description);
   return true;
+}
+
+// Of so many bytes, without making room for a column that cannot be there.
+std::size_t whole_columns(const ColumnFileHeader& header, std::size_t bytes) {
+  const auto numbers =
+      static_cast<std::size_t>(header.degrees_of_freedom) * static_cast<std::size_t>(header.steps);
+  return numbers > bytes ? 0 : bytes / (header.column_bytes() + kChecksumBytes);
 }
 
 }  // namespace
@@ -109,25 +119,24 @@ ColumnFileReader::ColumnFileReader(const std::filesystem::path& path)
   stream_.read(text.data(), static_cast<std::streamsize>(text.size()));
   std::istringstream parsed(text.substr(0, static_cast<std::size_t>(stream_.gcount())));
   stream_.clear();
-  if (!parse_text(parsed, header_)) {
+  Lengths lengths;
+  if (!parse_text(parsed, header_, lengths)) {
     throw Error(name_, "is not a part of R", "give files that irdm-precompute --columns wrote");
   }
-  const auto length = static_cast<std::size_t>(parsed.tellg()) + header_.settings.size() +
-                      header_.description.size() + kChecksumBytes;
-  if (length > std::filesystem::file_size(path)) damaged("is cut off");
+  const auto after_text = static_cast<std::size_t>(parsed.tellg());
+  const std::size_t length = after_text + lengths.settings + lengths.description + kChecksumBytes;
+  const std::size_t size = std::filesystem::file_size(path);
+  if (length > size) damaged("is cut off");
   std::string head(length, '\0');
   stream_.seekg(0);
   stream_.read(head.data(), static_cast<std::streamsize>(length));
   if (!is_intact({reinterpret_cast<const std::uint8_t*>(head.data()), length})) {
     damaged("has a damaged beginning");
   }
-  const auto after_text = static_cast<std::size_t>(parsed.tellg());
-  header_.settings = head.substr(after_text, header_.settings.size());
-  header_.description =
-      head.substr(after_text + header_.settings.size(), header_.description.size());
+  header_.settings = head.substr(after_text, lengths.settings);
+  header_.description = head.substr(after_text + lengths.settings, lengths.description);
   columns_at_ = static_cast<std::streamoff>(length);
-  column_.resize(header_.column_bytes() + kChecksumBytes);
-  const std::size_t whole = (std::filesystem::file_size(path) - length) / column_.size();
+  const std::size_t whole = whole_columns(header_, size - length);
   const auto expected = static_cast<std::size_t>(header_.stored_columns());
   if (whole < expected) {
     throw Error(
@@ -135,6 +144,7 @@ ColumnFileReader::ColumnFileReader(const std::filesystem::path& path)
         "has only " + std::to_string(whole) + " of its " + std::to_string(expected) + " columns",
         "give the command that makes it again, which goes on from there");
   }
+  column_.resize(header_.column_bytes() + kChecksumBytes);
 }
 
 void ColumnFileReader::damaged(const std::string& what) const {

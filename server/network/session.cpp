@@ -296,8 +296,9 @@ void Session::check_time(std::int64_t now_ns) {
   } else if (!welcomed_) {
     if (older(accepted_ns_, settings.handshake_timeout_ms)) time_out("no Hello in time");
   } else if (!settings.lockstep) {
-    if (older(connection_->received_ns(), settings.silence_timeout_ms)) time_out("silent too long");
-    if (older(connection_->writing_since_ns(), settings.silence_timeout_ms)) {
+    if (older(connection_->received_ns(), settings.silence_timeout_ms)) {
+      time_out("silent too long");
+    } else if (older(connection_->writing_since_ns(), settings.silence_timeout_ms)) {
       time_out("does not read its forces");
     }
   }

@@ -149,3 +149,17 @@ TEST_CASE("a description goes through memory and back") {
   CHECK(std::holds_alternative<std::monostate>(read.response));
   CHECK_THROWS_WITH(hdf5::File::from_image(image.substr(0, 100), "cut"), Contains("cut"));
 }
+
+// HDF5 would take what stands behind two numbers for a third.
+TEST_CASE("a part of a dataset of another rank is not read") {
+  const File file;
+  file.write(0.0);
+  const hdf5::File open = hdf5::File::open(file.model);
+  std::vector<float> numbers(1);
+  CHECK_THROWS_WITH(open.read_slab<float>(kDenseR, {0, 0}, {1, 1}, numbers.data()),
+                    Contains("has not 2 axes"));
+  CHECK_THROWS_WITH(open.read_slab<float>(kDenseR, {0, 0, 0, 0}, {1, 1, 1, 1}, numbers.data()),
+                    Contains("has not 4 axes"));
+  open.read_slab<float>(kDenseR, {0, 2, 1}, {1, 1, 1}, numbers.data());
+  CHECK(numbers[0] == column(0, file.dof)(2, 1));
+}

@@ -23,7 +23,8 @@ void viewer_message(Input input);
 
 /// Lines: Origin, Host, token given, token wanted, list of codings or entity tags.
 void request_rules(Input input);
-/// All that a peer sends to the viewer's server on one connection.
+/// All that a peer sends to the viewer's server on one connection; after an empty line, to one that
+/// wants a token.
 void http_connection(Input input);
 
 /// One byte: 0 puts the right checksums into the frames first, and how many bytes come at a time;
@@ -38,6 +39,17 @@ void bridge_session(Input input);
 /// One byte: odd, the bridge can do lockstep; above 1, it stops, else it waits too long; then all
 /// that a server sends in a session.
 void server_session(Input input);
+/// A session with datagrams; the first byte chooses: 1 the server plays in lockstep, 2 it has no
+/// datagrams, 4 another bridge has a stylus, 8 which makes room, 16 the bridge does not greet by
+/// itself, 32 cannot play in lockstep, 128 is cut off before it has greeted. Then records, as those
+/// of datagrams(): by the remainder by 9: 0 bytes of the connection, with mended checksums, 1 a
+/// text that the bridge seals, 2 a frame that it sends by datagrams, 3 anybody's datagram, 4 the
+/// last once more, 5 the last with another bit, 6 some get lost, 7 forces come, 8 time passes [ms].
+void bridge_datagrams(Input input);
+/// The same of a bridge: 1 it can play in lockstep, 2 it does not predict, 4 wants no datagrams, 8
+/// the server does not greet by itself, 16 has no datagrams, 32 plays in lockstep, 64 offers no
+/// port, 128 the bridge stops at last. 7: samples and applied forces come.
+void server_datagrams(Input input);
 /// The payload of a contact model, and what a bridge makes of it.
 void contact_model(Input input);
 
@@ -58,7 +70,13 @@ void mesh_obj(Input input);
 void mesh_ply(Input input);
 /// Edits of a valid file.
 void model_file(Input input);
+/// The same of one in half and single precision, with a compressed response.
+void packed_model_file(Input input);
 void trace_file(Input input);
+void run_file(Input input);
+/// Bytes of the header as u16, of a column as u8; header and columns, which get their checksums. A
+/// column of 0 bytes: all of the file as it is.
+void column_file(Input input);
 
 struct Harness {
   std::string_view name;
@@ -70,6 +88,8 @@ inline constexpr std::array kHarnesses = {
     Harness{"http_connection", http_connection},
     Harness{"wire_frames", wire_frames},
     Harness{"datagrams", datagrams},
+    Harness{"bridge_datagrams", bridge_datagrams},
+    Harness{"server_datagrams", server_datagrams},
     Harness{"contact_model", contact_model},
     Harness{"bridge_session", bridge_session},
     Harness{"server_session", server_session},
@@ -87,7 +107,10 @@ inline constexpr std::array kHarnesses = {
     Harness{"mesh_obj", mesh_obj},
     Harness{"mesh_ply", mesh_ply},
     Harness{"model_file", model_file},
+    Harness{"packed_model_file", packed_model_file},
     Harness{"trace_file", trace_file},
+    Harness{"run_file", run_file},
+    Harness{"column_file", column_file},
 };
 
 }  // namespace irdm::fuzz

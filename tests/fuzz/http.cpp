@@ -38,24 +38,29 @@ namespace {
 
 /// A server that shows the example scene, for as long as the process lives.
 struct Site {
-  Site() {
+  explicit Site(const ViewerSettings& settings) : server(settings, run) {
     spdlog::set_level(spdlog::level::off);
     server.start();
   }
-  static ViewerSettings settings() {
-    ViewerSettings settings;
-    settings.page.add("/index.html", {"text/html", "<!doctype html>", "packed", "\"abc\"", false});
-    settings.page.add("/assets/app.js", {"text/javascript", "script", "", "\"def\"", true});
-    return settings;
-  }
 
   test::ExampleRun run;
-  ViewerServer server{settings(), run};
+  ViewerServer server;
 };
 
-}  // namespace
+ViewerSettings open_to_all() {
+  ViewerSettings settings;
+  settings.page.add("/index.html", {"text/html", "<!doctype html>", "packed", "\"abc\"", false});
+  settings.page.add("/assets/app.js", {"text/javascript", "script", "", "\"def\"", true});
+  return settings;
+}
 
-namespace {
+/// With tokens, without a page.
+ViewerSettings guarded() {
+  ViewerSettings settings;
+  settings.token = "0123456789abcdef";
+  settings.onlooker_token = "fedcba9876543210";
+  return settings;
+}
 
 /// The answer's header; empty when there is none.
 std::string header_of(test::WebPeer& peer) {
@@ -69,8 +74,10 @@ std::string header_of(test::WebPeer& peer) {
 }  // namespace
 
 void http_connection(Input input) {
-  static Site site;
-  const std::string_view text = text_of(input);
+  static Site sites[] = {Site(open_to_all()), Site(guarded())};
+  const bool with_token = !input.empty() && input[0] == '\n';
+  Site& site = sites[with_token ? 1 : 0];
+  const std::string_view text = text_of(input.subspan(with_token ? 1 : 0));
   const std::size_t end = text.find("\r\n\r\n");
   const std::size_t head = end == std::string_view::npos ? text.size() : end + 4;
   test::WebPeer peer(site.server.port());

@@ -11,6 +11,7 @@ void key_file(Input input) {
   const std::filesystem::path path = scratch_file("it.key", text_of(input));
   using std::filesystem::perms;
   std::filesystem::permissions(path, perms::owner_read | perms::owner_write);
+  if (input.empty()) std::filesystem::remove(path);
   try {
     wire::read_key_file(path);
     expect(input.size() >= 2 * wire::SecretKey().size(), "a key has 64 digits");

@@ -1,8 +1,14 @@
 // Model files, with edits of the fuzzer's choice.
+#include <algorithm>
 #include <cmath>
+#include <complex>
+#include <vector>
 
 #include "common/error.hpp"
+#include "common/model/dense_file.hpp"
 #include "common/model/model_file.hpp"
+#include "common/response/compressed_response.hpp"
+#include "precompute/compress/dense_input.hpp"
 #include "tests/fuzz/edited_file.hpp"
 #include "tests/fuzz/harness.hpp"
 #include "tests/fuzz/scratch_file.hpp"
@@ -11,43 +17,163 @@
 namespace irdm::fuzz {
 namespace {
 
-/// With both responses, and what the rotation does; the order of R's numbers does not matter here.
+constexpr int kModes = 2;
+constexpr int kResponseSteps = 3;
+
+std::filesystem::path new_file(const char* name) {
+  std::filesystem::path path = scratch_file(name, "");
+  std::filesystem::remove(path);
+  return path;
+}
+
+/// The order of R's numbers does not matter here.
+template <typename Scalar>
+void write_columns(const DenseResponse& response, ModelFileWriter& writer) {
+  const auto& values = std::get<std::vector<Scalar>>(response.values);
+  const auto dof = static_cast<std::size_t>(response.degrees_of_freedom);
+  for (std::size_t b = 0; b < dof; ++b) {
+    writer.write_dense_column(static_cast<int>(b),
+                              values.data() + b * dof * static_cast<std::size_t>(response.steps));
+  }
+  writer.write_dense_centrifugal(std::get<std::vector<Scalar>>(response.centrifugal).data());
+}
+
+/// With both responses, and what the rotation does.
 std::filesystem::path valid_model() {
-  Model model = test::synthetic_cube(1, 2, 3);
+  Model model = test::synthetic_cube(1, kModes, kResponseSteps);
   test::add_centrifugal(model);
   const Model dense = test::with_dense_response<double>(model);
   const auto& response = std::get<DenseResponse>(dense.response);
-  const auto& values = std::get<std::vector<double>>(response.values);
-  const auto dof = static_cast<std::size_t>(response.degrees_of_freedom);
-  const auto steps = static_cast<std::size_t>(response.steps);
-  const std::filesystem::path path = scratch_file("valid.h5", "");
-  std::filesystem::remove(path);
+  std::filesystem::path path = new_file("valid.h5");
   ModelFileWriter writer(path);
   writer.write_description(model);
   writer.write_modal(std::get<ModalResponse>(model.response));
   writer.begin_dense(response.degrees_of_freedom, response.steps, Precision::kDouble);
-  for (std::size_t b = 0; b < dof; ++b) {
-    writer.write_dense_column(static_cast<int>(b), values.data() + b * dof * steps);
-  }
-  writer.write_dense_centrifugal(std::get<std::vector<double>>(response.centrifugal).data());
+  write_columns<double>(response, writer);
   writer.commit();
   return path;
+}
+
+/// Two poles, each of a shape of its own.
+CompressedResponse compressed_response(const Model& model) {
+  CompressedResponse response;
+  response.early_steps = 2;
+  const auto nodes = static_cast<std::size_t>(model.mesh.surface_node_count());
+  response.early.assign(early_entries(nodes) * 2, 1e-3F);
+  const auto dof = static_cast<Eigen::Index>(model.degrees_of_freedom());
+  response.shapes = RowMatrix<float>::Identity(dof, 2);
+  response.pole_shape = {0, 1};
+  using Number = std::complex<double>;
+  response.pole = Eigen::Vector2cd(Number(0.5, 0.1), Number(0.9, 0.0));
+  response.amplitude = Eigen::Vector2cd(Number(1e-3, 0.0), Number(0.0, 1e-4));
+  return response;
+}
+
+/// What takes less room: half precision, modes in single precision and what others add, and the
+/// compressed response.
+std::filesystem::path packed_model() {
+  Model model = test::synthetic_cube(1, kModes, kResponseSteps);
+  test::add_centrifugal(model);
+  test::add_residual(model);
+  const Model dense = test::with_dense_response<float>(model);
+  const auto& response = std::get<DenseResponse>(dense.response);
+  auto& modal = std::get<ModalResponse>(model.response);
+  const RowMatrix<float> shapes = std::get<RowMatrix<double>>(modal.shapes).cast<float>();
+  modal.shapes = shapes;
+  std::filesystem::path path = new_file("packed.h5");
+  ModelFileWriter writer(path);
+  writer.write_description(model);
+  writer.write_modal(modal);
+  writer.begin_dense_half(response.degrees_of_freedom, response.steps);
+  write_columns<float>(response, writer);
+  writer.write_compressed(compressed_response(model), {0.01, 0.01, 0.005, 0.01, 24});
+  writer.commit();
+  return path;
+}
+
+/// A valid file, what it says without its columns, and its edits.
+struct ModelFile {
+  explicit ModelFile(const std::filesystem::path& path)
+      : model(read_streamed_model(path)), edits(path) {}
+  Model model;
+  EditedFile edits;
+};
+
+const StreamedResponse& streamed(const Model& model) {
+  return std::get<StreamedResponse>(model.response);
+}
+
+/// Of the first node and the last.
+/// @param changed the file is not known to be what the model was read from
+void read_columns_of_nodes(const std::filesystem::path& path, const Model& model, bool changed) {
+  const StreamedResponse& response = streamed(model);
+  DenseColumnFile columns(path, response);
+  const auto dof = static_cast<std::size_t>(response.degrees_of_freedom);
+  std::vector<std::byte> node(3 * dof * static_cast<std::size_t>(response.steps) *
+                              number_size(response));
+  try {
+    for (const std::size_t i : {std::size_t{0}, dof / 3 - 1}) {
+      columns.read(static_cast<int>(i), node.data());
+    }
+  } catch (const Error&) {
+    expect(changed, "columns can be read as they were");
+  }
+}
+
+/// @param first of the file as it was
+void read_in_columns(const std::filesystem::path& path, const Model& first) {
+  read_columns_of_nodes(path, first, true);
+  const Model again = read_streamed_model(path);
+  expect(streamed(again).settling.size() == static_cast<std::size_t>(again.steps),
+         "every step has its share that is left");
+  expect(resident_bytes(streamed(again)) > 0, "what is kept takes room");
+  read_columns_of_nodes(path, again, false);
+}
+
+void read_to_compress(const std::filesystem::path& path) {
+  const precompute::DenseInput input(path);
+  expect(input.bytes() > 0.0, "R takes room");
+  for (const int b : {0, input.degrees_of_freedom() - 1}) {
+    expect(input.column(b).allFinite(), "R is finite");
+  }
+}
+
+/// Calls; an error is right when something was edited.
+template <typename Read>
+void try_to(Input edits, const Read& read) {
+  try {
+    read();
+  } catch (const Error&) {
+    expect(!edits.empty(), "a model can be read as it was written");
+  }
+}
+
+void read_all(Input input, const ModelFile& file, bool compressed) {
+  const std::filesystem::path path = file.edits.edited(input);
+  std::vector<ResponseKind> kinds = {ResponseKind::kModal, ResponseKind::kDense};
+  if (compressed) kinds.push_back(ResponseKind::kCompressed);
+  for (const ResponseKind kind : kinds) {
+    try_to(input, [&] {
+      const Model model = read_model(path, kind);
+      expect(model.body.mass > 0.0 && std::isfinite(model.body.mass), "a model has a mass");
+      expect(model.mesh.nodes.allFinite(), "a model's nodes are somewhere");
+    });
+  }
+  if (compressed) try_to(input, [&] { read_compression_error(hdf5::File::open(path)); });
+  try_to(input, [&] { read_in_columns(path, file.model); });
+  try_to(input, [&] { read_to_compress(path); });
 }
 
 }  // namespace
 
 void model_file(Input input) {
-  static const EditedFile file(valid_model());
-  const std::filesystem::path path = file.edited(input);
-  for (const ResponseKind kind : {ResponseKind::kModal, ResponseKind::kDense}) {
-    try {
-      const Model model = read_model(path, kind);
-      expect(model.body.mass > 0.0 && std::isfinite(model.body.mass), "a model has a mass");
-      expect(model.mesh.nodes.allFinite(), "a model's nodes are somewhere");
-    } catch (const Error&) {
-      expect(!input.empty(), "a model can be read as it was written");
-    }
-  }
+  static const ModelFile file(valid_model());
+  read_all(input, file, false);
+}
+
+void packed_model_file(Input input) {
+  static const ModelFile file(packed_model());
+  read_all(input, file, true);
 }
 
 }  // namespace irdm::fuzz

@@ -1,74 +1,18 @@
 // Whole connections between bridge and server, one end of which says what the fuzzer likes.
-#include <spdlog/spdlog.h>
-#include <sys/socket.h>
-
 #include <algorithm>
-#include <array>
-#include <cstdlib>
-#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "common/wire/connection.hpp"
 #include "common/wire/payload.hpp"
 #include "device_bridge/link/server_session.hpp"
 #include "server/network/session.hpp"
 #include "tests/fuzz/harness.hpp"
+#include "tests/fuzz/line.hpp"
 #include "tests/fuzz/mended_frames.hpp"
 
 namespace irdm::fuzz {
 namespace {
-
-using boost::asio::ip::tcp;
-
-/// A connection whose far end the fuzzer has. Not TCP: so many of them would use up the ports.
-class Line {
- public:
-  Line() {
-    spdlog::set_level(spdlog::level::off);
-    std::array<int, 2> ends{};
-    if (::socketpair(AF_UNIX, SOCK_STREAM, 0, ends.data()) != 0) std::abort();
-    near_.assign(tcp::v4(), ends[0]);
-    far_.assign(tcp::v4(), ends[1]);
-  }
-
-  /// The near end, once.
-  std::shared_ptr<wire::Connection> connection() {
-    return std::make_shared<wire::Connection>(wire::make_plain_stream(std::move(near_)));
-  }
-  boost::asio::any_io_executor executor() { return context_.get_executor(); }
-  void say(Input bytes) {
-    boost::system::error_code ignored;
-    boost::asio::write(far_, boost::asio::buffer(bytes.data(), bytes.size()), ignored);
-    go_on();
-  }
-  void say_no_more() {
-    boost::system::error_code ignored;
-    far_.shutdown(tcp::socket::shutdown_send, ignored);
-    go_on();
-  }
-  void hang_up() {
-    far_.close();
-    go_on();
-  }
-
- private:
-  void go_on() {
-    context_.restart();
-    context_.poll();
-  }
-
-  boost::asio::io_context context_;
-  tcp::socket near_{context_};
-  tcp::socket far_{context_};
-};
-
-std::vector<std::uint8_t> mended(Input input) {
-  std::vector<std::uint8_t> stream(input.begin(), input.end());
-  mend(stream);
-  return stream;
-}
 
 /// The greeting, and what comes after it.
 std::pair<Input, Input> parted(Input stream) {
@@ -76,8 +20,6 @@ std::pair<Input, Input> parted(Input stream) {
       std::min(stream.size(), wire::kHeaderSize + *wire::payload_size(wire::MessageType::kWelcome));
   return {stream.first(greeting), stream.subspan(greeting)};
 }
-
-constexpr std::int64_t kFarFutureNs = std::int64_t{1} << 60;
 
 }  // namespace
 

@@ -1,17 +1,20 @@
 #include "device_bridge/stylus_script.hpp"
 
 #include <cmath>
-#include <sstream>
+#include <filesystem>
 
 #include "common/error.hpp"
 #include "tests/fuzz/harness.hpp"
+#include "tests/fuzz/scratch_file.hpp"
 
 namespace irdm::fuzz {
 
+// Without any text there is no file.
 void stylus_script(Input input) {
-  std::istringstream text{std::string(text_of(input))};
+  const std::filesystem::path path = scratch_file("it.csv", text_of(input));
+  if (input.empty()) std::filesystem::remove(path);
   try {
-    const StylusScript script = StylusScript::parse(text, "it.csv");
+    const StylusScript script = StylusScript::load(path);
     constexpr int kParts = 16;
     for (int i = -1; i <= kParts + 1; ++i) {
       const double share = static_cast<double>(i) / kParts;

@@ -55,7 +55,9 @@ void trace_file(Input input) {
   const std::filesystem::path path = file.edited(input);
   try {
     read_trace_header(path);
+    expect(read_trace_objects(path, kNames).size() == kNames.size(), "every object has its model");
     const Recording recording(path, scene(), kNames);
+    recording.lost_steps();
     StepRecord record;
     for (std::size_t k = 0; k < recording.steps(); ++k) {
       recording.step(k, record);

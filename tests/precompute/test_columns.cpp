@@ -1,7 +1,11 @@
 #include <catch2/catch.hpp>
+#include <fstream>
+#include <limits>
 #include <stdexcept>
 
+#include "precompute/columns/column_file.hpp"
 #include "precompute/columns/compute_columns.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 using Catch::Matchers::Contains;
 using namespace irdm;
@@ -102,4 +106,24 @@ TEST_CASE("a block that fails ends the work with its error, and what came before
     CHECK(kept.columns == std::vector<int>{0, 1, 2, 3, 4, 5});
     CHECK(kept.flushes == 2);
   }
+}
+
+TEST_CASE("a column file that claims more than it holds is refused, without room for it") {
+  const irdm::test::TemporaryFolder folder;
+  const std::filesystem::path path = folder.path() / "part.irdm-columns";
+  const auto read = [&](const std::string& content) {
+    std::ofstream(path, std::ios::binary) << content;
+    ColumnFileReader reader(path);
+  };
+  ColumnFileHeader header;
+  header.range = {0, 3};
+  header.degrees_of_freedom = header.steps = std::numeric_limits<int>::max();
+  header.precision = Precision::kDouble;
+  CHECK_THROWS_WITH(read(encode_header(header)), Contains("has only 0 of its 3 columns"));
+  header.degrees_of_freedom = header.steps = 1 << 30;
+  header.precision = Precision::kSingle;
+  CHECK_THROWS_WITH(read(encode_header(header)), Contains("has only 0 of its 3 columns"));
+  std::string text = encode_header(header);
+  text.replace(text.find("settings 0"), 10, "settings 1000000000");
+  CHECK_THROWS_WITH(read(text), Contains("is cut off"));
 }

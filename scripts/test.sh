@@ -12,10 +12,10 @@ case "${1:-}" in
   *) echo "usage: scripts/test.sh [--quick]" >&2; exit 2 ;;
 esac
 
-# The next build goes on while tests wait for something; it never takes a processor from one.
+# The next builds go on while tests wait for something and fuzzers have their time; they never take a processor from one.
 build_ahead() {
   ahead_log=$(mktemp)
-  nice -n 19 scripts/build.sh "$1" >"$ahead_log" 2>&1 &
+  (for preset in "$@"; do nice -n 19 scripts/build.sh "$preset" || exit; done) >"$ahead_log" 2>&1 &
   ahead=$!
 }
 
@@ -40,12 +40,10 @@ if [ $quick = yes ]; then
 else
   # Tests labelled "slow" measure or play for long and find nothing new under a sanitizer.
   scripts/build.sh asan
-  build_ahead tsan
+  build_ahead tsan ci
   run_tests asan --label-exclude slow --parallel 2
   IRDM_FUZZ_SEED=1 scripts/fuzz.sh 60
   finish_build_ahead
-  build_ahead ci
   run_tests tsan --label-exclude slow --parallel 2
-  finish_build_ahead
 fi
 run_tests ci --parallel 3

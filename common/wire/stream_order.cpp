@@ -32,9 +32,9 @@ bool is_of_stream(const Message& message) noexcept {
 bool StreamOrder::take(const Frame& frame) noexcept {
   const std::optional<Place> place = place_of(frame.message);
   if (!place || place->stylus >= kStyluses) return true;
-  std::uint64_t& next = next_[place->kind][place->stylus];
-  if (frame.header.sequence < next) return false;
-  next = frame.header.sequence + 1;
+  std::optional<std::uint64_t>& newest = newest_[place->kind][place->stylus];
+  if (newest && frame.header.sequence <= *newest) return false;
+  newest = frame.header.sequence;
   return true;
 }
 

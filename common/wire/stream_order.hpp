@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "common/wire/message.hpp"
 
@@ -22,7 +23,7 @@ class StreamOrder {
  private:
   static constexpr std::size_t kKinds = 4;
   static constexpr std::size_t kStyluses = 64;  ///< as many slots as a server can have
-  std::array<std::array<std::uint64_t, kStyluses>, kKinds> next_{};  ///< lowest that is news
+  std::array<std::array<std::optional<std::uint64_t>, kStyluses>, kKinds> newest_{};  ///< numbers
 };
 
 }  // namespace irdm::wire

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "server/viewer/request_rules.hpp"
 #include "server/viewer/viewer_server.hpp"
@@ -38,9 +39,14 @@ namespace {
 
 /// A server that shows the example scene, for as long as the process lives.
 struct Site {
-  explicit Site(const ViewerSettings& settings) : server(settings, run) {
+  explicit Site(ViewerSettings settings) : server(impatient(std::move(settings)), run) {
     spdlog::set_level(spdlog::level::off);
     server.start();
+  }
+  /// A peer that waits for the answer to half a request does not wait long.
+  static ViewerSettings impatient(ViewerSettings settings) {
+    settings.request_timeout_ms = 500;
+    return settings;
   }
 
   test::ExampleRun run;

@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 #include <cstdint>
+#include <limits>
 
 #include "common/wire/stream_order.hpp"
 
@@ -24,6 +25,14 @@ TEST_CASE("what is overtaken by a newer one of its kind and stylus is late") {
   CHECK(order.take(frame(2, ContactModelMessage{.stylus = 0})));
   CHECK_FALSE(order.take(frame(2, ContactModelMessage{.stylus = 0})));
   CHECK(order.take(frame(6, SampleMessage{.stylus = 0})));
+}
+
+TEST_CASE("after the highest number of all nothing is news") {
+  constexpr std::uint64_t kHighest = std::numeric_limits<std::uint64_t>::max();
+  StreamOrder order;
+  CHECK(order.take(frame(kHighest, SampleMessage{.stylus = 0})));
+  CHECK_FALSE(order.take(frame(kHighest, SampleMessage{.stylus = 0})));
+  CHECK_FALSE(order.take(frame(0, SampleMessage{.stylus = 0})));
 }
 
 TEST_CASE("what is no stream, or of a stylus that no server has, has no order here") {

@@ -4,7 +4,9 @@
 
 #include <iostream>
 #include <memory>
+#include <sstream>
 
+#include "common/checksum.hpp"
 #include "common/error.hpp"
 #include "precompute/progress.hpp"
 #include "replay/frame_steps.hpp"
@@ -34,20 +36,41 @@ Recording read_recording(const TracedScene& scene, const std::string& trace) {
               "record it again on a disk that is fast enough");
 }
 
+/// All that the steps of a reference depend on.
+std::string reference_key(const TracedScene& scene, const ReplayOptions& options) {
+  std::ostringstream key;
+  key.precision(17);
+  key << "irdm " << IRDM_VERSION << " trace " << sha256_of_file(options.trace) << " substep "
+      << fem_substep(scene.dt(), options.substep.value_or(kReferenceSubstep)) << " tips "
+      << options.from_tips << " elasticity " << static_cast<int>(*options.reference);
+  for (const TracedObject& object : scene.objects) key << " model " << object.checksum;
+  return key.str();
+}
+
+/// Of a reference: beside the first of its outputs.
+std::optional<std::filesystem::path> journal_path(const ReplayOptions& options) {
+  if (!options.reference) return std::nullopt;
+  for (const auto& output : {options.output, options.csv, options.vtk, options.frames}) {
+    if (output) return std::filesystem::path(output->string() + ".steps");
+  }
+  return std::nullopt;
+}
+
 std::unique_ptr<MadeAgain> make_again(const TracedScene& scene, const Recording& recording,
-                                      const ReplayOptions& options) {
-  if (options.fem_reference) {
-    return fem_reference(scene, options.substep.value_or(kReferenceSubstep), options.from_tips,
-                         told_late(recording));
+                                      const ReplayOptions& options, StepJournal* journal) {
+  if (options.reference) {
+    return fem_reference(scene, *options.reference, options.substep.value_or(kReferenceSubstep),
+                         options.from_tips, told_late(recording), journal);
   }
   if (options.from_tips) return std::make_unique<FromTips>(scene.config, options.solve_bridged);
   return std::make_unique<FromForces>(scene.config);
 }
 
 std::string how(const TracedScene& scene, const ReplayOptions& options) {
-  if (!options.fem_reference) return "engine " + scene.engine_words();
+  if (!options.reference) return "engine " + scene.engine_words();
   char words[64];
-  std::snprintf(words, sizeof words, "finite elements in sub-steps of %g s",
+  std::snprintf(words, sizeof words, "%sfinite elements in sub-steps of %g s",
+                options.reference == precompute::Elasticity::kNeoHookean ? "neo-Hookean " : "",
                 fem_substep(scene.dt(), options.substep.value_or(kReferenceSubstep)));
   return words;
 }
@@ -86,7 +109,8 @@ void put_frame(const MadeAgain& made, const StepRecord& record, std::vector<Poin
 class LongRun {
  public:
   /// @param shown whether it takes so long that progress is printed
-  LongRun(std::size_t steps, bool shown) {
+  /// @param goes_on whether the next call goes on where this one ends
+  LongRun(std::size_t steps, bool shown, bool goes_on) : goes_on_(goes_on) {
     if (!shown) return;
     const precompute::Console console{std::cout, ::isatty(STDOUT_FILENO) != 0};
     progress_.emplace(console, "finite elements", static_cast<int>(steps));
@@ -96,13 +120,21 @@ class LongRun {
     if (progress_) progress_->update(static_cast<int>(steps));
     if (!interruption_.came()) return;
     throw Error("irdm-replay", "was interrupted after " + std::to_string(steps) + " steps",
-                "start it again for outputs that are whole");
+                goes_on_ ? "start it again, and it goes on there"
+                         : "start it again for outputs that are whole");
   }
 
  private:
+  bool goes_on_;
   Interruption interruption_;
   std::optional<precompute::Progress> progress_;
 };
+
+std::string taken_text(const std::optional<StepJournal>& journal, const TracedScene& scene) {
+  if (!journal || journal->taken() == 0) return "";
+  return std::to_string(journal->taken() / scene.objects.size()) +
+         " of these steps are from a run that was interrupted\n";
+}
 
 }  // namespace
 
@@ -113,9 +145,12 @@ int replay(const ReplayOptions& options) {
   }
   const Recording recording = read_recording(scene, options.trace.string());
   const FrameSteps frames(recording.steps(), scene.dt(), frame_rate(options), options.part);
-  const auto made = make_again(scene, recording, options);
-  LongRun run(recording.steps(), options.fem_reference);
+  const auto path = journal_path(options);
+  LongRun run(recording.steps(), options.reference.has_value(), path.has_value());
   Outputs outputs = make_outputs(options, scene);
+  std::optional<StepJournal> journal;
+  if (path) journal.emplace(*path, reference_key(scene, options));
+  const auto made = make_again(scene, recording, options, journal ? &*journal : nullptr);
   std::vector<Points> surfaces(scene.config.objects.size());
   Deviation deviation;
   const auto recorded = std::make_unique<StepRecord>();
@@ -129,10 +164,11 @@ int replay(const ReplayOptions& options) {
     run.done(k + 1);
   }
   for (const auto& output : outputs) output->finish();
+  if (journal) journal->remove();
   std::cout << options.trace.string() << ": " << recording.steps() << " steps of " << scene.dt()
             << " s from " << (options.from_tips ? "tips" : "forces") << ", " << how(scene, options)
             << "; " << frames.count() << " frames\n"
-            << deviation.text() << std::flush;
+            << taken_text(journal, scene) << deviation.text() << std::flush;
   return 0;
 }
 

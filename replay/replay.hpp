@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "precompute/dynamics/soft_body.hpp"
 #include "replay/frame_steps.hpp"
 #include "replay/pictures/picture_look.hpp"
 #include "server/engine/response_engine.hpp"
@@ -18,9 +19,10 @@ struct ReplayOptions {
   bool from_tips = false;            ///< the whole step, not only what its forces do
   bool solve_bridged = false;        ///< from tips: what bridges solved, too
   std::optional<EngineKind> engine;  ///< none: the run's own
-  bool fem_reference = false;        ///< by finite elements instead of an engine
-  std::optional<double> substep;     ///< longest one of a reference [s]; none: its default
-  std::optional<double> rate;        ///< frames a second [Hz]; none: every step, or 25 of pictures
+  /// By finite elements of this kind instead of an engine.
+  std::optional<precompute::Elasticity> reference;
+  std::optional<double> substep;  ///< longest one of a reference [s]; none: its default
+  std::optional<double> rate;     ///< frames a second [Hz]; none: every step, or 25 of pictures
   std::optional<std::filesystem::path> output;
   std::optional<std::filesystem::path> csv;
   std::optional<std::filesystem::path> vtk;

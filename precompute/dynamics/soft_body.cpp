@@ -1,6 +1,7 @@
 #include "precompute/dynamics/soft_body.hpp"
 
 #include "precompute/dynamics/corotational.hpp"
+#include "precompute/dynamics/neo_hookean.hpp"
 #include "precompute/dynamics/polar_rotation.hpp"
 #include "precompute/fem/assembly.hpp"
 #include "precompute/fem/mass_properties.hpp"
@@ -65,16 +66,23 @@ void SoftBody::add_mass_damping(const BodyState& state, Eigen::VectorXd& force) 
   }
 }
 
-Eigen::VectorXd SoftBody::internal_force(const BodyState& state) const {
+Matrix3 SoftBody::stress(const Matrix3& du_dX, const Matrix3& dv_dX) const {
   const double beta = material_.rayleigh_beta;
+  switch (elasticity_) {
+    case Elasticity::kLinear:
+      return lame_stress(du_dX + beta * dv_dX, lame_);
+    case Elasticity::kCorotational:
+      return corotational::stress(du_dX, dv_dX, lame_, beta);
+    case Elasticity::kNeoHookean:
+      break;
+  }
+  return neo_hookean::stress(du_dX, dv_dX, lame_, beta);
+}
+
+Eigen::VectorXd SoftBody::internal_force(const BodyState& state) const {
   Eigen::VectorXd force = Eigen::VectorXd::Zero(state.u.size());
   for (const Point& point : points_) {
-    const Matrix3 du_dX = gradient(point, state.u);
-    const Matrix3 dv_dX = gradient(point, state.v);
-    add_force(point,
-              elasticity_ == Elasticity::kLinear ? lame_stress(du_dX + beta * dv_dX, lame_)
-                                                 : corotational::stress(du_dX, dv_dX, lame_, beta),
-              force);
+    add_force(point, stress(gradient(point, state.u), gradient(point, state.v)), force);
   }
   add_mass_damping(state, force);
   return force;
@@ -82,7 +90,7 @@ Eigen::VectorXd SoftBody::internal_force(const BodyState& state) const {
 
 StepStart SoftBody::start_of_step(const Eigen::VectorXd& u) const {
   StepStart start{u, {}};
-  if (elasticity_ == Elasticity::kLinear) return start;
+  if (elasticity_ != Elasticity::kCorotational) return start;
   start.strains.reserve(points_.size());
   for (const Point& point : points_) {
     start.strains.push_back(corotational::strain(gradient(point, u)));
@@ -98,9 +106,13 @@ Eigen::VectorXd SoftBody::mean_force(const StepStart& start, const Eigen::Vector
   Eigen::VectorXd force = Eigen::VectorXd::Zero(w.size());
   for (std::size_t p = 0; p < points_.size(); ++p) {
     const Point& point = points_[p];
+    const Matrix3 before = gradient(point, start.u);
+    const Matrix3 after = gradient(point, end);
+    const double beta = material_.rayleigh_beta;
     add_force(point,
-              corotational::mean_stress(gradient(point, start.u), start.strains[p],
-                                        gradient(point, end), h, lame_, material_.rayleigh_beta),
+              elasticity_ == Elasticity::kCorotational
+                  ? corotational::mean_stress(before, start.strains[p], after, h, lame_, beta)
+                  : neo_hookean::mean_stress(before, after, h, lame_, beta),
               force);
   }
   add_mass_damping(middle, force);
@@ -111,6 +123,10 @@ double SoftBody::elastic_energy(const Eigen::VectorXd& u) const {
   double sum = 0.0;
   for (const Point& point : points_) {
     const Matrix3 du_dX = gradient(point, u);
+    if (elasticity_ == Elasticity::kNeoHookean) {
+      sum += point.volume * neo_hookean::energy_density(du_dX, lame_);
+      continue;
+    }
     const Matrix3 strain = elasticity_ == Elasticity::kLinear
                                ? Matrix3(0.5 * (du_dX + du_dX.transpose()))
                                : corotational::strain(du_dX);
@@ -146,21 +162,30 @@ Eigen::SparseMatrix<double> SoftBody::stiffness(const Eigen::VectorXd& u) const 
     }
   };
   for (const Point& point : points_) {
+    const auto add_blocks = [&](const auto& block) {
+      for (Eigen::Index i = 0; i < nodes; ++i) {
+        for (Eigen::Index j = 0; j < nodes; ++j) {
+          add(tets_(point.element, i), tets_(point.element, j),
+              point.volume * block(point.gradient.row(i), point.gradient.row(j)));
+        }
+      }
+    };
+    if (elasticity_ == Elasticity::kNeoHookean) {
+      const neo_hookean::Tangent tangent(gradient(point, u), lame_);
+      add_blocks([&](const Vector3& gi, const Vector3& gj) { return tangent.block(gi, gj); });
+      continue;
+    }
     Matrix3 R = Matrix3::Identity();
     if (elasticity_ == Elasticity::kCorotational) {
       R = polar_rotation(Matrix3::Identity() + gradient(point, u));
     }
-    // An isotropic material turns with its shape functions' gradients.
-    const auto g = (point.gradient * R.transpose()).eval();
-    for (Eigen::Index i = 0; i < nodes; ++i) {
-      for (Eigen::Index j = 0; j < nodes; ++j) {
-        // Of f_i = stress g_i under the gradient u_j g_j^T.
-        const Matrix3 dyad = g.row(i).transpose() * g.row(j);
-        add(tets_(point.element, i), tets_(point.element, j),
-            point.volume * (lame_.lambda * dyad + lame_.mu * dyad.transpose() +
-                            lame_.mu * dyad.trace() * Matrix3::Identity()));
-      }
-    }
+    // An isotropic material turns with its shape functions' gradients: of f_i = stress g_i under
+    // the gradient u_j g_j^T.
+    add_blocks([&](const Vector3& gi, const Vector3& gj) -> Matrix3 {
+      const Matrix3 dyad = (R * gi) * (R * gj).transpose();
+      return lame_.lambda * dyad + lame_.mu * dyad.transpose() +
+             lame_.mu * dyad.trace() * Matrix3::Identity();
+    });
   }
   Eigen::SparseMatrix<double> matrix(u.size(), u.size());
   matrix.setFromTriplets(entries.begin(), entries.end());
@@ -169,7 +194,7 @@ Eigen::SparseMatrix<double> SoftBody::stiffness(const Eigen::VectorXd& u) const 
 
 Eigen::VectorXd SoftBody::rigid_velocity(const Eigen::VectorXd& u, const Eigen::VectorXd& v) const {
   Points x = rest_;
-  if (elasticity_ == Elasticity::kCorotational) x += as_points(u);
+  if (elasticity_ != Elasticity::kLinear) x += as_points(u);
   const double total = mass_.sum();
   const Vector3 centre = x.transpose() * mass_ / total;
   const Vector3 velocity = as_points(v).transpose() * mass_ / total;

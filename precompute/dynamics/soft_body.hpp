@@ -12,8 +12,9 @@
 namespace irdm::precompute {
 
 /// kLinear: infinitesimal displacements and rotations. kCorotational: linear elasticity in a frame
-/// that turns with each element, rotations of any size.
-enum class Elasticity { kLinear, kCorotational };
+/// that turns with each element, rotations of any size. kNeoHookean: rotations and strains of any
+/// size, see neo_hookean.hpp.
+enum class Elasticity { kLinear, kCorotational, kNeoHookean };
 
 /// A field of the nodes (3N), index 3 node + axis, by nodes: (N, 3). Looks into `field`.
 inline Eigen::Map<const Points> as_points(const Eigen::Ref<const Eigen::VectorXd>& field) {
@@ -29,7 +30,7 @@ struct BodyState {
 /// The beginning of a time step, see SoftBody::mean_force().
 struct StepStart {
   Eigen::VectorXd u;             ///< displacement (3N) [m], W
-  std::vector<Matrix3> strains;  ///< S - Id at each point of SoftBody; none of a linear body
+  std::vector<Matrix3> strains;  ///< S - Id at each point of a corotational SoftBody
 };
 
 /// A free-floating body of tetrahedra: masses, internal forces and energy. Const after
@@ -67,7 +68,7 @@ class SoftBody {
   StepStart start_of_step(const Eigen::VectorXd& u) const;
   /// Mean internal force [N] over a step of length h [s] with mean velocity w, (3N), W. Its work
   /// h w^T f is the loss of elastic energy, to rounding, less what damping takes; it has neither
-  /// resultant nor torque about the middle of the step. See corotational::mean_stress().
+  /// resultant nor torque about the middle of the step. See mean_stress() of the materials.
   Eigen::VectorXd mean_force(const StepStart& start, const Eigen::VectorXd& w, double h) const;
   double elastic_energy(const Eigen::VectorXd& u) const;   ///< [J]
   double kinetic_energy(const Eigen::VectorXd& v) const;   ///< [J]
@@ -76,7 +77,7 @@ class SoftBody {
 
   /// Warped stiffness sum_e R_e K0_e R_e^T [N/m], (3N, 3N): the Jacobian of the elastic force but
   /// for the turning of the R_e, which vanishes with the strain. Symmetric, positive semidefinite,
-  /// always of the same pattern.
+  /// always of the same pattern. Of a neo-Hookean body the whole Jacobian, of the same pattern.
   Eigen::SparseMatrix<double> stiffness(const Eigen::VectorXd& u) const;
   /// Rigid velocity with the momentum and angular momentum of the given velocities, per node (3N);
   /// of the linear body about its rest shape.
@@ -92,6 +93,7 @@ class SoftBody {
   };
   void add_element(const TetMesh& mesh, Eigen::Index element);
   Matrix3 gradient(const Point& point, const Eigen::VectorXd& field) const;
+  Matrix3 stress(const Matrix3& du_dX, const Matrix3& dv_dX) const;
   void add_force(const Point& point, const Matrix3& P, Eigen::VectorXd& force) const;
   void add_mass_damping(const BodyState& state, Eigen::VectorXd& force) const;
 

@@ -10,7 +10,7 @@ namespace irdm::replay {
 namespace {
 
 void check_reference(const ReplayOptions& options, const std::string& engine) {
-  if (!options.fem_reference) {
+  if (!options.reference) {
     if (!options.substep) return;
     throw Error("--substep", "is of a reference", "give --reference fem, too");
   }
@@ -77,8 +77,9 @@ Command add_replay_command(CLI::App& app) {
       ->check(CLI::IsMember({"modal", "dense", "compressed"}));
   auto reference = std::make_shared<std::string>();
   app.add_option("--reference", *reference,
-                 "fem: by finite elements on the model's mesh instead of an engine (slow)")
-      ->check(CLI::IsMember({"fem"}));
+                 "By finite elements on the model's mesh instead of an engine (slow). fem: linear "
+                 "elasticity and large rotations; fem-nonlinear: neo-Hookean, large strains")
+      ->check(CLI::IsMember({"fem", "fem-nonlinear"}));
   app.add_option("--substep", options->substep,
                  "Longest step of a reference in s (default: 0.00025)")
       ->check(positive_number());
@@ -106,7 +107,10 @@ Command add_replay_command(CLI::App& app) {
     if (options->solve_bridged && !options->from_tips) {
       throw Error("--solve-bridged", "solves nothing from forces", "give --from tips, too");
     }
-    options->fem_reference = !reference->empty();
+    if (!reference->empty()) {
+      options->reference = *reference == "fem" ? precompute::Elasticity::kCorotational
+                                               : precompute::Elasticity::kNeoHookean;
+    }
     check_reference(*options, *engine);
     if (!engine->empty()) options->engine = engine_from_word(*engine);
     return replay(*options);

@@ -42,24 +42,25 @@ int fem_parts(double dt, double longest) {
   return std::max(1, static_cast<int>(std::ceil(dt / longest - 1e-9)));
 }
 
-FemBody::Mesh::Mesh(const Model& model, double damping, double h)
-    : body({model.mesh.nodes, model.mesh.tets, {}}, damped(model.material, damping),
-           precompute::Elasticity::kCorotational),
+FemBody::Mesh::Mesh(const Model& model, precompute::Elasticity elasticity, double damping, double h)
+    : body({model.mesh.nodes, model.mesh.tets, {}}, damped(model.material, damping), elasticity),
       rule(body, kTolerance, kMostIterations) {
   rule.prepare(h);
 }
 
-FemBody::FemBody(const SimulationConfig& config, std::size_t number, double substep,
-                 bool follow_tips, std::vector<ToldLate> told_late)
+FemBody::FemBody(const SimulationConfig& config, std::size_t number,
+                 precompute::Elasticity elasticity, double substep, bool follow_tips,
+                 std::vector<ToldLate> told_late)
     : model_(config.objects[number].model),
       rigid_(model_->body, model_->dt),
       surface_(model_->mesh),
       recorded_forces_(surface_, tip_radii(config)),
+      elasticity_(elasticity),
       follow_tips_(follow_tips),
       told_late_(std::move(told_late)),
       parts_(fem_parts(model_->dt, substep)),
       h_(model_->dt / parts_),
-      mesh_(std::make_unique<Mesh>(*model_, 1.0, h_)),
+      mesh_(std::make_unique<Mesh>(*model_, elasticity_, 1.0, h_)),
       force_(Eigen::VectorXd::Zero(model_->mesh.nodes.size())) {
   for (const SimulationStylus& stylus : config.styluses) {
     masks_.emplace_back(surface_, stylus.radius);
@@ -95,7 +96,7 @@ void FemBody::set(const Vector3& gravity, const ObjectSettings& settings) {
   free_forces_.tether = settings.tether;
   if (settings.material_damping == material_damping_) return;
   material_damping_ = settings.material_damping;
-  mesh_ = std::make_unique<Mesh>(*model_, material_damping_, h_);
+  mesh_ = std::make_unique<Mesh>(*model_, elasticity_, material_damping_, h_);
   workspace_.solver.reset();
 }
 
@@ -218,13 +219,50 @@ void FemBody::move(const ObjectRecord& recorded) {
   }
 }
 
+void FemBody::solve(ObjectRecord& recorded) {
+  if (followed_.empty()) {
+    move(recorded);
+  } else {
+    follow(recorded);
+  }
+}
+
+// What the next step depends on: largest speed, u, v, and the forces of followed points.
+bool FemBody::take_from_journal(ObjectRecord& recorded) {
+  if (journal_ == nullptr || !journal_->take(numbers_)) return false;
+  const Eigen::Index n = state_.u.size();
+  const auto forces = 3 * static_cast<Eigen::Index>(followed_.size());
+  const Eigen::Map<const Eigen::VectorXd> all(numbers_.data(),
+                                              static_cast<Eigen::Index>(numbers_.size()));
+  if (all.size() != 1 + 2 * n + forces) {
+    throw Error("work file", "has steps of another run", "remove FILE.steps beside the output");
+  }
+  workspace_.largest_speed = all[0];
+  state_.u = all.segment(1, n);
+  state_.v = all.segment(1 + n, n);
+  if (followed_.empty()) return true;
+  put_forces(all.tail(forces), recorded);
+  remember_forces(all.tail(forces));
+  return true;
+}
+
+void FemBody::keep_in_journal() {
+  if (journal_ == nullptr) return;
+  numbers_.assign(1, workspace_.largest_speed);
+  numbers_.insert(numbers_.end(), state_.u.begin(), state_.u.end());
+  numbers_.insert(numbers_.end(), state_.v.begin(), state_.v.end());
+  if (!followed_.empty()) {
+    numbers_.insert(numbers_.end(), last_forces_[0].begin(), last_forces_[0].end());
+  }
+  journal_->keep(numbers_);
+}
+
 void FemBody::step(ObjectRecord& again, std::span<const StylusRecord> styluses) {
   const RigidState start = rigid_state();
   choose_followed(again, styluses);
-  if (followed_.empty()) {
-    move(again);
-  } else {
-    follow(again);
+  if (!take_from_journal(again)) {
+    solve(again);
+    keep_in_journal();
   }
   const Quaternion turn = start.orientation.conjugate() * again.start.orientation;
   for (ContactRecord& contact : again.contact) contact.force = turn * contact.force;

@@ -7,6 +7,7 @@
 #include "precompute/dynamics/rigid_extraction.hpp"
 #include "replay/made_again/forced_body.hpp"
 #include "replay/reference/broyden_solver.hpp"
+#include "replay/reference/step_journal.hpp"
 #include "server/step/recorded_forces.hpp"
 #include "server/step/simulation_config.hpp"
 
@@ -22,12 +23,12 @@ struct ToldLate {
   Quaternion orientation = Quaternion::Identity();  ///< of the recorded body before that step
 };
 
-/// By finite elements, without modes, R or rigid body: the whole mesh, corotational, stepped by
-/// ImplicitMidpoint. Recorded forces act in W on the points of the surface that they were recorded
-/// at, constant during a step. What the server does to the rigid motion alone (gravity, damping,
-/// tether, the couple of a contact's offset) is a field of accelerations here that moves the mesh
-/// as a rigid body, taken in by half kicks before and after each sub-step (Strang: second order, as
-/// the rule itself). A sub-step that cannot be solved is made in halves.
+/// By finite elements, without modes, R or rigid body: the whole mesh, of large rotations, stepped
+/// by ImplicitMidpoint. Recorded forces act in W on the points of the surface that they were
+/// recorded at, constant during a step. What the server does to the rigid motion alone (gravity,
+/// damping, tether, the couple of a contact's offset) is a field of accelerations here that moves
+/// the mesh as a rigid body, taken in by half kicks before and after each sub-step (Strang: second
+/// order, as the rule itself). A sub-step that cannot be solved is made in halves.
 class FemBody final : public ForcedBody {
  public:
   /// Throws Error when the object does not float.
@@ -36,8 +37,12 @@ class FemBody final : public ForcedBody {
   /// @param follow_tips points that are held follow their tips as in the server's step, with the
   /// force that this takes here, in place of the recorded one
   /// @param told_late of this object: they act in the steps that they belong to
-  FemBody(const SimulationConfig& config, std::size_t number, double substep,
-          bool follow_tips = false, std::vector<ToldLate> told_late = {});
+  FemBody(const SimulationConfig& config, std::size_t number, precompute::Elasticity elasticity,
+          double substep, bool follow_tips = false, std::vector<ToldLate> told_late = {});
+
+  /// From now on: steps that a journal has are taken from it, and others kept in it.
+  /// @param journal must outlive this object
+  void use(StepJournal& journal) noexcept { journal_ = &journal; }
 
   void reset() override;
   /// Nothing: it has acted in its own step.
@@ -61,7 +66,7 @@ class FemBody final : public ForcedBody {
   };
   /// The body with the material as it is now.
   struct Mesh {
-    Mesh(const Model& model, double damping, double h);
+    Mesh(const Model& model, precompute::Elasticity elasticity, double damping, double h);
     precompute::SoftBody body;
     precompute::ImplicitMidpoint rule;
   };
@@ -81,11 +86,17 @@ class FemBody final : public ForcedBody {
   void choose_followed(const ObjectRecord& recorded, std::span<const StylusRecord> styluses);
   Eigen::VectorXd misses(const ObjectRecord& moved) const;
   void follow(ObjectRecord& recorded);
+  void put_forces(const Eigen::VectorXd& forces, ObjectRecord& recorded) const;
+  void remember_forces(const Eigen::VectorXd& forces);
+  void solve(ObjectRecord& recorded);
+  bool take_from_journal(ObjectRecord& recorded);
+  void keep_in_journal();
 
   std::shared_ptr<const Model> model_;
   RigidBody rigid_;
   RestSurface surface_;
   RecordedForces recorded_forces_;
+  precompute::Elasticity elasticity_;
   bool follow_tips_;
   std::vector<PressureMask> masks_;
   std::vector<double> spring_compliance_;  ///< of each stylus [m/N]
@@ -104,6 +115,8 @@ class FemBody final : public ForcedBody {
   precompute::ImplicitMidpoint::Workspace workspace_;
   Eigen::VectorXd force_;  ///< of contacts and floor during the step, (3N) [N], W
   std::vector<OffsetForce> couples_;
+  StepJournal* journal_ = nullptr;
+  std::vector<double> numbers_;  ///< of the journal
 };
 
 }  // namespace irdm::replay

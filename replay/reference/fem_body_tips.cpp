@@ -54,11 +54,7 @@ void FemBody::follow(ObjectRecord& recorded) {
   const precompute::BodyState before = state_;
   const double largest_speed = workspace_.largest_speed;
   const auto missed = [&](const Eigen::VectorXd& forces) {
-    for (std::size_t i = 0; i < followed_.size(); ++i) {
-      recorded.contact[followed_[i].stylus].force =
-          recorded.start.orientation.conjugate() *
-          Vector3(forces.segment<3>(3 * static_cast<Eigen::Index>(i)));
-    }
+    put_forces(forces, recorded);
     state_ = before;
     workspace_.largest_speed = largest_speed;
     move(recorded);
@@ -71,6 +67,18 @@ void FemBody::follow(ObjectRecord& recorded) {
     throw Error("--reference fem", "a held point cannot follow its tip",
                 "use smaller sub-steps, or --from forces");
   }
+  remember_forces(forces);
+}
+
+void FemBody::put_forces(const Eigen::VectorXd& forces, ObjectRecord& recorded) const {
+  for (std::size_t i = 0; i < followed_.size(); ++i) {
+    recorded.contact[followed_[i].stylus].force =
+        recorded.start.orientation.conjugate() *
+        Vector3(forces.segment<3>(3 * static_cast<Eigen::Index>(i)));
+  }
+}
+
+void FemBody::remember_forces(const Eigen::VectorXd& forces) {
   last_forces_.insert(last_forces_.begin(), forces);
   if (last_forces_.size() > 2) last_forces_.pop_back();
 }

@@ -26,8 +26,10 @@ double fem_substep(double dt, double longest) {
   return dt / fem_parts(dt, longest);
 }
 
-std::unique_ptr<MadeAgain> fem_reference(const TracedScene& scene, double substep, bool follow_tips,
-                                         const std::vector<ToldLate>& told_late) {
+std::unique_ptr<MadeAgain> fem_reference(const TracedScene& scene,
+                                         precompute::Elasticity elasticity, double substep,
+                                         bool follow_tips, const std::vector<ToldLate>& told_late,
+                                         StepJournal* journal) {
   std::vector<std::unique_ptr<ForcedBody>> bodies;
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     check_model(*scene.config.objects[i].model, scene.objects[i].model.string());
@@ -35,8 +37,10 @@ std::unique_ptr<MadeAgain> fem_reference(const TracedScene& scene, double subste
     for (const ToldLate& told : told_late) {
       if (told.late.object == static_cast<int>(i)) own.push_back(told);
     }
-    bodies.push_back(
-        std::make_unique<FemBody>(scene.config, i, substep, follow_tips, std::move(own)));
+    auto body = std::make_unique<FemBody>(scene.config, i, elasticity, substep, follow_tips,
+                                          std::move(own));
+    if (journal != nullptr) body->use(*journal);
+    bodies.push_back(std::move(body));
   }
   return std::make_unique<FromForces>(scene.config, std::move(bodies));
 }

@@ -21,9 +21,12 @@ double fem_substep(double dt, double longest);
 /// @param substep [s], > 0
 /// @param follow_tips held points follow their tips (FemBody)
 /// @param told_late of the trace, for all objects
-std::unique_ptr<MadeAgain> fem_reference(const TracedScene& scene, double substep,
+/// @param journal of its steps, so that it can go on; null: none
+std::unique_ptr<MadeAgain> fem_reference(const TracedScene& scene,
+                                         precompute::Elasticity elasticity, double substep,
                                          bool follow_tips = false,
-                                         const std::vector<ToldLate>& told_late = {});
+                                         const std::vector<ToldLate>& told_late = {},
+                                         StepJournal* journal = nullptr);
 
 /// What bridges told too late, step by step of the trace. What belongs to a time before it, or
 /// before a reset, is left out, as in the server.

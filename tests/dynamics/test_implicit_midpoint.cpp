@@ -89,6 +89,18 @@ TEST_CASE("undamped corotational flight conserves both momenta and the energy, a
   }
 }
 
+TEST_CASE("neo-Hookean free flight conserves both momenta and the energy, or gains none damped") {
+  const Flight undamped = fly(body(Elasticity::kNeoHookean, 0.0, 0.0), 0.002);
+  CHECK(undamped.momentum_error < 1e-12);
+  CHECK(undamped.angular_error < 1e-11);
+  CHECK(undamped.largest_gain < 1e-10);
+  CHECK(undamped.largest_loss < 1e-10);
+  const Flight damped = fly(body(Elasticity::kNeoHookean, 8.0, 2e-4), 0.002);
+  CHECK(damped.momentum_error < 1e-12);
+  CHECK(damped.angular_error < 1e-11);
+  CHECK(damped.largest_gain < 0.0);
+}
+
 TEST_CASE("a corotational flight converges with the square of the step, damped or not") {
   for (const auto& [alpha, beta] : {std::pair(0.0, 0.0), std::pair(8.0, 2e-4)}) {
     const SoftBody b = body(Elasticity::kCorotational, alpha, beta);

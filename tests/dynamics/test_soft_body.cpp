@@ -54,9 +54,10 @@ TEST_CASE("linear forces are those of the assembled stiffness") {
   CHECK((b.internal_force(state) - expected).norm() < 1e-12 * expected.norm());
 }
 
-TEST_CASE("corotational elastic force is the gradient of the energy") {
+TEST_CASE("elastic force of large strains is the gradient of the energy") {
   const int order = GENERATE(1, 2);
-  const SoftBody b = body(order, Elasticity::kCorotational, 0.0, 0.0);
+  const auto elasticity = GENERATE(Elasticity::kCorotational, Elasticity::kNeoHookean);
+  const SoftBody b = body(order, elasticity, 0.0, 0.0);
   BodyState state = some_state(b);
   const Eigen::VectorXd force = b.internal_force(state);
   const double step = 1e-7;
@@ -70,11 +71,12 @@ TEST_CASE("corotational elastic force is the gradient of the energy") {
   }
 }
 
-TEST_CASE("corotational forces have neither resultant nor torque, damping included") {
+TEST_CASE("forces of large strains have neither resultant nor torque, damping included") {
   const int order = GENERATE(1, 2);
+  const auto elasticity = GENERATE(Elasticity::kCorotational, Elasticity::kNeoHookean);
   for (const auto& [alpha, beta] :
        {std::pair(0.0, 0.0), std::pair(8.0, 0.0), std::pair(0.0, 0.1)}) {
-    const SoftBody b = body(order, Elasticity::kCorotational, alpha, beta);
+    const SoftBody b = body(order, elasticity, alpha, beta);
     const BodyState state = some_state(b);
     const Eigen::VectorXd force = b.internal_force(state);
     CAPTURE(alpha, beta);
@@ -85,7 +87,8 @@ TEST_CASE("corotational forces have neither resultant nor torque, damping includ
 
 TEST_CASE("a turned undeformed body feels no force and its rigid velocity no damping") {
   const int order = GENERATE(1, 2);
-  const SoftBody b = body(order, Elasticity::kCorotational, 8.0, 0.1);
+  const auto elasticity = GENERATE(Elasticity::kCorotational, Elasticity::kNeoHookean);
+  const SoftBody b = body(order, elasticity, 8.0, 0.1);
   const Matrix3 Q = Eigen::AngleAxisd(2.0, Vector3(1, 2, -3).normalized()).matrix();
   const Points x = b.rest() * Q.transpose();
   const Points v =
@@ -96,8 +99,9 @@ TEST_CASE("a turned undeformed body feels no force and its rigid velocity no dam
 
 TEST_CASE("damping takes power at any strain, and near rest it is beta K v") {
   const int order = GENERATE(1, 2);
-  const SoftBody b = body(order, Elasticity::kCorotational, 0.0, 0.1);
-  const SoftBody undamped = body(order, Elasticity::kCorotational, 0.0, 0.0);
+  const auto elasticity = GENERATE(Elasticity::kCorotational, Elasticity::kNeoHookean);
+  const SoftBody b = body(order, elasticity, 0.0, 0.1);
+  const SoftBody undamped = body(order, elasticity, 0.0, 0.0);
   BodyState state = some_state(b);
   CHECK(state.v.dot(b.internal_force(state) - undamped.internal_force(state)) < 0.0);
   state.u.setZero();
@@ -117,4 +121,16 @@ TEST_CASE("warped stiffness is the Jacobian of the corotational force where ther
       (b.internal_force({u + step * d, none}) - b.internal_force({u - step * d, none})) /
       (2.0 * step);
   CHECK((slope + b.stiffness(u) * d).norm() < 1e-5 * slope.norm());
+}
+
+TEST_CASE("neo-Hookean stiffness is the Jacobian of the force at any strain") {
+  const int order = GENERATE(1, 2);
+  const SoftBody b = body(order, Elasticity::kNeoHookean, 0.0, 0.0);
+  const BodyState state = some_state(b);
+  const double step = 1e-7;
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(state.u.size());
+  const Eigen::VectorXd slope = (b.internal_force({state.u + step * state.v, none}) -
+                                 b.internal_force({state.u - step * state.v, none})) /
+                                (2.0 * step);
+  CHECK((slope + b.stiffness(state.u) * state.v).norm() < 1e-5 * slope.norm());
 }

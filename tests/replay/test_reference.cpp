@@ -16,6 +16,7 @@ using namespace irdm::test;
 namespace {
 
 constexpr double kFemStep = 0.002;
+constexpr auto kCorotational = precompute::Elasticity::kCorotational;
 
 SimulationConfig one_fem_cube(const FemCube& cube) {
   SimulationConfig config;
@@ -108,7 +109,7 @@ struct FemDifference {
 };
 
 FemDifference fem_against(const KeptRun& run, double substep) {
-  FemBody body(run.config, 0, substep);
+  FemBody body(run.config, 0, kCorotational, substep);
   FemDifference apart;
   Points u;
   for (std::size_t k = 0; k < run.records.size(); ++k) {
@@ -130,7 +131,7 @@ TEST_CASE("the reference in free flight slows and falls as the rigid motion's eq
   object.velocity = Vector3(0.3, 0.0, 0.1);
   object.angular_velocity = Vector3(0, 0, 1.5);
   object.damping = {4.0, 6.0};
-  FemBody body(config, 0, 5e-4);
+  FemBody body(config, 0, kCorotational, 5e-4);
   const ObjectRecord end = fly(body, 250);
   const double t = 250 * kFemStep;
   const Vector3 limit = config.gravity / 4.0;
@@ -152,7 +153,7 @@ TEST_CASE("the reference swings on its tether at the frequency of mass and sprin
   object.angular_velocity = object.orientation * spin;
   const double rate = 2.0 * std::numbers::pi;
   object.tether = {properties.mass * rate * rate, properties.inertia(2, 2) * rate * rate};
-  FemBody body(config, 0, 5e-4);
+  FemBody body(config, 0, kCorotational, 5e-4);
   const ObjectRecord end = fly(body, 375);  // three quarters of a swing
   CHECK((end.position - Vector3(-0.2 / rate, 0, 0)).norm() < 1e-5 * 0.2);
   const Quaternion turned = object.orientation.conjugate() * end.orientation;
@@ -169,7 +170,7 @@ TEST_CASE("the reference swings on its tether at the frequency of mass and sprin
 TEST_CASE("the reference has the momentum of the recorded forces, and their couples") {
   const SimulationConfig config = one_fem_cube({.cells = 3, .poisson_ratio = 0.45});
   const KeptRun run = Tap{.steps = 30}.run(config);
-  FemBody body(config, 0, kFemStep);
+  FemBody body(config, 0, kCorotational, kFemStep);
   for (const StepRecord& recorded : run.records) {
     ObjectRecord again = recorded.object[0];
     body.step(again, {});
@@ -218,10 +219,10 @@ TEST_CASE("what sets finite elements and responses apart is as small a share as 
 
 TEST_CASE("the reference converges with the square of its sub-step", "[slow]") {
   const KeptRun run = Tap{.steps = 50}.run(one_fem_cube({.cells = 3}));
-  FemBody finest(run.config, 0, 3.125e-5);
+  FemBody finest(run.config, 0, kCorotational, 3.125e-5);
   std::array<std::unique_ptr<FemBody>, 3> bodies;
   for (std::size_t i = 0; i < 3; ++i) {
-    bodies[i] = std::make_unique<FemBody>(run.config, 0, 2.5e-4 * (1 << i));
+    bodies[i] = std::make_unique<FemBody>(run.config, 0, kCorotational, 2.5e-4 * (1 << i));
   }
   std::array<FemDifference, 3> apart;
   Points exact;
@@ -249,8 +250,8 @@ TEST_CASE("the reference is the same however the body is turned, and after a res
       Quaternion(Eigen::AngleAxisd(2.0, Vector3(1, -2, 3).normalized()));
   config.objects[0].position = Vector3(0.3, -0.2, 0.1);
   const KeptRun turned = Tap{.peak = 0.5, .steps = 30}.run(config);
-  FemBody straight(run.config, 0, kFemStep);
-  FemBody askew(config, 0, kFemStep);
+  FemBody straight(run.config, 0, kCorotational, kFemStep);
+  FemBody askew(config, 0, kCorotational, kFemStep);
   Points u;
   Points v;
   for (std::size_t k = 0; k < run.records.size(); ++k) {
@@ -268,7 +269,7 @@ TEST_CASE("the reference is the same however the body is turned, and after a res
   ObjectRecord first = run.records[0].object[0];
   straight.step(first, {});
   straight.displacement(u);
-  FemBody fresh(run.config, 0, kFemStep);
+  FemBody fresh(run.config, 0, kCorotational, kFemStep);
   first = run.records[0].object[0];
   fresh.step(first, {});
   fresh.displacement(v);
@@ -295,7 +296,7 @@ TEST_CASE("the reference follows gravity, damping and the material's damping whe
     run.keep(simulation, record);
   }
   std::vector<std::unique_ptr<ForcedBody>> bodies;
-  bodies.push_back(std::make_unique<FemBody>(config, 0, kReferenceSubstep));
+  bodies.push_back(std::make_unique<FemBody>(config, 0, kCorotational, kReferenceSubstep));
   FromForces made(config, std::move(bodies));
   FemDifference apart;
   StepRecord again;
@@ -320,11 +321,12 @@ TEST_CASE("what the reference cannot do is refused by name") {
   Model fixed = *fem_cube({.cells = 2});
   fixed.body.support = Support::kFixed;
   scene.config.objects[0].model = std::make_shared<const Model>(fixed);
-  CHECK_THROWS_WITH(fem_reference(scene, 1e-3), Contains("some.h5") && Contains("fixed"));
+  CHECK_THROWS_WITH(fem_reference(scene, kCorotational, 1e-3),
+                    Contains("some.h5") && Contains("fixed"));
   Model heavy = *fem_cube({.cells = 2});
   heavy.mesh.node_mass(3) *= 1.1;
   scene.config.objects[0].model = std::make_shared<const Model>(heavy);
-  CHECK_THROWS_WITH(fem_reference(scene, 1e-3), Contains("masses"));
+  CHECK_THROWS_WITH(fem_reference(scene, kCorotational, 1e-3), Contains("masses"));
 }
 
 TEST_CASE("Broyden's method finds where a function of several numbers is zero") {
@@ -371,7 +373,7 @@ double held_force_apart(double dt) {
     simulation.step({&command, 1}, record);
     run.keep(simulation, record);
   }
-  FemBody body(config, 0, 5e-4, true);
+  FemBody body(config, 0, kCorotational, 5e-4, true);
   double peak = 0.0;
   double apart = 0.0;
   Points u;
@@ -427,7 +429,7 @@ TEST_CASE("what a bridge told too late acts in the step that it belongs to") {
   const Recording recording = run.recording();
   const std::vector<ToldLate> told = told_late(recording);
   REQUIRE(told.size() == 15);
-  FemBody body(config, 0, kReferenceSubstep, false, told);
+  FemBody body(config, 0, kCorotational, kReferenceSubstep, false, told);
   FemDifference late_apart;
   ObjectRecord again;
   Points u;
@@ -443,4 +445,33 @@ TEST_CASE("what a bridge told too late acts in the step that it belongs to") {
   CHECK((again.angular_velocity - last.angular_velocity).norm() <
         5e-3 * last.angular_velocity.norm());
   CHECK(late_apart.largest < 0.01 * late_apart.peak);
+}
+
+// Both are linear elasticity for small strains: what sets them apart is of second order.
+TEST_CASE("a tap by neo-Hookean elements is that by corotational ones, the nearer the gentler") {
+  const auto apart = [](double peak) {
+    const KeptRun run =
+        Tap{.peak = peak, .steps = 30}.run(one_fem_cube({.cells = 3, .poisson_ratio = 0.3}));
+    FemBody corotational(run.config, 0, kCorotational, 5e-4);
+    FemBody neo_hookean(run.config, 0, precompute::Elasticity::kNeoHookean, 5e-4);
+    FemDifference difference;
+    Points one;
+    Points other;
+    for (const StepRecord& record : run.records) {
+      ObjectRecord again = record.object[0];
+      corotational.step(again, {});
+      corotational.displacement(one);
+      again = record.object[0];
+      neo_hookean.step(again, {});
+      neo_hookean.displacement(other);
+      difference.add(one, other);
+    }
+    return difference.largest / difference.peak;
+  };
+  const double firm = apart(0.5);
+  const double gentle = apart(0.05);
+  CAPTURE(firm, gentle);
+  CHECK(gentle > 1e-5);
+  CHECK(gentle < 0.03);
+  CHECK(firm / gentle == Approx(10.0).epsilon(0.25));
 }

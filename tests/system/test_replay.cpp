@@ -275,7 +275,7 @@ TEST_CASE("irdm-replay compare says how far engines are apart") {
   CHECK(looked_at.err.empty());
 }
 
-TEST_CASE("irdm-replay makes a run again by finite elements, and leaves nothing when interrupted") {
+TEST_CASE("irdm-replay makes a run again by finite elements, and leaves no half of an output") {
   const Stage stage;
   const std::filesystem::path trace = record(stage, true);
   const std::string fem = stage.path("fem.h5").string();
@@ -289,9 +289,11 @@ TEST_CASE("irdm-replay makes a run again by finite elements, and leaves nothing 
   CHECK_THAT(interrupted.err(), Contains("was interrupted after"));
   CHECK_FALSE(std::filesystem::exists(part));
   CHECK_FALSE(std::filesystem::exists(fem));
+  // What it had found is of another sub-step than this, and given up.
   const FinishedProgram again =
       run_replay(trace, {"--reference", "fem", "--substep", "0.001", "--rate", "50", "-o", fem});
   REQUIRE(again.status == 0);
+  CHECK_FALSE(std::filesystem::exists(fem + ".steps"));
   CHECK_THAT(again.out, Contains("from forces, finite elements in sub-steps of 0.001 s"));
   REQUIRE(run_replay(trace, {"--rate", "50", "-o", modal}).status == 0);
   const FinishedProgram compared = run_to_end({IRDM_REPLAY, "compare", modal, fem});
@@ -300,6 +302,39 @@ TEST_CASE("irdm-replay makes a run again by finite elements, and leaves nothing 
   CHECK(number_after(compared.out, "node displacement  rms") > 1e-6);
   CHECK(number_after(compared.out, "node displacement  rms") < 1e-3);
   CHECK(number_after(compared.out, "orientation        rms") < 0.05);
+}
+
+TEST_CASE("a reference that is killed goes on where it was, to the same result bit for bit") {
+  const Stage stage;
+  const std::filesystem::path trace = record(stage, true);
+  const std::string whole = stage.path("whole.csv").string();
+  const std::string parts = stage.path("parts.csv").string();
+  const std::vector<std::string> fem{"--reference", "fem", "--substep", "0.0005", "--csv"};
+  const auto with_output = [&](const std::string& output) {
+    std::vector<std::string> words = fem;
+    words.push_back(output);
+    return words;
+  };
+  REQUIRE(run_replay(trace, with_output(whole)).status == 0);
+  CHECK_FALSE(std::filesystem::exists(whole + ".steps"));
+  const std::filesystem::path journal = parts + ".steps";
+  const auto size = [&] {
+    std::error_code none_yet;
+    const auto bytes = std::filesystem::file_size(journal, none_yet);
+    return none_yet ? 0 : bytes;
+  };
+  ChildProcess killed(
+      {IRDM_REPLAY, trace.string(), "--reference", "fem", "--substep", "0.0005", "--csv", parts});
+  REQUIRE(eventually([&] { return size() > 20'000; }));
+  killed.signal(SIGKILL);
+  killed.wait();
+  REQUIRE(size() > 20'000);
+  std::filesystem::resize_file(journal, size() - 3);  // as if it had been written half
+  const FinishedProgram rest = run_replay(trace, with_output(parts));
+  REQUIRE(rest.status == 0);
+  CHECK_THAT(rest.out, Contains("of these steps are from a run that was interrupted"));
+  CHECK(file_content(parts) == file_content(whole));
+  CHECK_FALSE(std::filesystem::exists(journal));
 }
 
 TEST_CASE("irdm-replay refuses what it cannot make again, in one line") {

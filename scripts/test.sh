@@ -13,15 +13,21 @@ case "${1:-}" in
 esac
 
 # The next builds go on while tests wait for something and fuzzers have their time; they never take a processor from one.
+# They have a process group of their own, which ends with this script, however it ends.
+ahead=
 build_ahead() {
   ahead_log=$(mktemp)
+  set -m
   (for preset in "$@"; do nice -n 19 scripts/build.sh "$preset" || exit; done) >"$ahead_log" 2>&1 &
+  set +m
   ahead=$!
 }
+trap '[ -z "$ahead" ] || kill -- "-$ahead" 2>/dev/null || true' EXIT
 
 finish_build_ahead() {
   local status=0
   wait "$ahead" || status=$?
+  ahead=
   cat "$ahead_log"
   rm "$ahead_log"
   return $status

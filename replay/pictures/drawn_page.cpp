@@ -9,7 +9,7 @@ namespace {
 
 // What the page is asked in: `until` waits for something, `painted` for what is on the screen,
 // which is one frame after it was drawn.
-constexpr const char* kWords = R"(
+constexpr const char* kPageWords = R"(
   window.until = (holds) => new Promise((resolve, reject) => {
     const end = performance.now() + 50000;
     const look = () => holds() ? resolve() :
@@ -31,7 +31,7 @@ constexpr const char* kSceneAlone = R"(
   document.adoptedStyleSheets = [sheet];
 )";
 
-std::string number_text(double value) {
+std::string in_script(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.17g", value);
   return text;
@@ -46,7 +46,7 @@ std::string controls(const PictureLook& look) {
   return "const control = (name, key, value) => { const input = document.getElementById(name); "
          "input[key] = value; input.dispatchEvent(new Event('input')); };"
          "control('exaggeration', 'value', " +
-         number_text(look.exaggeration) + "); control('rigid', 'checked', " + flag(look.rigid) +
+         in_script(look.exaggeration) + "); control('rigid', 'checked', " + flag(look.rigid) +
          "); control('follow', 'checked', " + flag(!look.still) +
          "); control('colour', 'value', '" + look.colour + "');";
 }
@@ -57,9 +57,8 @@ std::string camera(const PictureLook& look) {
   return "irdm.world.fit(); { const turn = Math.PI / 180; "
          "const { x, y, z } = irdm.world.camera.position.clone().sub(irdm.world.controls.target); "
          "irdm.world.move(" +
-         number_text(look.camera->azimuth) + " * turn - Math.atan2(x, z), Math.PI / 2 - " +
-         number_text(look.camera->elevation) +
-         " * turn - Math.acos(y / Math.hypot(x, y, z)), 1); }";
+         in_script(look.camera->azimuth) + " * turn - Math.atan2(x, z), Math.PI / 2 - " +
+         in_script(look.camera->elevation) + " * turn - Math.acos(y / Math.hypot(x, y, z)), 1); }";
 }
 
 }  // namespace
@@ -67,7 +66,7 @@ std::string camera(const PictureLook& look) {
 DrawnPage::DrawnPage(const std::string& url, const PictureLook& look)
     : browser_({look.width, look.height, look.dark}), look_(look) {
   browser_.open(url);
-  browser_.evaluate(promise(std::string(kWords) + "await until(() => window.irdm?.state());"));
+  browser_.evaluate(promise(std::string(kPageWords) + "await until(() => window.irdm?.state());"));
   if (browser_.evaluate("irdm.world === null") == "true") {
     throw Error("chromium", "has no WebGL, with which the page draws",
                 "install a Chromium that can draw without a GPU, as Debian's can");

@@ -2,7 +2,7 @@
 # Gives every parser bytes of the fuzzer's choice (docs/fuzzing.md), as many parsers at a time as there are processors,
 # and fails when one does not stand them. What was found worth keeping, and what brought a parser down, is in out/fuzz.
 #   scripts/fuzz.sh [SECONDS [PARSER ...]]    SECONDS for each parser, 60 unless given
-# IRDM_FUZZ_SEED=N makes every run begin with the same inputs; else no two do.
+# IRDM_FUZZ_SEED=N makes every run begin with the same inputs; else no two do. IRDM_FUZZ_AT_ONCE=N: so many at a time.
 #   scripts/fuzz.sh --keep [PARSER ...]       adds to the seeds what reaches more of the program than they do
 #   scripts/fuzz.sh --coverage                which lines of the decoders the seeds reach; fails below 95 %
 set -euo pipefail
@@ -86,4 +86,4 @@ export lists longest_kept
 export -f fuzz keep set_options
 # Strings of a shell each: functions are inherited, arrays are not.
 { [ $# -gt 0 ] && printf '%s\n' "$@" || all_parsers; } |
-  xargs -P "$(nproc)" -I{} bash -euo pipefail -c "${action[*]} {}"
+  xargs -P "${IRDM_FUZZ_AT_ONCE:-$(nproc)}" -I{} bash -euo pipefail -c "${action[*]} {}"

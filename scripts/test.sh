@@ -48,7 +48,7 @@ else
   scripts/build.sh asan
   build_ahead tsan ci
   run_tests asan --label-exclude slow --parallel 2
-  IRDM_FUZZ_SEED=1 scripts/fuzz.sh 60
+  IRDM_FUZZ_SEED=1 IRDM_FUZZ_AT_ONCE=$((2 * $(nproc))) scripts/fuzz.sh 60
   finish_build_ahead
   run_tests tsan --label-exclude slow --parallel 2
 fi

@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "common/realtime/clock.hpp"
+
 namespace irdm {
 namespace {
 
@@ -110,7 +112,7 @@ void SafetyFilter::accept(std::int64_t now_ns, const ForceDemand& demand) noexce
 // How far the force lags behind the tip that it answers [s].
 double SafetyFilter::age(std::int64_t now_ns) const noexcept {
   if (!held_.any || held_.solved_here) return 0.0;
-  return 1e-9 * static_cast<double>(difference(now_ns, held_.sample_time_ns));
+  return kNanosecond * static_cast<double>(difference(now_ns, held_.sample_time_ns));
 }
 
 // The share that its age leaves of a demand.

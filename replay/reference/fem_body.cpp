@@ -227,19 +227,21 @@ void FemBody::solve(ObjectRecord& recorded) {
   }
 }
 
-// What the next step depends on: largest speed, u, v, and the forces of followed points.
+// Number of the step, and what the next one depends on: largest speed, u, v, and the forces of
+// followed points.
 bool FemBody::take_from_journal(ObjectRecord& recorded) {
   if (journal_ == nullptr || !journal_->take(numbers_)) return false;
   const Eigen::Index n = state_.u.size();
   const auto forces = 3 * static_cast<Eigen::Index>(followed_.size());
   const Eigen::Map<const Eigen::VectorXd> all(numbers_.data(),
                                               static_cast<Eigen::Index>(numbers_.size()));
-  if (all.size() != 1 + 2 * n + forces) {
-    throw Error("work file", "has steps of another run", "remove FILE.steps beside the output");
+  if (all.size() != 2 + 2 * n + forces || all[0] != static_cast<double>(steps_)) {
+    throw Error("work file", "has steps of another run",
+                "remove FILE.steps beside the output, and let one run at a time write there");
   }
-  workspace_.largest_speed = all[0];
-  state_.u = all.segment(1, n);
-  state_.v = all.segment(1 + n, n);
+  workspace_.largest_speed = all[1];
+  state_.u = all.segment(2, n);
+  state_.v = all.segment(2 + n, n);
   if (followed_.empty()) return true;
   put_forces(all.tail(forces), recorded);
   remember_forces(all.tail(forces));
@@ -248,7 +250,7 @@ bool FemBody::take_from_journal(ObjectRecord& recorded) {
 
 void FemBody::keep_in_journal() {
   if (journal_ == nullptr) return;
-  numbers_.assign(1, workspace_.largest_speed);
+  numbers_ = {static_cast<double>(steps_), workspace_.largest_speed};
   numbers_.insert(numbers_.end(), state_.u.begin(), state_.u.end());
   numbers_.insert(numbers_.end(), state_.v.begin(), state_.v.end());
   if (!followed_.empty()) {

@@ -8,7 +8,9 @@
 #include "replay/reference/fem_reference.hpp"
 #include "tests/replay/kept_run.hpp"
 #include "tests/support/fem_cube.hpp"
+#include "tests/support/temporary_folder.hpp"
 
+using Catch::Matchers::Contains;
 using namespace irdm;
 using namespace irdm::replay;
 using namespace irdm::test;
@@ -314,7 +316,6 @@ TEST_CASE("the reference follows gravity, damping and the material's damping whe
 }
 
 TEST_CASE("what the reference cannot do is refused by name") {
-  using Catch::Matchers::Contains;
   TracedScene scene;
   scene.objects.push_back({"cube", "some.h5", "", EngineKind::kModal});
   scene.config = one_fem_cube({.cells = 2});
@@ -474,4 +475,41 @@ TEST_CASE("a tap by neo-Hookean elements is that by corotational ones, the neare
   CHECK(gentle > 1e-5);
   CHECK(gentle < 0.03);
   CHECK(firm / gentle == Approx(10.0).epsilon(0.25));
+}
+
+TEST_CASE("a reference takes its steps from a journal to the bit, and no step for another") {
+  const KeptRun run = Tap{.steps = 6}.run(one_fem_cube({.cells = 2, .poisson_ratio = 0.3}));
+  const TemporaryFolder folder;
+  const auto ends = [&](std::size_t steps, StepJournal& journal) {
+    FemBody body(run.config, 0, kCorotational, 1e-3);
+    body.use(journal);
+    ObjectRecord record;
+    for (std::size_t k = 0; k < steps; ++k) {
+      record = run.records[k].object[0];
+      body.step(record, {});
+    }
+    Points u;
+    body.displacement(u);
+    return u;
+  };
+  StepJournal whole(folder.path() / "whole", "key");
+  const Points expected = ends(6, whole);
+  const std::filesystem::path path = folder.path() / "parts";
+  {
+    StepJournal first(path, "key");
+    ends(3, first);
+  }
+  {
+    StepJournal rest(path, "key");
+    CHECK((ends(6, rest).array() == expected.array()).all());
+    CHECK(rest.taken() == 3);
+  }
+  std::vector<double> numbers;
+  {
+    StepJournal written_by_two(path, "key");
+    REQUIRE(written_by_two.take(numbers));
+    written_by_two.keep(numbers);
+  }
+  StepJournal twice(path, "key");
+  CHECK_THROWS_WITH(ends(6, twice), Contains("steps of another run"));
 }

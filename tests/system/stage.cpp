@@ -1,6 +1,7 @@
 #include "tests/system/stage.hpp"
 
 #include <cmath>
+#include <csignal>
 #include <cstdlib>
 #include <fstream>
 #include <numbers>
@@ -35,6 +36,19 @@ std::filesystem::path cube_model() {
     if (made.status != 0) throw std::runtime_error("no model: " + made.err);
   }
   return model;
+}
+
+std::filesystem::path record(const Stage& stage, bool lockstep) {
+  std::vector<std::string> arguments{"--no-viewer", "--record", stage.path("trace.h5").string()};
+  if (lockstep) arguments.push_back("--lockstep");
+  Server server = stage.start_server(arguments);
+  ChildProcess bridge = stage.start_bridge(server);
+  const bool played = bridge.wait() == 0;
+  if (!lockstep) server.process.signal(SIGTERM);
+  const bool served = server.process.wait() == 0;
+  if (!played) throw std::runtime_error("the bridge failed: " + bridge.err());
+  if (!served) throw std::runtime_error("the server failed: " + server.process.err());
+  return stage.path("trace.h5");
 }
 
 std::string scene_text(const std::string& more, const std::string& engine) {

@@ -52,6 +52,10 @@ class Stage {
   TemporaryFolder folder_;
 };
 
+/// The trace of what is on the stage, trace.h5, in lockstep or as it comes. Fails when a program
+/// does.
+std::filesystem::path record(const Stage& stage, bool lockstep);
+
 /// The scene of a Stage, with `more` below it.
 std::string scene_text(const std::string& more = "", const std::string& engine = "modal");
 

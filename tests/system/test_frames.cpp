@@ -38,11 +38,7 @@ FinishedProgram look_at(const std::filesystem::path& folder) {
 TEST_CASE("frames of a recorded run show the object, from frame to frame another", "[slow]") {
   if (!can_draw()) return;
   const Stage stage;
-  Server server = stage.start_server(
-      {"--no-viewer", "--lockstep", "--record", stage.path("trace.h5").string()});
-  ChildProcess bridge = stage.start_bridge(server);
-  REQUIRE(bridge.wait() == 0);
-  REQUIRE(server.process.wait() == 0);
+  record(stage, true);
 
   const std::vector<std::string> options{"--size",  "480x360", "--rate", "5",
                                          "--begin", "0.4",     "--end",  "1.2"};
@@ -75,11 +71,7 @@ TEST_CASE("frames of a recorded run show the object, from frame to frame another
 
 TEST_CASE("pictures without a browser, or a video without ffmpeg, are refused in one line") {
   const Stage stage;
-  Server server = stage.start_server(
-      {"--no-viewer", "--lockstep", "--record", stage.path("trace.h5").string()});
-  ChildProcess bridge = stage.start_bridge(server);
-  REQUIRE(bridge.wait() == 0);
-  REQUIRE(server.process.wait() == 0);
+  record(stage, true);
   ChildOptions nowhere;
   nowhere.environment = {"PATH=" + stage.path("").string()};
   const FinishedProgram refused = run_to_end(
@@ -88,6 +80,14 @@ TEST_CASE("pictures without a browser, or a video without ffmpeg, are refused in
   CHECK(refused.status == 1);
   CHECK_THAT(refused.err, Contains("Debian's package chromium") || Contains("IRDM_BUILD_PAGE"));
   CHECK(std::count(refused.err.begin(), refused.err.end(), '\n') == 1);
+  stage.write("chromium", "#!/bin/sh\n");
+  std::filesystem::permissions(stage.path("chromium"), std::filesystem::perms::owner_all);
+  const FinishedProgram no_video =
+      run_to_end({IRDM_REPLAY, stage.path("trace.h5").string(), "--frames",
+                  stage.path("pictures").string(), "--video", stage.path("run.mp4").string()},
+                 nowhere);
+  CHECK(no_video.status == 1);
+  CHECK_THAT(no_video.err, Contains("Debian's package ffmpeg") || Contains("IRDM_BUILD_PAGE"));
   CHECK_FALSE(std::filesystem::exists(stage.path("pictures")));
   const FinishedProgram wrong = take(stage, "pictures", {"--size", "10x10"});
   CHECK(wrong.status == 1);

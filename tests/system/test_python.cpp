@@ -50,11 +50,7 @@ with h5py.File(sys.argv[1]) as file:
 TEST_CASE(
     "the programs of docs/files.md read a trace and a model, and all their numbers have units") {
   const Stage stage;
-  Server server = stage.start_server(
-      {"--no-viewer", "--lockstep", "--record", stage.path("trace.h5").string()});
-  ChildProcess bridge = stage.start_bridge(server);
-  REQUIRE(bridge.wait() == 0);
-  REQUIRE(server.process.wait() == 0);
+  record(stage, true);
 
   stage.write("plot.py", program_after("Plotting the force of a trace"));
   const FinishedProgram plotted =

@@ -25,18 +25,6 @@ FinishedProgram run_replay(const std::filesystem::path& trace, std::vector<std::
   return run_to_end(arguments);
 }
 
-// The trace of what is on the stage, in lockstep or as it comes.
-std::filesystem::path record(const Stage& stage, bool lockstep) {
-  std::vector<std::string> arguments{"--no-viewer", "--record", stage.path("trace.h5").string()};
-  if (lockstep) arguments.push_back("--lockstep");
-  Server server = stage.start_server(arguments);
-  ChildProcess bridge = stage.start_bridge(server);
-  REQUIRE(bridge.wait() == 0);
-  if (!lockstep) server.process.signal(SIGTERM);
-  REQUIRE(server.process.wait() == 0);
-  return stage.path("trace.h5");
-}
-
 // Two fingers that pinch a cube on a floor near its edges, slide, and put everything back.
 void set_pinch(const Stage& stage) {
   stage.write("scene.toml",

@@ -53,6 +53,7 @@ void ProbeLoop::say(std::int64_t now_ns) noexcept {
   link_.styluses[0].sample.put({.sequence = sequence_++, .time_ns = now_ns, .tip = kFarAway});
   link_.samples_ready.signal();
   link_.styluses[0].armed = true;  // nothing is to be felt
+  link_.styluses[0].success_rate = 1.0;
 }
 
 void ProbeLoop::run() noexcept {

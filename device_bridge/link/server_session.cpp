@@ -210,18 +210,21 @@ void ServerSession::send_reports(std::int64_t now_ns) {
   }
 }
 
-// A person who feels nothing should know why.
+// A person who feels nothing, or not for long, should know why.
 void ServerSession::tell_of_arming(std::int64_t now_ns) {
-  const bool armed = std::all_of(shared_.link.styluses.begin(), shared_.link.styluses.end(),
-                                 [](const ServoLink::Stylus& each) { return each.armed.load(); });
-  if (link_state_.lockstep || !shared_.patience.lost(now_ns, armed)) return;
-  for (std::size_t i = 0; i < shared_.link.styluses.size(); ++i) {
-    const ServoLink::Stylus& stylus = shared_.link.styluses[i];
-    if (stylus.armed) continue;
+  const auto good = [](const ServoLink::Stylus& each) {
+    return each.armed && each.success_rate >= LinkGate::kNeeded;
+  };
+  const std::vector<ServoLink::Stylus>& styluses = shared_.link.styluses;
+  const bool all = std::all_of(styluses.begin(), styluses.end(), good);
+  if (link_state_.lockstep || !shared_.patience.lost(now_ns, all)) return;
+  for (std::size_t i = 0; i < styluses.size(); ++i) {
+    if (good(styluses[i])) continue;
     spdlog::warn(
-        "stylus {}: no force yet: {:.0f} % of the last ticks were answered in time, {:.0f} % are "
-        "needed; irdm-bridge check-link says more",
-        i, 100.0 * stylus.success_rate, 100.0 * LinkGate::kNeeded);
+        "stylus {}: {}: {:.0f} % of the last ticks were answered in time, {:.0f} % are needed; "
+        "irdm-bridge check-link says more",
+        i, styluses[i].armed ? "its force comes and goes" : "no force yet",
+        100.0 * styluses[i].success_rate, 100.0 * LinkGate::kNeeded);
   }
 }
 

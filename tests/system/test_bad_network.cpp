@@ -53,7 +53,7 @@ std::optional<TwoNamespaces>& namespaces() {
   return both;
 }
 
-/// A person who presses on the cube with a device of the fake driver, three seconds at a time.
+/// A person who presses on the cube with a device of the fake driver, nine seconds at a time.
 class DistantStage : public Stage {
  public:
   DistantStage(const TwoNamespaces& both, const std::string& mode, const std::string& stream)
@@ -65,7 +65,7 @@ class DistantStage : public Stage {
                             "tether = { stiffness = 200, angular_stiffness = 1 }\n");
     write("bridge.toml", "[bridge]\nkey_file = \"key\"\nmode = \"" + mode + "\"\nstream = \"" +
                              stream + "\"\n[[device]]\ntype = \"openhaptics\"\n");
-    write("motion.txt", "0 0 70 0 0\n500 0 50 0 0\n3500 0 50 0 0\n4000 0 70 0 0\n4200 0 70 0 0\n");
+    write("motion.txt", "0 0 70 0 0\n500 0 50 0 0\n9500 0 50 0 0\n10000 0 70 0 0\n");
   }
   Server start_far_server() const {
     ChildProcess process(
@@ -179,9 +179,9 @@ TEST_CASE("a bad path: forces within limits, or the bridge says why there are no
   CHECK(number_after(bridge.out(), "forces: ") > 0);
   const double largest = largest_link_force(stage.frames());
   CHECK(largest < kDeviceLimit * (1.0 + 1e-9));
-  const bool told = bridge.err().find("no force yet: ") != std::string::npos ||
+  const bool told = bridge.err().find("% of the last ticks were answered") != std::string::npos ||
                     bridge.err().find("connection lost: no answers any more") != std::string::npos;
-  CHECK((largest > 0.2 || told));
+  CHECK((largest > 0.0 || told));
   check_end(server);
 }
 

@@ -1,5 +1,6 @@
 #include "device_bridge/contact/contact_predictor.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "common/contact/applied_forces.hpp"
@@ -123,13 +124,23 @@ bool ContactPredictor::touch(std::uint64_t k, const Vector3& from_surface, doubl
   return true;
 }
 
+// Of the force of a contact that was there before a silence.
+double ContactPredictor::share(std::uint64_t k) noexcept {
+  const bool contact = touching_ || model_.state != ContactState::kFree;
+  if (std::exchange(silent_, false) && contact) back_ = k;
+  if (!contact) back_.reset();
+  return back_ ? std::min(model_.dt * static_cast<double>(k - *back_ + 1) / kReturn, 1.0) : 1.0;
+}
+
 ContactPredictor::Answer ContactPredictor::solve(std::uint64_t k, const Vector3& tip) noexcept {
   Answer answer;
   past(k) = {.step = k};
   last_step_ = k;
   const Vector3 tip_before = std::exchange(last_tip_, tip).value_or(tip);
+  silent_ = silent_ || !reaches(k);
   if (!reaches(k)) return answer;
   answer.known = true;
+  const double share_of_it = share(k);
   if (!model_.valid) return answer;
   move_to(k - 1);
   const Quaternion Q = motion_.orientation;
@@ -145,8 +156,9 @@ ContactPredictor::Answer ContactPredictor::solve(std::uint64_t k, const Vector3&
   if (slipping_) friction.static_ = friction.kinetic;
   const Vector3 arm = surface + offset_;
   const Matrix3 W = model_.response[0] + body_->mobility().between(arm, arm) + model_.series;
-  const SingleContact found = solve_single_contact(
-      W, tip_B - arm, held ? ContactLaw::kHeld : ContactLaw::kTouching, model_.normal, friction);
+  const SingleContact found = solve_single_contact(W / share_of_it, tip_B - arm,
+                                                   held ? ContactLaw::kHeld : ContactLaw::kTouching,
+                                                   model_.normal, friction);
   if (!found.force.allFinite()) return {};
   if (found.mode == ContactMode::kOpen) {
     end_touch();

@@ -16,10 +16,13 @@ namespace irdm {
 ///
 ///     (R_0 + rigid + series) f_k = Q^T (x - c) - place - u_k - sum_i R_{k-i} f_i
 ///
-/// for what is held or sticks; a touching contact only pushes, inside its friction cone. Pure,
-/// real-time safe, one thread.
+/// for what is held or sticks; a touching contact only pushes, inside its friction cone. During
+/// steps of which nothing is known the object may come anywhere about the tip: a contact of before
+/// then comes back softly, and is whole after kReturn. Pure, real-time safe, one thread.
 class ContactPredictor {
  public:
+  static constexpr double kReturn = 0.5;  ///< [s]
+
   struct Answer {
     bool known = false;               ///< false: there is no model that reaches this step
     Vector3 force = Vector3::Zero();  ///< on the object [N], W; of step k
@@ -62,6 +65,7 @@ class ContactPredictor {
   void move_to(std::uint64_t k) noexcept;
   Vector3 surface_at(std::uint64_t k) const noexcept;
   void place_anew() noexcept;
+  double share(std::uint64_t k) noexcept;
   bool touch(std::uint64_t k, const Vector3& from_surface, double way) noexcept;
   void end_touch() noexcept;
 
@@ -77,7 +81,9 @@ class ContactPredictor {
   std::uint64_t began_ = 0;           ///< in this step
   Vector3 offset_ = Vector3::Zero();  ///< from the model's place to ours, along the surface [m]
   std::uint64_t last_step_ = 0;
-  std::optional<Vector3> last_tip_;       ///< W
+  bool silent_ = true;                 ///< nothing was known of the last step
+  std::optional<std::uint64_t> back_;  ///< the step since which a contact comes back from a silence
+  std::optional<Vector3> last_tip_;    ///< W
   Vector3 last_place_ = Vector3::Zero();  ///< of a touching contact, object at rest [m]
 };
 

@@ -102,6 +102,8 @@ TEST_CASE("contact at the bridge: a run that stands still says so, and goes on a
   CHECK(bench.ticks(20, -0.001) > 5);
   CHECK_FALSE(bench.contact.wanted().standing);
   CHECK(bench.contact.lookahead() < 5);
+  CHECK(bench.contact.wanted().force.y() < 0.05);
+  bench.ticks(500, -0.001);
   CHECK((bench.contact.wanted().force - Vector3(0, 1, 0)).norm() < 1e-12);
 }
 
@@ -184,6 +186,35 @@ TEST_CASE("contact at the bridge: no force is larger than a hand's") {
   for (int i = 0; i < 300; ++i) bench.ticks(1, -0.001 * i);
   CHECK(bench.contact.wanted().force.norm() == Approx(100.0));
   CHECK(bench.contact.applied().past[0].force.norm() == Approx(100.0));
+}
+
+TEST_CASE("contact at the bridge: after a silence a contact comes back as slowly as to the hand") {
+  Bench bench;
+  bench.ticks(100, 0.001);
+  bench.ticks(10, -0.001);
+  bench.ticks(200, -0.001, false);
+  bench.server_step += 100;
+  // Meanwhile the object came nearer; in full the wall would push with 40 N.
+  const double step = 40.0 * kDt / ContactPredictor::kReturn;
+  double before = 0.0;
+  for (int i = 0; i < 260; ++i) {
+    bench.ticks(2, -0.04);
+    const double force = bench.contact.wanted().force.y();
+    CHECK(force <= before + 3 * step);
+    before = force;
+  }
+  CHECK(before == Approx(40.0));
+  CHECK(bench.contact.applied().past[0].force.y() == Approx(-40.0));
+}
+
+TEST_CASE("contact at the bridge: a touch that begins after a silence is as strong as any") {
+  Bench bench;
+  bench.ticks(100, 0.001);
+  bench.ticks(200, 0.001, false);
+  bench.server_step += 100;
+  bench.ticks(20, 0.001);
+  bench.ticks(6, -0.001);
+  CHECK((bench.contact.wanted().force - Vector3(0, 1, 0)).norm() < 1e-12);
 }
 
 TEST_CASE("contact at the bridge: who falls behind the server catches up, in contact too") {

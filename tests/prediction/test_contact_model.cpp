@@ -105,7 +105,7 @@ TEST_CASE("contact predictor: models that are not newer and steps out of reach")
   CHECK(predictor.solve(20, tip).known);
   CHECK(predictor.solve(20 + 24, tip).known);
   CHECK_FALSE(predictor.solve(20 + 25, tip).known);
-  CHECK(predictor.applied(20).norm() > 0.1);
+  CHECK(predictor.applied(20).norm() > 0.0);
   CHECK(predictor.applied(21) == Vector3::Zero());
   // Out of the object again there is no force, and no pull on the way.
   const ContactPredictor::Answer out = predictor.solve(44, Vector3(0.01, 0.2, 0.0));

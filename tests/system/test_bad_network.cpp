@@ -183,6 +183,8 @@ TEST_CASE("a bad path: forces within limits, or the bridge says why there are no
                     bridge.err().find("connection lost: no answers any more") != std::string::npos;
   CHECK((largest > 0.0 || told));
   check_end(server);
+  // The tether alone asks for 2 N; a silence must not end with a blow.
+  CHECK(number_after(server.process.out(), "peak force: ") < 10.0);
 }
 
 TEST_CASE("a bad path by UDP: a bridge that predicts arms, and the cube is felt", "[slow]") {

@@ -13,7 +13,7 @@ void Oscillation::observe(double work, double elapsed, double age) noexcept {
   energy_ += work;
   high_ = std::max(high_, energy_);
   extreme_ = rising_ ? std::max(extreme_, energy_) : std::min(extreme_, energy_);
-  if (cycling_ && active(energy_) && debt_ - energy_ >= limits_.debt) cut();
+  if (cycling_ && active(energy_) && debt_ - energy_ >= limits().debt) cut();
   if (std::abs(energy_ - extreme_) < limits_.swing) return;
   rising_ = !rising_;
   if (rising_) pass_low();
@@ -22,7 +22,7 @@ void Oscillation::observe(double work, double elapsed, double age) noexcept {
 
 // `extreme_` is the low, counted from the one before.
 void Oscillation::pass_low() noexcept {
-  cycling_ = time_ <= limits_.longest;
+  cycling_ = time_ <= limits_.late.longest;
   if (!cycling_) debt_ = 0.0;
   if (extreme_ > 0.0 || active(extreme_)) debt_ = std::max(0.0, debt_ - extreme_);
   energy_ -= extreme_;
@@ -31,10 +31,15 @@ void Oscillation::pass_low() noexcept {
   ages_ = 0.0;
 }
 
+// Of the cycle so far; without any age none is short enough.
+OscillationLimits::Cycles Oscillation::limits() const noexcept {
+  if (ages_ > limits_.fresh_age * time_) return limits_.late;
+  return ages_ > 0.0 ? limits_.fresh : OscillationLimits::Cycles{};
+}
+
 // A cycle that ends with this low.
 bool Oscillation::active(double low) const noexcept {
-  return time_ <= limits_.longest && ages_ > limits_.fresh * time_ &&
-         -low >= limits_.active * high_;
+  return time_ <= limits().longest && -low >= limits_.active * high_;
 }
 
 // What comes after it is counted anew.

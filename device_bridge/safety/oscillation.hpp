@@ -3,12 +3,16 @@
 namespace irdm {
 
 struct OscillationLimits {
-  double fresh = 5e-3;   ///< a force that is at most so old in a cycle's mean is let alone [s]
-  double swing = 1e-5;   ///< energy that comes and goes without counting as a cycle [J]
-  double longest = 0.5;  ///< of a cycle [s]; slower is a hand that moves, or is moved
-  double active = 0.2;   ///< share of what it took that it gives beyond it, at least
-  double debt = 5e-4;    ///< given by cycles on balance at which the gain is cut [J]
-  double cut = 0.5;      ///< what is left of the gain
+  struct Cycles {
+    double longest = 0.0;  ///< of a cycle [s]; slower is a hand that moves, or is moved
+    double debt = 0.0;     ///< given by cycles on balance at which the gain is cut [J]
+  };
+  double fresh_age = 5e-3;   ///< a force is late that is older in a cycle's mean [s]
+  Cycles late{0.5, 5e-4};    ///< of a force that is
+  Cycles fresh{0.06, 2e-3};  ///< of one that is not, but answers a tip of before
+  double swing = 1e-5;       ///< energy that comes and goes without counting as a cycle [J]
+  double active = 0.2;       ///< share of what it took that it gives beyond it, at least
+  double cut = 0.5;          ///< what is left of the gain
   double least = 1.0 / 64;
   double recovery = 15.0;  ///< time constant with which it comes back [s]
 };
@@ -19,8 +23,9 @@ struct OscillationLimits {
 /// from one to the next by a share of what came and went, soon after each other, the loop is
 /// active; half the force is half the stiffness, until it is not. Another hand's push, or a weight
 /// that is let down, gives energy without such cycles. A force that is fresh is left to the
-/// damping: a bounce from a wall a step or two away gives energy too, and ends. Pure, real-time
-/// safe.
+/// damping for longer, and in slow cycles for ever: a bounce from a wall a step or two away gives
+/// energy too, and ends, and an object that swings gives what it took. So is one without any age.
+/// Pure, real-time safe.
 class Oscillation {
  public:
   explicit Oscillation(const OscillationLimits& limits) : limits_(limits) {}
@@ -37,6 +42,7 @@ class Oscillation {
 
  private:
   void pass_low() noexcept;
+  OscillationLimits::Cycles limits() const noexcept;
   bool active(double low) const noexcept;
   void cut() noexcept;
 

@@ -39,7 +39,7 @@ TEST_CASE("oscillation: a force that lags behind its own motion is cut, one that
       return [=](double t) { return -300.0 * way(t - lag / (2.0 * M_PI * frequency)); };
     };
     const double given = M_PI * 300.0 * amplitude * amplitude * std::sin(0.6);
-    const double cycles_to_a_cut = OscillationLimits{}.debt / given;
+    const double cycles_to_a_cut = OscillationLimits{}.late.debt / given;
     // The first low ends no cycle.
     const double seconds = (2.5 + cycles_to_a_cut) / frequency;
     CHECK(watched(seconds, way, late_by(0.6)).gain() < 0.6);
@@ -48,8 +48,8 @@ TEST_CASE("oscillation: a force that lags behind its own motion is cut, one that
   }
 }
 
-TEST_CASE("oscillation: a force that is fresh is let alone, by the mean of its age in a cycle") {
-  const auto way = [](double t) { return 3e-3 * sine(t, 10.0); };
+TEST_CASE("oscillation: a force that is fresh is let alone in slow cycles, by its age's mean") {
+  const auto way = [](double t) { return 3e-3 * sine(t, 6.0); };  // two cycles of energy in each
   const auto late = [&](double t) { return -300.0 * way(t - 0.01); };
   CHECK(watched(3.0, way, late, 4.9e-3).gain() == 1.0);
   CHECK(watched(3.0, way, late, 5.1e-3).gain() < 0.6);
@@ -61,6 +61,18 @@ TEST_CASE("oscillation: a force that is fresh is let alone, by the mean of its a
     }
     CHECK((oscillation.gain() < 0.6) == (other > 8e-3));
   }
+}
+
+TEST_CASE("oscillation: a force that is fresh is cut for quick cycles, later than a late one") {
+  const auto way = [](double t) { return 1e-3 * sine(t, 25.0); };
+  const auto late = [&](double t) { return -500.0 * way(t - 3e-3); };
+  // What a cycle gives: pi k a^2 sin(lag).
+  const double given = M_PI * 500.0 * 1e-6 * std::sin(2.0 * M_PI * 25.0 * 3e-3);
+  const double cycles = OscillationLimits{}.fresh.debt / given;
+  CHECK(watched((cycles - 1.0) / 25.0, way, late, 3e-3).gain() == 1.0);
+  CHECK(watched((cycles + 2.5) / 25.0, way, late, 3e-3).gain() < 0.6);
+  CHECK(watched((cycles - 1.0) / 25.0, way, late, 6e-3).gain() < 0.6);
+  CHECK(watched(3.0, way, late, 0.0).gain() == 1.0);
 }
 
 TEST_CASE("oscillation: neither a push by another hand nor a weight that is let down is cut") {

@@ -9,7 +9,7 @@ struct OscillationLimits {
   };
   double fresh_age = 5e-3;   ///< a force is late that is older in a cycle's mean [s]
   Cycles late{0.5, 5e-4};    ///< of a force that is
-  Cycles fresh{0.06, 2e-3};  ///< of one that is not, but answers a tip of before
+  Cycles fresh{0.06, 4e-3};  ///< of one that is not, but answers a tip of before
   double swing = 1e-5;       ///< energy that comes and goes without counting as a cycle [J]
   double active = 0.2;       ///< share of what it took that it gives beyond it, at least
   double cut = 0.5;          ///< what is left of the gain

@@ -212,7 +212,7 @@ test("what was recorded is played, sought in, and left", async (context) => {
   await page.waitForFunction((middle) => Math.abs(window.irdm.frame().time - middle) < 0.05, middle);
   await page.locator("#seek").fill("0");
   await page.waitForFunction(() => window.irdm.frame().time < 0.05);
-  await page.locator("#speed").selectOption("4");
+  await page.locator("#speed").selectOption("0.5");
   await page.evaluate(() => (window.seen = []));
   await page.locator("#play").click();
   await sees(page, () => window.seen.some(({ contact, force }) => contact === 1 && force > 0.02));

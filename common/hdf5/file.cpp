@@ -63,6 +63,14 @@ Handle make_access_properties() {
   return {H5Pcreate(H5P_FILE_ACCESS), H5Pclose};
 }
 
+// Without a lock, which whoever looks in at that moment would have, so that the making would fail.
+// No other can be making it: it is new.
+Handle make_creation_access() {
+  Handle properties = make_access_properties();
+  H5Pset_file_locking(properties.get(), 0, 1);
+  return properties;
+}
+
 /// Whether one has the file open or has left it so: the superblock's consistency flags.
 bool has_swmr_writer(const std::filesystem::path& path) {
   constexpr std::size_t kVersion = 8, kFlags = 11;
@@ -129,11 +137,11 @@ File File::create(const std::filesystem::path& path, const Handle& access) {
 }
 
 File File::create(const std::filesystem::path& path) {
-  return create(path, make_access_properties());
+  return create(path, make_creation_access());
 }
 
 File File::create_for_swmr(const std::filesystem::path& path) {
-  const Handle access = make_access_properties();
+  const Handle access = make_creation_access();
   H5Pset_libver_bounds(access.get(), H5F_LIBVER_V110, H5F_LIBVER_V110);
   return create(path, access);
 }

@@ -59,14 +59,11 @@ Handle make_link_properties() {
   return properties;
 }
 
+// Without locks: whoever looks whether a file is there would have one for a moment, and the making
+// or the beginning of SWMR in that moment would fail. We write new files only, so that no two of us
+// write to one.
 Handle make_access_properties() {
-  return {H5Pcreate(H5P_FILE_ACCESS), H5Pclose};
-}
-
-// Without a lock, which whoever looks in at that moment would have, so that the making would fail.
-// No other can be making it: it is new.
-Handle make_creation_access() {
-  Handle properties = make_access_properties();
+  Handle properties(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_file_locking(properties.get(), 0, 1);
   return properties;
 }
@@ -137,11 +134,11 @@ File File::create(const std::filesystem::path& path, const Handle& access) {
 }
 
 File File::create(const std::filesystem::path& path) {
-  return create(path, make_creation_access());
+  return create(path, make_access_properties());
 }
 
 File File::create_for_swmr(const std::filesystem::path& path) {
-  const Handle access = make_creation_access();
+  const Handle access = make_access_properties();
   H5Pset_libver_bounds(access.get(), H5F_LIBVER_V110, H5F_LIBVER_V110);
   return create(path, access);
 }
@@ -157,7 +154,7 @@ File File::open(const std::filesystem::path& path) {
     throw Error(path.string(), "no such file", "check the path");
   }
   const unsigned access = H5F_ACC_RDONLY | (has_swmr_writer(path) ? H5F_ACC_SWMR_READ : 0u);
-  Handle file(H5Fopen(path.c_str(), access, H5P_DEFAULT), H5Fclose);
+  Handle file(H5Fopen(path.c_str(), access, make_access_properties().get()), H5Fclose);
   if (file.get() < 0) {
     throw Error(path.string(), "is not a complete HDF5 file",
                 "it is truncated, of another kind or not readable; make it again");

@@ -1,5 +1,6 @@
 #include "server/engine/kernels.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -122,6 +123,75 @@ template <typename Scalar>
   for (std::size_t i = 0; i < n; ++i) y[i] += weighted(w, a[i], b[i], c[i]);
 }
 
+template <typename Number>
+using Ahead [[gnu::vector_size(kStepsAhead * sizeof(Number))]] = Number;
+
+// All steps ahead within the rows: as many sums side by side in registers, for each x one product
+// with what stands there in each row.
+template <typename Number>
+[[gnu::always_inline]] inline void add_part_of(const Number* rows, std::size_t stride,
+                                               const Number* x, std::size_t n,
+                                               double (&sums)[3][kStepsAhead]) noexcept {
+  Ahead<Number> even[3] = {};
+  Ahead<Number> odd[3] = {};
+  const auto add = [&](std::size_t i, Ahead<Number>(&to)[3]) {
+    for (std::size_t r = 0; r < 3; ++r) {
+      Ahead<Number> numbers;
+      std::memcpy(&numbers, rows + r * stride + i, sizeof numbers);
+      to[r] += numbers * x[i];
+    }
+  };
+  std::size_t i = 0;
+  for (; i + 2 <= n; i += 2) {
+    add(i, even);
+    add(i + 1, odd);
+  }
+  if (i < n) add(i, even);
+  for (std::size_t r = 0; r < 3; ++r) {
+    even[r] += odd[r];
+    for (std::size_t m = 0; m < kStepsAhead; ++m) sums[r][m] += static_cast<double>(even[r][m]);
+  }
+}
+
+// Single precision over parts of kPart: its rounding is of the size of that of the numbers.
+[[gnu::always_inline]] inline void add_part(const float* rows, std::size_t stride, const double* x,
+                                            std::size_t n,
+                                            double (&sums)[3][kStepsAhead]) noexcept {
+  float singles[kAheadPart];
+  for (std::size_t i = 0; i < n; ++i) singles[i] = static_cast<float>(x[i]);
+  add_part_of(rows, stride, singles, n, sums);
+}
+
+[[gnu::always_inline]] inline void add_part(const double* rows, std::size_t stride, const double* x,
+                                            std::size_t n,
+                                            double (&sums)[3][kStepsAhead]) noexcept {
+  add_part_of(rows, stride, x, n, sums);
+}
+
+template <typename Scalar>
+[[gnu::always_inline]] inline void add_ahead_of(const NodeRows<Scalar>& rows,
+                                                std::span<const double> x, double weight,
+                                                const std::array<double*, 3>& y) noexcept {
+  const std::size_t fit = rows.known < kStepsAhead ? 0 : rows.known - kStepsAhead + 1;
+  const std::size_t whole = std::min(x.size(), fit);
+  const std::size_t last = std::min(x.size(), rows.known);
+  double sums[3][kStepsAhead] = {};
+  for (std::size_t i = 0; i < whole; i += kAheadPart) {
+    add_part(rows.first + i, rows.stride, x.data() + i, std::min(kAheadPart, whole - i), sums);
+  }
+  if (whole < last) {  // nothing beyond the end
+    Scalar rest[3][2 * kStepsAhead] = {};
+    for (std::size_t r = 0; r < 3; ++r) {
+      std::copy(rows.first + r * rows.stride + whole, rows.first + r * rows.stride + rows.known,
+                rest[r]);
+    }
+    add_part(rest[0], 2 * kStepsAhead, x.data() + whole, last - whole, sums);
+  }
+  for (std::size_t r = 0; r < 3; ++r) {
+    for (std::size_t m = 0; m < kStepsAhead; ++m) y[r][m] += weight * sums[r][m];
+  }
+}
+
 [[gnu::always_inline]] inline double put_to_rest(double x) noexcept {
   return std::abs(x) < kNothing ? 0.0 : x;
 }
@@ -142,6 +212,15 @@ IRDM_KERNEL void add_products(const Rows<float>& rows, const double* x, std::siz
 IRDM_KERNEL void add_products(const Rows<double>& rows, const double* x, std::size_t n,
                               double weight, double* y) noexcept {
   add_products_of(rows, x, n, weight, y);
+}
+
+IRDM_KERNEL void add_ahead(const NodeRows<float>& rows, std::span<const double> x, double weight,
+                           const std::array<double*, 3>& y) noexcept {
+  add_ahead_of(rows, x, weight, y);
+}
+IRDM_KERNEL void add_ahead(const NodeRows<double>& rows, std::span<const double> x, double weight,
+                           const std::array<double*, 3>& y) noexcept {
+  add_ahead_of(rows, x, weight, y);
 }
 
 IRDM_KERNEL Sums<3> dot_three(const double* a, const double* b, std::size_t n) noexcept {

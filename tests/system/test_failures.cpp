@@ -215,6 +215,8 @@ TEST_CASE("garbage to the server disturbs neither it nor the bridge that plays")
   server.process.signal(SIGINT);
   CHECK(server.process.wait() == 0);
   check_one_session(bridge.out());
+  CHECK(number_after(server.process.out(), "sessions: ") ==
+        number_after(bridge.out(), "sessions "));
   CHECK_THAT(server.process.out(), Contains(" accepted, 0 refused, 9 closed for protocol errors"));
   const Trace trace = read_trace(path);
   const auto held_from = std::find(trace.contact.begin(), trace.contact.end(), kHeld);

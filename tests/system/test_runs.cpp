@@ -63,6 +63,8 @@ TEST_CASE("a run in real time: both end in order, and the trace says what they s
   CHECK(trace.scene == file_content(stage.path("scene.toml")));
   CHECK(std::abs(peak_force(trace) - number_after(server.process.out(), "peak force: ")) <= 5e-4);
   CHECK(number_after(server.process.out(), "steps without a finite solution: ") == 0);
+  CHECK(number_after(server.process.out(), "sessions: ") ==
+        number_after(bridge.out(), "sessions "));
   CHECK_THAT(server.process.out(), Contains(" accepted, 0 refused, 0 closed"));
   check_one_session(bridge.out());
   CHECK(number_after(bridge.out(), "forces: ") > 0);

@@ -106,7 +106,15 @@ void SafetyFilter::accept(std::int64_t now_ns, const ForceDemand& demand) noexce
     return;
   }
   held_ = demand;
+  if (beyond_horizon(now_ns, demand) <= 0) in_time_ = demand;
   lost_since_ns_.reset();
+}
+
+// For how long a demand has not been good any more [ns].
+std::int64_t SafetyFilter::beyond_horizon(std::int64_t now_ns,
+                                          const ForceDemand& demand) const noexcept {
+  return difference(now_ns, demand.sample_time_ns) -
+         std::clamp(demand.horizon_ns, std::int64_t{0}, limits_.max_horizon_ns);
 }
 
 // How far the force lags behind the tip that it answers [s].
@@ -115,12 +123,10 @@ double SafetyFilter::age(std::int64_t now_ns) const noexcept {
   return kNanosecond * static_cast<double>(difference(now_ns, held_.sample_time_ns));
 }
 
-// The share that its age leaves of a demand.
+// The share that is left of a force. One that came too late says what it is, and not for how long.
 double SafetyFilter::fresh(std::int64_t now_ns) const noexcept {
   if (!held_.any) return 0.0;
-  const std::int64_t horizon_ns =
-      std::clamp(held_.horizon_ns, std::int64_t{0}, limits_.max_horizon_ns);
-  std::int64_t over_ns = difference(now_ns, held_.sample_time_ns) - horizon_ns;
+  std::int64_t over_ns = in_time_.any ? beyond_horizon(now_ns, in_time_) : kForEver;
   if (!guards_.on(Guard::kAge)) over_ns = 0;
   if (lost_since_ns_ && guards_.on(Guard::kLink)) {
     over_ns = std::max(over_ns, difference(now_ns, *lost_since_ns_));

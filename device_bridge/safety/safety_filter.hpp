@@ -94,6 +94,7 @@ class SafetyFilter {
   ReadingVerdict check(std::int64_t now_ns, const DeviceReading& reading) noexcept;
   void accept(std::int64_t now_ns, const ForceDemand& demand) noexcept;
   double age(std::int64_t now_ns) const noexcept;
+  std::int64_t beyond_horizon(std::int64_t now_ns, const ForceDemand& demand) const noexcept;
   double fresh(std::int64_t now_ns) const noexcept;
   void watch_link(double fresh) noexcept;
   void observe() noexcept;
@@ -111,7 +112,8 @@ class SafetyFilter {
   Passivity passivity_;
   Oscillation oscillation_;
   ThermalDerating thermal_;
-  ForceDemand held_;  ///< the newest that was accepted
+  ForceDemand held_;     ///< the newest that was accepted
+  ForceDemand in_time_;  ///< the newest of these that was within its horizon when it came
   std::optional<std::int64_t> lost_since_ns_;
   double age_ = 0.0;  ///< of the tip that it answers, at the last tick [s]
   Vector3 sent_ = Vector3::Zero();

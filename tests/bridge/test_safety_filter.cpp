@@ -8,8 +8,6 @@ using test::FilterRig;
 using test::kMs;
 using test::kOneUp;
 
-namespace {}  // namespace
-
 TEST_CASE("safety filter: states, from disarmed to a fault and back") {
   FilterRig rig;
   rig.filter.disarm();
@@ -73,6 +71,29 @@ TEST_CASE("safety filter: a demand is trusted for its horizon, and none for more
   CHECK(rig.tick().norm() < 1.0);
   for (int i = 0; i < 29; ++i) rig.tick();
   CHECK(rig.shown == Vector3::Zero());
+}
+
+TEST_CASE("safety filter: a demand that comes too late does not make the force last longer") {
+  for (const bool late : {false, true}) {
+    FilterRig rig;
+    rig.engage(kOneUp);
+    const std::int64_t last_ns = rig.now_ns;
+    while (rig.now_ns < last_ns + 50 * kMs) {
+      if (late && rig.now_ns >= last_ns + 40 * kMs) rig.demand.sample_time_ns = last_ns + 2 * kMs;
+      CHECK(rig.shown.norm() > 0.0);
+      rig.tick();
+    }
+    CHECK(rig.shown == Vector3::Zero());
+  }
+}
+
+TEST_CASE("safety filter: demands that always come too late show nothing") {
+  FilterRig rig;
+  for (int i = 0; i < 200; ++i) {
+    rig.demand_now(kOneUp);
+    rig.demand.sample_time_ns -= ForceDemand::kHoldHorizonNs + kMs;
+    CHECK(rig.tick() == Vector3::Zero());
+  }
 }
 
 TEST_CASE("safety filter: a hand that is fast in free air has lost nothing when it touches") {

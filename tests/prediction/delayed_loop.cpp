@@ -168,13 +168,12 @@ class Loop {
     stylus.shown = old ? Vector3::Zero() : wanted.force;
   }
 
-  // What is held is good for as long as the filter allows at most: how it fades is not asked here.
   void filter(std::size_t s, double now) {
     Stylus& stylus = *styluses_[s];
     stylus.asked.linked = true;
     if (mode_ != LoopMode::kPredict) {
       stylus.asked.any = true;
-      stylus.asked.horizon_ns = FilterLimits{}.max_horizon_ns;
+      stylus.asked.horizon_ns = setup_.hold_horizon_ns;
     }
     stylus.shown = stylus.filter.step(to_ns(now), {.tip = run_.tip[s].back()}, stylus.asked);
     run_.lowest_gain[s] = std::min(run_.lowest_gain[s], stylus.filter.gain());

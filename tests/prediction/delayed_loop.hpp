@@ -5,6 +5,7 @@
 
 #include "common/contact/applied_forces.hpp"
 #include "device_bridge/safety/guards.hpp"
+#include "device_bridge/safety/safety_filter.hpp"
 #include "device_bridge/virtual_hand.hpp"
 #include "server/step/simulation.hpp"
 
@@ -35,7 +36,8 @@ struct LoopSetup {
   std::vector<LoopHand> hands;
   int steps = 1500;
   bool filtered = false;  ///< a safety filter before each device, a tick a step
-  Guards guards;          ///< of that filter
+  std::int64_t hold_horizon_ns = ForceDemand::kHoldHorizonNs;  ///< of a held force, for it
+  Guards guards;                                               ///< of that filter
 };
 
 /// What happened, per hand and step.

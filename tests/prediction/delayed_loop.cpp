@@ -73,12 +73,12 @@ struct Down {
 /// end.
 struct Stylus {
   Stylus(const LoopHand& loop_hand, const LoopLink& link, std::uint64_t seed, double dt,
-         Guards guards)
+         const LoopSetup& setup)
       : hand(loop_hand.hand, loop_hand.target(0.0)),
         up(link, 100 + seed),
         down(link, 200 + seed),
         contact(dt, std::llround(1e9 * dt)),
-        filter({}, guards) {
+        filter({.needed_success = setup.needed_success}, setup.guards) {
     filter.arm();
   }
 
@@ -102,9 +102,10 @@ class Loop {
  public:
   Loop(const LoopSetup& setup, LoopMode mode, const LoopLink& link)
       : setup_(setup), mode_(mode), simulation_(setup.config), dt_(simulation_.dt()) {
+    if (setup.needed_success > 0.0) lead_ = static_cast<int>(std::lround(kLinkTime / dt_));
     const std::size_t count = setup.hands.size();
     for (std::size_t s = 0; s < count; ++s) {
-      styluses_.push_back(std::make_unique<Stylus>(setup.hands[s], link, s, dt_, setup.guards));
+      styluses_.push_back(std::make_unique<Stylus>(setup.hands[s], link, s, dt_, setup));
       bridged_.emplace_back(simulation_, s);
     }
     commands_.resize(count);
@@ -115,7 +116,7 @@ class Loop {
   }
 
   LoopRun run() {
-    for (int t = 0; t < setup_.steps; ++t) {
+    for (int t = 0; t < lead_ + setup_.steps; ++t) {
       const double now = (t + 1) * dt_;
       for (std::size_t s = 0; s < styluses_.size(); ++s) bridge(s, t, now);
       serve(t, now);
@@ -129,6 +130,9 @@ class Loop {
       run_.late += static_cast<int>(stylus.late());
       run_.lost += static_cast<int>(stylus.lost());
     }
+    for (auto* course : {&run_.force, &run_.tip}) {
+      for (auto& of_hand : *course) of_hand.erase(of_hand.begin(), of_hand.begin() + lead_);
+    }
     return std::move(run_);
   }
 
@@ -138,12 +142,13 @@ class Loop {
   void bridge(std::size_t s, int t, double now) {
     Stylus& stylus = *styluses_[s];
     const Vector3 before = stylus.hand.position();
-    stylus.hand.advance(dt_, setup_.hands[s].target(now), stylus.shown);
+    const double script_time = now - lead_ * dt_;
+    stylus.hand.advance(dt_, setup_.hands[s].target(std::max(0.0, script_time)), stylus.shown);
     const Vector3 tip = stylus.hand.position();
     stylus.energy -= stylus.shown.dot(tip - before);
     run_.lowest_energy[s] = std::min(run_.lowest_energy[s], stylus.energy);
     run_.tip[s].push_back(tip);
-    const bool grab = setup_.hands[s].grab && now > kGrabTime;
+    const bool grab = setup_.hands[s].grab && script_time > kGrabTime;
     Up message{static_cast<std::uint64_t>(t), now, grab ? kGrabButton : 0, tip, {}};
     if (mode_ == LoopMode::kPredict && stylus.contact.tick(to_ns(now), tip)) {
       message.applied = stylus.contact.applied();
@@ -240,6 +245,7 @@ class Loop {
   LoopMode mode_;
   Simulation simulation_;
   double dt_;
+  int lead_ = 0;  ///< steps before all begins
   std::vector<std::unique_ptr<Stylus>> styluses_;
   std::vector<BridgedStylus> bridged_;
   std::vector<StylusCommand> commands_;

@@ -31,13 +31,17 @@ struct LoopHand {
   bool grab = false;
 };
 
+inline constexpr double kLinkTime = 0.25;  ///< [s]
+
 struct LoopSetup {
   SimulationConfig config;
   std::vector<LoopHand> hands;
   int steps = 1500;
   bool filtered = false;  ///< a safety filter before each device, a tick a step
+  Guards guards;          ///< of that filter
   std::int64_t hold_horizon_ns = ForceDemand::kHoldHorizonNs;  ///< of a held force, for it
-  Guards guards;                                               ///< of that filter
+  /// Of the link, for it to arm [share]; if any, all begins kLinkTime later, when it may have.
+  double needed_success = 0.0;
 };
 
 /// What happened, per hand and step.

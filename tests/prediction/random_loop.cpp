@@ -8,6 +8,7 @@
 #include <random>
 #include <sstream>
 
+#include "device_bridge/safety/link_gate.hpp"
 #include "tests/support/fem_cube.hpp"
 
 namespace irdm::test {
@@ -90,6 +91,7 @@ RandomLoop::RandomLoop(std::uint64_t seed, bool near) {
   setup.hands.push_back({{mass, damping, stiffness}, motion(held, dice), held});
   setup.steps = static_cast<int>(kEnd / 0.002);
   setup.filtered = true;
+  setup.needed_success = LinkGate::kNeeded;
   link = {.delay = dice.between(0.0, 0.01),
           .jitter = dice.coin() ? dice.between(0.0, 0.01) : 0.0,
           .loss = dice.coin() ? dice.between(0.0, 0.05) : 0.0};

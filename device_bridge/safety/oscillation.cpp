@@ -5,7 +5,7 @@
 
 namespace irdm {
 
-void Oscillation::observe(double work, double elapsed, double age) noexcept {
+void Oscillation::observe(double work, double elapsed, double age, bool pushed) noexcept {
   time_ += elapsed;
   ages_ += age * elapsed;
   gain_ = std::min(1.0, gain_ * (1.0 + elapsed / limits_.recovery));
@@ -14,10 +14,16 @@ void Oscillation::observe(double work, double elapsed, double age) noexcept {
   high_ = std::max(high_, energy_);
   extreme_ = rising_ ? std::max(extreme_, energy_) : std::min(extreme_, energy_);
   if (cycling_ && active(energy_) && debt_ - energy_ >= limits().debt) cut();
-  if (std::abs(energy_ - extreme_) < limits_.swing) return;
+  if (!turns(pushed)) return;
   rising_ = !rising_;
   if (rising_) pass_low();
   extreme_ = energy_;
+}
+
+// From rising to falling, or the other way round; what was given until touch was lost is a low.
+bool Oscillation::turns(bool pushed) const noexcept {
+  const bool lost = !pushed && !rising_ && energy_ <= -limits_.swing;
+  return lost || std::abs(energy_ - extreme_) >= limits_.swing;
 }
 
 // `extreme_` is the low, counted from the one before.

@@ -21,11 +21,11 @@ struct OscillationLimits {
 /// cycle of an oscillation, the more the stiffer the object, and bounded damping does not always
 /// hold it. Cycles are told by the lows of the energy that the device has taken: where these sink
 /// from one to the next by a share of what came and went, soon after each other, the loop is
-/// active; half the force is half the stiffness, until it is not. Another hand's push, or a weight
-/// that is let down, gives energy without such cycles. A force that is fresh is left to the
-/// damping for longer, and in slow cycles for ever: a bounce from a wall a step or two away gives
-/// energy too, and ends, and an object that swings gives what it took. So is one without any age.
-/// Pure, real-time safe.
+/// active; so it is where the hand bounces, and each time gets energy until it has lost touch; half
+/// the force is half the stiffness, until it is not. Another hand's push, or a weight that is let
+/// down, gives energy without such cycles. A force that is fresh is left to the damping for longer,
+/// and in slow cycles for ever: a bounce from a wall a step or two away gives energy too, and ends,
+/// and an object that swings gives what it took. So is one without any age. Pure, real-time safe.
 class Oscillation {
  public:
   explicit Oscillation(const OscillationLimits& limits) : limits_(limits) {}
@@ -33,7 +33,8 @@ class Oscillation {
   /// @param work that the hand did on the device since the last tick [J]; not finite: none
   /// @param elapsed since then [s]
   /// @param age of the tip that the force answered [s]
-  void observe(double work, double elapsed, double age) noexcept;
+  /// @param pushed there was a force
+  void observe(double work, double elapsed, double age, bool pushed) noexcept;
 
   /// Share of the force to show, above 0 and at most 1.
   double gain() const noexcept { return gain_; }
@@ -42,6 +43,7 @@ class Oscillation {
 
  private:
   void pass_low() noexcept;
+  bool turns(bool pushed) const noexcept;
   OscillationLimits::Cycles limits() const noexcept;
   bool active(double low) const noexcept;
   void cut() noexcept;

@@ -87,7 +87,8 @@ ReadingVerdict SafetyFilter::check(std::int64_t now_ns, const DeviceReading& rea
 // What the hand did against the force that was really sent.
 void SafetyFilter::observe() noexcept {
   passivity_.observe(reading_.displacement(), sent_);
-  oscillation_.observe(-sent_.dot(reading_.displacement()), reading_.elapsed(), age_);
+  oscillation_.observe(-sent_.dot(reading_.displacement()), reading_.elapsed(), age_,
+                       !sent_.isZero(0.0));
 }
 
 // The newest demand. One that is not used changes nothing: the one before stays, and grows old.

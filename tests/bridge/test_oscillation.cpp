@@ -18,7 +18,8 @@ template <class Way, class Force>
 Oscillation watched(double seconds, const Way& way, const Force& force, double age = kLate) {
   Oscillation oscillation{OscillationLimits{}};
   for (double t = 0.0; t < seconds; t += kTick) {
-    oscillation.observe(-force(t + 0.5 * kTick) * (way(t + kTick) - way(t)), kTick, age);
+    const double pushes = force(t + 0.5 * kTick);
+    oscillation.observe(-pushes * (way(t + kTick) - way(t)), kTick, age, pushes != 0.0);
   }
   return oscillation;
 }
@@ -57,7 +58,8 @@ TEST_CASE("oscillation: a force that is fresh is let alone in slow cycles, by it
     Oscillation oscillation{OscillationLimits{}};
     for (int i = 0; i < 3000; ++i) {
       const double t = i * kTick;
-      oscillation.observe(-late(t) * (way(t + kTick) - way(t)), kTick, i % 2 == 0 ? 2e-3 : other);
+      oscillation.observe(-late(t) * (way(t + kTick) - way(t)), kTick, i % 2 == 0 ? 2e-3 : other,
+                          true);
     }
     CHECK((oscillation.gain() < 0.6) == (other > 8e-3));
   }
@@ -73,6 +75,17 @@ TEST_CASE("oscillation: a force that is fresh is cut for quick cycles, later tha
   CHECK(watched((cycles + 2.5) / 25.0, way, late, 3e-3).gain() < 0.6);
   CHECK(watched((cycles - 1.0) / 25.0, way, late, 6e-3).gain() < 0.6);
   CHECK(watched(3.0, way, late, 0.0).gain() == 1.0);
+}
+
+TEST_CASE("oscillation: a hand that bounces, and is only ever pushed away, is cut") {
+  // In without force, out with it: 1 mJ each time.
+  const auto way = [](double t) { return -1e-3 * std::cos(2.0 * M_PI * 10.0 * t); };
+  const auto out = [](double t) { return sine(t, 10.0) > 0.0 ? 0.5 : 0.0; };
+  CHECK(watched(0.35, way, out).gain() < 0.6);
+  CHECK(watched(0.35, way, out, 4e-3).gain() == 1.0);
+  // One that takes what it gets, in and out alike, is not.
+  const auto wall = [&](double t) { return 300.0 * std::max(0.0, -way(t)); };
+  CHECK(watched(3.0, way, wall).gain() == 1.0);
 }
 
 TEST_CASE("oscillation: neither a push by another hand nor a weight that is let down is cut") {
@@ -97,7 +110,7 @@ TEST_CASE("oscillation: the noise of a sensor is no oscillation") {
   double before = 0.0;
   for (int i = 0; i < 100'000; ++i) {
     const double now = 5e-5 * static_cast<double>(random() % 3);
-    oscillation.observe(-3.0 * (now - before), kTick, kLate);
+    oscillation.observe(-3.0 * (now - before), kTick, kLate, true);
     before = now;
   }
   CHECK(oscillation.gain() == 1.0);
@@ -106,18 +119,19 @@ TEST_CASE("oscillation: the noise of a sensor is no oscillation") {
 TEST_CASE("oscillation: the gain comes back, slowly, and work that is no number is none") {
   Oscillation oscillation{OscillationLimits{}};
   const auto shake = [&](int ticks) {
-    for (int i = 0; i < ticks; ++i) oscillation.observe(i % 100 < 50 ? -1e-4 : 4e-5, kTick, kLate);
+    for (int i = 0; i < ticks; ++i)
+      oscillation.observe(i % 100 < 50 ? -1e-4 : 4e-5, kTick, kLate, true);
   };
   shake(1000);
   const double cut = oscillation.gain();
   CHECK(cut < 0.6);
   CHECK(cut >= OscillationLimits{}.least);
-  oscillation.observe(std::numeric_limits<double>::quiet_NaN(), kTick, kLate);
-  oscillation.observe(std::numeric_limits<double>::infinity(), kTick, kLate);
-  for (int i = 0; i < 5000; ++i) oscillation.observe(0.0, kTick, kLate);
+  oscillation.observe(std::numeric_limits<double>::quiet_NaN(), kTick, kLate, true);
+  oscillation.observe(std::numeric_limits<double>::infinity(), kTick, kLate, true);
+  for (int i = 0; i < 5000; ++i) oscillation.observe(0.0, kTick, kLate, true);
   const double expected = cut * std::exp(5.0 / OscillationLimits{}.recovery);
   CHECK(oscillation.gain() == Approx(expected).epsilon(1e-3));
-  for (int i = 0; i < 100'000; ++i) oscillation.observe(0.0, kTick, kLate);
+  for (int i = 0; i < 100'000; ++i) oscillation.observe(0.0, kTick, kLate, true);
   CHECK(oscillation.gain() == 1.0);
   shake(1000);
   oscillation.reset();

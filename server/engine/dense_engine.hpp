@@ -1,9 +1,8 @@
 #pragma once
 
 #include "server/engine/dense_spin.hpp"
-#include "server/engine/force_history.hpp"
-#include "server/engine/resident_columns.hpp"
 #include "server/engine/response_engine.hpp"
+#include "server/engine/running_convolution.hpp"
 
 namespace irdm {
 
@@ -40,7 +39,7 @@ class DenseEngine final : public ResponseEngine {
 
   std::shared_ptr<const Model> model_;
   ResidentColumns<Scalar> R_;
-  ForceHistory history_;
+  mutable RunningConvolution<Scalar> past_;  ///< keeps what it was asked for
   DenseSpin<SpinNumber<Scalar>> spin_;
 };
 

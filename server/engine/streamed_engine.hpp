@@ -12,7 +12,7 @@ namespace irdm {
 
 /// The dense engine on a response whose columns come and go (StreamedResponse). A node's columns
 /// are taken when a force acts on it, and kept until its last force is T steps old, so that what a
-/// force began is never broken off. With all of them there it equals DenseEngine to the bit.
+/// force began is never broken off. With all of them there it equals DenseEngine but for rounding.
 ///
 /// Where they are not there in time, forces on the node are answered by the static answer
 /// (common/response/settling.hpp) in place of R: R[0] in their own step, then a settling without

@@ -26,7 +26,7 @@ DenseEngine<Scalar>::DenseEngine(std::shared_ptr<const Model> model)
 template <typename Scalar>
 Vector3 DenseEngine<Scalar>::free_displacement(int node) const noexcept {
   Vector3 u = Vector3::Zero();
-  past_.add_coming(node, 1, u);
+  past_.add_coming(node, u);
   spin_.add_coming(node, u);
   return u;
 }
@@ -54,10 +54,15 @@ void DenseEngine<Scalar>::predict(std::span<const ContactPatch> patches, std::sp
 template <typename Scalar>
 void DenseEngine<Scalar>::foresee(const ContactPatch& patch, std::span<const NodalForce> held,
                                   std::span<Vector3> path, std::span<Matrix3> response) noexcept {
-  const auto place = [&](int node, int shift) {
+  const auto steps = static_cast<int>(path.size());
+  for (int i = 0; i < patch.count; ++i) {
+    past_.foresee(patch.nodes[static_cast<std::size_t>(i)], steps);
+    spin_.foresee(patch.nodes[static_cast<std::size_t>(i)], steps);
+  }
+  const auto place = [&](int node, int n) {
     Vector3 u = Vector3::Zero();
-    past_.add_coming(node, shift, u);
-    spin_.add_past(node, shift, u);
+    past_.add_foreseen(node, n, u);
+    spin_.add_foreseen(node, n, u);
     return u;
   };
   Vector3 by_held = Vector3::Zero();
@@ -69,6 +74,14 @@ void DenseEngine<Scalar>::foresee(const ContactPatch& patch, std::span<const Nod
   }
   for (std::size_t n = 0; n < response.size(); ++n) {
     response[n] = n < R_.steps ? after(n, patch, patch) : Matrix3::Zero();
+  }
+}
+
+template <typename Scalar>
+void DenseEngine<Scalar>::follow(std::span<const int> nodes) noexcept {
+  for (const int node : nodes) {
+    past_.follow(node);
+    spin_.follow(node);
   }
 }
 

@@ -24,6 +24,7 @@ class DenseEngine final : public ResponseEngine {
   void foresee(const ContactPatch& patch, std::span<const NodalForce> held, std::span<Vector3> path,
                std::span<Matrix3> response) noexcept override;
   void add_past(std::span<const NodalForce> forces, int age) noexcept override;
+  void follow(std::span<const int> nodes) noexcept override;
   void advance(std::span<const NodalForce> forces) noexcept override;
   using ResponseEngine::displacement;
   void displacement(Points& u, double tolerance) const override;
@@ -39,7 +40,7 @@ class DenseEngine final : public ResponseEngine {
 
   std::shared_ptr<const Model> model_;
   ResidentColumns<Scalar> R_;
-  mutable RunningConvolution<Scalar> past_;  ///< keeps what it was asked for
+  RunningConvolution<Scalar> past_;
   DenseSpin<SpinNumber<Scalar>> spin_;
 };
 

@@ -26,14 +26,24 @@ void DenseSpin<Number>::hold(const Vector3& w) noexcept {
 }
 
 template <typename Number>
-void DenseSpin<Number>::add_past(int node, int n, Vector3& u) const noexcept {
-  past_.add_coming(node, n, u);
+void DenseSpin<Number>::add_foreseen(int node, int n, Vector3& u) const noexcept {
+  if (any()) past_.add_foreseen(node, n, u);
+}
+
+template <typename Number>
+void DenseSpin<Number>::follow(int node) noexcept {
+  if (any()) past_.follow(node);
+}
+
+template <typename Number>
+void DenseSpin<Number>::foresee(int node, int n) noexcept {
+  if (any()) past_.foresee(node, n);
 }
 
 template <typename Number>
 void DenseSpin<Number>::add_coming(int node, Vector3& u) const noexcept {
   if (!any()) return;
-  past_.add_coming(node, 1, u);
+  past_.add_coming(node, u);
   for (int p = 0; p < kSpinProducts; ++p) {
     for (int axis = 0; axis < 3; ++axis) {
       u[axis] += static_cast<double>(*columns_.row(3 * node + axis, p)) * coming_[p];

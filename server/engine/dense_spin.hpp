@@ -27,7 +27,10 @@ class DenseSpin {
   /// Adds what a node does at the end of the coming step, with the spin that is held.
   void add_coming(int node, Vector3& u) const noexcept;
   /// The same at the end of the n-th coming step, of the steps until now alone.
-  void add_past(int node, int n, Vector3& u) const noexcept;
+  void add_foreseen(int node, int n, Vector3& u) const noexcept;
+  /// As RunningConvolution's.
+  void follow(int node) noexcept;
+  void foresee(int node, int n) noexcept;
   /// Adds the displacement of all nodes at the end of the last step.
   void add_all(Points& u) const {
     if (any()) past_.add_all(u);
@@ -37,7 +40,7 @@ class DenseSpin {
 
  private:
   ResidentColumns<Number> columns_;
-  mutable RunningConvolution<Number> past_;  ///< keeps what it was asked for
+  RunningConvolution<Number> past_;
   SpinProducts coming_ = SpinProducts::Zero();
 };
 

@@ -194,7 +194,7 @@ void StreamedEngine<Scalar>::foresee(const ContactPatch& patch, std::span<const 
   const auto place = [&](int node, int shift) {
     Vector3 u = Vector3::Zero();
     convolve(node, shift, u);
-    spin_.add_past(node, shift, u);
+    spin_.add_foreseen(node, shift, u);
     return u;
   };
   Vector3 by_held = Vector3::Zero();

@@ -99,7 +99,7 @@ void DenseEngine<Scalar>::advance(std::span<const NodalForce> forces) noexcept {
 template <typename Scalar>
 void DenseEngine<Scalar>::displacement(Points& u, double /*tolerance*/) const {
   u.setZero(model_->mesh.surface_node_count(), 3);
-  past_.add_all(u);
+  R_.add_all(past_.history(), u);
   spin_.add_all(u);
 }
 

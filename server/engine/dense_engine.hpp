@@ -40,7 +40,7 @@ class DenseEngine final : public ResponseEngine {
 
   std::shared_ptr<const Model> model_;
   ResidentColumns<Scalar> R_;
-  RunningConvolution<Scalar> past_;
+  RunningConvolution<ResidentColumns<Scalar>> past_;
   DenseSpin<SpinNumber<Scalar>> spin_;
 };
 

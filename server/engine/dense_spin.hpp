@@ -33,14 +33,14 @@ class DenseSpin {
   void foresee(int node, int n) noexcept;
   /// Adds the displacement of all nodes at the end of the last step.
   void add_all(Points& u) const {
-    if (any()) past_.add_all(u);
+    if (any()) columns_.add_all(past_.history(), u);
   }
   void advance() noexcept;
   void reset() noexcept;
 
  private:
   ResidentColumns<Number> columns_;
-  RunningConvolution<Number> past_;
+  RunningConvolution<ResidentColumns<Number>> past_;
   SpinProducts coming_ = SpinProducts::Zero();
 };
 

@@ -16,12 +16,13 @@ namespace irdm {
 /// ahead. A new force is added to it, a late one too, with the few steps of R that this takes. Only
 /// what lies further ahead is summed over the whole history, kStepsAhead steps in one go, for which
 /// R is read once and not in each of them; nodes take their turns. Equal to
-/// ResidentColumns::convolve() but for rounding. Real-time safe after construction; one thread.
-template <typename Number>
+/// Columns::convolve() but for rounding. Real-time safe after construction; one thread.
+template <typename Columns>
 class FollowedNodes {
  public:
-  /// @param columns without values: nothing is ever kept
-  explicit FollowedNodes(const ResidentColumns<Number>& columns);
+  /// @param columns ResidentColumns, or HeldColumns, of which those of whole nodes count; must
+  /// outlive it. Of no size: nothing is ever kept
+  explicit FollowedNodes(const Columns& columns);
 
   /// Keeps a node's next n steps if it was followed in a step before, too.
   void follow(const ForceHistory& history, int node, int n) noexcept;
@@ -31,9 +32,11 @@ class FollowedNodes {
   /// As ForceHistory's.
   void push(std::span<const NodalForce> forces) noexcept;
   void add_past(std::span<const NodalForce> forces, int age) noexcept;
+  /// Keeps nothing any more.
   void clear() noexcept;
 
  private:
+  using Number = typename Columns::Value;
   static constexpr int kMost = 256;
   /// Steps after which a node is forgotten.
   static constexpr std::int64_t kPatience = 8;
@@ -55,7 +58,7 @@ class FollowedNodes {
   void add(std::span<const NodalForce> forces, int age) noexcept;
   void forget_idle() noexcept;
 
-  ResidentColumns<Number> columns_;
+  const Columns& columns_;
   std::vector<Followed> followed_;  ///< the first `count_` are in use
   std::vector<int> place_;          ///< of a node among them; -1: not there
   int count_ = 0;

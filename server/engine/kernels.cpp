@@ -123,22 +123,21 @@ template <typename Scalar>
   for (std::size_t i = 0; i < n; ++i) y[i] += weighted(w, a[i], b[i], c[i]);
 }
 
-template <typename Number>
-using Ahead [[gnu::vector_size(kStepsAhead * sizeof(Number))]] = Number;
-
-// All steps ahead within the rows: as many sums side by side in registers, for each x one product
-// with what stands there in each row.
-template <typename Number>
-[[gnu::always_inline]] inline void add_part_of(const Number* rows, std::size_t stride,
-                                               const Number* x, std::size_t n,
-                                               double (&sums)[3][kStepsAhead]) noexcept {
-  Ahead<Number> even[3] = {};
-  Ahead<Number> odd[3] = {};
-  const auto add = [&](std::size_t i, Ahead<Number>(&to)[3]) {
+// All steps ahead within the rows: eight of them in a register, for each x one product with what
+// stands there in each row.
+[[gnu::always_inline]] inline void add_part(const double* rows, std::size_t stride, const double* x,
+                                            std::size_t n,
+                                            double (&sums)[3][kStepsAhead]) noexcept {
+  constexpr std::size_t kParts = kStepsAhead / kLanes;
+  Lanes even[3][kParts] = {};
+  Lanes odd[3][kParts] = {};
+  const auto add = [&](std::size_t i, Lanes(&to)[3][kParts]) {
     for (std::size_t r = 0; r < 3; ++r) {
-      Ahead<Number> numbers;
-      std::memcpy(&numbers, rows + r * stride + i, sizeof numbers);
-      to[r] += numbers * x[i];
+      for (std::size_t part = 0; part < kParts; ++part) {
+        Lanes numbers;
+        std::memcpy(&numbers, rows + r * stride + i + part * kLanes, sizeof numbers);
+        to[r][part] += numbers * x[i];
+      }
     }
   };
   std::size_t i = 0;
@@ -148,44 +147,28 @@ template <typename Number>
   }
   if (i < n) add(i, even);
   for (std::size_t r = 0; r < 3; ++r) {
-    even[r] += odd[r];
-    for (std::size_t m = 0; m < kStepsAhead; ++m) sums[r][m] += static_cast<double>(even[r][m]);
+    for (std::size_t m = 0; m < kStepsAhead; ++m) {
+      sums[r][m] += even[r][m / kLanes][m % kLanes] + odd[r][m / kLanes][m % kLanes];
+    }
   }
-}
-
-// Single precision over parts of kPart: its rounding is of the size of that of the numbers.
-[[gnu::always_inline]] inline void add_part(const float* rows, std::size_t stride, const double* x,
-                                            std::size_t n,
-                                            double (&sums)[3][kStepsAhead]) noexcept {
-  float singles[kAheadPart];
-  for (std::size_t i = 0; i < n; ++i) singles[i] = static_cast<float>(x[i]);
-  add_part_of(rows, stride, singles, n, sums);
-}
-
-[[gnu::always_inline]] inline void add_part(const double* rows, std::size_t stride, const double* x,
-                                            std::size_t n,
-                                            double (&sums)[3][kStepsAhead]) noexcept {
-  add_part_of(rows, stride, x, n, sums);
 }
 
 template <typename Scalar>
 [[gnu::always_inline]] inline void add_ahead_of(const NodeRows<Scalar>& rows,
                                                 std::span<const double> x, double weight,
                                                 const std::array<double*, 3>& y) noexcept {
-  const std::size_t fit = rows.known < kStepsAhead ? 0 : rows.known - kStepsAhead + 1;
-  const std::size_t whole = std::min(x.size(), fit);
-  const std::size_t last = std::min(x.size(), rows.known);
+  double numbers[3][kAheadPart + kStepsAhead];
   double sums[3][kStepsAhead] = {};
-  for (std::size_t i = 0; i < whole; i += kAheadPart) {
-    add_part(rows.first + i, rows.stride, x.data() + i, std::min(kAheadPart, whole - i), sums);
-  }
-  if (whole < last) {  // nothing beyond the end
-    Scalar rest[3][2 * kStepsAhead] = {};
+  const std::size_t end = std::min(x.size(), rows.known);
+  for (std::size_t i = 0; i < end; i += kAheadPart) {
+    const std::size_t count = std::min(kAheadPart, end - i);
+    const std::size_t known = std::min(count + kStepsAhead - 1, rows.known - i);
     for (std::size_t r = 0; r < 3; ++r) {
-      std::copy(rows.first + r * rows.stride + whole, rows.first + r * rows.stride + rows.known,
-                rest[r]);
+      const Scalar* row = rows.first + r * rows.stride + i;
+      for (std::size_t j = 0; j < known; ++j) numbers[r][j] = to_double(row[j]);
+      for (std::size_t j = known; j < count + kStepsAhead - 1; ++j) numbers[r][j] = 0.0;
     }
-    add_part(rest[0], 2 * kStepsAhead, x.data() + whole, last - whole, sums);
+    add_part(numbers[0], kAheadPart + kStepsAhead, x.data() + i, count, sums);
   }
   for (std::size_t r = 0; r < 3; ++r) {
     for (std::size_t m = 0; m < kStepsAhead; ++m) y[r][m] += weight * sums[r][m];

@@ -50,9 +50,6 @@ void add_ahead(const NodeRows<double>& rows, std::span<const double> x, double w
                const std::array<double*, 3>& y) noexcept;
 void add_ahead(const NodeRows<Half>& rows, std::span<const double> x, double weight,
                const std::array<double*, 3>& y) noexcept;
-/// Products that add_ahead() sums up in the precision of the numbers before it goes on in double.
-inline constexpr std::size_t kAheadPart = 64;
-
 template <std::size_t K>
 using Sums = std::array<double, K>;
 /// The same with each of the rows of b, (3, n) or (6, n): a is read once for all of them.

@@ -74,8 +74,7 @@ TEMPLATE_TEST_CASE("steps ahead are the products of x with the rows, further and
         for (std::size_t i = 0; i < n && m + i < known; ++i) {
           direct += to_double(rows[r * kStride + m + i]) * x[i];
         }
-        constexpr double kRounding = std::is_same_v<TestType, double> ? 1e-13 : 3e-6;
-        REQUIRE(std::abs(y[r][m] - (0.25 + 0.5 * direct)) < kRounding);
+        REQUIRE(y[r][m] == Approx(0.25 + 0.5 * direct).margin(1e-13));
       }
     }
   }

@@ -14,11 +14,14 @@ constexpr std::size_t kMaxCandidates = 64;
 DeformedSurface::DeformedSurface(const RestSurface& rest)
     : rest_(rest),
       known_in_(static_cast<std::size_t>(rest.node_count()), 0),
-      positions_(static_cast<std::size_t>(rest.node_count()), Vector3::Zero()) {}
+      positions_(static_cast<std::size_t>(rest.node_count()), Vector3::Zero()) {
+  seen_.reserve(positions_.size());
+}
 
 void DeformedSurface::begin_step(const ResponseEngine& engine) noexcept {
   engine_ = &engine;
   ++step_;
+  seen_.clear();
 }
 
 const Vector3& DeformedSurface::node(int i) noexcept {
@@ -26,6 +29,7 @@ const Vector3& DeformedSurface::node(int i) noexcept {
   if (known_in_[index] != step_) {
     positions_[index] = rest_.node(i) + engine_->free_displacement(i);
     known_in_[index] = step_;
+    seen_.push_back(i);
   }
   return positions_[index];
 }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "common/model/model.hpp"
@@ -36,6 +37,9 @@ class DeformedSurface {
   /// r_i = X_i + h_i of a surface node [m], B.
   const Vector3& node(int i) noexcept;
 
+  /// Nodes that were looked at in this step.
+  std::span<const int> seen() const noexcept { return seen_; }
+
   /// The point nearest to p.
   SurfaceHit closest(const Vector3& p) noexcept;
 
@@ -60,6 +64,7 @@ class DeformedSurface {
   std::uint64_t step_ = 0;
   std::vector<std::uint64_t> known_in_;  ///< step in which positions_ of a node was computed
   std::vector<Vector3> positions_;
+  std::vector<int> seen_;
 };
 
 }  // namespace irdm

@@ -33,6 +33,7 @@ class BothEngines final : public ResponseEngine {
     engines_[answering_]->foresee(patch, held, path, response);
   }
   void add_past(std::span<const NodalForce> forces, int age) noexcept override;
+  void follow(std::span<const int> nodes) noexcept override { engines_[answering_]->follow(nodes); }
   void advance(std::span<const NodalForce> forces) noexcept override;
   using ResponseEngine::displacement;
   void displacement(Points& u, double tolerance) const override {

@@ -19,14 +19,14 @@ template <typename Scalar>
 DenseEngine<Scalar>::DenseEngine(std::shared_ptr<const Model> model)
     : model_(std::move(model)),
       R_(columns_of<Scalar>(std::get<DenseResponse>(model_->response))),
-      history_(model_->mesh.surface_node_count(), model_->steps),
+      past_(R_, model_->mesh.surface_node_count()),
       spin_(std::get<DenseResponse>(model_->response).centrifugal, model_->degrees_of_freedom(),
             model_->steps) {}
 
 template <typename Scalar>
 Vector3 DenseEngine<Scalar>::free_displacement(int node) const noexcept {
   Vector3 u = Vector3::Zero();
-  R_.convolve(history_, node, 1, u);
+  past_.add_coming(node, u);
   spin_.add_coming(node, u);
   return u;
 }
@@ -54,10 +54,15 @@ void DenseEngine<Scalar>::predict(std::span<const ContactPatch> patches, std::sp
 template <typename Scalar>
 void DenseEngine<Scalar>::foresee(const ContactPatch& patch, std::span<const NodalForce> held,
                                   std::span<Vector3> path, std::span<Matrix3> response) noexcept {
-  const auto place = [&](int node, int shift) {
+  const auto steps = static_cast<int>(path.size());
+  for (int i = 0; i < patch.count; ++i) {
+    past_.foresee(patch.nodes[static_cast<std::size_t>(i)], steps);
+    spin_.foresee(patch.nodes[static_cast<std::size_t>(i)], steps);
+  }
+  const auto place = [&](int node, int n) {
     Vector3 u = Vector3::Zero();
-    R_.convolve(history_, node, shift, u);
-    spin_.add_past(node, shift, u);
+    past_.add_foreseen(node, n, u);
+    spin_.add_foreseen(node, n, u);
     return u;
   };
   Vector3 by_held = Vector3::Zero();
@@ -73,20 +78,28 @@ void DenseEngine<Scalar>::foresee(const ContactPatch& patch, std::span<const Nod
 }
 
 template <typename Scalar>
+void DenseEngine<Scalar>::follow(std::span<const int> nodes) noexcept {
+  for (const int node : nodes) {
+    past_.follow(node);
+    spin_.follow(node);
+  }
+}
+
+template <typename Scalar>
 void DenseEngine<Scalar>::add_past(std::span<const NodalForce> forces, int age) noexcept {
-  if (age < kMaxHorizon) history_.add_past(forces, age);
+  if (age < kMaxHorizon) past_.add_past(forces, age);
 }
 
 template <typename Scalar>
 void DenseEngine<Scalar>::advance(std::span<const NodalForce> forces) noexcept {
-  history_.push(forces);
+  past_.push(forces);
   spin_.advance();
 }
 
 template <typename Scalar>
 void DenseEngine<Scalar>::displacement(Points& u, double /*tolerance*/) const {
   u.setZero(model_->mesh.surface_node_count(), 3);
-  R_.add_all(history_, u);
+  R_.add_all(past_.history(), u);
   spin_.add_all(u);
 }
 
@@ -97,7 +110,7 @@ Eigen::MatrixXd DenseEngine<Scalar>::instant_compliance() const {
 
 template <typename Scalar>
 void DenseEngine<Scalar>::reset() noexcept {
-  history_.clear();
+  past_.clear();
   spin_.reset();
 }
 

@@ -1,9 +1,8 @@
 #pragma once
 
 #include "server/engine/dense_spin.hpp"
-#include "server/engine/force_history.hpp"
-#include "server/engine/resident_columns.hpp"
 #include "server/engine/response_engine.hpp"
+#include "server/engine/running_convolution.hpp"
 
 namespace irdm {
 
@@ -25,6 +24,7 @@ class DenseEngine final : public ResponseEngine {
   void foresee(const ContactPatch& patch, std::span<const NodalForce> held, std::span<Vector3> path,
                std::span<Matrix3> response) noexcept override;
   void add_past(std::span<const NodalForce> forces, int age) noexcept override;
+  void follow(std::span<const int> nodes) noexcept override;
   void advance(std::span<const NodalForce> forces) noexcept override;
   using ResponseEngine::displacement;
   void displacement(Points& u, double tolerance) const override;
@@ -40,7 +40,7 @@ class DenseEngine final : public ResponseEngine {
 
   std::shared_ptr<const Model> model_;
   ResidentColumns<Scalar> R_;
-  ForceHistory history_;
+  RunningConvolution<ResidentColumns<Scalar>> past_;
   DenseSpin<SpinNumber<Scalar>> spin_;
 };
 

@@ -3,15 +3,22 @@
 #include <array>
 
 namespace irdm {
+namespace {
+
+template <typename Number>
+ResidentColumns<Number> columns_of(const typename DenseSpin<Number>::Values& values, int dof,
+                                   int steps) {
+  const auto* numbers = std::get_if<std::vector<Number>>(&values);
+  const bool any = numbers != nullptr && !numbers->empty();
+  return {any ? numbers->data() : nullptr, nullptr, any ? static_cast<std::size_t>(dof) : 0,
+          static_cast<std::size_t>(steps)};
+}
+
+}  // namespace
 
 template <typename Number>
 DenseSpin<Number>::DenseSpin(const Values& values, int dof, int steps)
-    : history_(kSpinProducts / 3, steps) {
-  const auto* numbers = std::get_if<std::vector<Number>>(&values);
-  if (numbers == nullptr || numbers->empty()) return;
-  columns_ = {numbers->data(), nullptr, static_cast<std::size_t>(dof),
-              static_cast<std::size_t>(steps)};
-}
+    : columns_(columns_of<Number>(values, dof, steps)), past_(columns_, kSpinProducts / 3) {}
 
 template <typename Number>
 void DenseSpin<Number>::hold(const Vector3& w) noexcept {
@@ -19,14 +26,24 @@ void DenseSpin<Number>::hold(const Vector3& w) noexcept {
 }
 
 template <typename Number>
-void DenseSpin<Number>::add_past(int node, int shift, Vector3& u) const noexcept {
-  if (any()) columns_.convolve(history_, node, shift, u);
+void DenseSpin<Number>::add_foreseen(int node, int n, Vector3& u) const noexcept {
+  if (any()) past_.add_foreseen(node, n, u);
+}
+
+template <typename Number>
+void DenseSpin<Number>::follow(int node) noexcept {
+  if (any()) past_.follow(node);
+}
+
+template <typename Number>
+void DenseSpin<Number>::foresee(int node, int n) noexcept {
+  if (any()) past_.foresee(node, n);
 }
 
 template <typename Number>
 void DenseSpin<Number>::add_coming(int node, Vector3& u) const noexcept {
   if (!any()) return;
-  columns_.convolve(history_, node, 1, u);
+  past_.add_coming(node, u);
   for (int p = 0; p < kSpinProducts; ++p) {
     for (int axis = 0; axis < 3; ++axis) {
       u[axis] += static_cast<double>(*columns_.row(3 * node + axis, p)) * coming_[p];
@@ -35,22 +52,17 @@ void DenseSpin<Number>::add_coming(int node, Vector3& u) const noexcept {
 }
 
 template <typename Number>
-void DenseSpin<Number>::add_all(Points& u) const {
-  if (any()) columns_.add_all(history_, u);
-}
-
-template <typename Number>
 void DenseSpin<Number>::advance() noexcept {
   if (!any()) return;
   const std::array<NodalForce, kSpinProducts / 3> products{NodalForce{0, coming_.head<3>()},
                                                            NodalForce{1, coming_.tail<3>()}};
-  history_.push(coming_.isZero(0.0) ? std::span<const NodalForce>() : products);
+  past_.push(coming_.isZero(0.0) ? std::span<const NodalForce>() : products);
   coming_.setZero();
 }
 
 template <typename Number>
 void DenseSpin<Number>::reset() noexcept {
-  history_.clear();
+  past_.clear();
   coming_.setZero();
 }
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/response/spin_products.hpp"
-#include "server/engine/resident_columns.hpp"
+#include "server/engine/running_convolution.hpp"
 
 namespace irdm {
 
@@ -26,16 +26,21 @@ class DenseSpin {
   void hold(const Vector3& w) noexcept;
   /// Adds what a node does at the end of the coming step, with the spin that is held.
   void add_coming(int node, Vector3& u) const noexcept;
-  /// The same `shift` steps after the last one, of the steps until then alone.
-  void add_past(int node, int shift, Vector3& u) const noexcept;
+  /// The same at the end of the n-th coming step, of the steps until now alone.
+  void add_foreseen(int node, int n, Vector3& u) const noexcept;
+  /// As RunningConvolution's.
+  void follow(int node) noexcept;
+  void foresee(int node, int n) noexcept;
   /// Adds the displacement of all nodes at the end of the last step.
-  void add_all(Points& u) const;
+  void add_all(Points& u) const {
+    if (any()) columns_.add_all(past_.history(), u);
+  }
   void advance() noexcept;
   void reset() noexcept;
 
  private:
   ResidentColumns<Number> columns_;
-  ForceHistory history_;
+  RunningConvolution<ResidentColumns<Number>> past_;
   SpinProducts coming_ = SpinProducts::Zero();
 };
 

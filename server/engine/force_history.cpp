@@ -43,8 +43,8 @@ void ForceHistory::push(std::span<const NodalForce> forces) noexcept {
   }
 }
 
-void ForceHistory::add_past(std::span<const NodalForce> forces, int age) noexcept {
-  if (age < 0 || age >= steps_ || age > clock_) return;
+bool ForceHistory::add_past(std::span<const NodalForce> forces, int age) noexcept {
+  if (age < 0 || age >= steps_ || age > clock_) return false;
   const std::int64_t then = clock_ - age;
   for (const NodalForce& nodal : forces) {
     const auto index = static_cast<std::size_t>(nodal.node);
@@ -66,6 +66,7 @@ void ForceHistory::add_past(std::span<const NodalForce> forces, int age) noexcep
     first_[index] = active ? std::min(first_[index], then) : then;
     last_[index] = active ? std::max(last_[index], then) : then;
   }
+  return true;
 }
 
 void ForceHistory::clear() noexcept {

@@ -19,9 +19,9 @@ class ForceHistory {
 
   /// Ends a step: f[k] becomes `forces` (several on one node add up), older ones move back by one.
   void push(std::span<const NodalForce> forces) noexcept;
-  /// Adds forces to those of the step `age` steps before the last one; nothing where that is before
-  /// the first step or no longer kept.
-  void add_past(std::span<const NodalForce> forces, int age) noexcept;
+  /// Adds forces to those of the step `age` steps before the last one; false, and nothing added,
+  /// where that is before the first step or no longer kept.
+  bool add_past(std::span<const NodalForce> forces, int age) noexcept;
   void clear() noexcept;
 
   /// Nodes with a force within the last T steps.

@@ -1,6 +1,8 @@
 // Kernels on numbers of half precision. Products and their sums, sixteen at a time, are of single
 // precision: a thousandth of what the numbers themselves are rounded by. Compilers do not turn
 // to_float() into the processor's own conversion (F16C); where that is there it is written down.
+#include <algorithm>
+
 #include "server/engine/kernel_lanes.hpp"
 
 #if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && !defined(IRDM_SANITIZED)
@@ -66,10 +68,16 @@ void add_some(const Half* rows, std::size_t stride, const double* x, std::size_t
   for (; r < rows.count; ++r) add_some<1, false>(row(r), rows.stride, x, n, weight, y + r);
 
 namespace portable {
+
 void add(const Rows<Half>& rows, const double* x, std::size_t n, double weight,
          double* y) noexcept {
   IRDM_ADD_ALL
 }
+
+[[maybe_unused]] void convert(const Half* numbers, float* singles, std::size_t n) noexcept {
+  for (std::size_t i = 0; i < n; ++i) singles[i] = to_float(numbers[i]);
+}
+
 }  // namespace portable
 
 #ifdef IRDM_F16C
@@ -154,34 +162,72 @@ void add(const Rows<Half>& rows, const double* x, std::size_t n, double weight,
   IRDM_ADD_ALL
 }
 
+void convert(const Half* numbers, float* singles, std::size_t n) noexcept {
+  std::size_t i = 0;
+  for (; i + kLanes <= n; i += kLanes) _mm256_storeu_ps(singles + i, avx2::singles(numbers + i));
+  for (; i < n; ++i) singles[i] = to_float(numbers[i]);
+}
+
 }  // namespace avx2
 #pragma GCC pop_options
 #endif
 #undef IRDM_ADD_ALL
 
-AddProducts best() noexcept {
+struct HalfKernels {
+  AddProducts add;
+  void (*convert)(const Half* numbers, float* singles, std::size_t n) noexcept;
+};
+
+HalfKernels best() noexcept {
 #ifdef IRDM_F16C
   __builtin_cpu_init();
   const bool converts = __builtin_cpu_supports("f16c");
-  if (converts && __builtin_cpu_supports("avx512f")) return avx512::add;
-  if (converts && __builtin_cpu_supports("avx2")) return avx2::add;
+  if (converts && __builtin_cpu_supports("avx512f")) return {avx512::add, avx2::convert};
+  if (converts && __builtin_cpu_supports("avx2")) return {avx2::add, avx2::convert};
 #endif
-  return portable::add;
+  return {portable::add, portable::convert};
 }
 
-const AddProducts kAddProducts = best();
+const HalfKernels kKernels = best();
 
 }  // namespace
 
 double dot(const Half* a, const double* b, std::size_t n) noexcept {
   double product = 0.0;
-  kAddProducts({a, n, 1}, b, n, 1.0, &product);
+  kKernels.add({a, n, 1}, b, n, 1.0, &product);
   return product;
 }
 
 void add_products(const Rows<Half>& rows, const double* x, std::size_t n, double weight,
                   double* y) noexcept {
-  kAddProducts(rows, x, n, weight, y);
+  kKernels.add(rows, x, n, weight, y);
+}
+
+void add_ahead(const NodeRows<Half>& rows, std::span<const double> x, double weight,
+               const std::array<double*, 3>& y) noexcept {
+  constexpr std::size_t kWide = kAheadPart + kStepsAhead;
+  float singles[3][kWide];
+  const std::size_t end = std::min(x.size(), rows.known);
+  for (std::size_t i = 0; i < end; i += kAheadPart) {
+    const std::size_t known = std::min(rows.known - i, kAheadPart + kStepsAhead - 1);
+    for (std::size_t r = 0; r < 3; ++r) {
+      kKernels.convert(rows.first + r * rows.stride + i, singles[r], known);
+    }
+    const std::span<const double> part = x.subspan(i, std::min(kAheadPart, end - i));
+    add_ahead(NodeRows<float>{singles[0], kWide, known}, part, weight, y);
+  }
+}
+
+void accumulate(const std::array<double, 3>& w, const Half* a, const Half* b, const Half* c,
+                double* y, std::size_t n) noexcept {
+  float singles[3][kAheadPart];
+  for (std::size_t i = 0; i < n; i += kAheadPart) {
+    const std::size_t count = std::min(kAheadPart, n - i);
+    kKernels.convert(a + i, singles[0], count);
+    kKernels.convert(b + i, singles[1], count);
+    kKernels.convert(c + i, singles[2], count);
+    accumulate(w, singles[0], singles[1], singles[2], y + i, count);
+  }
 }
 
 }  // namespace irdm

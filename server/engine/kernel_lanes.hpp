@@ -18,6 +18,8 @@ namespace irdm::kernel {
 constexpr std::size_t kLanes = 8;
 /// Rows at a time: enough sums to hide how long an addition takes.
 constexpr std::size_t kRows = 4;
+/// Forces of before at a time when several steps ahead are summed.
+constexpr std::size_t kAheadPart = 128;
 /// Numbers that a line of the cache holds.
 template <typename Scalar>
 constexpr std::size_t kLine = 64 / sizeof(Scalar);

@@ -1,5 +1,6 @@
 #include "server/engine/kernels.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -122,6 +123,58 @@ template <typename Scalar>
   for (std::size_t i = 0; i < n; ++i) y[i] += weighted(w, a[i], b[i], c[i]);
 }
 
+// All steps ahead within the rows: eight of them in a register, for each x one product with what
+// stands there in each row.
+[[gnu::always_inline]] inline void add_part(const double* rows, std::size_t stride, const double* x,
+                                            std::size_t n,
+                                            double (&sums)[3][kStepsAhead]) noexcept {
+  constexpr std::size_t kParts = kStepsAhead / kLanes;
+  Lanes even[3][kParts] = {};
+  Lanes odd[3][kParts] = {};
+  const auto add = [&](std::size_t i, Lanes(&to)[3][kParts]) {
+    for (std::size_t r = 0; r < 3; ++r) {
+      for (std::size_t part = 0; part < kParts; ++part) {
+        Lanes numbers;
+        std::memcpy(&numbers, rows + r * stride + i + part * kLanes, sizeof numbers);
+        to[r][part] += numbers * x[i];
+      }
+    }
+  };
+  std::size_t i = 0;
+  for (; i + 2 <= n; i += 2) {
+    add(i, even);
+    add(i + 1, odd);
+  }
+  if (i < n) add(i, even);
+  for (std::size_t r = 0; r < 3; ++r) {
+    for (std::size_t m = 0; m < kStepsAhead; ++m) {
+      sums[r][m] += even[r][m / kLanes][m % kLanes] + odd[r][m / kLanes][m % kLanes];
+    }
+  }
+}
+
+template <typename Scalar>
+[[gnu::always_inline]] inline void add_ahead_of(const NodeRows<Scalar>& rows,
+                                                std::span<const double> x, double weight,
+                                                const std::array<double*, 3>& y) noexcept {
+  double numbers[3][kAheadPart + kStepsAhead];
+  double sums[3][kStepsAhead] = {};
+  const std::size_t end = std::min(x.size(), rows.known);
+  for (std::size_t i = 0; i < end; i += kAheadPart) {
+    const std::size_t count = std::min(kAheadPart, end - i);
+    const std::size_t known = std::min(count + kStepsAhead - 1, rows.known - i);
+    for (std::size_t r = 0; r < 3; ++r) {
+      const Scalar* row = rows.first + r * rows.stride + i;
+      for (std::size_t j = 0; j < known; ++j) numbers[r][j] = to_double(row[j]);
+      for (std::size_t j = known; j < count + kStepsAhead - 1; ++j) numbers[r][j] = 0.0;
+    }
+    add_part(numbers[0], kAheadPart + kStepsAhead, x.data() + i, count, sums);
+  }
+  for (std::size_t r = 0; r < 3; ++r) {
+    for (std::size_t m = 0; m < kStepsAhead; ++m) y[r][m] += weight * sums[r][m];
+  }
+}
+
 [[gnu::always_inline]] inline double put_to_rest(double x) noexcept {
   return std::abs(x) < kNothing ? 0.0 : x;
 }
@@ -142,6 +195,15 @@ IRDM_KERNEL void add_products(const Rows<float>& rows, const double* x, std::siz
 IRDM_KERNEL void add_products(const Rows<double>& rows, const double* x, std::size_t n,
                               double weight, double* y) noexcept {
   add_products_of(rows, x, n, weight, y);
+}
+
+IRDM_KERNEL void add_ahead(const NodeRows<float>& rows, std::span<const double> x, double weight,
+                           const std::array<double*, 3>& y) noexcept {
+  add_ahead_of(rows, x, weight, y);
+}
+IRDM_KERNEL void add_ahead(const NodeRows<double>& rows, std::span<const double> x, double weight,
+                           const std::array<double*, 3>& y) noexcept {
+  add_ahead_of(rows, x, weight, y);
 }
 
 IRDM_KERNEL Sums<3> dot_three(const double* a, const double* b, std::size_t n) noexcept {

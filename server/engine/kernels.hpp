@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 
 #include "common/half.hpp"
 
@@ -33,6 +34,22 @@ void add_products(const Rows<double>& rows, const double* x, std::size_t n, doub
 void add_products(const Rows<Half>& rows, const double* x, std::size_t n, double weight,
                   double* y) noexcept;
 
+/// What forces of before do to a node over some steps: for its rows r = 0..2 and m = 0 to
+/// kStepsAhead - 1, y[r][m] += weight sum_i row_r[m + i] x[i], rows being 0 beyond the numbers that
+/// are known. Each is read once for all m.
+inline constexpr std::size_t kStepsAhead = 16;
+template <typename Scalar>
+struct NodeRows {
+  const Scalar* first;
+  std::size_t stride;
+  std::size_t known;
+};
+void add_ahead(const NodeRows<float>& rows, std::span<const double> x, double weight,
+               const std::array<double*, 3>& y) noexcept;
+void add_ahead(const NodeRows<double>& rows, std::span<const double> x, double weight,
+               const std::array<double*, 3>& y) noexcept;
+void add_ahead(const NodeRows<Half>& rows, std::span<const double> x, double weight,
+               const std::array<double*, 3>& y) noexcept;
 template <std::size_t K>
 using Sums = std::array<double, K>;
 /// The same with each of the rows of b, (3, n) or (6, n): a is read once for all of them.
@@ -61,6 +78,8 @@ void combine(const std::array<double, 3>& w, const double* a, const double* b, c
 void accumulate(const std::array<double, 3>& w, const float* a, const float* b, const float* c,
                 double* y, std::size_t n) noexcept;
 void accumulate(const std::array<double, 3>& w, const double* a, const double* b, const double* c,
+                double* y, std::size_t n) noexcept;
+void accumulate(const std::array<double, 3>& w, const Half* a, const Half* b, const Half* c,
                 double* y, std::size_t n) noexcept;
 
 /// y[i] = a[i] b[i].

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "server/engine/force_stretches.hpp"
-#include "server/engine/kernels.hpp"
 
 namespace irdm {
 
@@ -11,14 +10,8 @@ template <typename Number>
 void ResidentColumns<Number>::convolve(const ForceHistory& history, int node, int shift,
                                        Vector3& u) const noexcept {
   for (const int source : history.active()) {
-    for (int axis = 0; axis < 3; ++axis) {
-      const ForceHistory::Series series = history.series(source, axis);
-      const int first = series.first_age + shift;
-      const int count = std::min(series.count, static_cast<int>(steps) - first);
-      if (count <= 0) continue;
-      const int b = 3 * source + axis;
-      add_products({row(3 * node, b) + first, steps, 3}, series.force,
-                   static_cast<std::size_t>(count), scale(static_cast<std::size_t>(b)), u.data());
+    for (int b = 3 * source; b < 3 * source + 3; ++b) {
+      add_convolution(*this, history, b, scale(static_cast<std::size_t>(b)), node, shift, u);
     }
   }
 }

@@ -77,6 +77,10 @@ class ResponseEngine {
   /// (0: the last one itself). @param age below kMaxHorizon; what is older is left out
   virtual void add_past(std::span<const NodalForce> forces, int age) noexcept = 0;
 
+  /// These nodes were asked for in the coming step, and may well be in the one after it: what they
+  /// will do may be kept ready. Before advance(); any number of times.
+  virtual void follow(std::span<const int> /*nodes*/) noexcept {}
+
   /// Ends the coming step with these forces held during it.
   virtual void advance(std::span<const NodalForce> forces) noexcept = 0;
 

@@ -12,127 +12,57 @@ template <typename Scalar>
 StreamedEngine<Scalar>::StreamedEngine(std::shared_ptr<const Model> model)
     : model_(std::move(model)),
       response_(std::get<StreamedResponse>(model_->response)),
-      supply_(*response_.columns),
-      frame_{nullptr, response_.scales.empty() ? nullptr : response_.scales.data(),
-             static_cast<std::size_t>(response_.degrees_of_freedom),
-             static_cast<std::size_t>(response_.steps)},
       first_(std::get<std::vector<Scalar>>(response_.first).data()),
-      history_(model_->mesh.surface_node_count(), model_->steps),
+      columns_(response_, model_->mesh.surface_node_count(), model_->dt),
+      past_(columns_, model_->mesh.surface_node_count()),
       spin_(response_.centrifugal, model_->degrees_of_freedom(), model_->steps),
-      blend_step_(std::min(1.0, model_->dt / kBlendTime)),
-      columns_(static_cast<std::size_t>(model_->mesh.surface_node_count())),
-      coming_(3 * columns_.size()) {
-  followed_.reserve(columns_.size());
-  borrowed_.reserve(columns_.size());
-}
-
-template <typename Scalar>
-StreamedEngine<Scalar>::~StreamedEngine() {
-  reset();
-}
-
-template <typename Scalar>
-bool StreamedEngine<Scalar>::take(Columns& columns, int node) noexcept {
-  if (taken_ >= supply_.share()) return false;
-  columns.values = static_cast<const Scalar*>(supply_.take(node));
-  if (columns.values == nullptr) return false;
-  ++taken_;
-  return true;
-}
-
-template <typename Scalar>
-void StreamedEngine<Scalar>::give_back(int node) noexcept {
-  Columns& columns = columns_[static_cast<std::size_t>(node)];
-  if (columns.values != nullptr) {
-    supply_.give_back(node);
-    --taken_;
-  }
-  columns = Columns{};
-}
-
-// Columns of nodes that the history has forgotten go, those of nodes that are new to it come.
-template <typename Scalar>
-void StreamedEngine<Scalar>::follow_history() noexcept {
-  std::erase_if(followed_, [&](int node) {
-    if (history_.holds(node)) return false;
-    give_back(node);
-    return true;
-  });
-  for (const int node : history_.active()) {
-    Columns& columns = columns_[static_cast<std::size_t>(node)];
-    if (columns.values != nullptr) continue;
-    const bool is_new = !columns.followed;
-    if (is_new) followed_.push_back(node);
-    columns.followed = true;
-    if (take(columns, node)) {
-      columns.share = is_new ? 1.0 : blend_step_;
-    } else if (is_new) {
-      ++missed_;
-    }
-  }
-}
+      coming_(static_cast<std::size_t>(model_->degrees_of_freedom())) {}
 
 // Once a step, for whichever nodes are asked for in the coming one.
 template <typename Scalar>
 void StreamedEngine<Scalar>::settle() noexcept {
-  for (const int node : followed_) {
-    const auto index = static_cast<std::size_t>(node);
-    if (columns_[index].share >= 1.0) continue;
+  for (const int node : columns_.followed()) {
+    if (columns_.whole(node)) continue;
     for (int axis = 0; axis < 3; ++axis) {
-      coming_[3 * index + static_cast<std::size_t>(axis)] = settled(node, axis, 1);
+      coming_[static_cast<std::size_t>(3 * node + axis)] = settled(node, axis, 1);
     }
   }
-}
-
-template <typename Scalar>
-void StreamedEngine<Scalar>::borrow(int node) noexcept {
-  Columns& columns = columns_[static_cast<std::size_t>(node)];
-  if (columns.followed || columns.values != nullptr || !take(columns, node)) return;
-  columns.share = 1.0;
-  borrowed_.push_back(node);
-}
-
-template <typename Scalar>
-void StreamedEngine<Scalar>::return_borrowed() noexcept {
-  for (const int node : borrowed_) give_back(node);
-  borrowed_.clear();
 }
 
 template <typename Scalar>
 double StreamedEngine<Scalar>::first(int a, int b) const noexcept {
   const auto column = static_cast<std::size_t>(b);
-  return frame_.scale(column) *
-         to_double(first_[column * frame_.dof + static_cast<std::size_t>(a)]);
+  const ResidentColumns<Scalar>& frame = columns_.frame();
+  return frame.scale(column) * to_double(first_[column * frame.dof + static_cast<std::size_t>(a)]);
 }
 
 template <typename Scalar>
 double StreamedEngine<Scalar>::rest(int a, int b) const noexcept {
-  return static_cast<double>(
-      response_.rest[static_cast<std::size_t>(b) * frame_.dof + static_cast<std::size_t>(a)]);
+  return static_cast<double>(response_.rest[static_cast<std::size_t>(b) * columns_.frame().dof +
+                                            static_cast<std::size_t>(a)]);
 }
 
 template <typename Scalar>
 double StreamedEngine<Scalar>::entry(std::size_t step, int a, int b) const noexcept {
   if (step == 0) return first(a, b);
-  const Columns& columns = columns_[static_cast<std::size_t>(b / 3)];
+  const double share = columns_.share(b / 3);
   double sum = 0.0;
-  if (columns.share > 0.0) {
-    const ResidentColumns<Scalar> here{columns.values, nullptr, frame_.dof, frame_.steps};
-    sum += frame_.scale(static_cast<std::size_t>(b)) * columns.share *
-           to_double(here.row(a, b % 3)[step]);
+  if (share > 0.0) {
+    sum += columns_.frame().scale(static_cast<std::size_t>(b)) * share *
+           to_double(columns_.row(a, b)[step]);
   }
-  if (columns.share < 1.0) sum += (1.0 - columns.share) * response_.settling[step] * rest(a, b);
+  if (share < 1.0) sum += (1.0 - share) * response_.settling[step] * rest(a, b);
   return sum;
 }
 
 template <typename Scalar>
 typename StreamedEngine<Scalar>::Settled StreamedEngine<Scalar>::settled(int source, int axis,
                                                                          int shift) const noexcept {
-  const double weight = 1.0 - columns_[static_cast<std::size_t>(source)].share;
-  const ForceHistory::Series series = history_.series(source, axis);
+  const double weight = 1.0 - columns_.share(source);
+  const ForceHistory::Series series = past_.history().series(source, axis);
   Settled settled{static_cast<std::size_t>(3 * source + axis), 0.0, 0.0};
   const int start = series.first_age + shift;
-  const int count = std::min(series.count, static_cast<int>(frame_.steps) - start);
+  const int count = std::min(series.count, static_cast<int>(columns_.frame().steps) - start);
   if (count <= 0) return settled;
   settled.past = weight * dot(response_.settling.data() + start, series.force,
                               static_cast<std::size_t>(count));
@@ -140,25 +70,20 @@ typename StreamedEngine<Scalar>::Settled StreamedEngine<Scalar>::settled(int sou
   return settled;
 }
 
+// What forces do on nodes whose columns are not, or not wholly, there.
 template <typename Scalar>
-void StreamedEngine<Scalar>::convolve(int node, int shift, Vector3& u) const noexcept {
-  for (const int source : history_.active()) {
-    const Columns& columns = columns_[static_cast<std::size_t>(source)];
-    for (int axis = 0; axis < 3 && columns.share > 0.0; ++axis) {
-      const ForceHistory::Series series = history_.series(source, axis);
-      const int start = series.first_age + shift;
-      const int count = std::min(series.count, static_cast<int>(frame_.steps) - start);
-      if (count <= 0) continue;
-      const ResidentColumns<Scalar> here{columns.values, nullptr, frame_.dof, frame_.steps};
-      add_products({here.row(3 * node, axis) + start, frame_.steps, 3}, series.force,
-                   static_cast<std::size_t>(count),
-                   frame_.scale(static_cast<std::size_t>(3 * source + axis)) * columns.share,
-                   u.data());
-    }
-    for (int axis = 0; axis < 3 && columns.share < 1.0; ++axis) {
-      const Settled part = shift == 1 ? coming_[static_cast<std::size_t>(3 * source + axis)]
-                                      : settled(source, axis, shift);
-      const int b = static_cast<int>(part.column);
+void StreamedEngine<Scalar>::add_lacking(int node, int shift, Vector3& u) const noexcept {
+  for (const int source : columns_.followed()) {
+    if (columns_.whole(source)) continue;
+    const double share = columns_.share(source);
+    for (int b = 3 * source; b < 3 * source + 3; ++b) {
+      if (share > 0.0) {
+        add_convolution(columns_, past_.history(), b,
+                        columns_.frame().scale(static_cast<std::size_t>(b)) * share, node, shift,
+                        u);
+      }
+      const Settled part =
+          shift == 1 ? coming_[static_cast<std::size_t>(b)] : settled(source, b % 3, shift);
       for (int row = 0; row < 3; ++row) {
         u[row] += first(3 * node + row, b) * part.newest + rest(3 * node + row, b) * part.past;
       }
@@ -169,7 +94,8 @@ void StreamedEngine<Scalar>::convolve(int node, int shift, Vector3& u) const noe
 template <typename Scalar>
 Vector3 StreamedEngine<Scalar>::free_displacement(int node) const noexcept {
   Vector3 u = Vector3::Zero();
-  convolve(node, 1, u);
+  past_.add_coming(node, u);
+  add_lacking(node, 1, u);
   spin_.add_coming(node, u);
   return u;
 }
@@ -186,46 +112,56 @@ template <typename Scalar>
 void StreamedEngine<Scalar>::foresee(const ContactPatch& patch, std::span<const NodalForce> held,
                                      std::span<Vector3> path,
                                      std::span<Matrix3> response) noexcept {
-  for (int i = 0; i < patch.count; ++i) borrow(patch.nodes[static_cast<std::size_t>(i)]);
-  for (const NodalForce& force : held) borrow(force.node);
+  const auto steps = static_cast<int>(path.size());
+  for (int i = 0; i < patch.count; ++i) {
+    const int node = patch.nodes[static_cast<std::size_t>(i)];
+    columns_.borrow(node);
+    past_.foresee(node, steps);
+    spin_.foresee(node, steps);
+  }
+  for (const NodalForce& force : held) columns_.borrow(force.node);
   const auto answer = [&](std::size_t step, const auto& from) {
     return patch_response(patch, from, [&](int a, int b) { return entry(step, a, b); });
   };
   const auto place = [&](int node, int shift) {
     Vector3 u = Vector3::Zero();
-    convolve(node, shift, u);
-    spin_.add_past(node, shift, u);
+    past_.add_foreseen(node, shift, u);
+    add_lacking(node, shift, u);
+    spin_.add_foreseen(node, shift, u);
     return u;
   };
   Vector3 by_held = Vector3::Zero();
   for (std::size_t n = 0; n < path.size(); ++n) {
-    if (n < frame_.steps) {
+    if (n < columns_.frame().steps) {
       for (const NodalForce& force : held) by_held += answer(n, force);
     }
     path[n] = by_held + mean(patch, [&](int node) { return place(node, static_cast<int>(n) + 1); });
   }
   for (std::size_t n = 0; n < response.size(); ++n) {
-    response[n] = n < frame_.steps ? answer(n, patch) : Matrix3::Zero();
+    response[n] = n < columns_.frame().steps ? answer(n, patch) : Matrix3::Zero();
   }
-  return_borrowed();
+  columns_.return_borrowed();
 }
 
 template <typename Scalar>
 void StreamedEngine<Scalar>::add_past(std::span<const NodalForce> forces, int age) noexcept {
   if (age >= kMaxHorizon) return;
-  history_.add_past(forces, age);
-  follow_history();
+  past_.add_past(forces, age);
   settle();
 }
 
 template <typename Scalar>
-void StreamedEngine<Scalar>::advance(std::span<const NodalForce> forces) noexcept {
-  for (const int node : followed_) {
-    Columns& columns = columns_[static_cast<std::size_t>(node)];
-    if (columns.values != nullptr) columns.share = std::min(1.0, columns.share + blend_step_);
+void StreamedEngine<Scalar>::follow(std::span<const int> nodes) noexcept {
+  for (const int node : nodes) {
+    past_.follow(node);
+    spin_.follow(node);
   }
-  history_.push(forces);
-  follow_history();
+}
+
+template <typename Scalar>
+void StreamedEngine<Scalar>::advance(std::span<const NodalForce> forces) noexcept {
+  if (columns_.blend()) past_.keep_nothing();
+  past_.push(forces);
   settle();
   spin_.advance();
 }
@@ -233,24 +169,24 @@ void StreamedEngine<Scalar>::advance(std::span<const NodalForce> forces) noexcep
 // As ResidentColumns::add_all(), and then what is missing.
 template <typename Scalar>
 void StreamedEngine<Scalar>::add_columns(Points& u) const {
-  const std::vector<ForceStretch> stretches = force_stretches(history_);
+  const std::vector<ForceStretch> stretches = force_stretches(past_.history());
   std::vector<Settled> missing;
-  for (const int node : history_.active()) {
-    if (columns_[static_cast<std::size_t>(node)].share >= 1.0) continue;
+  for (const int node : past_.history().active()) {
+    if (columns_.whole(node)) continue;
     for (int axis = 0; axis < 3; ++axis) missing.push_back(settled(node, axis, 0));
   }
-  const auto blocks = static_cast<int>((frame_.dof + kRowBlock - 1) / kRowBlock);
+  const ResidentColumns<Scalar>& frame = columns_.frame();
+  const auto blocks = static_cast<int>((frame.dof + kRowBlock - 1) / kRowBlock);
 #pragma omp parallel for schedule(dynamic)
   for (int block = 0; block < blocks; ++block) {
     const std::size_t begin = static_cast<std::size_t>(block) * kRowBlock;
-    const std::size_t count = std::min(kRowBlock, frame_.dof - begin);
+    const std::size_t count = std::min(kRowBlock, frame.dof - begin);
     for (const ForceStretch& push : stretches) {
-      const Columns& columns = columns_[push.column / 3];
-      if (columns.share == 0.0) continue;
-      const Scalar* rows =
-          columns.values + (push.column % 3 * frame_.dof + begin) * frame_.steps + push.first_age;
-      add_products({rows, frame_.steps, count}, push.force, push.count,
-                   frame_.scale(push.column) * columns.share, u.data() + begin);
+      const double share = columns_.share(static_cast<int>(push.column / 3));
+      if (share == 0.0) continue;
+      const Scalar* rows = columns_.row(static_cast<int>(begin), static_cast<int>(push.column));
+      add_products({rows + push.first_age, frame.steps, count}, push.force, push.count,
+                   frame.scale(push.column) * share, u.data() + begin);
     }
     for (const Settled& part : missing) {
       const int b = static_cast<int>(part.column);
@@ -276,9 +212,8 @@ Eigen::MatrixXd StreamedEngine<Scalar>::instant_compliance() const {
 
 template <typename Scalar>
 void StreamedEngine<Scalar>::reset() noexcept {
-  for (const int node : followed_) give_back(node);
-  followed_.clear();
-  history_.clear();
+  columns_.clear();
+  past_.clear();
   spin_.reset();
 }
 

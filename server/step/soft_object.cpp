@@ -390,6 +390,15 @@ void SoftObject::settle(std::span<const StylusCommand> commands) noexcept {
   if (floor_) floor_->settle(motion_, problem_);
 }
 
+// What this step looked at, the next one will look at again.
+void SoftObject::follow() noexcept {
+  engine_->follow(surface_.seen());
+  for (int a = 0; a < contact_count_; ++a) {
+    const ContactPatch& patch = patches_[static_cast<std::size_t>(a)];
+    engine_->follow(std::span(patch.nodes).first(static_cast<std::size_t>(patch.count)));
+  }
+}
+
 // Step 5: the forces enter the history, and the rigid motion goes on.
 void SoftObject::advance() noexcept {
   const double share = model_->dt / kAverageTime;
@@ -418,6 +427,7 @@ void SoftObject::advance() noexcept {
     nodal_.add(floor_->node(i), solved.force);
     forces.add(Q * solved.force, solved.arm);
   }
+  follow();
   engine_->advance(nodal_.view());
   past_.remember(state_, forces);
   state_ = body_.advance(state_, motion_.force + forces.sum, motion_.torque + forces.torque(Q));

@@ -96,6 +96,7 @@ class SoftObject {
   void solve(std::span<const StylusCommand> commands, ObjectRecord& record) noexcept;
   void pose_floor() noexcept;
   void settle(std::span<const StylusCommand> commands) noexcept;
+  void follow() noexcept;
   void advance() noexcept;
   void write(ObjectRecord& record) const noexcept;
   void write_floor(ObjectRecord& record) noexcept;

@@ -53,6 +53,33 @@ TEMPLATE_TEST_CASE("products of rows are those of each row, to the bit, whatever
   }
 }
 
+TEMPLATE_TEST_CASE("steps ahead are the products of x with the rows, further and further on", "",
+                   float, double, Half) {
+  constexpr std::size_t kStride = 210;
+  std::vector<TestType> rows;
+  for (const double number : random_numbers(3 * kStride, 11)) {
+    rows.push_back(stored<TestType>(number));
+  }
+  const std::vector<double> x = random_numbers(200, 12);
+  for (const std::size_t known : {0UL, 1UL, 15UL, 16UL, 17UL, 80UL, 200UL}) {
+    for (const std::size_t n : {0UL, 1UL, 5UL, 64UL, 65UL, 150UL, 200UL}) {
+      std::array<std::array<double, kStepsAhead>, 3> y;
+      for (auto& row : y) row.fill(0.25);
+      add_ahead(NodeRows<TestType>{rows.data(), kStride, known}, std::span(x).first(n), 0.5,
+                {y[0].data(), y[1].data(), y[2].data()});
+      for (std::size_t at = 0; at < 3 * kStepsAhead; ++at) {
+        const std::size_t r = at / kStepsAhead;
+        const std::size_t m = at % kStepsAhead;
+        double direct = 0.0;
+        for (std::size_t i = 0; i < n && m + i < known; ++i) {
+          direct += to_double(rows[r * kStride + m + i]) * x[i];
+        }
+        REQUIRE(y[r][m] == Approx(0.25 + 0.5 * direct).margin(1e-13));
+      }
+    }
+  }
+}
+
 TEST_CASE("moments of three rows, and of two times three, are the sums that they stand for") {
   constexpr std::size_t kModes = 43;
   const std::vector<double> a = random_numbers(3 * kModes, 3);

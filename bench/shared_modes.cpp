@@ -75,8 +75,8 @@ int main(int argc, char** argv) {
           : by_slepc(mesh, mass, count,
                      word == "slepc" ? ModeSolver::kSlepc : ModeSolver::kSlepcMultigrid, ranks);
   std::printf(
-      "%s rank %d of %d: %d tetrahedra, %d nodes, %d modes, %.2f s, %.3f GB of memory (%.3f "
-      "before)%s\n",
+      "%s rank %d of %d: %d tetrahedra, %d nodes, %d modes, %.2f s, %.2f s of the processor, %.3f "
+      "GB of memory (%.3f before)%s\n",
       word.c_str(), ranks.rank(), ranks.size(), mesh.tet_count(), mesh.node_count(), count,
       seconds() - start, processor_seconds() - worked, most_memory(), before,
       modes.angular_frequency.size() == 0

@@ -44,14 +44,14 @@ void share(const Discrete& body, const std::vector<int>& clamped, ModeSolver sol
 }  // namespace
 
 TEST_CASE("SLEPc's modes are Spectra's, by either solver, free and fixed") {
-  const Discrete body(precompute::test::box_mesh(Vector3(0.12, 0.08, 0.10), {6, 4, 5}), kMaterial);
+  const Discrete body(precompute::test::box_mesh(Vector3(0.12, 0.08, 0.10), {5, 3, 4}), kMaterial);
   const std::vector<int> clamped =
       GENERATE_COPY(std::vector<int>{}, nodes_in(body.mesh, kLeft, "box"));
   const auto solver = GENERATE(ModeSolver::kSlepc, ModeSolver::kSlepcMultigrid);
   CAPTURE(clamped.size(), solver == ModeSolver::kSlepc);
   share(body, clamped, solver, [&](SharedModes& shared) {
     const ElasticStatics statics(body.stiffness, body.mesh.nodes, body.mass, clamped);
-    for (const int count : {20, 35}) {
+    for (const int count : {12, 20}) {
       const ElasticModes expected = lowest_modes(statics, count);
       const ElasticModes found = shared.lowest(count);
       const Eigen::VectorXd square = expected.angular_frequency.cwiseAbs2();
@@ -147,8 +147,8 @@ TEST_CASE("two ranks make the model file of one process with Spectra", "[program
     CHECK(status == 0);
     return read_model(folder.path() / (solver + ".h5"), ResponseKind::kModal);
   };
-  const std::vector<std::string> two{IRDM_MPIRUN, "-n", "2", "--oversubscribe",
-                                     "--allow-run-as-root"};
+  const std::vector<std::string> two{
+      IRDM_MPIRUN, "-n", "2", "--oversubscribe", "--bind-to", "none", "--allow-run-as-root"};
   const Model one_process = run({}, "spectra");
   const auto& expected = std::get<ModalResponse>(one_process.response);
   for (const char* solver : {"slepc", "slepc-multigrid"}) {

@@ -24,8 +24,9 @@ class SharedModes {
 };
 
 /// SLEPc's Krylov-Schur with shift and invert, the rigid motions of a free body deflated. The
-/// options of the environment variable PETSC_OPTIONS come last. The same input gives the same bits
-/// on as many ranks. Throws Error, also where irdm was built without SLEPc (IRDM_WITH_SLEPC).
+/// options of the environment variable PETSC_OPTIONS come last. On one rank the same input gives
+/// the same bits; on several the last ones depend on which message comes first in MUMPS. Throws
+/// Error, also where irdm was built without SLEPc (IRDM_WITH_SLEPC).
 /// @param mass lumped (N) [kg]
 /// @param clamped into the nodes, increasing; none: the body is free
 /// @param solver not kSpectra

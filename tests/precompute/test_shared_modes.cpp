@@ -82,7 +82,8 @@ TEST_CASE("SLEPc's modes of quadratic elements are Spectra's") {
   });
 }
 
-TEST_CASE("SLEPc gives the same bits every time") {
+// MUMPS sums up what other ranks send in the order that it comes.
+TEST_CASE("SLEPc gives the same every time, bit for bit on one rank") {
   const Discrete body(precompute::test::box_mesh(Vector3(0.12, 0.08, 0.10), {4, 3, 3}), kMaterial);
   std::vector<ElasticModes> twice;
   for (int i = 0; i < 2; ++i) {
@@ -90,6 +91,9 @@ TEST_CASE("SLEPc gives the same bits every time") {
           [&](SharedModes& shared) { twice.push_back(shared.lowest(12)); });
   }
   if (twice.empty()) return;
+  const Eigen::VectorXd difference = twice[0].angular_frequency - twice[1].angular_frequency;
+  CHECK(difference.cwiseQuotient(twice[0].angular_frequency).cwiseAbs().maxCoeff() < 1e-11);
+  if (all_ranks().size() > 1) return;
   CHECK(twice[0].angular_frequency == twice[1].angular_frequency);
   CHECK(twice[0].shapes == twice[1].shapes);
 }

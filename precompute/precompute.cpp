@@ -26,6 +26,7 @@
 #include "precompute/modal/held_responses.hpp"
 #include "precompute/modal/modal_method.hpp"
 #include "precompute/modal/reduced_modes.hpp"
+#include "precompute/modal/shared_modes.hpp"
 #include "precompute/modal/symmetric_eigen.hpp"
 #include "precompute/process/last_action.hpp"
 
@@ -157,14 +158,39 @@ ColumnFileHeader column_header(const PrecomputeConfig& config, const Model& mode
           description_of(model)};
 }
 
+bool shares_modes(const PrecomputeConfig& config) {
+  return !config.modes.all() && config.modes.solver != ModeSolver::kSpectra;
+}
+
+// All modes, or some; nothing on another rank than the first, which only helps.
+ModalResponse modes_of(const PrecomputeConfig& config, const TetMesh& mesh,
+                       const std::vector<int>& clamped, const Model& model, int threads,
+                       const Ranks& ranks, const Console& console) {
+  if (config.modes.all()) return compute_modes(mesh, clamped, model, console);
+  if (!shares_modes(config)) {
+    return compute_reduced_modes(mesh, clamped, model, config.modes, threads, console);
+  }
+  const SingleThreadedBlas single;
+  const auto shared = make_shared_modes(mesh, model.material, model.mesh.node_mass, clamped,
+                                        config.modes.solver, ranks);
+  if (ranks.rank() > 0) {
+    shared->help();
+    return {};
+  }
+  const auto lowest = [&shared](int count) { return shared->lowest(count); };
+  return compute_reduced_modes(mesh, clamped, model, config.modes, threads, console, lowest);
+}
+
 // The columns that are asked for, of all of them.
 ColumnRange wanted_columns(const PrecomputeConfig& config, const Model& model,
                            const std::optional<ColumnRange>& slice, const Ranks& ranks) {
   const ColumnRange all{0, model.degrees_of_freedom()};
-  if (!slice && ranks.size() == 1) return all;
+  if (!slice && (ranks.size() == 1 || shares_modes(config))) return all;
   if (config.response.storage != Storage::kDense) {
-    throw Error(config.name, "only dense R has columns that can be shared out",
-                "set response.storage = \"dense\" (or --storage dense)");
+    throw Error(
+        config.name, "only dense R has columns that can be shared out",
+        "set response.storage = \"dense\" (or --storage dense); ranks share [modes] with solver "
+        "= \"slepc\"");
   }
   if (!slice) return all;
   if (ranks.size() > 1) {
@@ -246,15 +272,13 @@ Summary precompute_model(const PrecomputeConfig& config, const std::filesystem::
   if (stepping) {
     by_columns(*stepped_columns(config, mesh, model, threads, console));
   } else {
-    ModalResponse response =
-        config.modes.all()
-            ? compute_modes(mesh, clamped, model, console)
-            : compute_reduced_modes(mesh, clamped, model, config.modes, threads, console);
+    ModalResponse response = modes_of(config, mesh, clamped, model, threads, ranks, console);
+    if (shares_modes(config) && ranks.rank() > 0) return summary;
     summary.modes = response.mode_count();
     if (!response.residual.empty()) summary.reduction = response.residual.reduction;
     summary.lowest_frequency = response.angular_frequency(0) / (2.0 * std::numbers::pi);
     summary.decay_left = decay_left(response, model.dt, model.steps);
-    if (slice || ranks.size() > 1) {
+    if (slice || (ranks.size() > 1 && !shares_modes(config))) {
       by_columns(*modal_columns(response, model, config.response.precision));
     } else {
       ModelFileWriter writer(output);

@@ -16,7 +16,8 @@ namespace irdm::precompute {
 /// Dense R by time stepping goes by way of a work file, so that an interrupted run can go on.
 /// Throws Error.
 /// @param slice only these columns of dense R: the output is a part for `merge`
-/// @param ranks share the columns of dense R; only rank 0's summary is complete
+/// @param ranks share the columns of dense R, or the lowest modes where SLEPc finds them; only rank
+/// 0's summary is complete
 Summary precompute_model(const PrecomputeConfig& config, const std::filesystem::path& output,
                          const Console& console, const std::optional<ColumnRange>& slice = {},
                          const Ranks& ranks = Ranks());

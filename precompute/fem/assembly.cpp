@@ -1,5 +1,6 @@
 #include "precompute/fem/assembly.hpp"
 
+#include <algorithm>
 #include <vector>
 
 #include "precompute/fem/tet10.hpp"
@@ -41,6 +42,27 @@ SparseMatrix assemble_stiffness(const TetMesh& mesh, const Lame& lame) {
   SparseMatrix stiffness(unknowns, unknowns);
   stiffness.setFromTriplets(entries.begin(), entries.end());
   return stiffness;
+}
+
+RowSparseMatrix assemble_stiffness_rows(const TetMesh& mesh, const Lame& lame, int first,
+                                        int last) {
+  std::vector<Eigen::Triplet<double>> entries;
+  const auto wanted = [&](int node) { return node >= first && node < last; };
+  for (int e = 0; e < mesh.tet_count(); ++e) {
+    const auto nodes = mesh.tets.row(e);
+    if (std::none_of(nodes.begin(), nodes.end(), wanted)) continue;
+    const Eigen::MatrixXd k = element_stiffness(mesh, e, lame);
+    for (int row = 0; row < k.rows(); ++row) {
+      if (!wanted(nodes(row / 3))) continue;
+      for (int column = 0; column < k.cols(); ++column) {
+        entries.emplace_back(3 * (nodes(row / 3) - first) + row % 3,
+                             3 * nodes(column / 3) + column % 3, k(row, column));
+      }
+    }
+  }
+  RowSparseMatrix rows(3 * (last - first), 3 * mesh.nodes.rows());
+  rows.setFromTriplets(entries.begin(), entries.end());
+  return rows;
 }
 
 Eigen::VectorXd lumped_mass(const TetMesh& mesh, double density) {

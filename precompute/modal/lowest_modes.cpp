@@ -32,13 +32,13 @@ class Flexibility {
   const ElasticStatics& statics_;
 };
 
+}  // namespace
+
 void check_lowest(const Eigen::VectorXd& omega, double largest_square) {
   if (omega(0) * omega(0) > kRigidShare * largest_square) return;
   throw Error("mesh", "there are motions without elastic energy besides the rigid ones",
               "check for elements that hang on a single node or edge, and for very thin parts");
 }
-
-}  // namespace
 
 int most_lowest_modes(const ElasticStatics& statics) {
   return static_cast<int>(std::max<Eigen::Index>(1, statics.elastic_modes() / 2));

@@ -1,9 +1,19 @@
 #include "precompute/modal/modes_config.hpp"
 
+#include <map>
+
 namespace irdm::precompute {
 namespace {
 
 constexpr int kMostModes = 20'000;
+
+ModeSolver solver_from_word(const std::string& word) {
+  static const std::map<std::string, ModeSolver> words{
+      {"spectra", ModeSolver::kSpectra},
+      {"slepc", ModeSolver::kSlepc},
+      {"slepc-multigrid", ModeSolver::kSlepcMultigrid}};
+  return words.at(word);
+}
 
 }  // namespace
 
@@ -18,11 +28,15 @@ ModesConfig read_modes(TomlTable table) {
     modes.highest_frequency = table.number("highest_frequency", above(0));
   }
   if (table.has("error")) modes.error = table.number("error", between(1e-4, 0.5));
-  if (table.has("contact_radius") && modes.all()) {
-    table.fail("contact_radius", "is there but all modes are asked for",
-               "give one of count, highest_frequency and error, or leave it out");
+  for (const char* key : {"contact_radius", "solver"}) {
+    if (table.has(key) && modes.all()) {
+      table.fail(key, "is there but all modes are asked for",
+                 "give one of count, highest_frequency and error, or leave it out");
+    }
   }
   modes.contact_radius = table.number("contact_radius", above(0), modes.contact_radius);
+  modes.solver =
+      solver_from_word(table.choice("solver", {"spectra", "slepc", "slepc-multigrid"}, "spectra"));
   table.finish();
   return modes;
 }

@@ -6,6 +6,13 @@
 
 namespace irdm::precompute {
 
+/// Who finds the lowest modes.
+enum class ModeSolver {
+  kSpectra,         ///< Spectra in one process, with a sparse Cholesky factorisation
+  kSlepc,           ///< SLEPc on any number of ranks, with a factorisation by MUMPS
+  kSlepcMultigrid,  ///< SLEPc on any number of ranks, with conjugate gradients and multigrid (GAMG)
+};
+
 /// [modes]: which of the elastic modes are computed. At most one of `count`, `highest_frequency`
 /// and `error`; none: all of them.
 struct ModesConfig {
@@ -16,6 +23,7 @@ struct ModesConfig {
   /// Of that fingertip [m], > 0. What the missing modes would add is kept for nodes up to twice as
   /// far apart.
   double contact_radius = 0.015;
+  ModeSolver solver = ModeSolver::kSpectra;
 
   bool all() const { return !count && !highest_frequency && !error; }
 };

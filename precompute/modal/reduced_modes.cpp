@@ -28,11 +28,12 @@ double hertz(double angular_frequency) {
 class Choice {
  public:
   Choice(const ElasticStatics& statics, const Model& model, const FingertipReference& reference,
-         double residual_radius, const Console& console)
+         double residual_radius, const LowestModes& solver, const Console& console)
       : statics_(statics),
         model_(model),
         reference_(reference),
         residual_radius_(residual_radius),
+        solver_(solver),
         console_(console),
         most_(most_lowest_modes(statics) - 1) {}
 
@@ -91,7 +92,7 @@ class Choice {
   ModalResponse lowest(int count) const {
     console_.line("modes: the lowest " + std::to_string(count) + " of " +
                   std::to_string(statics_.elastic_modes()) + " by Lanczos");
-    const ElasticModes modes = lowest_modes(statics_, count + 1);
+    const ElasticModes modes = solver_ ? solver_(count + 1) : lowest_modes(statics_, count + 1);
     ModalResponse response = modal_response(modes, model_.mesh.surface_nodes, model_.material);
     if (model_.body.support == Support::kFloating) {
       response.centrifugal =
@@ -122,6 +123,7 @@ class Choice {
   const Model& model_;
   const FingertipReference& reference_;
   double residual_radius_;
+  const LowestModes& solver_;
   const Console& console_;
   int most_;
 };
@@ -130,14 +132,14 @@ class Choice {
 
 ModalResponse compute_reduced_modes(const TetMesh& mesh, const std::vector<int>& clamped,
                                     const Model& model, const ModesConfig& config, int threads,
-                                    const Console& console) {
+                                    const Console& console, const LowestModes& solver) {
   const SingleThreadedBlas
       single;  // the factors' bits, and so the modes', do not depend on threads
   const ElasticStatics statics(assemble_stiffness(mesh, lame_parameters(model.material)),
                                model.mesh.nodes, model.mesh.node_mass, clamped);
   const FingertipReference reference(statics, model, config.contact_radius, clamped);
   const double radius = residual_radius(model.mesh, config.contact_radius);
-  ModalResponse response = Choice(statics, model, reference, radius, console).of(config);
+  ModalResponse response = Choice(statics, model, reference, radius, solver, console).of(config);
   ModeReduction reduction = response.residual.reduction;
   response.residual = residual_compliance(statics, model.mesh, response, radius, threads, console);
   const ReductionError error = reference.error(response);

@@ -1,13 +1,18 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "common/model/model.hpp"
 #include "precompute/mesh/tet_mesh.hpp"
+#include "precompute/modal/elastic_modes.hpp"
 #include "precompute/modal/modes_config.hpp"
 #include "precompute/progress.hpp"
 
 namespace irdm::precompute {
+
+/// So many of the lowest elastic modes.
+using LowestModes = std::function<ElasticModes(int count)>;
 
 /// The lowest modes of a mesh that may be too large for all of them, and what the others would add,
 /// from sparse matrices. With how well they stand for all modes (ModeReduction). Shapes in double
@@ -15,8 +20,9 @@ namespace irdm::precompute {
 /// @param clamped into the mesh's nodes, increasing; none: the body is free
 /// @param config not all()
 /// @param threads > 0; the outcome does not depend on it
+/// @param solver where the modes come from; none: lowest_modes() in this process
 ModalResponse compute_reduced_modes(const TetMesh& mesh, const std::vector<int>& clamped,
                                     const Model& model, const ModesConfig& config, int threads,
-                                    const Console& console);
+                                    const Console& console, const LowestModes& solver = {});
 
 }  // namespace irdm::precompute

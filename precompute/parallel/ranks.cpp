@@ -32,12 +32,20 @@ bool Ranks::all(bool yes) const {
   return least == 1;
 }
 
+int Ranks::first_says(int number) const {
+  if (size_ > 1) MPI_Bcast(&number, 1, MPI_INT, 0, MPI_COMM_WORLD);
+  return number;
+}
+
 #else
 
 Ranks::Ranks() = default;
 Ranks::~Ranks() = default;
 bool Ranks::all(bool yes) const {
   return yes;
+}
+int Ranks::first_says(int number) const {
+  return number;
 }
 
 #endif

@@ -16,6 +16,8 @@ class Ranks {
   int size() const { return size_; }
   /// Waits until all have called it; whether all said yes.
   bool all(bool yes) const;
+  /// Waits for rank 0 to call it; the number that rank 0 gave.
+  int first_says(int number) const;
 
  private:
   int rank_ = 0;

@@ -214,7 +214,12 @@ TEST_CASE("configuration takes all modes, or some by one of three measures") {
   const auto refused = [](const std::string& lines, const std::string& message) {
     check_refused(kMesh + kMaterial + "[modes]\n" + lines, message);
   };
+  CHECK(modes("error = 0.01\n").solver == ModeSolver::kSpectra);
+  CHECK(modes("count = 9\nsolver = \"slepc\"\n").solver == ModeSolver::kSlepc);
+  CHECK(modes("count = 9\nsolver = \"slepc-multigrid\"\n").solver == ModeSolver::kSlepcMultigrid);
   refused("count = 0\n", "modes.count is 0");
+  refused("solver = \"slepc\"\n", "modes.solver is there but all modes are asked for");
+  refused("count = 9\nsolver = \"arpack\"\n", "modes.solver is 'arpack'");
   refused("count = 1.5\n", "modes.count is not a whole number");
   refused("highest_frequency = 0\n", "modes.highest_frequency is 0");
   refused("error = 0.6\n", "modes.error is 0.6");

@@ -192,6 +192,7 @@ TEST_CASE("prediction: behind the safety filter the device's port gives no energ
     for (const double E : kStiffnesses) {
       LoopSetup setup = pressed(E, aside);
       setup.filtered = true;
+      setup.hold_horizon_ns = irdm::FilterLimits{}.max_horizon_ns;  // else 20 ms show nothing
       const LoopRun direct = run_loop(setup, LoopMode::kDirect);
       for (const double delay : {0.005, 0.02}) {
         CAPTURE(aside, E, delay);

@@ -2,7 +2,7 @@
 // process of its own, the bridge's own threads, and between them a relay that makes things go wrong
 // at random moments. For each cause the time from the last good frame that was passed on (or from
 // the fault, if later ones came all along) to the first tick without force.
-//   bench_fail_to_zero [TIMES]      20 of each cause and mode unless given
+//   bench_fail_to_zero [TIMES] [CAUSE]      20 of each cause and mode unless given
 // Beside it the longest gap between two ticks in that time: the machine's own noise.
 #include <sys/ptrace.h>
 #include <sys/wait.h>
@@ -277,6 +277,7 @@ void print(const std::string& name, const Result& result) {
 int main(int argc, char** argv) {
   const StopSignal ignores_pipes;
   const int times = argc > 1 ? std::atoi(argv[1]) : 20;
+  const std::string only = argc > 2 ? argv[2] : "";
   for (const bool predict : {false, true}) {
     std::printf("%s, at most %d ms from the last good frame:\n", predict ? "predict" : "hold",
                 predict ? 80 : 50);
@@ -285,6 +286,7 @@ int main(int argc, char** argv) {
         "| --- | --- | --- | --- | --- | --- |\n");
     Rig rig(predict);
     for (const Cause& cause : causes()) {
+      if (!only.empty() && cause.name != only) continue;
       try {
         print(cause.name, measure(rig, cause, times));
       } catch (const std::runtime_error& error) {

@@ -21,8 +21,9 @@ struct FilterLimits {
   double max_force = 3.3;                    ///< [N], > 0
   double continuous_force = 0.88;            ///< that the motors bear for ever [N], > 0
   std::int64_t max_horizon_ns = 50'000'000;  ///< no demand is trusted for longer than this
-  std::int64_t fade_ns = 30'000'000;         ///< in which one that is too old goes to zero
-  double fade_damping = 2.0;                 ///< while it does [N s/m]
+  /// In which one that is too old goes to zero; with the tick that shows it at most 30 ms.
+  std::int64_t fade_ns = 29'000'000;
+  double fade_damping = 2.0;    ///< while it does [N s/m]
   double needed_success = 0.0;  ///< LinkGate's, below which it does not arm; 0: arms at once
   ReadingLimits reading = {};
   ArmingLimits arming = {};

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::int64_t kMillisecond = 1'000'000;
 constexpr std::int64_t kFade = 30 * kMillisecond;
-constexpr std::int64_t kTick = kMillisecond;  // seen at the next one
+constexpr std::int64_t kTick = kMillisecond;  // the first one of a bridge that goes on
 
 void check(Cause cause, bool predict, int phase) {
   CAPTURE(word(cause), predict, phase);
@@ -23,7 +23,7 @@ void check(Cause cause, bool predict, int phase) {
   CHECK(outcome.horizon_ns <= (predict ? 50 : 20) * kMillisecond);
   const std::int64_t valid_ns = std::max<std::int64_t>(outcome.valid_ns, 0);
   const std::int64_t bound_ns = valid_ns + outcome.horizon_ns + kFade;
-  CHECK(outcome.zero_ns <= std::max(bound_ns, outcome.absent_ns) + kTick);
+  CHECK(outcome.zero_ns <= std::max(bound_ns, outcome.absent_ns + kTick));
   // It comes back slowly: nothing for a while, or the ramp's share.
   CHECK(outcome.force_after < 0.7);
   CHECK(outcome.largest_rise <= 0.3 * (1 + 1e-9));

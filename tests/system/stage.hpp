@@ -72,8 +72,5 @@ inline constexpr double kCircleRate = 2.0;      ///< [Hz]
 
 /// The number that follows `name` in the output of a program; fails when there is none.
 double number_after(const std::string& output, const std::string& name);
-/// A bridge that ended with this output stayed with its server; only where the machine stood still
-/// for longer than a link may be silent, the link was made anew.
-void check_one_session(const std::string& bridge_output);
 
 }  // namespace irdm::test

@@ -11,6 +11,7 @@
 #include "tests/support/committed_so_far.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/raw_peer.hpp"
+#include "tests/system/one_session.hpp"
 #include "tests/system/stage.hpp"
 #include "tests/system/trace.hpp"
 

@@ -6,6 +6,7 @@
 #include "common/checksum.hpp"
 #include "common/hdf5/file.hpp"
 #include "tests/support/eventually.hpp"
+#include "tests/system/one_session.hpp"
 #include "tests/system/stage.hpp"
 #include "tests/system/trace.hpp"
 

@@ -14,22 +14,25 @@ esac
 
 # The next builds go on while tests wait for something and fuzzers have their time; they never take a processor from one.
 # They have a process group of their own, which ends with this script, however it ends.
-ahead=
+# build_ahead PRESET [PRESET that it comes after]
+ahead=$(mktemp -d)
+declare -A job
 build_ahead() {
-  ahead_log=$(mktemp)
   set -m
-  (for preset in "$@"; do nice -n 19 scripts/build.sh "$preset" || exit; done) >"$ahead_log" 2>&1 &
+  {
+    if [ $# -gt 1 ]; then tail --pid="${job[$2]}" -f /dev/null; fi
+    nice -n 19 scripts/build.sh "$1"
+  } >"$ahead/$1" 2>&1 &
   set +m
-  ahead=$!
+  job[$1]=$!
 }
-trap '[ -z "$ahead" ] || kill -- "-$ahead" 2>/dev/null || true' EXIT
+trap 'for group in "${job[@]}"; do kill -- "-$group" 2>/dev/null || true; done; rm -r "$ahead"' EXIT
 
-finish_build_ahead() {
+finish() {
   local status=0
-  wait "$ahead" || status=$?
-  ahead=
-  cat "$ahead_log"
-  rm "$ahead_log"
+  wait "${job[$1]}" || status=$?
+  unset "job[$1]"
+  cat "$ahead/$1"
   return $status
 }
 
@@ -46,10 +49,12 @@ if [ $quick = yes ]; then
 else
   # Tests labelled "slow" measure or play for long and find nothing new under a sanitizer.
   scripts/build.sh asan
-  build_ahead tsan ci
+  build_ahead tsan
+  build_ahead ci tsan
   run_tests asan --label-exclude slow --parallel 2
   IRDM_FUZZ_SEED=1 IRDM_FUZZ_AT_ONCE=$((2 * $(nproc))) scripts/fuzz.sh 60
-  finish_build_ahead
+  finish tsan
   run_tests tsan --label-exclude slow --parallel 2
+  finish ci
 fi
 run_tests ci --parallel 3

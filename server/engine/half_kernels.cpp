@@ -5,8 +5,7 @@
 
 #include "server/engine/kernel_lanes.hpp"
 
-#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && !defined(IRDM_SANITIZED)
-#define IRDM_F16C
+#ifdef IRDM_CHOOSES_KERNELS
 #include <immintrin.h>
 #endif
 
@@ -80,7 +79,7 @@ void add(const Rows<Half>& rows, const double* x, std::size_t n, double weight,
 
 }  // namespace portable
 
-#ifdef IRDM_F16C
+#ifdef IRDM_CHOOSES_KERNELS
 #pragma GCC push_options
 #pragma GCC target("avx512f,f16c")
 namespace avx512 {
@@ -179,7 +178,7 @@ struct HalfKernels {
 };
 
 HalfKernels best() noexcept {
-#ifdef IRDM_F16C
+#ifdef IRDM_CHOOSES_KERNELS
   __builtin_cpu_init();
   const bool converts = __builtin_cpu_supports("f16c");
   if (converts && __builtin_cpu_supports("avx512f")) return {avx512::add, avx2::convert};
@@ -205,16 +204,16 @@ void add_products(const Rows<Half>& rows, const double* x, std::size_t n, double
 
 void add_ahead(const NodeRows<Half>& rows, std::span<const double> x, double weight,
                const std::array<double*, 3>& y) noexcept {
-  constexpr std::size_t kWide = kAheadPart + kStepsAhead;
-  float singles[3][kWide];
+  constexpr std::size_t kForces = kAheadPart - kStepsAhead;
+  float singles[3][kAheadPart];
   const std::size_t end = std::min(x.size(), rows.known);
-  for (std::size_t i = 0; i < end; i += kAheadPart) {
-    const std::size_t known = std::min(rows.known - i, kAheadPart + kStepsAhead - 1);
+  for (std::size_t i = 0; i < end; i += kForces) {
+    const std::size_t known = std::min(rows.known - i, kAheadPart - 1);
     for (std::size_t r = 0; r < 3; ++r) {
       kKernels.convert(rows.first + r * rows.stride + i, singles[r], known);
     }
-    const std::span<const double> part = x.subspan(i, std::min(kAheadPart, end - i));
-    add_ahead(NodeRows<float>{singles[0], kWide, known}, part, weight, y);
+    const std::span<const double> part = x.subspan(i, std::min(kForces, end - i));
+    add_ahead(NodeRows<float>{singles[0], kAheadPart, known}, part, weight, y);
   }
 }
 

@@ -8,6 +8,7 @@
 // One copy of a function for each instruction set, chosen when the program is loaded. The
 // sanitizers' run-time libraries are not ready that early.
 #if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && !defined(IRDM_SANITIZED)
+#define IRDM_CHOOSES_KERNELS
 #define IRDM_KERNEL __attribute__((target_clones("avx512f", "avx2", "default")))
 #else
 #define IRDM_KERNEL
@@ -18,8 +19,8 @@ namespace irdm::kernel {
 constexpr std::size_t kLanes = 8;
 /// Rows at a time: enough sums to hide how long an addition takes.
 constexpr std::size_t kRows = 4;
-/// Forces of before at a time when several steps ahead are summed.
-constexpr std::size_t kAheadPart = 128;
+/// Numbers of a row at a time that are converted for several uses: what stays in the first cache.
+constexpr std::size_t kAheadPart = 512;
 /// Numbers that a line of the cache holds.
 template <typename Scalar>
 constexpr std::size_t kLine = 64 / sizeof(Scalar);

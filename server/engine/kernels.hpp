@@ -9,7 +9,7 @@
 /// Inner loops of the response engines, compiled for several instruction sets of which the best is
 /// chosen at start-up. Sums run over eight lanes in a fixed order and products are never
 /// contracted, so that equal inputs give equal bits on every processor and with any number of
-/// threads. Real-time safe.
+/// threads. Real-time safe. Not for initialisers of static objects: the choice is one itself.
 namespace irdm {
 
 /// sum_i a[i] b[i], in double precision.
@@ -36,7 +36,7 @@ void add_products(const Rows<Half>& rows, const double* x, std::size_t n, double
 
 /// What forces of before do to a node over some steps: for its rows r = 0..2 and m = 0 to
 /// kStepsAhead - 1, y[r][m] += weight sum_i row_r[m + i] x[i], rows being 0 beyond the numbers that
-/// are known. Each is read once for all m.
+/// are known. Each is read from memory once for all m.
 inline constexpr std::size_t kStepsAhead = 16;
 template <typename Scalar>
 struct NodeRows {

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "server/engine/aligned_numbers.hpp"
 #include "server/engine/residual_part.hpp"
 #include "server/engine/response_engine.hpp"
 #include "server/engine/strong_modes.hpp"
@@ -51,22 +52,22 @@ class ModalEngine final : public ResponseEngine {
   const RowMatrix<Scalar>* shapes_;      ///< Phi (3n, r)
   const double* centrifugal_ = nullptr;  ///< g (r, 6); null: the model has none
   std::size_t modes_;                    ///< r
-  std::vector<double> largest_shape_;    ///< (r) max_a |Phi_ai|
+  AlignedNumbers largest_shape_;         ///< (r) max_a |Phi_ai|
   // Transition of each mode over one step, one array a coefficient.
-  std::vector<double> a11_, a12_, a21_, a22_, b1_, b2_;
-  std::vector<double> coordinate_, velocity_;  ///< at the end of the last step
-  std::vector<double> free_coordinate_,
+  AlignedNumbers a11_, a12_, a21_, a22_, b1_, b2_;
+  AlignedNumbers coordinate_, velocity_;  ///< at the end of the last step
+  AlignedNumbers free_coordinate_,
       free_velocity_;  ///< at the end of the coming step, no force but that of the held spin
-  std::vector<double> modal_force_;
-  std::vector<double> contact_shapes_;  ///< (3 kMaxContacts, r): rows sum_i w_i Phi_i
+  AlignedNumbers modal_force_;
+  AlignedNumbers contact_shapes_;  ///< (3 kMaxContacts, r): rows sum_i w_i Phi_i
   /// (kMaxHorizon, r): coordinate and velocity of each mode at the end of the n-th step after the
   /// one in which a modal force of 1 acted.
-  std::vector<double> coordinate_after_, velocity_after_;
+  AlignedNumbers coordinate_after_, velocity_after_;
   /// (kMaxHorizon, 3, r): the coordinate n steps on from a coordinate of 1, from a velocity of 1
   /// (both without force), and from a modal force of 1 held for n + 1 steps.
-  std::vector<double> coordinate_from_;
+  AlignedNumbers coordinate_from_;
   /// What these are multiplied with: (6, r) and (3, 3, r).
-  std::vector<double> shape_products_, state_products_;
+  AlignedNumbers shape_products_, state_products_;
   ResidualPart residual_;
 };
 

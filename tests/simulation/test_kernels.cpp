@@ -1,3 +1,4 @@
+#include <bit>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
@@ -5,6 +6,7 @@
 #include "server/engine/force_stretches.hpp"
 #include "server/engine/kernels.hpp"
 #include "server/engine/strong_modes.hpp"
+#include "server/engine/wide_kernels.hpp"
 
 using namespace irdm;
 
@@ -25,6 +27,18 @@ Scalar stored(double value) {
   } else {
     return static_cast<Scalar>(value);
   }
+}
+
+// The order of sums that kernels.hpp promises, whatever registers the processor has.
+template <typename Term>
+double sum_in_eight_lanes(std::size_t n, const Term& term) {
+  std::array<double, 8> lanes{};
+  std::size_t i = 0;
+  for (; i < n / 8 * 8; ++i) lanes[i % 8] += term(i);
+  double sum = ((lanes[0] + lanes[4]) + (lanes[1] + lanes[5])) +
+               ((lanes[2] + lanes[6]) + (lanes[3] + lanes[7]));
+  for (; i < n; ++i) sum += term(i);
+  return sum;
 }
 
 }  // namespace
@@ -55,14 +69,14 @@ TEMPLATE_TEST_CASE("products of rows are those of each row, to the bit, whatever
 
 TEMPLATE_TEST_CASE("steps ahead are the products of x with the rows, further and further on", "",
                    float, double, Half) {
-  constexpr std::size_t kStride = 210;
+  constexpr std::size_t kStride = 1100;
   std::vector<TestType> rows;
   for (const double number : random_numbers(3 * kStride, 11)) {
     rows.push_back(stored<TestType>(number));
   }
-  const std::vector<double> x = random_numbers(200, 12);
-  for (const std::size_t known : {0UL, 1UL, 15UL, 16UL, 17UL, 80UL, 200UL}) {
-    for (const std::size_t n : {0UL, 1UL, 5UL, 64UL, 65UL, 150UL, 200UL}) {
+  const std::vector<double> x = random_numbers(1060, 12);
+  for (const std::size_t known : {0UL, 1UL, 15UL, 16UL, 17UL, 80UL, 200UL, 512UL, 530UL, 1050UL}) {
+    for (const std::size_t n : {0UL, 1UL, 5UL, 64UL, 65UL, 150UL, 200UL, 498UL, 520UL, 1060UL}) {
       std::array<std::array<double, kStepsAhead>, 3> y;
       for (auto& row : y) row.fill(0.25);
       add_ahead(NodeRows<TestType>{rows.data(), kStride, known}, std::span(x).first(n), 0.5,
@@ -101,6 +115,71 @@ TEST_CASE("moments of three rows, and of two times three, are the sums that they
     for (Eigen::Index k = 0; k < 3; ++k) {
       CHECK(c[static_cast<std::size_t>(3 * j + k)] == Approx(cross(j, k)));
       if (k <= j) CHECK(m[p++] == Approx(own(j, k)));
+    }
+  }
+}
+
+TEST_CASE("sums have the same bits whatever registers the processor has") {
+  const std::size_t n = GENERATE(0UL, 5UL, 91UL);
+  const std::vector<double> a = random_numbers(3 * n, 13);
+  const std::vector<double> b = random_numbers(6 * n, 14);
+  const std::vector<double> w = random_numbers(n, 15);
+  const std::vector<double> x = random_numbers(n, 16);
+  const auto check = [&](double sum, const auto& term) {
+    REQUIRE(std::bit_cast<std::uint64_t>(sum) ==
+            std::bit_cast<std::uint64_t>(sum_in_eight_lanes(n, term)));
+  };
+  check(dot(a.data(), x.data(), n), [&](std::size_t i) { return a[i] * x[i]; });
+  for (const WideKernels& kernels : wide_kernels()) {
+    const Sums<3> three = kernels.dot_three(x.data(), a.data(), n);
+    const Sums<6> six = kernels.dot_six(x.data(), b.data(), n);
+    const Sums<9> own = kernels.moments(a.data(), w.data(), x.data(), n);
+    const Sums<9> cross = kernels.cross_moments(a.data(), b.data(), w.data(), n);
+    for (std::size_t j = 0, p = 3; j < 3; ++j) {
+      const double* row = a.data() + j * n;
+      check(three[j], [&](std::size_t i) { return row[i] * x[i]; });
+      check(own[j], [&](std::size_t i) { return row[i] * x[i]; });
+      for (std::size_t k = 0; k < 3; ++k) {
+        check(cross[3 * j + k], [&](std::size_t i) { return row[i] * w[i] * b[k * n + i]; });
+        if (k <= j) check(own[p++], [&](std::size_t i) { return row[i] * w[i] * a[k * n + i]; });
+      }
+    }
+    for (std::size_t k = 0; k < 6; ++k) {
+      check(six[k], [&](std::size_t i) { return x[i] * b[k * n + i]; });
+    }
+  }
+}
+
+TEMPLATE_TEST_CASE("sums of steps ahead have the same bits whatever registers there are", "", float,
+                   double) {
+  constexpr std::size_t kPart = 512;  // numbers at a time, each with eight lanes of its own
+  const std::size_t n = GENERATE(3UL, 91UL, 600UL);
+  const std::size_t known = n + GENERATE(0UL, 40UL);
+  std::vector<TestType> rows;
+  for (const double number : random_numbers(3 * known, 17)) {
+    rows.push_back(stored<TestType>(number));
+  }
+  const std::vector<double> x = random_numbers(n, 18);
+  for (const WideKernels& kernels : wide_kernels()) {
+    std::array<std::array<double, kStepsAhead>, 3> y{};
+    const NodeRows<TestType> node{rows.data(), known, known};
+    const std::array<double*, 3> to{y[0].data(), y[1].data(), y[2].data()};
+    if constexpr (std::is_same_v<TestType, float>) {
+      kernels.add_ahead_single(node, x, 1.0, to);
+    } else {
+      kernels.add_ahead_double(node, x, 1.0, to);
+    }
+    for (std::size_t at = 0; at < 3 * kStepsAhead; ++at) {
+      const std::size_t r = at / kStepsAhead;
+      const std::size_t m = at % kStepsAhead;
+      double sum = 0.0;
+      for (std::size_t begin = 0; begin < std::min(known, n + kStepsAhead - 1); begin += kPart) {
+        sum += sum_in_eight_lanes(kPart, [&](std::size_t i) {
+          const std::size_t j = begin + i;
+          return j >= m && j - m < n && j < known ? to_double(rows[r * known + j]) * x[j - m] : 0.0;
+        });
+      }
+      REQUIRE(std::bit_cast<std::uint64_t>(y[r][m]) == std::bit_cast<std::uint64_t>(sum));
     }
   }
 }

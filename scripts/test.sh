@@ -57,4 +57,4 @@ else
   run_tests tsan --label-exclude slow --parallel 2
   finish ci
 fi
-run_tests ci --parallel 3
+run_tests ci --parallel 4

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 #include "server/engine/aligned_numbers.hpp"
 #include "server/engine/residual_part.hpp"
 #include "server/engine/response_engine.hpp"

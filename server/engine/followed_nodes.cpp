@@ -10,6 +10,7 @@ template <typename Columns>
 FollowedNodes<Columns>::FollowedNodes(const Columns& columns) : columns_(columns) {
   if (columns.frame().dof == 0) return;
   followed_.resize(kMost);
+  summed_.resize(3 * columns.frame().steps);
   place_.assign(columns.frame().dof / 3, -1);
 }
 
@@ -65,21 +66,67 @@ void FollowedNodes<Columns>::extend(const ForceHistory& history, Followed& follo
   }
   const int end = followed.begin + followed.length;
   for (auto& coming : followed.coming) std::fill_n(coming.begin() + end, kMore, 0.0);
-  const std::array<double*, 3> to{followed.coming[0].data() + end, followed.coming[1].data() + end,
-                                  followed.coming[2].data() + end};
-  const std::size_t steps = columns_.frame().steps;
-  for (const int source : history.active()) {
-    for (int b = 3 * source; b < 3 * source + 3 && columns_.whole(source); ++b) {
-      const ForceHistory::Series series = history.series(source, b % 3);
-      const auto first = static_cast<std::size_t>(series.first_age + followed.length + 1);
-      if (first >= steps) continue;
-      add_ahead(NodeRows<Number>{columns_.row(3 * followed.node, b) + first, steps, steps - first},
-                {series.force, static_cast<std::size_t>(series.count)},
-                columns_.frame().scale(static_cast<std::size_t>(b)), to);
-    }
+  for (std::span<const int> left = history.active(); !left.empty();) {
+    const Together sources = together(history, left);
+    left = left.subspan(sources.count);
+    if (columns_.whole(sources.nodes[0])) add_ahead_of(history, sources, followed);
   }
   followed.length += followed.begun ? kMore : 1 + turn_++ % kMore;
   followed.begun = true;
+}
+
+// Of the nodes that were pushed together those that follow the first: a patch that sticks.
+template <typename Columns>
+auto FollowedNodes<Columns>::together(const ForceHistory& history,
+                                      std::span<const int> sources) const noexcept -> Together {
+  Together found;
+  for (const int node : sources.first(std::min(sources.size(), kMostTogether))) {
+    const bool is_first = found.count == 0;
+    const double factor = is_first ? 1.0 : history.multiple(node, found.nodes[0]);
+    if (factor == 0.0 || columns_.whole(node) != columns_.whole(sources[0])) break;
+    found.nodes[found.count] = node;
+    found.factors[found.count++] = factor;
+  }
+  return found;
+}
+
+template <typename Columns>
+void FollowedNodes<Columns>::add_ahead_of(const ForceHistory& history, const Together& sources,
+                                          Followed& followed) noexcept {
+  const ResidentColumns<Number>& frame = columns_.frame();
+  const int end = followed.begin + followed.length;
+  const std::array<double*, 3> to{followed.coming[0].data() + end, followed.coming[1].data() + end,
+                                  followed.coming[2].data() + end};
+  for (int axis = 0; axis < 3; ++axis) {
+    const ForceHistory::Series series = history.series(sources.nodes[0], axis);
+    const auto first = static_cast<std::size_t>(series.first_age + followed.length + 1);
+    if (first >= frame.steps) continue;
+    const std::size_t known = frame.steps - first;
+    const std::span forces(series.force, static_cast<std::size_t>(series.count));
+    const auto row = [&](std::size_t source) {
+      return columns_.row(3 * followed.node, 3 * sources.nodes[source] + axis) + first;
+    };
+    const auto weight = [&](std::size_t source) {
+      const int b = 3 * sources.nodes[source] + axis;
+      return sources.factors[source] * frame.scale(static_cast<std::size_t>(b));
+    };
+    if (sources.count == 1) {
+      add_ahead(NodeRows<Number>{row(0), frame.steps, known}, forces, weight(0), to);
+      continue;
+    }
+    const std::size_t count = std::min(known, forces.size() + kStepsAhead - 1);
+    std::fill(summed_.begin(), summed_.end(), 0.0);
+    for (std::size_t s = 0; s < sources.count; s += 3) {
+      const std::size_t t = std::min(s + 1, sources.count - 1);
+      const std::size_t u = std::min(s + 2, sources.count - 1);
+      const std::array weights{weight(s), t > s ? weight(t) : 0.0, u > t ? weight(u) : 0.0};
+      for (std::size_t r = 0; r < 3; ++r) {
+        const std::size_t at = r * frame.steps;
+        accumulate(weights, row(s) + at, row(t) + at, row(u) + at, summed_.data() + at, count);
+      }
+    }
+    add_ahead(NodeRows<double>{summed_.data(), frame.steps, count}, forces, 1.0, to);
+  }
 }
 
 template <typename Columns>
@@ -103,25 +150,24 @@ void FollowedNodes<Columns>::add_past(std::span<const NodalForce> forces, int ag
 template <typename Columns>
 void FollowedNodes<Columns>::add(std::span<const NodalForce> forces, int age) noexcept {
   const ResidentColumns<Number>& frame = columns_.frame();
-  const int known = static_cast<int>(frame.steps) - 1 - age;
-  for (int i = 0; i < count_; ++i) {
-    Followed& followed = followed_[static_cast<std::size_t>(i)];
-    const int count = std::min(followed.length, known);
-    if (count <= 0) continue;
-    for (const NodalForce& nodal : forces) {
-      if (!columns_.whole(nodal.node)) continue;
-      std::array<double, 3> weights{};
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const auto b = 3 * static_cast<std::size_t>(nodal.node) + axis;
-        weights[axis] = frame.scale(b) * nodal.force[static_cast<Eigen::Index>(axis)];
-      }
-      const Number* first = columns_.row(3 * followed.node, 3 * nodal.node) + age + 1;
-      for (std::size_t row = 0; row < 3; ++row) {
-        const Number* at = first + row * frame.steps;
-        const std::size_t column = frame.dof * frame.steps;
-        accumulate(weights, at, at + column, at + 2 * column,
-                   followed.coming[row].data() + followed.begin, static_cast<std::size_t>(count));
-      }
+  const auto first = static_cast<std::size_t>(age) + 1;
+  if (first >= frame.steps) return;
+  for (const NodalForce& nodal : forces) {
+    if (!columns_.whole(nodal.node)) continue;
+    std::array<double, 3> weights{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto b = 3 * static_cast<std::size_t>(nodal.node) + axis;
+      weights[axis] = frame.scale(b) * nodal.force[static_cast<Eigen::Index>(axis)];
+    }
+    for (int i = 0; i < count_; ++i) {
+      Followed& followed = followed_[static_cast<std::size_t>(i)];
+      if (followed.length == 0) continue;
+      const std::array<double*, 3> to{followed.coming[0].data() + followed.begin,
+                                      followed.coming[1].data() + followed.begin,
+                                      followed.coming[2].data() + followed.begin};
+      add_effect(NodeColumns<Number>{columns_.row(3 * followed.node, 3 * nodal.node) + first,
+                                     frame.steps, frame.dof * frame.steps, frame.steps - first},
+                 weights, to, static_cast<std::size_t>(followed.length));
     }
   }
 }

@@ -1,6 +1,9 @@
 #include "server/engine/force_history.hpp"
 
 #include <algorithm>
+#include <cmath>
+
+#include "server/engine/kernels.hpp"
 
 namespace irdm {
 
@@ -81,6 +84,25 @@ ForceHistory::Series ForceHistory::series(int node, int axis) const noexcept {
   const double* values = values_.data() + (3 * index + static_cast<std::size_t>(axis)) * 2 *
                                               static_cast<std::size_t>(steps_);
   return {values + head_ + youngest, youngest, oldest - youngest + 1};
+}
+
+double ForceHistory::multiple(int node, int of) const noexcept {
+  int largest = 0;
+  for (int axis = 1; axis < 3; ++axis) {
+    if (std::abs(series(of, axis).force[0]) > std::abs(series(of, largest).force[0])) {
+      largest = axis;
+    }
+  }
+  const double newest = series(of, largest).force[0];
+  if (newest == 0.0) return 0.0;
+  const double factor = series(node, largest).force[0] / newest;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Series a = series(node, axis);
+    const Series b = series(of, axis);
+    if (a.first_age != b.first_age || a.count != b.count) return 0.0;
+    if (!is_multiple(a.force, factor, b.force, static_cast<std::size_t>(a.count))) return 0.0;
+  }
+  return factor;
 }
 
 }  // namespace irdm

@@ -38,6 +38,10 @@ class ForceHistory {
   };
   Series series(int node, int axis) const noexcept;
 
+  /// The factor by which the forces on an active node differ from those on another over all ages,
+  /// if they differ by nothing else but rounding; otherwise 0.
+  double multiple(int node, int of) const noexcept;
+
  private:
   double* slot(int node, int axis) noexcept {
     return values_.data() + (3 * static_cast<std::size_t>(node) + static_cast<std::size_t>(axis)) *

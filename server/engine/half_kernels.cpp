@@ -217,6 +217,22 @@ void add_ahead(const NodeRows<Half>& rows, std::span<const double> x, double wei
   }
 }
 
+void add_effect(const NodeColumns<Half>& columns, const std::array<double, 3>& force,
+                const std::array<double*, 3>& y, std::size_t n) noexcept {
+  constexpr std::size_t kSteps = 64;
+  float singles[9][kSteps];
+  for (std::size_t i = 0; i < std::min(n, columns.known); i += kSteps) {
+    const std::size_t asked = (n - i + kLanes - 1) / kLanes * kLanes;
+    const std::size_t count = std::min({kSteps, asked, columns.known - i});
+    for (std::size_t at = 0; at < 9; ++at) {
+      const Half* row = columns.first + at % 3 * columns.row + at / 3 * columns.column;
+      kKernels.convert(row + i, singles[at], count);
+    }
+    add_effect(NodeColumns<float>{singles[0], kSteps, 3 * kSteps, count}, force,
+               {y[0] + i, y[1] + i, y[2] + i}, std::min(kSteps, n - i));
+  }
+}
+
 void accumulate(const std::array<double, 3>& w, const Half* a, const Half* b, const Half* c,
                 double* y, std::size_t n) noexcept {
   float singles[3][kAheadPart];

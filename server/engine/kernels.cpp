@@ -1,6 +1,9 @@
 #include "server/engine/kernels.hpp"
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 #include "server/engine/kernel_lanes.hpp"
 
@@ -96,6 +99,20 @@ IRDM_KERNEL void accumulate(const std::array<double, 3>& w, const float* a, cons
 IRDM_KERNEL void accumulate(const std::array<double, 3>& w, const double* a, const double* b,
                             const double* c, double* y, std::size_t n) noexcept {
   accumulate_of(w, a, b, c, y, n);
+}
+
+// Numbers without a sign are in the order of their bits; what is no number comes last.
+IRDM_KERNEL bool is_multiple(const double* a, double factor, const double* b,
+                             std::size_t n) noexcept {
+  constexpr double kRounding = 0x1p-50;
+  std::uint64_t largest = 0;
+  std::uint64_t most_off = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    largest = std::max(largest, std::bit_cast<std::uint64_t>(std::abs(a[i])));
+    const double off = std::abs(a[i] - factor * b[i]);
+    most_off = std::max(most_off, std::bit_cast<std::uint64_t>(off));
+  }
+  return std::bit_cast<double>(most_off) <= kRounding * std::bit_cast<double>(largest);
 }
 
 IRDM_KERNEL void multiply(const double* a, const double* b, double* y, std::size_t n) noexcept {

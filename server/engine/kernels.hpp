@@ -50,6 +50,24 @@ void add_ahead(const NodeRows<double>& rows, std::span<const double> x, double w
                const std::array<double*, 3>& y) noexcept;
 void add_ahead(const NodeRows<Half>& rows, std::span<const double> x, double weight,
                const std::array<double*, 3>& y) noexcept;
+
+/// What a force on a node does to another, or to itself, over some steps: y[r][i] += sum over axes
+/// c of force[c] a[r][c][i], i < n, a being 0 beyond the numbers that are known. Up to the next
+/// multiple of eight y is written, too, and what stands there means nothing.
+template <typename Scalar>
+struct NodeColumns {
+  const Scalar* first;
+  std::size_t row;     ///< numbers from a row to the next
+  std::size_t column;  ///< and from a column to the next
+  std::size_t known;
+};
+void add_effect(const NodeColumns<float>& columns, const std::array<double, 3>& force,
+                const std::array<double*, 3>& y, std::size_t n) noexcept;
+void add_effect(const NodeColumns<double>& columns, const std::array<double, 3>& force,
+                const std::array<double*, 3>& y, std::size_t n) noexcept;
+void add_effect(const NodeColumns<Half>& columns, const std::array<double, 3>& force,
+                const std::array<double*, 3>& y, std::size_t n) noexcept;
+
 template <std::size_t K>
 using Sums = std::array<double, K>;
 /// The same with each of the rows of b, (3, n) or (6, n): a is read once for all of them.
@@ -81,6 +99,10 @@ void accumulate(const std::array<double, 3>& w, const double* a, const double* b
                 double* y, std::size_t n) noexcept;
 void accumulate(const std::array<double, 3>& w, const Half* a, const Half* b, const Half* c,
                 double* y, std::size_t n) noexcept;
+
+/// Whether a[i] = factor b[i] for all i but for what a product and two roundings more may be off
+/// by.
+bool is_multiple(const double* a, double factor, const double* b, std::size_t n) noexcept;
 
 /// y[i] = a[i] b[i].
 void multiply(const double* a, const double* b, double* y, std::size_t n) noexcept;

@@ -14,12 +14,32 @@ namespace {
 
 using namespace kernel;
 
+/// A register, and what fills it once it is converted. Written down for each width, as GCC 12 takes
+/// no vector for one in a template there.
+template <std::size_t kBytes>
+struct Register;
+#define IRDM_REGISTER(BYTES)                                                                      \
+  template <>                                                                                     \
+  struct Register<BYTES> {                                                                        \
+    using Doubles [[gnu::vector_size(BYTES)]] = double;                                           \
+    using Singles [[gnu::vector_size(BYTES / 2)]] = float;                                        \
+    [[gnu::always_inline]] static void convert(const float* numbers, Doubles& doubles) noexcept { \
+      Singles singles;                                                                            \
+      std::memcpy(&singles, numbers, sizeof singles);                                             \
+      doubles = __builtin_convertvector(singles, Doubles);                                        \
+    }                                                                                             \
+  };
+IRDM_REGISTER(16)
+IRDM_REGISTER(32)
+IRDM_REGISTER(64)
+#undef IRDM_REGISTER
+
 /// Eight lanes in registers of so many bytes. Sums end as sum_of() does.
 template <std::size_t kBytes>
 class Eight {
   static constexpr std::size_t kEach = kBytes / sizeof(double);
   static constexpr std::size_t kParts = kLanes / kEach;
-  using Register [[gnu::vector_size(kBytes)]] = double;
+  using Doubles = typename Register<kBytes>::Doubles;
   using InRow [[gnu::vector_size(kBytes), gnu::aligned(alignof(double)), gnu::may_alias]] = double;
 
  public:
@@ -29,6 +49,21 @@ class Eight {
       std::memcpy(&eight.parts_[p], numbers + p * kEach, kBytes);
     }
     return eight;
+  }
+  [[gnu::always_inline]] static Eight at(const float* numbers) noexcept {
+    Eight eight;
+    for (std::size_t p = 0; p < kParts; ++p) {
+      Register<kBytes>::convert(numbers + p * kEach, eight.parts_[p]);
+    }
+    return eight;
+  }
+  [[gnu::always_inline]] static Eight all(double number) noexcept {
+    Eight eight;
+    for (std::size_t p = 0; p < kParts; ++p) eight.parts_[p] = Doubles{} + number;
+    return eight;
+  }
+  [[gnu::always_inline]] void write(double* numbers) const noexcept {
+    std::memcpy(numbers, &parts_, sizeof parts_);
   }
   /// The same for what is used several times: volatile, since otherwise compilers read it again for
   /// each use.
@@ -42,6 +77,11 @@ class Eight {
 
   [[gnu::always_inline]] void add_product(const Eight& a, const Eight& b) noexcept {
     for (std::size_t p = 0; p < kParts; ++p) parts_[p] += a.parts_[p] * b.parts_[p];
+  }
+  [[gnu::always_inline]] Eight plus(const Eight& b) const noexcept {
+    Eight sum;
+    for (std::size_t p = 0; p < kParts; ++p) sum.parts_[p] = parts_[p] + b.parts_[p];
+    return sum;
   }
   [[gnu::always_inline]] Eight times(const Eight& b) const noexcept {
     Eight product;
@@ -67,8 +107,35 @@ class Eight {
     return (four[0] + four[1]) + (four[2] + four[3]);
   }
 
-  Register parts_[kParts];
+  Doubles parts_[kParts];
 };
+
+/// Eight steps at a time, the last ones of them too where so many are known.
+template <std::size_t kBytes, typename Scalar>
+[[gnu::always_inline]] inline void add_effect_of(const NodeColumns<Scalar>& columns,
+                                                 const std::array<double, 3>& force,
+                                                 const std::array<double*, 3>& y,
+                                                 std::size_t n) noexcept {
+  using Lanes = Eight<kBytes>;
+  const Lanes weights[3] = {Lanes::all(force[0]), Lanes::all(force[1]), Lanes::all(force[2])};
+  std::size_t i = 0;
+  for (; i < n && i + kLanes <= columns.known; i += kLanes) {
+    for (std::size_t r = 0; r < 3; ++r) {
+      const Scalar* at = columns.first + r * columns.row + i;
+      Lanes sum = weights[0].times(Lanes::at(at));
+      sum.add_product(weights[1], Lanes::at(at + columns.column));
+      sum.add_product(weights[2], Lanes::at(at + 2 * columns.column));
+      Lanes::at(y[r] + i).plus(sum).write(y[r] + i);
+    }
+  }
+  for (; i < std::min(n, columns.known); ++i) {
+    for (std::size_t r = 0; r < 3; ++r) {
+      const Scalar* at = columns.first + r * columns.row + i;
+      y[r][i] += force[0] * to_double(at[0]) + force[1] * to_double(at[columns.column]) +
+                 force[2] * to_double(at[2 * columns.column]);
+    }
+  }
+}
 
 template <std::size_t kBytes, std::size_t K>
 [[gnu::always_inline]] inline Sums<K> dots_of(const double* a, const double* b,
@@ -197,32 +264,43 @@ template <std::size_t kBytes, typename Scalar>
 }
 
 // A set of them: IRDM_WIDE_KERNELS(its name, width of a register [byte], attributes)
-#define IRDM_WIDE_KERNELS(NAME, BYTES, ...)                                                    \
-  namespace NAME {                                                                             \
-  __VA_ARGS__ Sums<3> dot_three(const double* a, const double* b, std::size_t n) noexcept {    \
-    return dots_of<BYTES, 3>(a, b, n);                                                         \
-  }                                                                                            \
-  __VA_ARGS__ Sums<6> dot_six(const double* a, const double* b, std::size_t n) noexcept {      \
-    return dots_of<BYTES, 6>(a, b, n);                                                         \
-  }                                                                                            \
-  __VA_ARGS__ Sums<9> moments(const double* a, const double* w, const double* x,               \
-                              std::size_t n) noexcept {                                        \
-    return moments_of<BYTES>(a, w, x, n);                                                      \
-  }                                                                                            \
-  __VA_ARGS__ Sums<9> cross_moments(const double* a, const double* b, const double* w,         \
-                                    std::size_t n) noexcept {                                  \
-    return cross_moments_of<BYTES>(a, b, w, n);                                                \
-  }                                                                                            \
-  __VA_ARGS__ void add_ahead_single(const NodeRows<float>& rows, std::span<const double> x,    \
-                                    double weight, const std::array<double*, 3>& y) noexcept { \
-    add_ahead_of<BYTES>(rows, x, weight, y);                                                   \
-  }                                                                                            \
-  __VA_ARGS__ void add_ahead_double(const NodeRows<double>& rows, std::span<const double> x,   \
-                                    double weight, const std::array<double*, 3>& y) noexcept { \
-    add_ahead_of<BYTES>(rows, x, weight, y);                                                   \
-  }                                                                                            \
-  constexpr WideKernels kSet{dot_three,     dot_six,          moments,                         \
-                             cross_moments, add_ahead_single, add_ahead_double};               \
+#define IRDM_WIDE_KERNELS(NAME, BYTES, ...)                                                     \
+  namespace NAME {                                                                              \
+  __VA_ARGS__ Sums<3> dot_three(const double* a, const double* b, std::size_t n) noexcept {     \
+    return dots_of<BYTES, 3>(a, b, n);                                                          \
+  }                                                                                             \
+  __VA_ARGS__ Sums<6> dot_six(const double* a, const double* b, std::size_t n) noexcept {       \
+    return dots_of<BYTES, 6>(a, b, n);                                                          \
+  }                                                                                             \
+  __VA_ARGS__ Sums<9> moments(const double* a, const double* w, const double* x,                \
+                              std::size_t n) noexcept {                                         \
+    return moments_of<BYTES>(a, w, x, n);                                                       \
+  }                                                                                             \
+  __VA_ARGS__ Sums<9> cross_moments(const double* a, const double* b, const double* w,          \
+                                    std::size_t n) noexcept {                                   \
+    return cross_moments_of<BYTES>(a, b, w, n);                                                 \
+  }                                                                                             \
+  __VA_ARGS__ void add_ahead_single(const NodeRows<float>& rows, std::span<const double> x,     \
+                                    double weight, const std::array<double*, 3>& y) noexcept {  \
+    add_ahead_of<BYTES>(rows, x, weight, y);                                                    \
+  }                                                                                             \
+  __VA_ARGS__ void add_ahead_double(const NodeRows<double>& rows, std::span<const double> x,    \
+                                    double weight, const std::array<double*, 3>& y) noexcept {  \
+    add_ahead_of<BYTES>(rows, x, weight, y);                                                    \
+  }                                                                                             \
+  __VA_ARGS__ void add_effect_single(const NodeColumns<float>& columns,                         \
+                                     const std::array<double, 3>& force,                        \
+                                     const std::array<double*, 3>& y, std::size_t n) noexcept { \
+    add_effect_of<BYTES>(columns, force, y, n);                                                 \
+  }                                                                                             \
+  __VA_ARGS__ void add_effect_double(const NodeColumns<double>& columns,                        \
+                                     const std::array<double, 3>& force,                        \
+                                     const std::array<double*, 3>& y, std::size_t n) noexcept { \
+    add_effect_of<BYTES>(columns, force, y, n);                                                 \
+  }                                                                                             \
+  constexpr WideKernels kSet{dot_three,         dot_six,          moments,                      \
+                             cross_moments,     add_ahead_single, add_ahead_double,             \
+                             add_effect_single, add_effect_double};                             \
   }
 
 IRDM_WIDE_KERNELS(portable, 16)
@@ -276,6 +354,14 @@ void add_ahead(const NodeRows<float>& rows, std::span<const double> x, double we
 void add_ahead(const NodeRows<double>& rows, std::span<const double> x, double weight,
                const std::array<double*, 3>& y) noexcept {
   kWideKernels.add_ahead_double(rows, x, weight, y);
+}
+void add_effect(const NodeColumns<float>& columns, const std::array<double, 3>& force,
+                const std::array<double*, 3>& y, std::size_t n) noexcept {
+  kWideKernels.add_effect_single(columns, force, y, n);
+}
+void add_effect(const NodeColumns<double>& columns, const std::array<double, 3>& force,
+                const std::array<double*, 3>& y, std::size_t n) noexcept {
+  kWideKernels.add_effect_double(columns, force, y, n);
 }
 
 }  // namespace irdm

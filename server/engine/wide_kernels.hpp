@@ -14,6 +14,10 @@ struct WideKernels {
                            const std::array<double*, 3>&) noexcept;
   void (*add_ahead_double)(const NodeRows<double>&, std::span<const double>, double,
                            const std::array<double*, 3>&) noexcept;
+  void (*add_effect_single)(const NodeColumns<float>&, const std::array<double, 3>&,
+                            const std::array<double*, 3>&, std::size_t) noexcept;
+  void (*add_effect_double)(const NodeColumns<double>&, const std::array<double, 3>&,
+                            const std::array<double*, 3>&, std::size_t) noexcept;
 };
 
 /// All sets that this processor can run; kernels.hpp's functions are those of the first. They give

@@ -56,3 +56,45 @@ TEST_CASE("force history forgets nodes whose last force has left the window") {
   history.push({});
   CHECK(history.active().empty());
 }
+
+TEST_CASE("forces are a multiple of others if they were so at every age that is kept") {
+  constexpr int kSteps = 12;
+  ForceHistory history(4, kSteps);
+  const auto push = [&](const Vector3& force, double factor) {
+    history.push(std::vector<NodalForce>{{0, force}, {2, factor * force}});
+  };
+  for (int k = 0; k < 5; ++k) push(Vector3(0.1 * k, 1.0 - k, 0.3), 0.7);
+  CHECK(history.multiple(2, 0) == Approx(0.7).epsilon(1e-15));
+  CHECK(history.multiple(0, 2) == Approx(1.0 / 0.7).epsilon(1e-15));
+  CHECK(history.multiple(0, 0) == 1.0);
+
+  SECTION("a step with another proportion counts until it is forgotten") {
+    push(Vector3(1, 2, 3), 0.7 + 1e-13);
+    for (int k = 0; k < kSteps - 1; ++k) {
+      CHECK(history.multiple(2, 0) == 0.0);
+      push(Vector3(0.1 * k, 1.0, 0.3), 0.7);
+    }
+    CHECK(history.multiple(2, 0) == 0.0);
+    push(Vector3(0.1, 1.0, 0.3), 0.7);
+    CHECK(history.multiple(2, 0) == Approx(0.7).epsilon(1e-15));
+  }
+  SECTION("one that began later is none") {
+    history.push(std::vector<NodalForce>{{0, Vector3(1, 0, 0)}, {1, Vector3(2, 0, 0)}});
+    CHECK(history.multiple(1, 0) == 0.0);
+  }
+  SECTION("another direction is none, whatever its length") {
+    history.push(std::vector<NodalForce>{{0, Vector3(1, 0, 0)}, {2, Vector3(0, 0.7, 0)}});
+    CHECK(history.multiple(2, 0) == 0.0);
+    CHECK(history.multiple(0, 2) == 0.0);
+  }
+  SECTION("late forces are counted where they belong") {
+    history.add_past(std::vector<NodalForce>{{0, Vector3(1, 2, 3)}}, 3);
+    CHECK(history.multiple(2, 0) == 0.0);
+    history.add_past(std::vector<NodalForce>{{2, 0.7 * Vector3(1, 2, 3)}}, 3);
+    CHECK(history.multiple(2, 0) == Approx(0.7).epsilon(1e-15));
+  }
+  SECTION("the newest force tells the factor, where there is one") {
+    push(Vector3::Zero(), 0.7);
+    CHECK(history.multiple(2, 0) == 0.0);
+  }
+}

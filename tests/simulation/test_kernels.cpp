@@ -95,6 +95,88 @@ TEMPLATE_TEST_CASE("steps ahead are the products of x with the rows, further and
   }
 }
 
+TEMPLATE_TEST_CASE("the effect of a force is its products with nine rows", "", float, double,
+                   Half) {
+  constexpr std::size_t kRow = 210;
+  constexpr std::size_t kColumn = 4 * kRow;
+  constexpr std::size_t kRoom = 256;
+  std::vector<TestType> numbers;
+  for (const double number : random_numbers(3 * kColumn, 19)) {
+    numbers.push_back(stored<TestType>(number));
+  }
+  const std::array force{0.5, -2.0, 0.3};
+  for (const std::size_t known : {0UL, 1UL, 7UL, 8UL, 9UL, 64UL, 67UL, 130UL, 200UL}) {
+    for (const std::size_t n : {0UL, 1UL, 5UL, 8UL, 17UL, 64UL, 65UL, 100UL, 200UL}) {
+      std::array<std::array<double, kRoom>, 3> y;
+      for (auto& row : y) row.fill(0.25);
+      // What is not known is not read: it would be seen.
+      std::vector<TestType> rows = numbers;
+      for (std::size_t at = 0; at < rows.size(); ++at) {
+        if (at % kRow >= known) rows[at] = stored<TestType>(1e4);
+      }
+      add_effect(NodeColumns<TestType>{rows.data(), kRow, kColumn, known}, force,
+                 {y[0].data(), y[1].data(), y[2].data()}, n);
+      for (std::size_t at = 0; at < 3 * kRoom; ++at) {
+        const std::size_t r = at / kRoom;
+        const std::size_t i = at % kRoom;
+        if (i >= n && i < (n + 7) / 8 * 8) continue;  // means nothing
+        double direct = 0.25;
+        for (std::size_t c = 0; c < 3 && i < std::min(n, known); ++c) {
+          direct += force[c] * to_double(rows[c * kColumn + r * kRow + i]);
+        }
+        REQUIRE(y[r][i] == Approx(direct).margin(1e-14));
+      }
+    }
+  }
+}
+
+TEMPLATE_TEST_CASE("the effect of a force has the same bits whatever registers there are", "",
+                   float, double) {
+  constexpr std::size_t kKnown = 37;
+  std::vector<TestType> rows;
+  for (const double number : random_numbers(9 * kKnown, 20)) {
+    rows.push_back(stored<TestType>(number));
+  }
+  const std::vector<double> before = random_numbers(3 * kKnown, 21);
+  const std::array force{0.5, -2.1, 0.3};
+  const NodeColumns<TestType> columns{rows.data(), kKnown, 3 * kKnown, kKnown};
+  for (const WideKernels& kernels : wide_kernels()) {
+    std::vector<double> y = before;
+    const std::array<double*, 3> to{y.data(), y.data() + kKnown, y.data() + 2 * kKnown};
+    if constexpr (std::is_same_v<TestType, float>) {
+      kernels.add_effect_single(columns, force, to, kKnown);
+    } else {
+      kernels.add_effect_double(columns, force, to, kKnown);
+    }
+    for (std::size_t i = 0; i < y.size(); ++i) {
+      const auto number = [&](std::size_t c) { return to_double(rows[3 * kKnown * c + i]); };
+      const double sum = force[0] * number(0) + force[1] * number(1) + force[2] * number(2);
+      REQUIRE(std::bit_cast<std::uint64_t>(y[i]) == std::bit_cast<std::uint64_t>(before[i] + sum));
+    }
+  }
+}
+
+TEST_CASE("a multiple is one but for rounding") {
+  const std::size_t n = GENERATE(1UL, 8UL, 83UL);
+  const std::vector<double> b = random_numbers(n, 22);
+  std::vector<double> a;
+  for (const double number : b) a.push_back(number / 3.0);
+  CHECK(is_multiple(a.data(), 1.0 / 3.0, b.data(), n));
+  CHECK(is_multiple(a.data(), 1.0, a.data(), n));
+  CHECK_FALSE(is_multiple(a.data(), 0.3333, b.data(), n));
+  const std::vector<double> none(n, 0.0);
+  CHECK(is_multiple(none.data(), 2.0, none.data(), n));
+  CHECK_FALSE(is_multiple(none.data(), 2.0, b.data(), n));
+  CHECK_FALSE(is_multiple(b.data(), 2.0, none.data(), n));
+  for (const std::size_t at : {std::size_t{0}, n / 2, n - 1}) {
+    std::vector<double> other = a;
+    other[at] += 1e-14;
+    CHECK_FALSE(is_multiple(other.data(), 1.0 / 3.0, b.data(), n));
+    other[at] = std::numeric_limits<double>::quiet_NaN();
+    CHECK_FALSE(is_multiple(other.data(), 1.0 / 3.0, b.data(), n));
+  }
+}
+
 TEST_CASE("moments of three rows, and of two times three, are the sums that they stand for") {
   constexpr std::size_t kModes = 43;
   const std::vector<double> a = random_numbers(3 * kModes, 3);

@@ -118,6 +118,56 @@ TEMPLATE_TEST_CASE("what is kept ahead is the convolution, whoever asks when, la
   CHECK(worst < (std::is_same_v<TestType, Half> ? 2e-7 : 1e-14) * largest);
 }
 
+// Contacts that stick: their nodes' forces keep in proportion, and are convolved together; one
+// slips for a while, and late forces come that keep the proportion, and that do not.
+TEMPLATE_TEST_CASE("forces that keep in proportion are convolved together, with the same result",
+                   "", float, double, Half) {
+  constexpr int kNodes = 10;
+  const int steps = GENERATE(20, 120);
+  PlainConvolution<TestType> plain(kNodes, steps);
+  ResidentColumns<TestType> columns = plain.columns();
+  RunningConvolution running(columns, kSources);
+  Random random(13);
+  double worst = 0.0;
+  double largest = 0.0;
+  int together = 0;
+  for (int k = 0; k < 700; ++k) {
+    const Vector3 first = anywhere(random, 1.0);
+    const Vector3 second = anywhere(random, 1.0);
+    const double slip = k > 200 && k < 210 ? 0.01 * (k - 200) : 0.0;
+    const auto touch = [&](double share) {
+      return std::vector<NodalForce>{{0, 0.3 * first},
+                                     {1, (0.1 + slip) * first},
+                                     {2, (0.6 - slip) * first},
+                                     {4, share * second},
+                                     {5, (1.0 - share) * second}};
+    };
+    const std::vector<NodalForce> now = touch(0.7);
+    running.push(now);
+    plain.past.push_back(now);
+    if (k > 400 && k % 7 == 0) {
+      const std::vector<NodalForce> late = touch(k > 500 && k < 520 ? 0.4 : 0.7);
+      running.add_past(late, 3);
+      auto& then = plain.past[plain.past.size() - 4];
+      then.insert(then.end(), late.begin(), late.end());
+    }
+    together += running.history().multiple(1, 0) > 0.0 ? 1 : 0;
+    together += running.history().multiple(5, 4) > 0.0 ? 1 : 0;
+    for (int node = 0; node < kNodes; ++node) {
+      Vector3 u = Vector3::Zero();
+      running.add_coming(node, u);
+      running.follow(node);
+      const Vector3 expected = plain.coming(node, 1);
+      worst = std::max(worst, (u - expected).norm());
+      largest = std::max(largest, expected.norm());
+    }
+  }
+  CHECK(worst < (std::is_same_v<TestType, Half> ? 2e-7 : 1e-14) * largest);
+  // Slipping from step 201 to 209, and late forces from step 504 on that last changed step 515, are
+  // seen until they are forgotten.
+  CHECK(together == 2 * 700 - (209 + steps - 201) - (515 + steps - 504));
+}
+
 TEST_CASE("what a step sees has the same bits whether somebody looks ahead or not") {
   PlainConvolution<float> plain(40, 100);
   ResidentColumns<float> columns = plain.columns();

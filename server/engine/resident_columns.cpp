@@ -1,10 +1,17 @@
 #include "server/engine/resident_columns.hpp"
 
+#include <omp.h>
+
 #include <algorithm>
 
 #include "server/engine/force_stretches.hpp"
 
 namespace irdm {
+
+std::size_t row_block(std::size_t dof) {
+  const auto pieces = 4 * static_cast<std::size_t>(omp_get_max_threads());
+  return std::clamp<std::size_t>(dof / pieces, 64, 256);
+}
 
 template <typename Number>
 void ResidentColumns<Number>::convolve(const ForceHistory& history, int node, int shift,
@@ -21,11 +28,12 @@ void ResidentColumns<Number>::convolve(const ForceHistory& history, int node, in
 template <typename Number>
 void ResidentColumns<Number>::add_all(const ForceHistory& history, Points& u) const {
   const std::vector<ForceStretch> stretches = force_stretches(history);
-  const auto blocks = static_cast<int>((dof + kRowBlock - 1) / kRowBlock);
+  const std::size_t rows_at_once = row_block(dof);
+  const auto blocks = static_cast<int>((dof + rows_at_once - 1) / rows_at_once);
 #pragma omp parallel for schedule(dynamic)
   for (int block = 0; block < blocks; ++block) {
-    const std::size_t first = static_cast<std::size_t>(block) * kRowBlock;
-    const std::size_t count = std::min(kRowBlock, dof - first);
+    const std::size_t first = static_cast<std::size_t>(block) * rows_at_once;
+    const std::size_t count = std::min(rows_at_once, dof - first);
     for (const ForceStretch& push : stretches) {
       const Number* rows = values + (push.column * dof + first) * steps + push.first_age;
       add_products({rows, steps, count}, push.force, push.count, scale(push.column),

@@ -9,8 +9,9 @@
 
 namespace irdm {
 
-/// Degrees of freedom that a thread takes at a time: some 100 kB of each column.
-inline constexpr std::size_t kRowBlock = 64;
+/// Degrees of freedom that a thread takes at a time: of each column one piece of half a megabyte,
+/// as what is fetched ahead at its end is lost; less where there were not four for each thread.
+std::size_t row_block(std::size_t dof);
 
 /// Columns of a response that all are in memory: entry (a, b) of step s at (b * dof + a) * steps +
 /// s, times the scale of column b. Points to them.

@@ -176,11 +176,12 @@ void StreamedEngine<Scalar>::add_columns(Points& u) const {
     for (int axis = 0; axis < 3; ++axis) missing.push_back(settled(node, axis, 0));
   }
   const ResidentColumns<Scalar>& frame = columns_.frame();
-  const auto blocks = static_cast<int>((frame.dof + kRowBlock - 1) / kRowBlock);
+  const std::size_t rows_at_once = row_block(frame.dof);
+  const auto blocks = static_cast<int>((frame.dof + rows_at_once - 1) / rows_at_once);
 #pragma omp parallel for schedule(dynamic)
   for (int block = 0; block < blocks; ++block) {
-    const std::size_t begin = static_cast<std::size_t>(block) * kRowBlock;
-    const std::size_t count = std::min(kRowBlock, frame.dof - begin);
+    const std::size_t begin = static_cast<std::size_t>(block) * rows_at_once;
+    const std::size_t count = std::min(rows_at_once, frame.dof - begin);
     for (const ForceStretch& push : stretches) {
       const double share = columns_.share(static_cast<int>(push.column / 3));
       if (share == 0.0) continue;

@@ -16,6 +16,7 @@ DeformedSurface::DeformedSurface(const RestSurface& rest)
       known_in_(static_cast<std::size_t>(rest.node_count()), 0),
       positions_(static_cast<std::size_t>(rest.node_count()), Vector3::Zero()) {
   seen_.reserve(positions_.size());
+  for (int i = 0; i < rest.node_count(); ++i) rest_box_.extend(rest.node(i));
 }
 
 void DeformedSurface::begin_step(const ResponseEngine& engine) noexcept {
@@ -99,6 +100,21 @@ Vector3 DeformedSurface::pseudonormal(const SurfaceHit& hit) noexcept {
     sum += std::atan2(a.cross(b).norm(), a.dot(b)) * unit;
   }
   return sum;
+}
+
+// A little more, so that no rounding makes it less.
+double DeformedSurface::bound() noexcept {
+  if (bound_known_in_ != step_) bound_ = (1.0 + 1e-9) * engine_->free_displacement_bound();
+  bound_known_in_ = step_;
+  return bound_;
+}
+
+bool DeformedSurface::is_far_from(const Vector3& from, const Vector3& to) noexcept {
+  Eigen::AlignedBox3d way(from);
+  way.extend(to);
+  if (way.intersects(rest_box_)) return false;
+  const Vector3 margin = Vector3::Constant(bound());
+  return !way.intersects(Eigen::AlignedBox3d(rest_box_.min() - margin, rest_box_.max() + margin));
 }
 
 SurfaceHit DeformedSurface::closest(const Vector3& p) noexcept {

@@ -40,6 +40,10 @@ class DeformedSurface {
   /// Nodes that were looked at in this step.
   std::span<const int> seen() const noexcept { return seen_; }
 
+  /// Whether the way from `from` to `to` is so far from the surface that it cannot come near, which
+  /// is known without looking at any node. False: it may be.
+  bool is_far_from(const Vector3& from, const Vector3& to) noexcept;
+
   /// The point nearest to p.
   SurfaceHit closest(const Vector3& p) noexcept;
 
@@ -59,12 +63,17 @@ class DeformedSurface {
   template <typename Visit>
   void visit_neighbours(int triangle, const Visit& visit) noexcept;
 
+  double bound() noexcept;
+
   const RestSurface& rest_;
+  Eigen::AlignedBox3d rest_box_;
   const ResponseEngine* engine_ = nullptr;
   std::uint64_t step_ = 0;
   std::vector<std::uint64_t> known_in_;  ///< step in which positions_ of a node was computed
   std::vector<Vector3> positions_;
   std::vector<int> seen_;
+  std::uint64_t bound_known_in_ = 0;  ///< as known_in_
+  double bound_ = 0.0;                ///< of each component of a displacement [m]
 };
 
 }  // namespace irdm

@@ -24,6 +24,9 @@ class BothEngines final : public ResponseEngine {
   Vector3 free_displacement(int node) const noexcept override {
     return engines_[answering_]->free_displacement(node);
   }
+  double free_displacement_bound() const noexcept override {
+    return engines_[answering_]->free_displacement_bound();
+  }
   void predict(std::span<const ContactPatch> patches, std::span<Vector3> h,
                ContactMatrix& compliance) noexcept override {
     engines_[answering_]->predict(patches, h, compliance);

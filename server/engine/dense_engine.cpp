@@ -31,6 +31,13 @@ Vector3 DenseEngine<Scalar>::free_displacement(int node) const noexcept {
   return u;
 }
 
+// Known only of a body at rest.
+template <typename Scalar>
+double DenseEngine<Scalar>::free_displacement_bound() const noexcept {
+  const bool at_rest = past_.history().active().empty() && !spin_.any();
+  return at_rest ? 0.0 : ResponseEngine::free_displacement_bound();
+}
+
 template <typename Scalar>
 double DenseEngine<Scalar>::entry(std::size_t step, int a, int b) const noexcept {
   return R_.scale(static_cast<std::size_t>(b)) * to_double(R_.row(a, b)[step]);

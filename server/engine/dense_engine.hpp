@@ -19,6 +19,7 @@ class DenseEngine final : public ResponseEngine {
   EngineKind kind() const noexcept override { return EngineKind::kDense; }
   void hold_spin(const Vector3& w) noexcept override { spin_.hold(w); }
   Vector3 free_displacement(int node) const noexcept override;
+  double free_displacement_bound() const noexcept override;
   void predict(std::span<const ContactPatch> patches, std::span<Vector3> h,
                ContactMatrix& compliance) noexcept override;
   void foresee(const ContactPatch& patch, std::span<const NodalForce> held, std::span<Vector3> path,

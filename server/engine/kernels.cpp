@@ -63,6 +63,17 @@ IRDM_KERNEL double dot(const double* a, const double* b, std::size_t n) noexcept
   return dot_of(a, b, n);
 }
 
+IRDM_KERNEL double dot_magnitudes(const double* a, const double* b, std::size_t n) noexcept {
+  double lanes[kLanes] = {};
+  std::size_t i = 0;
+  for (; i + kLanes <= n; i += kLanes) {
+    for (std::size_t l = 0; l < kLanes; ++l) lanes[l] += std::abs(a[i + l] * b[i + l]);
+  }
+  double sum = sum_of(lanes);
+  for (; i < n; ++i) sum += std::abs(a[i] * b[i]);
+  return sum;
+}
+
 IRDM_KERNEL void add_products(const Rows<float>& rows, const double* x, std::size_t n,
                               double weight, double* y) noexcept {
   add_products_of(rows, x, n, weight, y);

@@ -18,6 +18,9 @@ double dot(const double* a, const double* b, std::size_t n) noexcept;
 /// The products and their sums of half precision are single ones.
 double dot(const Half* a, const double* b, std::size_t n) noexcept;
 
+/// sum_i |a[i]| |b[i]|.
+double dot_magnitudes(const double* a, const double* b, std::size_t n) noexcept;
+
 /// y[r] += weight (row r, x) for rows r = 0..count-1 of n numbers each, `stride` numbers apart:
 /// each product as dot() computes it, but several rows at a time and with what comes next fetched
 /// ahead, so that rows which follow one another are read at the speed of memory.

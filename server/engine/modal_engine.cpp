@@ -116,6 +116,12 @@ Vector3 ModalEngine<Scalar>::free_displacement(int node) const noexcept {
   return u;
 }
 
+// |sum_i q_i Phi_ai| is at most the sum of |q_i| max_a |Phi_ai|.
+template <typename Scalar>
+double ModalEngine<Scalar>::free_displacement_bound() const noexcept {
+  return dot_magnitudes(free_coordinate_.data(), largest_shape_.data(), modes_);
+}
+
 // Three nodes at a time; where fewer are left, the last ones count with weight 0.
 template <typename Scalar>
 void ModalEngine<Scalar>::mean_shape(const ContactPatch& patch, int axis, const ModeRange& modes,

@@ -22,6 +22,7 @@ class ModalEngine final : public ResponseEngine {
   EngineKind kind() const noexcept override { return EngineKind::kModal; }
   void hold_spin(const Vector3& w) noexcept override;
   Vector3 free_displacement(int node) const noexcept override;
+  double free_displacement_bound() const noexcept override;
   void predict(std::span<const ContactPatch> patches, std::span<Vector3> h,
                ContactMatrix& compliance) noexcept override;
   void foresee(const ContactPatch& patch, std::span<const NodalForce> held, std::span<Vector3> path,

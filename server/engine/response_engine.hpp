@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 
@@ -59,6 +60,11 @@ class ResponseEngine {
 
   /// Displacement of a node at the end of the coming step if no force acts during it [m].
   virtual Vector3 free_displacement(int node) const noexcept = 0;
+  /// What no component of any node's is larger than in magnitude [m], where that takes no longer
+  /// than a node or two; otherwise infinite.
+  virtual double free_displacement_bound() const noexcept {
+    return std::numeric_limits<double>::infinity();
+  }
 
   /// For contacts a = 0..m-1 (m <= kMaxContacts): their mean free displacement h_a at the end of
   /// the coming step [m], and the compliance between them within it, the blocks sum_ij w_i w_j

@@ -100,6 +100,13 @@ Vector3 StreamedEngine<Scalar>::free_displacement(int node) const noexcept {
   return u;
 }
 
+// Known only of a body at rest.
+template <typename Scalar>
+double StreamedEngine<Scalar>::free_displacement_bound() const noexcept {
+  const bool at_rest = past_.history().active().empty() && !spin_.any();
+  return at_rest ? 0.0 : ResponseEngine::free_displacement_bound();
+}
+
 template <typename Scalar>
 void StreamedEngine<Scalar>::predict(std::span<const ContactPatch> patches, std::span<Vector3> h,
                                      ContactMatrix& compliance) noexcept {

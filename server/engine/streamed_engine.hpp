@@ -29,6 +29,7 @@ class StreamedEngine final : public ResponseEngine {
   void expect(std::span<const Vector3> tips) noexcept override { response_.columns->expect(tips); }
   std::uint64_t missed_columns() const noexcept override { return columns_.missed(); }
   Vector3 free_displacement(int node) const noexcept override;
+  double free_displacement_bound() const noexcept override;
   void predict(std::span<const ContactPatch> patches, std::span<Vector3> h,
                ContactMatrix& compliance) noexcept override;
   void foresee(const ContactPatch& patch, std::span<const NodalForce> held, std::span<Vector3> path,

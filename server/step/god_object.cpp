@@ -41,6 +41,11 @@ void GodObject::find(const Input& input, DeformedSurface& surface) noexcept {
 
 // A tip whose way crosses the surface from outside touches it there.
 void GodObject::touch(const Vector3& tip, DeformedSurface& surface) noexcept {
+  if (surface.is_far_from(outside_ ? last_tip_ : tip, tip)) {
+    outside_ = true;
+    last_tip_ = tip;
+    return;
+  }
   const SurfaceHit hit = surface.closest(tip);
   std::optional<SurfaceHit> entry;
   if (outside_) entry = surface.first_crossing(last_tip_, tip, hit);

@@ -260,3 +260,33 @@ TEST_CASE("modal engine comes to rest exactly, instead of going on with denormal
   engine->displacement(u);
   CHECK(u.norm() == 0.0);
 }
+
+TEST_CASE("no node's free displacement is beyond its bound, where an engine knows one") {
+  const Model modal = synthetic_cube(3, 40, 50);
+  Model single = modal;
+  auto& shapes = std::get<ModalResponse>(single.response).shapes;
+  shapes = RowMatrix<float>(std::get<RowMatrix<double>>(shapes).cast<float>());
+  const int nodes = modal.mesh.surface_node_count();
+  for (const auto& engine : {make_engine(share(modal)), make_engine(share(single)),
+                             make_engine(share(with_dense_response<double>(modal)))}) {
+    CHECK(engine->free_displacement_bound() == 0.0);
+    RandomContacts contacts(nodes);
+    double largest_share = 0.0;
+    for (int k = 0; k < 200; ++k) {
+      double largest = 0.0;
+      for (int node = 0; node < nodes; ++node) {
+        largest = std::max(largest, engine->free_displacement(node).cwiseAbs().maxCoeff());
+      }
+      const double bound = engine->free_displacement_bound();
+      REQUIRE(largest <= (1.0 + 1e-12) * bound);
+      if (std::isfinite(bound) && bound > 0.0) {
+        largest_share = std::max(largest_share, largest / bound);
+      }
+      engine->advance(contacts.next());
+    }
+    // Of use where it is known: not beyond all measure.
+    if (engine->kind() == EngineKind::kModal) CHECK(largest_share > 0.1);
+    engine->reset();
+    CHECK(engine->free_displacement_bound() == 0.0);
+  }
+}

@@ -3,6 +3,7 @@
 #include <random>
 
 #include "server/collision/deformed_surface.hpp"
+#include "server/step/god_object.hpp"
 #include "tests/support/synthetic_model.hpp"
 
 using namespace irdm;
@@ -23,6 +24,7 @@ class FakeEngine final : public ResponseEngine {
     ++evaluations;
     return u_[static_cast<std::size_t>(node)];
   }
+  double free_displacement_bound() const noexcept override { return bound; }
   void predict(std::span<const ContactPatch>, std::span<Vector3>,
                ContactMatrix&) noexcept override {}
   void foresee(const ContactPatch&, std::span<const NodalForce>, std::span<Vector3>,
@@ -33,6 +35,7 @@ class FakeEngine final : public ResponseEngine {
   Eigen::MatrixXd instant_compliance() const override { return {}; }
   void reset() noexcept override {}
   mutable int evaluations = 0;
+  double bound = std::numeric_limits<double>::infinity();
 
  private:
   std::vector<Vector3> u_;
@@ -169,4 +172,70 @@ TEST_CASE("deformed surface computes a bounded number of nodes, each once a step
   }
   CHECK(most <= 20);
   CHECK(most - fewest <= 4);
+}
+
+TEST_CASE(
+    "a way is far from the deformed surface by its displacements' bound, and no node is asked") {
+  const Model model = test::synthetic_cube(4, 1, 1);
+  const RestSurface rest(model.mesh);
+  DeformedSurface surface(rest);
+  FakeEngine engine(model.mesh, [](const Vector3&) -> Vector3 { return Vector3(0.01, 0, 0); });
+  const auto far = [&](const Vector3& from, const Vector3& to) {
+    surface.begin_step(engine);
+    return surface.is_far_from(from, to);
+  };
+  CHECK_FALSE(far({1, 1, 1}, {1, 1, 1}));  // no bound is known
+  engine.bound = 0.01;
+  CHECK(far({0.0701, 0, 0}, {0.0701, 0, 0}));
+  CHECK_FALSE(far({0.0699, 0, 0}, {0.0699, 0, 0}));
+  CHECK_FALSE(far({0.07, 0, 0}, {0.07, 0, 0}));
+  CHECK_FALSE(far({0, 0, 0}, {0, 0, 0}));
+  // From one side to the other, and past an edge.
+  CHECK_FALSE(far({0.1, 0, 0}, {-0.1, 0, 0}));
+  CHECK(far({0.1, 0.0701, 0}, {-0.1, 0.0701, 0}));
+  engine.bound = 0.02;
+  CHECK_FALSE(far({0.0701, 0, 0}, {0.0701, 0, 0}));
+  CHECK(engine.evaluations == 0);
+}
+
+TEST_CASE("a god-object is the same whether far ways are known to be far or not") {
+  const Model model = test::synthetic_cube(6, 1, 1);
+  const RestSurface rest(model.mesh);
+  FakeEngine searching(model.mesh, [](const Vector3& x) -> Vector3 {
+    return 0.01 * Vector3(std::sin(40.0 * x.y()), std::cos(30.0 * x.z()), x.x() / 0.06);
+  });
+  FakeEngine bounded = searching;
+  bounded.bound = 0.01;
+  std::array<DeformedSurface, 2> surfaces{DeformedSurface(rest), DeformedSurface(rest)};
+  std::array<GodObject, 2> styluses;
+  std::mt19937 random(6);
+  Vector3 tip(0, 0.2, 0);
+  int touches = 0;
+  for (int k = 0; k < 20'000; ++k) {
+    // Long ways now and then: past the object, through it, and out of its inside.
+    tip = k % 5 == 0 ? random_point(random, 0.15) : Vector3(tip + random_point(random, 0.01));
+    surfaces[0].begin_step(searching);
+    surfaces[1].begin_step(bounded);
+    if (k % 97 == 0) {
+      for (GodObject& stylus : styluses) stylus.forget();
+    }
+    const GodObject::Input input{tip, k % 7 == 0, 0.004};
+    styluses[0].find(input, surfaces[0]);
+    styluses[1].find(input, surfaces[1]);
+    REQUIRE(styluses[0].state() == styluses[1].state());
+    REQUIRE(styluses[0].outside() == styluses[1].outside());
+    REQUIRE(styluses[0].triangle() == styluses[1].triangle());
+    REQUIRE(styluses[0].point().weights == styluses[1].point().weights);
+    if (styluses[0].state() == ContactState::kFree) continue;
+    ++touches;
+    for (GodObject& stylus : styluses) {
+      if (k % 2 == 0) {
+        stylus.let_go(tip);
+      } else {
+        stylus.pass_by();
+      }
+    }
+  }
+  CHECK(touches > 1000);
+  CHECK(bounded.evaluations < searching.evaluations);
 }

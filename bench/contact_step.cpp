@@ -70,8 +70,12 @@ int main() {
   std::printf("|---|---|---|---|\n");
   const Friction rough{1.0, 1.0};
   const Friction smooth{0.2, 0.2};
-  measure("tip near the surface", scene(0.0, 1, rough), [](int) {
-    return std::vector<StylusCommand>{at({0.003, kHalfEdge + 0.004, 0.003})};
+  const Vector3 near(0.003, kHalfEdge + 0.004, 0.003);
+  measure("tip 4 mm above a cube at rest", scene(0.0, 1, rough),
+          [&](int) { return std::vector<StylusCommand>{at(near)}; });
+  measure("the same, another stylus moves the cube", scene(0.0, 2, rough), [&](int k) {
+    const Vector3 below = -press(k, 0.002);
+    return std::vector<StylusCommand>{at(near), at(below, k > 60)};
   });
   measure("point, held", scene(0.0, 1, rough),
           [](int k) { return std::vector<StylusCommand>{at(press(k, 0.002), k > 60)}; });

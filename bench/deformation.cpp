@@ -63,10 +63,29 @@ Frames dense_frames(const std::string& name, int cells) {
   return frames;
 }
 
+/// With all modes moving.
+template <typename Scalar>
+Model modal_model(int cells, int modes) {
+  Model model = test::synthetic_cube(cells, 1, kSteps);
+  auto& response = std::get<ModalResponse>(model.response);
+  response.angular_frequency = Eigen::VectorXd::LinSpaced(modes, 60.0, 600.0);
+  response.decay_rate = Eigen::VectorXd::Constant(modes, 4.0);
+  response.shapes.emplace<RowMatrix<Scalar>>(
+      RowMatrix<Scalar>::Constant(model.degrees_of_freedom(), modes, Scalar(0.5)));
+  return model;
+}
+
+std::shared_ptr<ResponseEngine> moved_engine(std::shared_ptr<const Model> model) {
+  std::shared_ptr<ResponseEngine> engine = make_engine(std::move(model));
+  const NodalForce force{1, Vector3(0.1, 0.2, 0.3)};
+  engine->advance({&force, 1});
+  return engine;
+}
+
 /// Several objects, one a frame.
 template <typename Scalar>
 Frames modal_frames(const std::string& name, int cells, int modes) {
-  const Model plain = test::synthetic_cube(cells, 1, kSteps);
+  const Model plain = modal_model<Scalar>(cells, modes);
   Frames frames;
   frames.engine = name;
   frames.nodes = plain.mesh.surface_node_count();
@@ -74,15 +93,7 @@ Frames modal_frames(const std::string& name, int cells, int modes) {
   frames.count = static_cast<int>(kMoved / frames.bytes) + 1;
   std::vector<std::shared_ptr<ResponseEngine>> engines;
   for (int i = 0; i < frames.count; ++i) {
-    Model model = plain;
-    auto& response = std::get<ModalResponse>(model.response);
-    response.angular_frequency = Eigen::VectorXd::LinSpaced(modes, 60.0, 600.0);
-    response.decay_rate = Eigen::VectorXd::Constant(modes, 4.0);
-    response.shapes.emplace<RowMatrix<Scalar>>(
-        RowMatrix<Scalar>::Constant(model.degrees_of_freedom(), modes, Scalar(0.5)));
-    engines.push_back(make_engine(std::make_shared<const Model>(std::move(model))));
-    const NodalForce force{1, Vector3(0.1, 0.2, 0.3)};
-    engines.back()->advance({&force, 1});
+    engines.push_back(moved_engine(std::make_shared<const Model>(plain)));
   }
   frames.time = [engines, u = Points()](int frame) mutable {
     return bench::elapsed([&] { engines[static_cast<std::size_t>(frame)]->displacement(u); });
@@ -114,6 +125,35 @@ void measure(bench::Report& report, bench::Memory& memory, const Frames& frames)
   }
 }
 
+/// Several objects of one model: their surfaces as one product, and one after the other.
+void measure_together(bench::Report& report, int objects) {
+  const auto model = std::make_shared<const Model>(modal_model<float>(12, 4050));
+  std::vector<std::shared_ptr<ResponseEngine>> engines;
+  std::vector<Points> surfaces(static_cast<std::size_t>(objects));
+  std::vector<SurfaceRequest> requests;
+  for (Points& u : surfaces) {
+    engines.push_back(moved_engine(model));
+    requests.push_back({engines.back().get(), 0.0, &u});
+  }
+  for (const int threads : {1, 2}) {
+    omp_set_num_threads(threads);
+    std::vector<double> apart;
+    std::vector<double> together;
+    std::vector<double> ratio;
+    for (int pair = 0; pair < 20 * kPairs; ++pair) {
+      apart.push_back(1e3 * bench::elapsed([&] {
+                              for (std::size_t i = 0; i < engines.size(); ++i) {
+                                engines[i]->displacement(surfaces[i]);
+                              }
+                            }).wall);
+      together.push_back(1e3 * bench::elapsed([&] { displacements(requests); }).wall);
+      ratio.push_back(together.back() / apart.back());
+    }
+    report.row({std::to_string(objects), double(threads), bench::percentile(apart, 0.5),
+                bench::percentile(together, 0.5), bench::percentile(ratio, 0.5)});
+  }
+}
+
 }  // namespace
 
 int main(int, char** argv) {
@@ -131,4 +171,7 @@ int main(int, char** argv) {
     measure(report, memory, dense_frames<Half>("dense, half", cells));
   measure(report, memory, modal_frames<float>("modal, single", 12, 4050));
   measure(report, memory, modal_frames<double>("modal, double", 12, 4050));
+  report.table("surfaces of several objects of one model; modal, single, 866 nodes, 4050 modes",
+               {"objects", "threads", "one after the other [ms]", "one product [ms]", "ratio"});
+  for (const int objects : {1, 2, 4, 8}) measure_together(report, objects);
 }

@@ -1,6 +1,8 @@
 #include "server/scene_simulation.hpp"
 
+#include <filesystem>
 #include <memory>
+#include <vector>
 
 #include "common/error.hpp"
 #include "common/model/model_file.hpp"
@@ -24,12 +26,40 @@ Model read_by_budget(const ObjectConfig& object, EngineKind kind, SceneColumns* 
                        static_cast<std::size_t>(*object.memory_budget * kBytesAMebibyte));
 }
 
-std::shared_ptr<const Model> load_model(const ObjectConfig& object, EngineKind kind,
-                                        SceneColumns* columns) {
-  Model model = read_by_budget(object, kind, columns);
-  check_inertial_loading(model, object.inertial_loading, object.model.string());
-  return std::make_shared<const Model>(std::move(model));
-}
+/// The models of a scene's objects: those of one file and kind have the same, but where it has a
+/// budget of memory, which is each object's own.
+class Models {
+ public:
+  explicit Models(SceneColumns* columns) : columns_(columns) {}
+
+  std::shared_ptr<const Model> of(const ObjectConfig& object, EngineKind kind) {
+    std::shared_ptr<const Model> model = find(object, kind);
+    if (!model) {
+      model = std::make_shared<const Model>(read_by_budget(object, kind, columns_));
+      if (!object.memory_budget) read_.push_back({object.model, kind, model});
+    }
+    check_inertial_loading(*model, object.inertial_loading, object.model.string());
+    return model;
+  }
+
+ private:
+  struct Read {
+    std::filesystem::path file;
+    EngineKind kind;
+    std::shared_ptr<const Model> model;
+  };
+
+  std::shared_ptr<const Model> find(const ObjectConfig& object, EngineKind kind) const {
+    if (object.memory_budget) return nullptr;
+    for (const Read& read : read_) {
+      if (read.kind == kind && read.file == object.model) return read.model;
+    }
+    return nullptr;
+  }
+
+  SceneColumns* columns_;
+  std::vector<Read> read_;
+};
 
 EngineKind other(EngineKind kind) {
   return kind == EngineKind::kDense ? EngineKind::kModal : EngineKind::kDense;
@@ -53,15 +83,15 @@ bool recorded_viewer_stylus(const SceneConfig& scene, int stylus_count, const st
 
 SimulationConfig simulation_config(const SceneConfig& scene, bool viewer_stylus,
                                    SceneColumns* columns) {
+  Models models(columns);
   SimulationConfig config;
   config.gravity = scene.world.gravity;
   for (const ObjectConfig& object : scene.objects) {
-    config.objects.push_back({load_model(object, object.engine, columns), object.position,
-                              object.orientation, object.velocity, object.angular_velocity,
-                              object.friction, object.damping, object.tether,
-                              object.inertial_loading});
+    config.objects.push_back({models.of(object, object.engine), object.position, object.orientation,
+                              object.velocity, object.angular_velocity, object.friction,
+                              object.damping, object.tether, object.inertial_loading});
     if (object.switchable) {
-      config.objects.back().other_model = load_model(object, other(object.engine), columns);
+      config.objects.back().other_model = models.of(object, other(object.engine));
     }
   }
   config.styluses = scene.styluses;

@@ -85,11 +85,14 @@ StylusContact Deformation::contact(std::size_t s) const {
 void Deformation::compute(SurfaceFrame& frame) const {
   frame.force_step = last_.force_step;
   frame.time = last_.time;
+  std::vector<SurfaceRequest> requests;
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     frame.objects[i].position = last_.object[i].position;
     frame.objects[i].orientation = last_.object[i].orientation;
-    objects_[i].engine->displacement(frame.objects[i].displacement, objects_[i].tolerance);
+    requests.push_back(
+        {objects_[i].engine.get(), objects_[i].tolerance, &frame.objects[i].displacement});
   }
+  displacements(requests);
   std::copy_n(last_.stylus.begin(), frame.styluses.size(), frame.styluses.begin());
   for (std::size_t s = 0; s < frame.contacts.size(); ++s) frame.contacts[s] = contact(s);
   frame.trail = trail_;

@@ -17,6 +17,7 @@ class BothEngines final : public ResponseEngine {
   bool takes_spin() const noexcept override;
   void hold_spin(const Vector3& w) noexcept override;
   EngineKind kind() const noexcept override { return engines_[answering_]->kind(); }
+  const ResponseEngine& answering() const noexcept override { return *engines_[answering_]; }
   bool has_both_kinds() const noexcept override { return true; }
   void use(EngineKind kind) noexcept override;
   void expect(std::span<const Vector3> tips) noexcept override;

@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <functional>
+
 #include "common/error.hpp"
 #include "server/engine/both_engines.hpp"
 #include "server/engine/compressed_engine.hpp"
@@ -40,6 +43,24 @@ std::unique_ptr<ResponseEngine> make_engine(std::shared_ptr<const Model> model,
   std::unique_ptr<ResponseEngine> first = make_engine(std::move(model));
   if (!other) return first;
   return std::make_unique<BothEngines>(std::move(first), make_engine(std::move(other)));
+}
+
+void displacements(std::span<SurfaceRequest> requests) {
+  for (SurfaceRequest& request : requests) request.engine = &request.engine->answering();
+  const auto shared = [](const SurfaceRequest& request) {
+    return request.engine->shared_surface();
+  };
+  std::stable_sort(requests.begin(), requests.end(), [&](const auto& a, const auto& b) {
+    return std::less<>()(shared(a), shared(b));
+  });
+  while (!requests.empty()) {
+    const void* const what = shared(requests.front());
+    const auto other = std::find_if(requests.begin(), requests.end(),
+                                    [&](const auto& request) { return shared(request) != what; });
+    const auto count = static_cast<std::size_t>(other - requests.begin());
+    requests.front().engine->displacements(requests.first(count));
+    requests = requests.subspan(count);
+  }
 }
 
 }  // namespace irdm

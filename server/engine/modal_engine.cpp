@@ -268,22 +268,40 @@ void ModalEngine<Scalar>::advance(std::span<const NodalForce> forces) noexcept {
   }
 }
 
+// Some rows of Phi at a time: the first engine has them read from memory, the others find them in
+// the cache.
 template <typename Scalar>
-void ModalEngine<Scalar>::displacement(Points& u, double tolerance) const {
-  u.setZero(model_->mesh.surface_node_count(), 3);
-  const std::vector<ModeRange> kept = strong_modes(coordinate_, largest_shape_, tolerance);
-  const auto dof = static_cast<std::size_t>(u.size());
+void ModalEngine<Scalar>::displacements(std::span<const SurfaceRequest> requests) const {
+  struct Part {
+    const ModalEngine* engine;
+    std::vector<ModeRange> modes;
+    double* u;
+  };
+  std::vector<Part> parts;
+  for (const SurfaceRequest& request : requests) {
+    const auto* engine = static_cast<const ModalEngine*>(request.engine);
+    request.u->setZero(model_->mesh.surface_node_count(), 3);
+    parts.push_back({engine,
+                     strong_modes(engine->coordinate_, engine->largest_shape_, request.tolerance),
+                     request.u->data()});
+  }
+  const auto dof = static_cast<std::size_t>(shapes_->rows());
   const auto blocks = static_cast<int>((dof + kBlock - 1) / kBlock);
 #pragma omp parallel for schedule(dynamic)
   for (int block = 0; block < blocks; ++block) {
     const std::size_t first = static_cast<std::size_t>(block) * kBlock;
     const std::size_t count = std::min(kBlock, dof - first);
-    for (const ModeRange& range : kept) {
-      add_products({shape_row(static_cast<int>(first)) + range.first, modes_, count},
-                   coordinate_.data() + range.first, range.count, 1.0, u.data() + first);
+    for (const Part& part : parts) {
+      for (const ModeRange& range : part.modes) {
+        add_products({shape_row(static_cast<int>(first)) + range.first, modes_, count},
+                     part.engine->coordinate_.data() + range.first, range.count, 1.0,
+                     part.u + first);
+      }
     }
   }
-  residual_.add_displacement(u);
+  for (const SurfaceRequest& request : requests) {
+    static_cast<const ModalEngine*>(request.engine)->residual_.add_displacement(*request.u);
+  }
 }
 
 // Phi diag(b1) Phi^T, and what is left out.

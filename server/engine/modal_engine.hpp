@@ -30,7 +30,12 @@ class ModalEngine final : public ResponseEngine {
   void add_past(std::span<const NodalForce> forces, int age) noexcept override;
   void advance(std::span<const NodalForce> forces) noexcept override;
   using ResponseEngine::displacement;
-  void displacement(Points& u, double tolerance) const override;
+  void displacement(Points& u, double tolerance) const override {
+    const SurfaceRequest request{this, tolerance, &u};
+    displacements({&request, 1});
+  }
+  void displacements(std::span<const SurfaceRequest> requests) const override;
+  const void* shared_surface() const noexcept override { return shapes_; }
   Eigen::MatrixXd instant_compliance() const override;
   void reset() noexcept override;
 

@@ -21,6 +21,15 @@ struct NodalForce {
   Vector3 force = Vector3::Zero();
 };
 
+class ResponseEngine;
+
+/// The displacements of one engine's nodes are wanted.
+struct SurfaceRequest {
+  const ResponseEngine* engine = nullptr;
+  double tolerance = 0.0;  ///< as that of ResponseEngine::displacement()
+  Points* u = nullptr;     ///< (n, 3), written [m]
+};
+
 /// The elastic answer of one object to the history of forces on its surface nodes, equation (10):
 /// u[k] = sum_s R[s] f[k-s]. Everything is in B. An engine has one state and belongs to one thread;
 /// several engines may share the same model. All members but the constructor and displacement() are
@@ -96,6 +105,18 @@ class ResponseEngine {
   virtual void displacement(Points& u, double tolerance) const = 0;
   void displacement(Points& u) const { displacement(u, 0.0); }
 
+  /// The same of several engines with one shared_surface(), to the bit: what they share is read
+  /// once for all of them. See displacements().
+  virtual void displacements(std::span<const SurfaceRequest> requests) const {
+    for (const SurfaceRequest& request : requests) {
+      request.engine->displacement(*request.u, request.tolerance);
+    }
+  }
+  /// What displacements() can read once for all engines that have the same; null: nothing.
+  virtual const void* shared_surface() const noexcept { return nullptr; }
+  /// The engine that answers, where there are several in one.
+  virtual const ResponseEngine& answering() const noexcept { return *this; }
+
   /// R[0], the displacement within the step of all nodes per force on each: (3n, 3n) [m/N]. Takes
   /// its time; not for the force thread.
   virtual Eigen::MatrixXd instant_compliance() const = 0;
@@ -110,6 +131,10 @@ std::unique_ptr<ResponseEngine> make_engine(std::shared_ptr<const Model> model);
 /// `model`. @param other null: no choice
 std::unique_ptr<ResponseEngine> make_engine(std::shared_ptr<const Model> model,
                                             std::shared_ptr<const Model> other);
+
+/// ResponseEngine::displacement() of each, to the bit: where engines share their model's shapes as
+/// one matrix product. The requests come back in another order.
+void displacements(std::span<SurfaceRequest> requests);
 
 /// The point's value of a quantity that is known at nodes: sum_i w_i value(node_i); nodes of no
 /// weight are not asked for.

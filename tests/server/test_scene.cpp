@@ -2,6 +2,10 @@
 
 #include "common/error.hpp"
 #include "server/config/scene.hpp"
+#include "server/scene_simulation.hpp"
+#include "tests/support/streamed_model.hpp"
+#include "tests/support/synthetic_model.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 using Catch::Matchers::Equals;
 using Catch::Matchers::StartsWith;
@@ -369,4 +373,23 @@ TEST_CASE("every scene in configs is a scene, and its models have configurations
 TEST_CASE("a file that cannot be read is told") {
   CHECK_THROWS_WITH(read_text("/nowhere/at/all"),
                     "/nowhere/at/all: cannot be read; check the path and its permissions");
+}
+
+TEST_CASE("objects of one file have one model, but where each has its own budget") {
+  const test::TemporaryFolder folder;
+  const Model cube = test::with_dense_response<float>(test::synthetic_cube(2, 3, 4));
+  SceneConfig config;
+  for (const char* name : {"a.h5", "b.h5", "a.h5", "a.h5", "a.h5"}) {
+    test::write_dense_model(cube, folder.path() / name);
+    ObjectConfig object;
+    object.model = folder.path() / name;
+    object.engine = EngineKind::kDense;
+    if (config.objects.size() > 2) object.memory_budget = 10.0;
+    config.objects.push_back(object);
+  }
+  const auto objects = simulation_config(config, false).objects;
+  CHECK(objects[0].model == objects[2].model);
+  CHECK(objects[0].model != objects[1].model);
+  CHECK(objects[0].model != objects[3].model);
+  CHECK(objects[3].model != objects[4].model);
 }

@@ -290,3 +290,41 @@ TEST_CASE("no node's free displacement is beyond its bound, where an engine know
     CHECK(engine->free_displacement_bound() == 0.0);
   }
 }
+
+TEST_CASE("surfaces of several engines at once are those of each, to the bit") {
+  const Model modal = synthetic_cube(3, 100, 50);
+  const auto shared = share(modal);
+  const auto dense = share(with_dense_response<double>(modal));
+  std::vector<std::unique_ptr<ResponseEngine>> engines;
+  engines.push_back(make_engine(shared));
+  engines.push_back(make_engine(dense));
+  engines.push_back(make_engine(share(synthetic_cube(2, 30, 50))));
+  engines.push_back(make_engine(shared));
+  engines.push_back(make_engine(dense, shared));
+  engines.push_back(make_engine(shared, dense));
+  engines.push_back(make_engine(shared));
+  engines[5]->use(EngineKind::kDense);
+  for (std::size_t i = 0; i < engines.size(); ++i) {
+    for (int k = 0; k < 10; ++k) {
+      const NodalForce force{static_cast<int>(i) + k % 3, Vector3(1.0, 0.1 * k, -0.5)};
+      engines[i]->advance({&force, 1});
+    }
+  }
+  for (const int threads : {1, 2, 3}) {
+    omp_set_num_threads(threads);
+    std::vector<Points> together(engines.size());
+    std::vector<SurfaceRequest> requests;
+    for (std::size_t i = 0; i < engines.size(); ++i) {
+      requests.push_back({engines[i].get(), i == 3 ? 1e-4 : 0.0, &together[i]});
+    }
+    displacements(requests);
+    for (std::size_t i = 0; i < engines.size(); ++i) {
+      Points alone;
+      engines[i]->displacement(alone, i == 3 ? 1e-4 : 0.0);
+      REQUIRE(together[i] == alone);
+      REQUIRE(alone.norm() > 0.0);
+    }
+  }
+  CHECK(engines[0]->shared_surface() == engines[3]->shared_surface());
+  CHECK(engines[0]->shared_surface() != engines[2]->shared_surface());
+}

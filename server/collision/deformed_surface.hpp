@@ -40,8 +40,8 @@ class DeformedSurface {
   /// Nodes that were looked at in this step.
   std::span<const int> seen() const noexcept { return seen_; }
 
-  /// Whether the way from `from` to `to` is so far from the surface that it cannot come near, which
-  /// is known without looking at any node. False: it may be.
+  /// Whether the way from `from` to `to` stays outside of all that the surface can fill, which is
+  /// known without looking at any node. False: it may not.
   bool is_far_from(const Vector3& from, const Vector3& to) noexcept;
 
   /// The point nearest to p.

@@ -34,7 +34,7 @@ Vector3 DenseEngine<Scalar>::free_displacement(int node) const noexcept {
 // Known only of a body at rest.
 template <typename Scalar>
 double DenseEngine<Scalar>::free_displacement_bound() const noexcept {
-  const bool at_rest = past_.history().active().empty() && !spin_.any();
+  const bool at_rest = past_.history().active().empty() && spin_.at_rest();
   return at_rest ? 0.0 : ResponseEngine::free_displacement_bound();
 }
 

@@ -22,6 +22,8 @@ class DenseSpin {
   DenseSpin(const Values& values, int dof, int steps);
 
   bool any() const noexcept { return columns_.values != nullptr; }
+  /// Nothing is added: no spin is held, and none was within the last T steps.
+  bool at_rest() const noexcept { return past_.history().active().empty() && coming_.isZero(0.0); }
   /// Held throughout the coming step.
   void hold(const Vector3& w) noexcept;
   /// Adds what a node does at the end of the coming step, with the spin that is held.

@@ -123,7 +123,8 @@ IRDM_KERNEL bool is_multiple(const double* a, double factor, const double* b,
     const double off = std::abs(a[i] - factor * b[i]);
     most_off = std::max(most_off, std::bit_cast<std::uint64_t>(off));
   }
-  return std::bit_cast<double>(most_off) <= kRounding * std::bit_cast<double>(largest);
+  const auto allowed = kRounding * std::bit_cast<double>(largest);
+  return std::isfinite(allowed) && std::bit_cast<double>(most_off) <= allowed;
 }
 
 IRDM_KERNEL void multiply(const double* a, const double* b, double* y, std::size_t n) noexcept {

@@ -73,7 +73,7 @@ void add_effect(const NodeColumns<Half>& columns, const std::array<double, 3>& f
 
 template <std::size_t K>
 using Sums = std::array<double, K>;
-/// The same with each of the rows of b, (3, n) or (6, n): a is read once for all of them.
+/// The products of a with each of the rows of b, (3, n) or (6, n): a is read once for all of them.
 Sums<3> dot_three(const double* a, const double* b, std::size_t n) noexcept;
 Sums<6> dot_six(const double* a, const double* b, std::size_t n) noexcept;
 
@@ -103,8 +103,7 @@ void accumulate(const std::array<double, 3>& w, const double* a, const double* b
 void accumulate(const std::array<double, 3>& w, const Half* a, const Half* b, const Half* c,
                 double* y, std::size_t n) noexcept;
 
-/// Whether a[i] = factor b[i] for all i but for what a product and two roundings more may be off
-/// by.
+/// Whether a[i] = factor b[i] for all i, but for a few roundings (2^-50) of the largest |a[i]|.
 bool is_multiple(const double* a, double factor, const double* b, std::size_t n) noexcept;
 
 /// y[i] = a[i] b[i].

@@ -10,7 +10,7 @@ namespace irdm {
 
 std::size_t row_block(std::size_t dof) {
   const auto pieces = 4 * static_cast<std::size_t>(omp_get_max_threads());
-  return std::clamp<std::size_t>(dof / pieces, 64, 256);
+  return std::clamp<std::size_t>(dof / pieces / 4 * 4, 64, 256);
 }
 
 template <typename Number>

@@ -32,8 +32,8 @@ struct SurfaceRequest {
 
 /// The elastic answer of one object to the history of forces on its surface nodes, equation (10):
 /// u[k] = sum_s R[s] f[k-s]. Everything is in B. An engine has one state and belongs to one thread;
-/// several engines may share the same model. All members but the constructor and displacement() are
-/// real-time safe, and what they cost does not depend on the number of nodes.
+/// several engines may share the same model. All members but the constructor, displacement() and
+/// displacements() are real-time safe, and what they cost does not depend on the number of nodes.
 class ResponseEngine {
  public:
   virtual ~ResponseEngine() = default;

@@ -94,7 +94,7 @@ class GodObject {
   bool releasing_ = false;
   int release_steps_ = 0;
   bool grabbed_before_ = false;  ///< the button was down in the last step, or may have been
-  /// The tip was outside the surface when last seen near it. Only from there can it make a contact.
+  /// The tip was outside the surface when last seen. Only from there can it make a contact.
   bool outside_ = false;
   Vector3 last_tip_ = Vector3::Zero();  ///< relative to the free motion [m], B
   Vector3 tip_ = Vector3::Zero();       ///< of this step [m], B

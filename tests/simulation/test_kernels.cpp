@@ -172,8 +172,11 @@ TEST_CASE("a multiple is one but for rounding") {
     std::vector<double> other = a;
     other[at] += 1e-14;
     CHECK_FALSE(is_multiple(other.data(), 1.0 / 3.0, b.data(), n));
-    other[at] = std::numeric_limits<double>::quiet_NaN();
-    CHECK_FALSE(is_multiple(other.data(), 1.0 / 3.0, b.data(), n));
+    for (const double none_at_all :
+         {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+      other[at] = none_at_all;
+      CHECK_FALSE(is_multiple(other.data(), 1.0 / 3.0, b.data(), n));
+    }
   }
 }
 

@@ -24,13 +24,13 @@ Number number_of(double value) {
 /// Any response, and every force there was: the sum as it is written.
 template <typename Number>
 struct PlainConvolution {
-  PlainConvolution(int nodes, int length) : dof(3 * nodes), steps(length) {
+  PlainConvolution(int nodes, int length, int sources = kSources) : dof(3 * nodes), steps(length) {
     Random random(5);
     std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-    for (int i = 0; i < dof * 3 * kSources * steps; ++i) {
+    for (int i = 0; i < dof * 3 * sources * steps; ++i) {
       values.push_back(number_of<Number>(uniform(random)));
     }
-    for (int b = 0; b < 3 * kSources; ++b) scales.push_back(1.0 + 0.1 * b);
+    for (int b = 0; b < 3 * sources; ++b) scales.push_back(1.0 + 0.1 * b);
   }
   ResidentColumns<Number> columns() const {
     return {values.data(), scales.data(), static_cast<std::size_t>(dof),
@@ -166,6 +166,39 @@ TEMPLATE_TEST_CASE("forces that keep in proportion are convolved together, with 
   // Slipping from step 201 to 209, and late forces from step 504 on that last changed step 515, are
   // seen until they are forgotten.
   CHECK(together == 2 * 700 - (209 + steps - 201) - (515 + steps - 504));
+}
+
+TEMPLATE_TEST_CASE("patches of any size are convolved together", "", float, double, Half) {
+  constexpr int kPause = 40;  // longer than the response
+  const int size = GENERATE(1, 2, 4, 5, 7, 32, 33, 40);
+  PlainConvolution<TestType> plain(size, 30, size);
+  ResidentColumns<TestType> columns = plain.columns();
+  RunningConvolution running(columns, size);
+  Random random(19);
+  double worst = 0.0;
+  double largest = 0.0;
+  for (int k = 0; k < 200; ++k) {
+    std::vector<NodalForce> now;
+    const Vector3 force = anywhere(random, 1.0);
+    for (int node = 0; node < size && k % 100 >= kPause; ++node) {
+      now.push_back({node, (0.1 + 0.03 * node) * force});
+    }
+    running.push(now);
+    plain.past.push_back(now);
+    for (int node = 0; node < std::min(size, 3); ++node) {
+      Vector3 u = Vector3::Zero();
+      running.add_coming(node, u);
+      running.follow(node);
+      running.foresee(node, 20);
+      const Vector3 expected = plain.coming(node, 1);
+      worst = std::max(worst, (u - expected).norm());
+      Vector3 ahead = Vector3::Zero();
+      running.add_foreseen(node, 20, ahead);
+      worst = std::max(worst, (ahead - plain.coming(node, 20)).norm());
+      largest = std::max(largest, expected.norm());
+    }
+  }
+  CHECK(worst < (std::is_same_v<TestType, Half> ? 2e-7 : 1e-14) * largest);
 }
 
 TEST_CASE("what a step sees has the same bits whether somebody looks ahead or not") {

@@ -91,16 +91,24 @@ void check_equal(Model dense) {
   WanderingForces forces(nodes);
   Points u;
   Points expected;
-  for (int k = 0; k < 300; ++k) {
-    const std::vector<NodalForce> now = forces.next();
+  const std::array followed{1, 3, 4, 5, 8};
+  Random random(17);
+  for (int k = 0; k < 500; ++k) {
+    std::vector<NodalForce> now = forces.next();
+    if (k > 250) {  // in proportion, as of a contact that sticks
+      const Vector3 force = anywhere(random, 1.0);
+      now = {{3, 0.2 * force}, {4, 0.7 * force}, {5, 0.1 * force}};
+    }
     for (ResponseEngine* engine : {streamed.get(), whole.get()}) {
       engine->hold_spin(Vector3(0.1, 0.2, 0.01 * k));
+      engine->follow(followed);
       if (k % 40 == 39) engine->add_past(now, 3);
       engine->advance(now);
     }
     for (int i = 0; i < nodes; ++i) {
       REQUIRE(streamed->free_displacement(i) == whole->free_displacement(i));
     }
+    REQUIRE(streamed->free_displacement_bound() == whole->free_displacement_bound());
     if (k % 30 != 0) continue;
     streamed->displacement(u);
     whole->displacement(expected);
@@ -108,6 +116,11 @@ void check_equal(Model dense) {
     check_same_answers(*streamed, *whole, k % 20);
   }
   CHECK(streamed->missed_columns() == 0);
+  for (ResponseEngine* engine : {streamed.get(), whole.get()}) {
+    CHECK(std::isinf(engine->free_displacement_bound()));
+    for (int k = 0; k < model.dense->steps; ++k) engine->advance({});
+    CHECK(engine->free_displacement_bound() == 0.0);
+  }
 }
 
 Model halved(const Model& dense) {

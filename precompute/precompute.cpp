@@ -177,8 +177,12 @@ ModalResponse modes_of(const PrecomputeConfig& config, const TetMesh& mesh,
     shared->help();
     return {};
   }
-  const auto lowest = [&shared](int count) { return shared->lowest(count); };
-  return compute_reduced_modes(mesh, clamped, model, config.modes, threads, console, lowest);
+  SharedSolvers solvers;
+  solvers.modes = [&shared](int count) { return shared->lowest(count); };
+  // Alone, a process is quicker with its threads.
+  if (ranks.size() > 1) solvers.statics = shared->solver();
+  return compute_reduced_modes(mesh, clamped, model, config.modes, threads, console,
+                               std::move(solvers));
 }
 
 // The columns that are asked for, of all of them.

@@ -7,10 +7,11 @@
 namespace irdm::precompute {
 
 ElasticStatics::ElasticStatics(SparseMatrix stiffness, const Points& nodes,
-                               const Eigen::VectorXd& mass, const std::vector<int>& clamped)
+                               const Eigen::VectorXd& mass, const std::vector<int>& clamped,
+                               std::unique_ptr<SparseSolver> solver)
     : root_mass_(mass.replicate(1, 3).transpose().reshaped().cwiseSqrt()),
       largest_square_((stiffness.diagonal().array() / root_mass_.array().square()).maxCoeff()),
-      solver_(make_sparse_solver()) {
+      solver_(std::move(solver)) {
   for (const int node : clamped) {
     for (int axis = 0; axis < 3; ++axis) clamped_.push_back(3 * node + axis);
   }

@@ -23,8 +23,10 @@ class ElasticStatics {
   /// @param nodes (N, 3) [m]
   /// @param mass lumped (N) [kg]
   /// @param clamped into the nodes, increasing; none: the body is free
+  /// @param solver of the factorisation
   ElasticStatics(SparseMatrix stiffness, const Points& nodes, const Eigen::VectorXd& mass,
-                 const std::vector<int>& clamped);
+                 const std::vector<int>& clamped,
+                 std::unique_ptr<SparseSolver> solver = make_sparse_solver());
 
   Eigen::Index degrees_of_freedom() const { return root_mass_.size(); }  ///< 3N
   /// Elastic modes that there are: 3N - 6 of a free body, three less a clamped node of a fixed one.
@@ -34,7 +36,8 @@ class ElasticStatics {
   /// Square root of each degree of freedom's mass (3N) [kg^1/2].
   const Eigen::VectorXd& root_mass() const { return root_mass_; }
 
-  /// K^+ f, (3N, k) [m]; clamped nodes stay at 0. Any number of threads.
+  /// K^+ f, (3N, k) [m]; clamped nodes stay at 0. Any number of threads,
+  /// if that is so of the solver.
   /// @param force (3N, k) [N]
   Eigen::MatrixXd displacement(const Eigen::Ref<const Eigen::MatrixXd>& force) const;
   /// M^1/2 K^+ M^1/2 x, (3N, k): its eigenvalues are 1 / omega^2 [s^2].

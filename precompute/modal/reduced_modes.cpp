@@ -132,16 +132,21 @@ class Choice {
 
 ModalResponse compute_reduced_modes(const TetMesh& mesh, const std::vector<int>& clamped,
                                     const Model& model, const ModesConfig& config, int threads,
-                                    const Console& console, const LowestModes& solver) {
+                                    const Console& console, SharedSolvers shared) {
   const SingleThreadedBlas
       single;  // the factors' bits, and so the modes', do not depend on threads
-  const ElasticStatics statics(assemble_stiffness(mesh, lame_parameters(model.material)),
-                               model.mesh.nodes, model.mesh.node_mass, clamped);
+  const bool any_thread_solves = shared.statics == nullptr;
+  const ElasticStatics statics(
+      assemble_stiffness(mesh, lame_parameters(model.material)), model.mesh.nodes,
+      model.mesh.node_mass, clamped,
+      any_thread_solves ? make_sparse_solver() : std::move(shared.statics));
   const FingertipReference reference(statics, model, config.contact_radius, clamped);
   const double radius = residual_radius(model.mesh, config.contact_radius);
-  ModalResponse response = Choice(statics, model, reference, radius, solver, console).of(config);
+  ModalResponse response =
+      Choice(statics, model, reference, radius, shared.modes, console).of(config);
   ModeReduction reduction = response.residual.reduction;
-  response.residual = residual_compliance(statics, model.mesh, response, radius, threads, console);
+  response.residual = residual_compliance(statics, model.mesh, response, radius,
+                                          any_thread_solves ? threads : 1, console);
   const ReductionError error = reference.error(response);
   reduction.elastic_modes = static_cast<int>(statics.elastic_modes());
   reduction.contact_radius = config.contact_radius;

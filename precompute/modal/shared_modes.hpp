@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "precompute/dynamics/sparse_solver.hpp"
 #include "precompute/mesh/tet_mesh.hpp"
 #include "precompute/modal/elastic_modes.hpp"
 #include "precompute/modal/modes_config.hpp"
@@ -11,13 +12,17 @@
 namespace irdm::precompute {
 
 /// The lowest elastic modes, found by all ranks together: each assembles and keeps its rows of the
-/// matrix and of the vectors. Made and destroyed by all ranks.
+/// matrix and of the vectors. And a solver whose factors they share. Made and destroyed by all
+/// ranks.
 class SharedModes {
  public:
   virtual ~SharedModes() = default;
   /// Rank 0 only. So many of the lowest modes of the whole mesh, each eigenpair to 1e-10 of its
   /// eigenvalue; what lowest_modes() gives. Throws Error.
   virtual ElasticModes lowest(int count) = 0;
+  /// Rank 0 only. A solver for any matrix that rank 0 has, for the thread that made this object,
+  /// which must outlive it; one at a time.
+  virtual std::unique_ptr<SparseSolver> solver() = 0;
   /// The other ranks: takes part in what rank 0 asks for until its object is gone. What fails on
   /// all ranks is told by rank 0.
   virtual void help() = 0;

@@ -6,6 +6,7 @@
 #include "precompute/modal/lowest_modes.hpp"
 #include "precompute/modal/shared_modes.hpp"
 #include "precompute/modal/shared_stiffness.hpp"
+#include "precompute/parallel/shared_factors.hpp"
 
 namespace irdm::precompute {
 namespace {
@@ -15,11 +16,26 @@ constexpr double kSolveTolerance = 1e-12;
 constexpr int kMostRounds = 1000;
 constexpr int kMostIterations = 2000;
 
+class SharedSolver final : public SparseSolver {
+ public:
+  explicit SharedSolver(SharedFactors& factors) : factors_(factors) {}
+  void factorise(const Eigen::SparseMatrix<double>& matrix) override { factors_.factorise(matrix); }
+  Eigen::MatrixXd solve(const Eigen::Ref<const Eigen::MatrixXd>& right) const override {
+    return factors_.solve(right);
+  }
+
+ private:
+  SharedFactors& factors_;
+};
+
 class SlepcModes final : public SharedModes {
  public:
   SlepcModes(const TetMesh& mesh, const Material& material, const Eigen::VectorXd& mass,
              const std::vector<int>& clamped, ModeSolver solver, const Ranks& ranks)
-      : ranks_(ranks), solver_(solver), stiffness_(mesh, material, mass, clamped, ranks) {}
+      : ranks_(ranks),
+        solver_(solver),
+        stiffness_(mesh, material, mass, clamped, ranks),
+        factors_(ranks) {}
 
   ~SlepcModes() override {
     if (ranks_.rank() == 0) ranks_.first_says(0);
@@ -30,10 +46,19 @@ class SlepcModes final : public SharedModes {
     return solve(count);
   }
 
+  std::unique_ptr<SparseSolver> solver() override {
+    return std::make_unique<SharedSolver>(factors_);
+  }
+
+  // A number above 0 asks for so many modes, one below for the factors' work.
   void help() override {
-    while (const int count = ranks_.first_says(0)) {
+    while (const int number = ranks_.first_says(0)) {
       try {
-        solve(count);
+        if (number > 0) {
+          solve(number);
+        } else {
+          factors_.help(number);
+        }
       } catch (const Error&) {  // rank 0 has it too
       }
     }
@@ -108,6 +133,7 @@ class SlepcModes final : public SharedModes {
   ModeSolver solver_;
   SlepcSession session_;
   SharedStiffness stiffness_;
+  SharedFactors factors_;
 };
 
 }  // namespace

@@ -82,6 +82,35 @@ TEST_CASE("SLEPc's modes of quadratic elements are Spectra's") {
   });
 }
 
+TEST_CASE("shared factors solve as those of one process do, and tell what is not definite") {
+  const Discrete body(precompute::test::box_mesh(Vector3(0.12, 0.08, 0.10), {5, 3, 4}), kMaterial);
+  const std::vector<int> clamped = nodes_in(body.mesh, kLeft, "box");
+  share(body, clamped, ModeSolver::kSlepc, [&](SharedModes& shared) {
+    const ElasticStatics alone(body.stiffness, body.mesh.nodes, body.mass, clamped);
+    for (int round = 0; round < 2; ++round) {
+      const ElasticStatics together(body.stiffness, body.mesh.nodes, body.mass, clamped,
+                                    shared.solver());
+      for (const int columns : {1, 7, 48}) {
+        const Eigen::MatrixXd loads = Eigen::MatrixXd::Random(alone.degrees_of_freedom(), columns);
+        const Eigen::MatrixXd expected = alone.displacement(loads);
+        CHECK((together.displacement(loads) - expected).norm() < 1e-10 * expected.norm());
+      }
+      // In between, as where modes are chosen by an error.
+      CHECK(shared.lowest(6).angular_frequency.size() == 6);
+      const Eigen::MatrixXd load = Eigen::MatrixXd::Random(alone.degrees_of_freedom(), 2);
+      CHECK((together.displacement(load) - alone.displacement(load)).norm() <
+            1e-10 * alone.displacement(load).norm());
+    }
+    const auto solver = shared.solver();
+    Eigen::SparseMatrix<double> turned = body.stiffness;
+    turned.coeffRef(0, 0) = -1.0;
+    CHECK_THROWS_WITH(solver->factorise(turned), Contains("not positive definite"));
+    const Eigen::SparseMatrix<double> unit = 2.0 * Eigen::MatrixXd::Identity(30, 30).sparseView();
+    solver->factorise(unit);
+    CHECK(solver->solve(Eigen::MatrixXd::Ones(30, 3)) == Eigen::MatrixXd::Constant(30, 3, 0.5));
+  });
+}
+
 // MUMPS sums up what other ranks send in the order that it comes.
 TEST_CASE("SLEPc gives the same every time, bit for bit on one rank") {
   const Discrete body(precompute::test::box_mesh(Vector3(0.12, 0.08, 0.10), {4, 3, 3}), kMaterial);

@@ -230,7 +230,7 @@ int run_server(const ServerOptions& options) {
   const std::string memory = lock_memory(scheduling(scene, options));
   columns.start(scheduling(scene, options) != RealTimeScheduling::kIgnore);
   black_box.start(force);
-  network.start();
+  options.lockstep ? network.open() : network.start();
   say_where(network.endpoint());
   if (viewers) viewers->start();
   if (recorder) recorder->start();

@@ -29,6 +29,7 @@ namespace {
 
 constexpr double kComplaintRate = 5.0;  // [1/s]
 constexpr double kComplaintBurst = 50.0;
+constexpr std::int64_t kAwakeNs = 50'000;
 
 }  // namespace
 
@@ -49,7 +50,9 @@ class NetworkServer::Impl {
   }
   ~Impl() { stop(); }
 
+  void open();
   void start();
+  void serve() noexcept;
   void stop();
   std::string endpoint() const;
 
@@ -66,6 +69,8 @@ class NetworkServer::Impl {
   void listen();
   void listen_for_datagrams();
   void run() noexcept;
+  template <class Work>
+  bool guarded(const Work& work) noexcept;
   void accept();
   void admit(tcp::socket socket);
   std::unique_ptr<wire::Stream> make_stream(tcp::socket socket);
@@ -75,6 +80,7 @@ class NetworkServer::Impl {
   void make_room();
   void take_datagram(std::uint32_t id, std::span<const std::uint8_t> datagram,
                      const DatagramPort::Endpoint& from);
+  void send_forces();
   void await_forces();
   void await_tick();
   void shut_down();
@@ -89,6 +95,7 @@ class NetworkServer::Impl {
   std::random_device random_;
   Allowance complaints_{kComplaintRate, kComplaintBurst};
   bool accepting_ = false;
+  bool opened_ = false;
   bool stopping_ = false;
   std::thread thread_;
 };
@@ -154,7 +161,8 @@ std::string NetworkServer::Impl::endpoint() const {
   return text.str();
 }
 
-void NetworkServer::Impl::start() {
+void NetworkServer::Impl::open() {
+  opened_ = true;
   accept();
   if (datagrams_) {
     datagrams_->start([this](auto&&... datagram) { take_datagram(datagram...); },
@@ -162,26 +170,60 @@ void NetworkServer::Impl::start() {
   }
   await_forces();
   await_tick();
+}
+
+void NetworkServer::Impl::start() {
+  open();
   thread_ = std::thread([this] { run(); });
   ::pthread_setname_np(thread_.native_handle(), "network");
   apply_scheduling(settings_.scheduling, thread_, kNetworkPriority);
 }
 
 void NetworkServer::Impl::stop() {
-  if (!thread_.joinable()) return;
-  boost::asio::post(io_, [this] { shut_down(); });
-  thread_.join();
+  if (!opened_) return;
+  opened_ = false;
+  if (thread_.joinable()) {
+    boost::asio::post(io_, [this] { shut_down(); });
+    thread_.join();
+    return;
+  }
+  guarded([this] { send_forces(); });
+  shut_down();
+  run();
 }
 
 void NetworkServer::Impl::run() noexcept {
-  for (;;) {
-    try {
-      io_.run();
-      return;
-    } catch (const std::exception& error) {
-      stats_.internal_errors.fetch_add(1);
-      spdlog::error("network: {}", error.what());
+  while (!guarded([this] { io_.run(); })) {
+  }
+}
+
+// A virtual processor that went to sleep takes some 40 us to come back: what follows a force at
+// once finds this thread awake. Later there is something within a tick.
+void NetworkServer::Impl::serve() noexcept {
+  guarded([this] {
+    send_forces();
+    const std::int64_t asleep_ns = monotonic_ns() + kAwakeNs;
+    while (monotonic_ns() < asleep_ns) {
+      if (io_.poll_one() > 0) return;
     }
+    io_.run_one();
+  });
+}
+
+void NetworkServer::Impl::send_forces() {
+  for (Session& session : sessions_) session.send_forces();
+}
+
+/// False when it has failed.
+template <class Work>
+bool NetworkServer::Impl::guarded(const Work& work) noexcept {
+  try {
+    work();
+    return true;
+  } catch (const std::exception& error) {
+    stats_.internal_errors.fetch_add(1);
+    spdlog::error("network: {}", error.what());
+    return false;
   }
 }
 
@@ -258,7 +300,7 @@ void NetworkServer::Impl::await_forces() {
                                 [this](error_code error) {
                                   if (error || stopping_) return;
                                   forces_ready_.consume();
-                                  for (Session& session : sessions_) session.send_forces();
+                                  send_forces();
                                   await_forces();
                                 });
 }
@@ -318,8 +360,14 @@ Mailbox<wire::Status>& NetworkServer::status() noexcept {
 const NetworkStats& NetworkServer::stats() const noexcept {
   return impl_->stats_;
 }
+void NetworkServer::open() {
+  impl_->open();
+}
 void NetworkServer::start() {
   impl_->start();
+}
+void NetworkServer::serve() noexcept {
+  impl_->serve();
 }
 void NetworkServer::stop() {
   impl_->stop();

@@ -61,7 +61,8 @@ struct NetworkStats {
 
 /// Listens for bridges and relays samples and forces between them and the force thread, on a thread
 /// of its own (docs/protocol.md). The force thread touches port(i), samples_arrived() and
-/// forces_ready() only; all of that is real-time safe.
+/// forces_ready() only; all of that is real-time safe. In lockstep the force thread serves the
+/// network itself, between its steps: each waits for the other there.
 class NetworkServer {
  public:
   /// Binds and listens. Throws Error when it cannot.
@@ -86,8 +87,12 @@ class NetworkServer {
 
   /// Starts the thread. Throws Error when real-time scheduling is required and not permitted.
   void start();
+  /// In place of start(): no thread, whoever calls serve() does its work.
+  void open();
+  /// Does one thing that is to be done; waits for it, at most 10 ms. After open().
+  void serve() noexcept;
   /// Says goodbye to every bridge, waits at most half a second for them to hang up, and joins the
-  /// thread. Every stylus is absent afterwards. Further calls do nothing.
+  /// thread, or serves till then. Every stylus is absent afterwards. Further calls do nothing.
   void stop();
 
  private:

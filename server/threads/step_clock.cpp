@@ -4,10 +4,6 @@
 #include <cmath>
 
 namespace irdm {
-namespace {
-constexpr int kPollMs = 20;  // how soon a stop is noticed
-constexpr std::int64_t kRoomPauseNs = 200'000;
-}  // namespace
 
 RealTimeClock::RealTimeClock(double dt)
     : period_ns_(std::llround(dt * 1e9)), schedule_(0, period_ns_) {}
@@ -47,11 +43,11 @@ bool LockstepClock::room() const noexcept {
 
 // The step that wait() has let through would come at once again.
 void LockstepClock::rest() noexcept {
-  sleep_until(monotonic_ns() + kRoomPauseNs);
+  network_.serve();
 }
 
 bool LockstepClock::wait(std::uint64_t step) noexcept {
-  while (!stopped() && !room()) sleep_until(monotonic_ns() + kRoomPauseNs);
+  while (!stopped() && !room()) network_.serve();
   while (!stopped()) {
     switch (samples(step)) {
       case Samples::kComplete:
@@ -59,7 +55,7 @@ bool LockstepClock::wait(std::uint64_t step) noexcept {
       case Samples::kEnded:
         return false;
       case Samples::kAwaited:
-        network_.samples_arrived().wait(kPollMs);
+        network_.serve();
     }
   }
   return false;

@@ -58,7 +58,8 @@ class RealTimeClock final : public StepClock {
 /// for the followers too, so that no step is lost however fast simulated time goes.
 class LockstepClock final : public StepClock {
  public:
-  /// The force thread's side of `network` and of the sinks; they must outlive the clock.
+  /// The force thread's side of `network`, which has to be open, and of the sinks; they must
+  /// outlive the clock.
   LockstepClock(NetworkServer& network, std::vector<StepSink*> sinks);
   bool wait(std::uint64_t step) noexcept override;
   void rest() noexcept override;

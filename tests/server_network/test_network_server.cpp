@@ -1,5 +1,7 @@
 #include <catch2/catch.hpp>
+#include <future>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/error.hpp"
@@ -45,6 +47,44 @@ TEST_CASE("a sample reaches the force thread and its force comes back with its n
   CHECK(force->force.sample_sequence == 3);
   CHECK(force->force.sample_time_ns == 77);
   CHECK(force->force.force == Vector3(0, 1, 0));
+}
+
+TEST_CASE(
+    "a server without a thread does its work in serve(), and sends the last forces when stopped") {
+  NetworkServer server({.lockstep = true, .styluses = 1});
+  server.open();
+  RawPeer peer = RawPeer::connect(server.port_number());
+  peer.send(Hello{.lockstep = true, .name = "test"});
+  while (server.stats().accepted == 0) server.serve();
+  REQUIRE(peer.receive_as<Welcome>());
+  StylusPort& port = server.port(0);
+  const auto answer = [&](std::uint64_t step) {
+    peer.send(SampleMessage{.sample = {.sequence = step}});
+    while (!port.in.receive() || port.in.front().sample.sequence != step) server.serve();
+    port.out.put({.force_step = step, .sample_sequence = step});
+  };
+  answer(0);
+  server.serve();
+  const auto force = peer.receive_as<wire::ForceMessage>();
+  REQUIRE(force);
+  CHECK(force->force.force_step == 0);
+
+  answer(1);
+  auto rest = std::async(std::launch::async, [&] {
+    const auto last = peer.receive_as<wire::ForceMessage>();
+    const auto goodbye = peer.receive_as<Goodbye>();
+    peer.close();
+    return std::pair(last, goodbye);
+  });
+  server.stop();
+  const auto [last, goodbye] = rest.get();
+  REQUIRE(last);
+  CHECK(last->force.force_step == 1);
+  REQUIRE(goodbye);
+  CHECK(goodbye->reason == GoodbyeReason::kStopping);
+  CHECK(port.in.receive());
+  CHECK_FALSE(port.in.front().present);
+  server.stop();
 }
 
 TEST_CASE("a bridge's report is there for who watches, until the bridge goes") {

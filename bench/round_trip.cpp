@@ -1,14 +1,17 @@
 // What the server adds to the bare way there and back: irdm-server in lockstep, which answers each
 // sample as soon as it has it, beside a process that only gives back as many bytes. Loopback, TCP
-// without delay, frames of the same sizes, one after the other in the same run.
+// without delay, frames of the same sizes, one after the other in the same run; for comparison also
+// what a second such process adds, which is what the placement of processes does alone.
 //   bench_round_trip MODEL.h5
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <string>
 
 #include "bench/echo.hpp"
+#include "bench/placement.hpp"
 #include "bench/report.hpp"
 #include "bench/statistics.hpp"
 #include "common/wire/frame.hpp"
@@ -66,8 +69,42 @@ class Bridge {
   StylusForce force_;
 };
 
+bench::Echo make_echo() {
+  return {frame_size(wire::SampleMessage{}), frame_size(wire::ForceMessage{})};
+}
+
+/// One row: a bare echo and what is compared with it, alternately.
+/// @param other one round trip, the k-th [s]
+void compare(bench::Report& report, const bench::Placement& placement, const std::string& what,
+             bench::Echo& echo, const std::function<double(int k)>& other) {
+  bench::run_on(placement.asking);
+  std::vector<double> bare;
+  std::vector<double> whole;
+  for (int k = 0; k < kWarmUp + kTrips; ++k) {
+    const double there_and_back = echo.round_trip();
+    const double answered = other(k);
+    if (k < kWarmUp) continue;
+    bare.push_back(1e6 * there_and_back);
+    whole.push_back(1e6 * answered);
+  }
+  const double b = bench::percentile(bare, 0.5);
+  const double w = bench::percentile(whole, 0.5);
+  report.row({what, placement.name, b, bench::percentile(bare, 0.99), w,
+              bench::percentile(whole, 0.99), w - b});
+}
+
+void compare_echo(bench::Report& report, const bench::Placement& placement) {
+  bench::run_on(placement.answering);
+  bench::Echo echo = make_echo();
+  bench::Echo second = make_echo();
+  compare(report, placement, "a second echo", echo, [&](int) { return second.round_trip(); });
+}
+
 /// Server with one cube whose stylus is away from it or holds it.
-void measure(bench::Report& report, bench::Echo& echo, const std::string& model, bool held) {
+void compare_server(bench::Report& report, const bench::Placement& placement,
+                    const std::string& model, bool held) {
+  bench::run_on(placement.answering);
+  bench::Echo echo = make_echo();
   const test::TemporaryFolder folder;
   const std::string scene = (folder.path() / "scene.toml").string();
   std::ofstream(scene) << "[server]\nstyluses = 1\n[contact]\ncoupling_stiffness = 2000\n"
@@ -76,25 +113,15 @@ void measure(bench::Report& report, bench::Echo& echo, const std::string& model,
   test::ChildProcess server({IRDM_SERVER, scene, "--lockstep", "--no-viewer"});
   const std::string line = server.line_with("listening on 127.0.0.1:");
   Bridge bridge(static_cast<std::uint16_t>(std::stoi(line.substr(line.rfind(':') + 1))));
-  const auto tip = [&](int k) {
-    return held ? Vector3(0.001, k < 2 ? 0.061 : 0.059, 0.001) : Vector3(0.0, 0.2, 0.0);
-  };
-  std::vector<double> bare;
-  std::vector<double> whole;
-  for (int k = 0; k < kWarmUp + kTrips; ++k) {
-    const double there_and_back = echo.round_trip();
-    const double answered = bridge.round_trip(tip(k), held);
-    if (k < kWarmUp) continue;
-    bare.push_back(1e6 * there_and_back);
-    whole.push_back(1e6 * answered);
-  }
+  compare(report, placement, held ? "server, one point held" : "server, stylus away", echo,
+          [&](int k) {
+            const Vector3 tip =
+                held ? Vector3(0.001, k < 2 ? 0.061 : 0.059, 0.001) : Vector3(0.0, 0.2, 0.0);
+            return bridge.round_trip(tip, held);
+          });
   if ((bridge.force().contact == ContactState::kHeld) != held) {
     throw std::runtime_error("the stylus has no hold; these times mean nothing");
   }
-  const double b = bench::percentile(bare, 0.5);
-  const double w = bench::percentile(whole, 0.5);
-  report.row({std::string(held ? "one point held" : "stylus away"), b,
-              bench::percentile(bare, 0.99), w, bench::percentile(whole, 0.99), w - b});
 }
 
 }  // namespace
@@ -104,12 +131,13 @@ int main(int argc, char** argv) {
     std::fputs("usage: bench_round_trip MODEL.h5\n", stderr);
     return 2;
   }
-  bench::Echo echo(frame_size(wire::SampleMessage{}), frame_size(wire::ForceMessage{}));
+  const std::string model = std::filesystem::absolute(argv[1]).string();
   bench::Report report("round_trip");
   report.table("round trip on loopback",
-               {"what", "bare echo, median [us]", "p99 [us]", "server, median [us]",
-                "server, p99 [us]", "added, median [us]"});
-  for (const bool held : {false, true}) {
-    measure(report, echo, std::filesystem::absolute(argv[1]).string(), held);
+               {"what", "processes", "bare echo, median [us]", "p99 [us]", "other, median [us]",
+                "p99 [us] of it", "added, median [us]"});
+  for (const bench::Placement& placement : bench::placements()) {
+    compare_echo(report, placement);
+    for (const bool held : {false, true}) compare_server(report, placement, model, held);
   }
 }

@@ -37,18 +37,17 @@ int serve(std::uint16_t port, const std::string& address) {
   NetworkSettings settings{.address = address, .port = port, .styluses = 1};
   if (address != kLoopback) settings.key = kKey;
   NetworkServer server(settings);
-  server.start();
+  server.open();
   std::cout << "listening on " << server.port_number() << std::endl;
   std::uint64_t step = 0;
   for (;;) {
     StylusPort& stylus = server.port(0);
-    if (!server.samples_arrived().wait(-1) || !stylus.in.receive()) continue;
-    if (!stylus.in.front().present) continue;
+    server.serve();
+    if (!stylus.in.receive() || !stylus.in.front().present) continue;
     const StylusSample& sample = stylus.in.front().sample;
     stylus.out.put({.force_step = step++,
                     .sample_sequence = sample.sequence,
                     .sample_time_ns = sample.time_ns});
-    server.forces_ready().signal();
   }
 }
 

@@ -37,7 +37,7 @@ class NetworkServer::Impl {
  public:
   explicit Impl(const NetworkSettings& settings)
       : settings_(checked(settings)),
-        slots_(settings.styluses, samples_arrived_),
+        slots_(settings.styluses),
         acceptor_(io_),
         forces_descriptor_(io_),
         timer_(io_) {
@@ -58,7 +58,6 @@ class NetworkServer::Impl {
 
   const NetworkSettings settings_;
   NetworkStats stats_;
-  Wakeup samples_arrived_;
   Wakeup forces_ready_;
   Mailbox<wire::Status> status_;
   StylusSlots slots_;
@@ -347,9 +346,6 @@ int NetworkServer::styluses() const noexcept {
 }
 StylusPort& NetworkServer::port(int stylus) {
   return impl_->slots_.port(stylus);
-}
-Wakeup& NetworkServer::samples_arrived() noexcept {
-  return impl_->samples_arrived_;
 }
 Wakeup& NetworkServer::forces_ready() noexcept {
   return impl_->forces_ready_;

@@ -60,8 +60,8 @@ struct NetworkStats {
 };
 
 /// Listens for bridges and relays samples and forces between them and the force thread, on a thread
-/// of its own (docs/protocol.md). The force thread touches port(i), samples_arrived() and
-/// forces_ready() only; all of that is real-time safe. In lockstep the force thread serves the
+/// of its own (docs/protocol.md). The force thread touches port(i) and forces_ready()
+/// only; all of that is real-time safe. In lockstep the force thread serves the
 /// network itself, between its steps: each waits for the other there.
 class NetworkServer {
  public:
@@ -77,8 +77,6 @@ class NetworkServer {
 
   int styluses() const noexcept;
   StylusPort& port(int stylus);
-  /// Signalled after every put into an `in` mailbox: a sample, or a stylus that came or went.
-  Wakeup& samples_arrived() noexcept;
   /// To be signalled once after the `out` mailboxes of a step were filled.
   Wakeup& forces_ready() noexcept;
   const NetworkStats& stats() const noexcept;

@@ -4,10 +4,8 @@
 
 namespace irdm {
 
-StylusSlots::StylusSlots(int count, Wakeup& arrived)
-    : arrived_(arrived),
-      ports_(static_cast<std::size_t>(count)),
-      owners_(static_cast<std::size_t>(count)) {}
+StylusSlots::StylusSlots(int count)
+    : ports_(static_cast<std::size_t>(count)), owners_(static_cast<std::size_t>(count)) {}
 
 std::optional<int> StylusSlots::claim(int count, bool predicts) {
   const auto first =
@@ -40,7 +38,6 @@ bool StylusSlots::put(int slot, const StylusSample& sample, std::int64_t now_ns)
   owner.arrived_ns = now_ns;
   port(slot).in.put(
       {.present = true, .sample = sample, .predicts = owner.predicts, .session = owner.session});
-  arrived_.signal();
   return true;
 }
 
@@ -68,7 +65,6 @@ void StylusSlots::make_absent(int slot, bool in_order) {
   if (!owner.present) return;
   owner.present = false;
   port(slot).in.put({.left = in_order});
-  arrived_.signal();
 }
 
 std::optional<StylusForce> StylusSlots::take_force(int slot) {

@@ -4,7 +4,6 @@
 #include <optional>
 #include <vector>
 
-#include "common/realtime/wakeup.hpp"
 #include "server/network/stylus_port.hpp"
 
 namespace irdm {
@@ -13,8 +12,7 @@ namespace irdm {
 /// for the other side of port().
 class StylusSlots {
  public:
-  /// @param arrived signalled whenever an input changes
-  StylusSlots(int count, Wakeup& arrived);
+  explicit StylusSlots(int count);
 
   int count() const noexcept { return static_cast<int>(ports_.size()); }
   StylusPort& port(int slot) { return ports_[static_cast<std::size_t>(slot)]; }
@@ -54,7 +52,6 @@ class StylusSlots {
   };
   void make_absent(int slot, bool in_order = false);
 
-  Wakeup& arrived_;
   std::vector<StylusPort> ports_;
   std::vector<Owner> owners_;
   std::uint64_t sessions_ = 0;  ///< slots claimed so far

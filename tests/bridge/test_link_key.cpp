@@ -56,9 +56,8 @@ TEST_CASE("with the server's key samples and forces go both ways") {
     both.link.styluses[0].sample.put({.sequence = sequence, .tip = Vector3(1, 2, 3)});
     both.link.samples_ready.signal();
     StylusPort& port = both.server.port(0);
-    while (!port.in.receive() || port.in.front().sample.sequence != sequence) {
-      REQUIRE(both.server.samples_arrived().wait(kDeadlineMs));
-    }
+    REQUIRE(eventually(
+        [&] { return port.in.receive() && port.in.front().sample.sequence == sequence; }));
     CHECK(port.in.front().sample.tip == Vector3(1, 2, 3));
     port.out.put({.force_step = sequence, .sample_sequence = sequence, .force = Vector3(4, 5, 6)});
     both.server.forces_ready().signal();

@@ -23,12 +23,11 @@ constexpr double kWall = 200.0;  // [N/m]
 class WallServer {
  public:
   explicit WallServer(const NetworkSettings& settings) : network(settings) {
-    network.start();
+    network.open();
     thread_ = std::thread([this] { run(); });
   }
   ~WallServer() {
     stop_ = true;
-    network.samples_arrived().signal();
     thread_.join();
     network.stop();
   }
@@ -41,7 +40,7 @@ class WallServer {
     StylusPort& port = network.port(0);
     std::uint64_t step = 0;
     while (!stop_) {
-      if (!network.samples_arrived().wait(kDeadlineMs)) return;
+      network.serve();
       if (!port.in.receive() || !port.in.front().present) continue;
       const StylusSample& sample = port.in.front().sample;
       heights.push_back(sample.tip.y());
@@ -49,7 +48,6 @@ class WallServer {
                     .sample_sequence = sample.sequence,
                     .sample_time_ns = sample.time_ns,
                     .force = Vector3(0, std::max(0.0, -kWall * sample.tip.y()), 0)});
-      network.forces_ready().signal();
     }
   }
   std::atomic<bool> stop_{false};

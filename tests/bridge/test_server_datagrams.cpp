@@ -49,9 +49,10 @@ class RealEnds {
     link.styluses[0].sample.put({.sequence = sequence});
     link.samples_ready.signal();
     StylusPort& port = server.port(0);
-    while (!port.in.receive() || port.in.front().sample.sequence != sequence) {
-      if (!server.samples_arrived().wait(kDeadlineMs)) return false;
-    }
+    const auto arrived = [&] {
+      return port.in.receive() && port.in.front().sample.sequence == sequence;
+    };
+    if (!eventually(arrived)) return false;
     port.out.put({.force_step = sequence, .sample_sequence = sequence});
     server.forces_ready().signal();
     return eventually([&] {

@@ -143,8 +143,7 @@ class ServedBridge {
   Line line_{Line::Kind::kLoopback};
   NetworkSettings settings_;
   bool room_;
-  Wakeup arrived_;
-  StylusSlots slots_{2, arrived_};
+  StylusSlots slots_{2};
   NetworkStats stats_;
   Allowance complaints_{1.0, 1.0};
   DatagramPort port_{line_.executor(), {boost::asio::ip::address_v4::loopback(), 0}, true};

@@ -26,8 +26,7 @@ std::pair<Input, Input> parted(Input stream) {
 void bridge_session(Input input) {
   Line line;
   const NetworkSettings settings{.styluses = 2, .max_frame_rate = 100};
-  Wakeup arrived;
-  StylusSlots slots(settings.styluses, arrived);
+  StylusSlots slots(settings.styluses);
   NetworkStats stats;
   Allowance complaints(1.0, 1.0);
   DatagramPort port(line.executor(), {boost::asio::ip::address_v4::loopback(), 0}, true);

@@ -47,7 +47,7 @@ class RunningServer {
   /// Waits for the next input of a stylus.
   StylusInput next_input(int stylus = 0) {
     StylusPort& port = server.port(stylus);
-    while (!port.in.receive()) REQUIRE(server.samples_arrived().wait(kDeadlineMs));
+    REQUIRE(eventually([&] { return port.in.receive(); }));
     return port.in.front();
   }
   void give(const StylusForce& force, int stylus = 0) {

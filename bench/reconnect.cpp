@@ -28,6 +28,7 @@ using namespace irdm;
 namespace {
 
 constexpr std::int64_t kMillisecond = 1'000'000;
+constexpr std::int64_t kLookNs = 50'000;  // how often the server looks for a sample
 const std::string kLoopback = "127.0.0.1";
 
 constexpr wire::SecretKey kKey = {1, 2, 3};  // beyond the loopback address
@@ -37,17 +38,18 @@ int serve(std::uint16_t port, const std::string& address) {
   NetworkSettings settings{.address = address, .port = port, .styluses = 1};
   if (address != kLoopback) settings.key = kKey;
   NetworkServer server(settings);
-  server.open();
+  server.start();
   std::cout << "listening on " << server.port_number() << std::endl;
   std::uint64_t step = 0;
   for (;;) {
     StylusPort& stylus = server.port(0);
-    server.serve();
+    sleep_until(monotonic_ns() + kLookNs);
     if (!stylus.in.receive() || !stylus.in.front().present) continue;
     const StylusSample& sample = stylus.in.front().sample;
     stylus.out.put({.force_step = step++,
                     .sample_sequence = sample.sequence,
                     .sample_time_ns = sample.time_ns});
+    server.forces_ready().signal();
   }
 }
 

@@ -30,6 +30,7 @@ namespace {
 constexpr double kComplaintRate = 5.0;  // [1/s]
 constexpr double kComplaintBurst = 50.0;
 constexpr std::int64_t kAwakeNs = 50'000;
+constexpr std::chrono::milliseconds kTick(10);
 
 }  // namespace
 
@@ -167,12 +168,12 @@ void NetworkServer::Impl::open() {
     datagrams_->start([this](auto&&... datagram) { take_datagram(datagram...); },
                       [this] { stats_.datagrams_foreign.fetch_add(1); });
   }
-  await_forces();
   await_tick();
 }
 
 void NetworkServer::Impl::start() {
   open();
+  await_forces();
   thread_ = std::thread([this] { run(); });
   ::pthread_setname_np(thread_.native_handle(), "network");
   apply_scheduling(settings_.scheduling, thread_, kNetworkPriority);
@@ -181,14 +182,12 @@ void NetworkServer::Impl::start() {
 void NetworkServer::Impl::stop() {
   if (!opened_) return;
   opened_ = false;
+  boost::asio::post(io_, [this] { shut_down(); });
   if (thread_.joinable()) {
-    boost::asio::post(io_, [this] { shut_down(); });
     thread_.join();
-    return;
+  } else {
+    run();
   }
-  guarded([this] { send_forces(); });
-  shut_down();
-  run();
 }
 
 void NetworkServer::Impl::run() noexcept {
@@ -196,8 +195,8 @@ void NetworkServer::Impl::run() noexcept {
   }
 }
 
-// A virtual processor that went to sleep takes some 40 us to come back: what follows a force at
-// once finds this thread awake. Later there is something within a tick.
+// A virtual processor that went to sleep takes some 35 us to come back: what follows a force at
+// once finds this thread awake.
 void NetworkServer::Impl::serve() noexcept {
   guarded([this] {
     send_forces();
@@ -205,7 +204,7 @@ void NetworkServer::Impl::serve() noexcept {
     while (monotonic_ns() < asleep_ns) {
       if (io_.poll_one() > 0) return;
     }
-    io_.run_one();
+    io_.run_one_for(kTick);
   });
 }
 
@@ -305,7 +304,6 @@ void NetworkServer::Impl::await_forces() {
 }
 
 void NetworkServer::Impl::await_tick() {
-  constexpr std::chrono::milliseconds kTick(10);
   timer_.expires_after(kTick);
   timer_.async_wait([this](error_code) {
     const std::int64_t now_ns = monotonic_ns();
@@ -323,6 +321,7 @@ void NetworkServer::Impl::await_tick() {
 }
 
 void NetworkServer::Impl::shut_down() {
+  send_forces();
   stopping_ = true;
   error_code ignored;
   acceptor_.close(ignored);

@@ -61,7 +61,7 @@ struct NetworkStats {
 
 /// Listens for bridges and relays samples and forces between them and the force thread, on a thread
 /// of its own (docs/protocol.md). The force thread touches port(i) and forces_ready()
-/// only; all of that is real-time safe. In lockstep the force thread serves the
+/// only; all of that is real-time safe, serve() is not. In lockstep the force thread serves the
 /// network itself, between its steps: each waits for the other there.
 class NetworkServer {
  public:
@@ -77,7 +77,8 @@ class NetworkServer {
 
   int styluses() const noexcept;
   StylusPort& port(int stylus);
-  /// To be signalled once after the `out` mailboxes of a step were filled.
+  /// To be signalled once after the `out` mailboxes of a step were filled, where there is a thread
+  /// that waits for it.
   Wakeup& forces_ready() noexcept;
   const NetworkStats& stats() const noexcept;
   /// What goes to the bridges soon after it is put in; from one thread.
@@ -87,7 +88,8 @@ class NetworkServer {
   void start();
   /// In place of start(): no thread, whoever calls serve() does its work.
   void open();
-  /// Does one thing that is to be done; waits for it, at most 10 ms. After open().
+  /// Sends what the `out` mailboxes hold, and does one thing that is to be done; waits for it, at
+  /// most 10 ms. After open().
   void serve() noexcept;
   /// Says goodbye to every bridge, waits at most half a second for them to hang up, and joins the
   /// thread, or serves till then. Every stylus is absent afterwards. Further calls do nothing.

@@ -11,7 +11,7 @@
 
 namespace irdm {
 
-/// Tells the force thread when a step may run: the only thing that --lockstep replaces.
+/// Tells the force thread when a step may run: what --lockstep replaces.
 class StepClock {
  public:
   virtual ~StepClock() = default;

@@ -1,5 +1,6 @@
 #include <atomic>
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <limits>
 #include <optional>
 #include <sstream>
@@ -22,8 +23,9 @@ constexpr double kWall = 200.0;  // [N/m]
 /// A server whose force step is a soft wall at y = 0: it answers every sample.
 class WallServer {
  public:
-  explicit WallServer(const NetworkSettings& settings) : network(settings) {
-    network.open();
+  explicit WallServer(const NetworkSettings& settings)
+      : network(settings), lockstep_(settings.lockstep) {
+    lockstep_ ? network.open() : network.start();
     thread_ = std::thread([this] { run(); });
   }
   ~WallServer() {
@@ -40,7 +42,7 @@ class WallServer {
     StylusPort& port = network.port(0);
     std::uint64_t step = 0;
     while (!stop_) {
-      network.serve();
+      lockstep_ ? network.serve() : std::this_thread::sleep_for(std::chrono::microseconds(200));
       if (!port.in.receive() || !port.in.front().present) continue;
       const StylusSample& sample = port.in.front().sample;
       heights.push_back(sample.tip.y());
@@ -48,8 +50,10 @@ class WallServer {
                     .sample_sequence = sample.sequence,
                     .sample_time_ns = sample.time_ns,
                     .force = Vector3(0, std::max(0.0, -kWall * sample.tip.y()), 0)});
+      if (!lockstep_) network.forces_ready().signal();
     }
   }
+  const bool lockstep_;
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };

@@ -57,12 +57,19 @@ TEST_CASE(
   server.open();
   RawPeer peer = RawPeer::connect(server.port_number());
   peer.send(Hello{.lockstep = true, .name = "test"});
-  while (server.stats().accepted == 0) server.serve();
+  const auto served_until = [&](const auto& done) {
+    return eventually([&] {
+      server.serve();
+      return done();
+    });
+  };
+  REQUIRE(served_until([&] { return server.stats().accepted == 1; }));
   REQUIRE(peer.receive_as<Welcome>());
   StylusPort& port = server.port(0);
   const auto answer = [&](std::uint64_t step) {
     peer.send(SampleMessage{.sample = {.sequence = step}});
-    while (!port.in.receive() || port.in.front().sample.sequence != step) server.serve();
+    REQUIRE(
+        served_until([&] { return port.in.receive() && port.in.front().sample.sequence == step; }));
     port.out.put({.force_step = step, .sample_sequence = step});
   };
   answer(0);

@@ -34,6 +34,9 @@ inline double to_double(float value) noexcept {
 inline double to_double(double value) noexcept {
   return value;
 }
+inline double to_double(std::int16_t value) noexcept {
+  return static_cast<double>(value);
+}
 inline double to_double(Half value) noexcept {
   return static_cast<double>(to_float(value));
 }

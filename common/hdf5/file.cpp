@@ -20,6 +20,10 @@ hid_t native_type<float>() {
   return H5T_NATIVE_FLOAT;
 }
 template <>
+hid_t native_type<std::int16_t>() {
+  return H5T_NATIVE_INT16;
+}
+template <>
 hid_t native_type<std::int32_t>() {
   return H5T_NATIVE_INT32;
 }
@@ -481,6 +485,7 @@ void File::append(const std::string& dataset, hsize_t rows, const T* values) {
 IRDM_HDF5_INSTANTIATE(double)
 IRDM_HDF5_INSTANTIATE(float)
 IRDM_HDF5_INSTANTIATE(Half)
+IRDM_HDF5_INSTANTIATE(std::int16_t)
 IRDM_HDF5_INSTANTIATE(std::int32_t)
 IRDM_HDF5_INSTANTIATE(std::uint8_t)
 IRDM_HDF5_INSTANTIATE(std::uint64_t)

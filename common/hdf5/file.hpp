@@ -19,8 +19,8 @@
 /// each process calls it from one thread at a time (library_lock.hpp).
 namespace irdm::hdf5 {
 
-/// HDF5's name for a C++ number type: double, float, Half, std::int32_t, std::uint8_t or
-/// std::uint64_t.
+/// HDF5's name for a C++ number type: double, float, Half, std::int16_t, std::int32_t, std::uint8_t
+/// or std::uint64_t.
 template <typename T>
 hid_t native_type();
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "common/error.hpp"
 #include "common/response/compressed_response.hpp"
@@ -33,6 +34,10 @@ Eigen::VectorXcd read_complex(const hdf5::File& file, const char* dataset, hsize
   return numbers;
 }
 
+bool all_finite(const std::vector<float>& values) {
+  return std::ranges::all_of(values, [](float value) { return std::isfinite(value); });
+}
+
 void check_poles(const hdf5::File& file, const CompressedResponse& response) {
   require(file, response.pole.allFinite() && response.amplitude.allFinite(),
           "has numbers that are not finite");
@@ -51,8 +56,15 @@ void write_compressed(hdf5::File& file, const CompressedResponse& response,
                       const CompressionError& error) {
   const auto dof = static_cast<hsize_t>(response.shapes.rows());
   const auto steps = static_cast<hsize_t>(response.early_steps);
-  file.write<float>(kCompressedEarly, {response.early.size() / 9 / steps, 9, steps},
-                    response.early.data());
+  std::visit(
+      [&]<typename Scalar>(const std::vector<Scalar>& early) {
+        file.write<Scalar>(kCompressedEarly, {early.size() / 9 / steps, 9, steps}, early.data());
+      },
+      response.early);
+  if (!response.early_scale.empty()) {
+    file.write<float>(kCompressedEarlyScale, {response.early_scale.size() / 9, 9},
+                      response.early_scale.data());
+  }
   file.write<float>(kCompressedShapes, {dof, static_cast<hsize_t>(response.shapes.cols())},
                     response.shapes.data());
   file.write<std::int32_t>(kCompressedPoleShape, {response.pole_shape.size()},
@@ -80,7 +92,15 @@ CompressedResponse read_compressed(const hdf5::File& file, const Model& model) {
   const auto nodes = static_cast<std::size_t>(model.mesh.surface_node_count());
   const hdf5::Shape shape{early_entries(nodes) / 9, 9, static_cast<hsize_t>(early)};
   require(file, file.stored_shape(kCompressedEarly) == shape, "has an early part of another shape");
-  response.early = file.read<float>(kCompressedEarly, shape);
+  if (file.exists(kCompressedEarlyScale)) {
+    response.early = file.read<std::int16_t>(kCompressedEarly, shape);
+    response.early_scale = file.read<float>(kCompressedEarlyScale, {shape[0], shape[1]});
+    require(file, all_finite(response.early_scale), "has scales that are not finite");
+  } else {
+    std::vector<float> values = file.read<float>(kCompressedEarly, shape);
+    require(file, all_finite(values), "has numbers that are not finite");
+    response.early = std::move(values);
+  }
   const auto dof = static_cast<hsize_t>(model.degrees_of_freedom());
   const auto shapes = file.read<float>(kCompressedShapes, {dof, 0});
   response.shapes = Eigen::Map<const RowMatrix<float>>(
@@ -89,11 +109,7 @@ CompressedResponse read_compressed(const hdf5::File& file, const Model& model) {
   response.pole_shape = file.read<std::int32_t>(kCompressedPoleShape, {0});
   response.pole = read_complex(file, kCompressedPole, response.pole_shape.size());
   response.amplitude = read_complex(file, kCompressedAmplitude, response.pole_shape.size());
-  require(
-      file,
-      response.shapes.allFinite() && std::all_of(response.early.begin(), response.early.end(),
-                                                 [](float value) { return std::isfinite(value); }),
-      "has numbers that are not finite");
+  require(file, response.shapes.allFinite(), "has numbers that are not finite");
   check_poles(file, response);
   return response;
 }

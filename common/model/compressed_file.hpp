@@ -8,6 +8,7 @@ namespace irdm {
 
 inline constexpr const char* kCompressedGroup = "/response/compressed";
 inline constexpr const char* kCompressedEarly = "/response/compressed/early";
+inline constexpr const char* kCompressedEarlyScale = "/response/compressed/early_scale";
 inline constexpr const char* kCompressedShapes = "/response/compressed/shapes";
 inline constexpr const char* kCompressedPoleShape = "/response/compressed/pole_shape";
 inline constexpr const char* kCompressedPole = "/response/compressed/pole";

@@ -82,7 +82,12 @@ std::string content_checksum(const hdf5::File& file) {
   add_dataset<std::int32_t>(sha, file, kResidualRowStart);
   add_dataset<std::int32_t>(sha, file, kResidualNodes);
   add_dataset<float>(sha, file, kResidualBlocks);
-  add_dataset<float>(sha, file, kCompressedEarly);
+  if (file.exists(kCompressedEarlyScale)) {
+    add_dataset<float>(sha, file, kCompressedEarlyScale);
+    add_dataset<std::int16_t>(sha, file, kCompressedEarly);
+  } else {
+    add_dataset<float>(sha, file, kCompressedEarly);
+  }
   add_dataset<float>(sha, file, kCompressedShapes);
   add_dataset<std::int32_t>(sha, file, kCompressedPoleShape);
   add_dataset<double>(sha, file, kCompressedPole);

@@ -23,7 +23,7 @@ constexpr Unit kDatasetUnits[] = {
     {"/response/modal/shapes", "kg^-1/2"},
     {kResidualBlocks, "m/N"},
     {kDenseScale, "m/N"},
-    {kCompressedEarly, "m/N"},
+    {kCompressedEarlyScale, "m/N"},
     {kCompressedShapes, "1"},
     {kCompressedPole, "1"},
     {kCompressedAmplitude, "m/N"},
@@ -49,6 +49,7 @@ void write_model_units(hdf5::File& file) {
   for (const auto& [object, unit] : kDatasetUnits) write(object, "unit", unit);
   for (const auto& [object, unit] : kGroupUnits) write(object, "units", unit);
   write(kDenseR, "unit", file.exists(kDenseScale) ? "1" : "m/N");
+  write(kCompressedEarly, "unit", file.exists(kCompressedEarlyScale) ? "1" : "m/N");
 }
 
 }  // namespace irdm

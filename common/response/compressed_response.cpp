@@ -30,8 +30,9 @@ RowMatrix<double> compressed_column(const CompressedResponse& response,
   RowMatrix<double> column(steps, dof);
   const int early = std::min(response.early_steps, steps);
   for (int a = 0; a < dof; ++a) {
-    const float* values = early_response(response, a / 3, a % 3, b / 3, b % 3);
-    for (int s = 0; s < early; ++s) column(s, a) = static_cast<double>(values[s]);
+    with_early(response, a / 3, a % 3, b / 3, b % 3, [&](const auto* numbers, double scale) {
+      for (int s = 0; s < early; ++s) column(s, a) = scale * to_double(numbers[s]);
+    });
   }
   if (steps > early) {
     const RowMatrix<double> weighted = late.topRows(steps - early).array().rowwise() *

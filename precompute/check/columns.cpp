@@ -131,8 +131,7 @@ DrivingPoint CompressedColumns::driving_point(int node, const RowMatrix<double>&
   for (int entry = 0; entry < 9; ++entry) {
     const int a = entry % 3;
     const int b = entry / 3;
-    const float* early = early_response(response_, node, a, node, b);
-    for (int s = 0; s < m; ++s) record(entry, s) = static_cast<double>(early[s]);
+    for (int s = 0; s < m; ++s) record(entry, s) = early_response(response_, node, a, node, b, s);
     const Eigen::VectorXd product = rows.row(a).cwiseProduct(rows.row(b)).transpose();
     record.row(entry).tail(late.rows()) = (late * product).transpose();
   }

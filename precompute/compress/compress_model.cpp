@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
+#include <span>
 
 #include "common/error.hpp"
 #include "common/model/model_writer.hpp"
@@ -24,6 +26,8 @@ constexpr double kOfSpace = 0.30;
 constexpr double kOfTime = 0.10;
 constexpr double kOfShapes = 0.25;
 constexpr double kOfPoles = 0.20;
+
+constexpr float kLargestInteger = 32767.0F;
 
 struct Parts {
   RowMatrix<double> shapes;  // (3n, r)
@@ -59,12 +63,32 @@ std::vector<PoleFit> fit_all(const Parts& parts, double error, const Console& co
   return fits;
 }
 
+// The numbers of each entry in 32767ths of its largest.
+void set_integers(const std::vector<float>& early, CompressedResponse& response) {
+  const auto steps = static_cast<std::size_t>(response.early_steps);
+  std::vector<std::int16_t> integers(early.size());
+  for (std::size_t first = 0; first < early.size(); first += steps) {
+    const std::span<const float> entry(early.data() + first, steps);
+    float largest = 0.0F;
+    for (const float value : entry) largest = std::max(largest, std::abs(value));
+    const float scale = largest / kLargestInteger;
+    response.early_scale.push_back(scale);
+    if (!(scale > 0.0F)) continue;
+    std::ranges::transform(
+        entry, integers.begin() + static_cast<std::ptrdiff_t>(first), [scale](float value) {
+          const float share = std::round(value / scale);
+          return static_cast<std::int16_t>(std::clamp(share, -kLargestInteger, kLargestInteger));
+        });
+  }
+  response.early = std::move(integers);
+}
+
 // Shapes that need no pole are left out.
 CompressedResponse assemble(const Survey& found, const Parts& parts,
                             const std::vector<PoleFit>& fits) {
   CompressedResponse response;
   response.early_steps = found.early_steps;
-  response.early = found.early;
+  set_integers(found.early, response);
   std::vector<Eigen::Index> used;
   std::vector<std::complex<double>> poles, amplitudes;
   for (std::size_t i = 0; i < fits.size(); ++i) {
@@ -84,8 +108,14 @@ CompressedResponse assemble(const Survey& found, const Parts& parts,
 }
 
 double bytes(const CompressedResponse& response) {
-  return 4.0 * static_cast<double>(response.early.size()) +
-         4.0 * static_cast<double>(response.shapes.size()) + 36.0 * response.pole_count();
+  const double early = std::visit(
+      [](const auto& numbers) {
+        return static_cast<double>(numbers.size() * sizeof(numbers.front()));
+      },
+      response.early);
+  const double scales = 4.0 * static_cast<double>(response.early_scale.size());
+  return early + scales + 4.0 * static_cast<double>(response.shapes.size()) +
+         36.0 * response.pole_count();
 }
 
 std::string percent(double share) {
@@ -135,9 +165,14 @@ CompressionSummary compress_model(const std::filesystem::path& input,
   for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
     const double aim = finer * settings.error;
     const Parts parts = identify(dense, found, aim, console);
-    const CompressedResponse response =
+    CompressedResponse response =
         assemble(found, parts, fit_all(parts, kOfPoles * aim * found.norm, console));
     CompressionError error = measure_error(response, dense, console);
+    if (larger(error) > settings.error) {  // perhaps by what 16 bits leave out
+      response.early = found.early;
+      response.early_scale.clear();
+      error = measure_error(response, dense, console);
+    }
     error.requested = settings.error;
     console.line("  " + std::to_string(response.shape_count()) + " shapes, " +
                  std::to_string(response.pole_count()) + " poles: error " +

@@ -55,8 +55,9 @@ RowMatrix<float> column(const CompressedResponse& response, const RowMatrix<floa
   const int m = response.early_steps;
   RowMatrix<float> values(m + late.rows(), response.shapes.rows());
   for (int a = 0; a < values.cols(); ++a) {
-    const float* early = early_response(response, a / 3, a % 3, b / 3, b % 3);
-    for (int s = 0; s < m; ++s) values(s, a) = early[s];
+    with_early(response, a / 3, a % 3, b / 3, b % 3, [&](const auto* numbers, double scale) {
+      for (int s = 0; s < m; ++s) values(s, a) = static_cast<float>(scale * to_double(numbers[s]));
+    });
   }
   values.bottomRows(late.rows()) = late_column(response, late, b);
   return values;

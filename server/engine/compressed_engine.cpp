@@ -16,7 +16,7 @@ Matrix3 block(const CompressedResponse& response, int i, int j, std::size_t s) n
   Matrix3 R;
   for (int a = 0; a < 3; ++a) {
     for (int b = 0; b < 3; ++b) {
-      R(a, b) = static_cast<double>(early_response(response, i, a, j, b)[s]);
+      R(a, b) = early_response(response, i, a, j, b, static_cast<int>(s));
     }
   }
   return R;
@@ -54,8 +54,9 @@ Vector3 CompressedEngine::early(int node, int shift) const noexcept {
       const int count = std::min(series.count, response_->early_steps - first);
       if (count <= 0) continue;
       for (int a = 0; a < 3; ++a) {
-        u[a] += dot(early_response(*response_, node, a, from, b) + first, series.force,
-                    static_cast<std::size_t>(count));
+        u[a] += with_early(*response_, node, a, from, b, [&](const auto* numbers, double scale) {
+          return scale * dot(numbers + first, series.force, static_cast<std::size_t>(count));
+        });
       }
     }
   }

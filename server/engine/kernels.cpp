@@ -62,6 +62,9 @@ IRDM_KERNEL double dot(const float* a, const double* b, std::size_t n) noexcept 
 IRDM_KERNEL double dot(const double* a, const double* b, std::size_t n) noexcept {
   return dot_of(a, b, n);
 }
+IRDM_KERNEL double dot(const std::int16_t* a, const double* b, std::size_t n) noexcept {
+  return dot_of(a, b, n);
+}
 
 IRDM_KERNEL double dot_magnitudes(const double* a, const double* b, std::size_t n) noexcept {
   double lanes[kLanes] = {};

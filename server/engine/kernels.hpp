@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 #include "common/half.hpp"
@@ -15,6 +16,7 @@ namespace irdm {
 /// sum_i a[i] b[i], in double precision.
 double dot(const float* a, const double* b, std::size_t n) noexcept;
 double dot(const double* a, const double* b, std::size_t n) noexcept;
+double dot(const std::int16_t* a, const double* b, std::size_t n) noexcept;
 /// The products and their sums of half precision are single ones.
 double dot(const Half* a, const double* b, std::size_t n) noexcept;
 

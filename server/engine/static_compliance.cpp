@@ -1,7 +1,6 @@
 #include "server/engine/static_compliance.hpp"
 
 #include <limits>
-#include <numeric>
 
 #include "common/response/compressed_response.hpp"
 
@@ -61,8 +60,11 @@ double of_compressed(const CompressedResponse& response, const Eigen::VectorXd& 
   double sum = 0.0;
   for (int a = 0; a < 3; ++a) {
     for (int b = 0; b < 3; ++b) {
-      const float* entry = early_response(response, i, a, i, b);
-      sum += std::accumulate(entry, entry + response.early_steps, 0.0) * d[a] * d[b];
+      double entry = 0.0;
+      for (int s = 0; s < response.early_steps; ++s) {
+        entry += early_response(response, i, a, i, b, s);
+      }
+      sum += entry * d[a] * d[b];
     }
   }
   const Eigen::VectorXd along = response.shapes.middleRows(3 * i, 3).cast<double>().transpose() * d;

@@ -59,7 +59,8 @@ CompressedResponse compressed_response(const Model& model) {
   CompressedResponse response;
   response.early_steps = 2;
   const auto nodes = static_cast<std::size_t>(model.mesh.surface_node_count());
-  response.early.assign(early_entries(nodes) * 2, 1e-3F);
+  response.early = std::vector<std::int16_t>(early_entries(nodes) * 2, 1000);
+  response.early_scale.assign(early_entries(nodes), 1e-6F);
   const auto dof = static_cast<Eigen::Index>(model.degrees_of_freedom());
   response.shapes = RowMatrix<float>::Identity(dof, 2);
   response.pole_shape = {0, 1};

@@ -21,15 +21,15 @@ constexpr int kEarly = 3;
 constexpr int kRecord = 200;
 
 // A cube with a made-up compressed response: anything that the format can hold.
-std::shared_ptr<const Model> made_up() {
+std::shared_ptr<const Model> made_up(bool integers = false) {
   Model model = synthetic_cube(2, 1, kRecord);
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   CompressedResponse response;
   response.early_steps = kEarly;
   const int nodes = model.mesh.surface_node_count();
-  response.early.resize(early_entries(static_cast<std::size_t>(nodes)) * kEarly);
-  for (float& value : response.early) value = static_cast<float>(uniform(random));
+  std::vector<float> early(early_entries(static_cast<std::size_t>(nodes)) * kEarly);
+  for (float& value : early) value = static_cast<float>(uniform(random));
   // A node's own block is symmetric.
   for (int i = 0; i < nodes; ++i) {
     for (int entry = 0; entry < 9; ++entry) {
@@ -39,9 +39,21 @@ std::shared_ptr<const Model> made_up() {
                kEarly;
       };
       for (std::size_t s = 0; s < kEarly; ++s) {
-        response.early[at(entry) + s] = response.early[at(std::min(entry, other)) + s];
+        early[at(entry) + s] = early[at(std::min(entry, other)) + s];
       }
     }
+  }
+  response.early = early;
+  if (integers) {
+    response.early_scale.resize(early.size() / kEarly);
+    for (std::size_t i = 0; i < response.early_scale.size(); ++i) {
+      response.early_scale[i] = 1e-4F * static_cast<float>(1 + i / 9 % 3);  // of each pair
+    }
+    std::vector<std::int16_t> numbers(early.size());
+    std::ranges::transform(early, numbers.begin(), [](float value) {
+      return static_cast<std::int16_t>(10'000.0F * value);
+    });
+    response.early = std::move(numbers);
   }
   constexpr int kShapes = 7;
   response.shapes.resize(3 * nodes, kShapes);
@@ -99,7 +111,8 @@ Points displacement(const ResponseEngine& engine) {
 }  // namespace
 
 TEST_CASE("compressed engine equals the sum of equation (10) over early steps and poles") {
-  const auto model = made_up();
+  const bool integers = GENERATE(false, true);
+  const auto model = made_up(integers);
   const auto engine = make_engine(model);
   CHECK(engine->kind() == EngineKind::kCompressed);
   const auto history = random_forces(model->mesh.surface_node_count(), 40);
@@ -113,7 +126,8 @@ TEST_CASE("compressed engine equals the sum of equation (10) over early steps an
 }
 
 TEST_CASE("compressed engine predicts the coming step, and R[0] between the contacts") {
-  const auto model = made_up();
+  const bool integers = GENERATE(false, true);
+  const auto model = made_up(integers);
   const auto engine = make_engine(model);
   const auto history = random_forces(model->mesh.surface_node_count(), 30);
   for (const auto& forces : history) engine->advance(forces);
@@ -144,7 +158,7 @@ TEST_CASE("compressed engine predicts the coming step, and R[0] between the cont
 }
 
 TEST_CASE("compressed engine: the settled displacement is the static compliance") {
-  const auto model = made_up();
+  const auto model = made_up(GENERATE(false, true));
   const auto engine = make_engine(model);
   const int nodes = model->mesh.surface_node_count();
   const Vector3 d = Vector3(1, 2, -2) / 3.0;
@@ -157,7 +171,7 @@ TEST_CASE("compressed engine: the settled displacement is the static compliance"
 }
 
 TEST_CASE("compressed engine: same bits with one and two threads, forgets on reset, rests") {
-  const auto model = made_up();
+  const auto model = made_up(GENERATE(false, true));
   const auto engine = make_engine(model);
   for (const auto& forces : random_forces(model->mesh.surface_node_count(), 30)) {
     engine->advance(forces);

@@ -216,6 +216,10 @@ TEST_CASE("sums have the same bits whatever registers the processor has") {
             std::bit_cast<std::uint64_t>(sum_in_eight_lanes(n, term)));
   };
   check(dot(a.data(), x.data(), n), [&](std::size_t i) { return a[i] * x[i]; });
+  std::vector<std::int16_t> integers(n);
+  std::ranges::transform(x, integers.begin(),
+                         [](double value) { return static_cast<std::int16_t>(30'000.0 * value); });
+  check(dot(integers.data(), a.data(), n), [&](std::size_t i) { return integers[i] * a[i]; });
   for (const WideKernels& kernels : wide_kernels()) {
     const Sums<3> three = kernels.dot_three(x.data(), a.data(), n);
     const Sums<6> six = kernels.dot_six(x.data(), b.data(), n);

@@ -44,14 +44,18 @@ fuzz() {
   mkdir -p "$out/corpus"
   mapfile -t seeds <"$lists/$parser.seeds"
   set_options "$parser"
+  touch "$out/began"
   if IRDM_FUZZ_HARNESS=$parser build/asan/bin/fuzzer "${options[@]}" -max_total_time="$seconds" -max_len=8192 -seed="${IRDM_FUZZ_SEED:-0}" \
       -print_final_stats=1 \
       "$out/corpus" "${seeds[@]}" >"$out/log" 2>&1; then
     runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$out/log")
     echo "fuzz: $parser stood $runs inputs; $(find "$out/corpus" -type f | wc -l) kept"
   else
-    echo "fuzz: $parser FAILED: $(grep -m1 -E 'ERROR|runtime error|it does not hold|Test unit written' "$out/log")" >&2
-    echo "fuzz: $(grep -m1 'Test unit written' "$out/log" || echo "see $out/log")" >&2
+    {
+      echo "fuzz: $parser FAILED; $out/log ends:"
+      tail -n 50 "$out/log" | grep -v '^#[0-9]'
+      find "$out" -maxdepth 1 -newer "$out/began" -name '*-*' -printf 'fuzz: the input, %f, by base64:\n' -exec base64 {} \;
+    } >&2
     return 1
   fi
 }

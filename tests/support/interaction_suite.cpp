@@ -121,16 +121,23 @@ ForceDifference compare(const ForceTrace& expected, const ForceTrace& actual) {
   ForceDifference result;
   double squares = 0.0;
   double difference_squares = 0.0;
+  std::vector<double> differences;
   for (std::size_t k = 0; k < expected.size(); ++k) {
+    double larger = 0.0;
     for (std::size_t s = 0; s < 2; ++s) {
       const double difference = (actual[k][s] - expected[k][s]).norm();
       result.peak = std::max(result.peak, expected[k][s].norm());
-      result.largest = std::max(result.largest, difference);
+      larger = std::max(larger, difference);
       squares += expected[k][s].squaredNorm();
       difference_squares += difference * difference;
     }
+    differences.push_back(larger);
   }
-  result.largest /= std::max(result.peak, 1e-30);
+  const double peak = std::max(result.peak, 1e-30);
+  for (const double difference : differences) {
+    result.largest = std::max(result.largest, difference / peak);
+    if (difference > 0.01 * peak) ++result.above;
+  }
   result.rms = std::sqrt(difference_squares / std::max(squares, 1e-60));
   return result;
 }

@@ -38,6 +38,7 @@ struct ForceDifference {
   double peak = 0.0;     ///< of the force [N]
   double largest = 0.0;  ///< difference, share of the peak
   double rms = 0.0;      ///< difference, share of the force's root mean square
+  int above = 0;         ///< steps in which it is more than a hundredth of the peak
 };
 ForceDifference compare(const ForceTrace& expected, const ForceTrace& actual);
 

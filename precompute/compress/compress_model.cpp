@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <limits>
 #include <span>
 
 #include "common/error.hpp"
@@ -162,7 +163,10 @@ CompressionSummary compress_model(const std::filesystem::path& input,
   CompressionError best;
   best.requested = settings.error;
   best.displacement = best.force = 1e300;
-  for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
+  int attempts = 0;  // with as many early steps
+  int in_vain = 0;
+  double previous = std::numeric_limits<double>::infinity();
+  while (true) {
     const double aim = finer * settings.error;
     const Parts parts = identify(dense, found, aim, console);
     CompressedResponse response =
@@ -186,17 +190,22 @@ CompressionSummary compress_model(const std::filesystem::path& input,
       return {error,         found.early_steps, response.shape_count(), response.pole_count(),
               dense.bytes(), bytes(response)};
     }
-    const bool helped = larger(error) < 0.95 * larger(best);
+    // Shapes and poles take little room beside early steps: more of them as long as they help as
+    // much as they have to.
+    ++attempts;
+    const double expected =
+        larger(error) * std::pow(larger(error) / previous, kMostAttempts - attempts);
+    previous = larger(error);
+    in_vain = larger(error) < 0.95 * larger(best) ? 0 : in_vain + 1;
     if (larger(error) < larger(best)) best = error;
-    // What is left of the force is what is fast: more early steps. What is left of displacement:
-    // more shapes and poles, as long as these help.
-    const bool more_early = automatic && attempt > 0 && (error.force > settings.error || !helped) &&
-                            2 * found.early_steps <= most_early;
-    if (attempt > 0 && !helped && !more_early) break;
-    if (more_early) {
+    if (automatic && 2 * found.early_steps <= most_early && expected > settings.error) {
       found = survey(dense, 2 * found.early_steps, console);
-    } else {
+      attempts = in_vain = 0;
+      previous = std::numeric_limits<double>::infinity();
+    } else if (attempts < kMostAttempts && in_vain < 2) {
       finer *= std::clamp(0.7 * settings.error / larger(error), 0.15, 0.6);
+    } else {
+      break;
     }
   }
   not_reached(dense.name(), best);

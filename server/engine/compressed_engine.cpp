@@ -84,7 +84,8 @@ void CompressedEngine::predict(std::span<const ContactPatch> patches, std::span<
     for (std::size_t b = 0; b <= a; ++b) {
       const auto row = static_cast<Eigen::Index>(3 * a);
       const auto column = static_cast<Eigen::Index>(3 * b);
-      const Matrix3 R = block(*response_, patches[a], patches[b], 0);
+      Matrix3 R = block(*response_, patches[a], patches[b], 0);
+      if (a == b) R = 0.5 * (R + R.transpose()).eval();  // sums of the same in another order
       compliance.block<3, 3>(row, column) = R;
       compliance.block<3, 3>(column, row) = R.transpose();
     }

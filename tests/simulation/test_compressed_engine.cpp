@@ -47,7 +47,8 @@ std::shared_ptr<const Model> made_up(bool integers = false) {
   if (integers) {
     response.early_scale.resize(early.size() / kEarly);
     for (std::size_t i = 0; i < response.early_scale.size(); ++i) {
-      response.early_scale[i] = 1e-4F * static_cast<float>(1 + i / 9 % 3);  // of each pair
+      const std::size_t axes = i % 9 / 3 + i % 3;  // the same both ways round
+      response.early_scale[i] = 1e-4F * static_cast<float>(1 + i / 9 % 3 + axes);
     }
     std::vector<std::int16_t> numbers(early.size());
     std::ranges::transform(early, numbers.begin(), [](float value) {

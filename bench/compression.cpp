@@ -3,7 +3,8 @@
 //
 //     bench_compression DENSE.h5 OTHER.h5 [compressed|modal]
 //
-// One line an interaction, then the worst, the median and what a finger can tell (10 % of force).
+// One line an interaction, then the worst, the median and what a finger can tell (10 % of force),
+// and how long a step takes with either.
 // A step in which friction gives way a step earlier or later counts as any other ("above 1 %").
 
 #include <cstdio>
@@ -13,11 +14,35 @@
 #include "bench/statistics.hpp"
 #include "common/error.hpp"
 #include "common/model/model_file.hpp"
+#include "common/realtime/clock.hpp"
 #include "tests/support/interaction_suite.hpp"
 
 using namespace irdm;
 
 namespace {
+
+// Mean time of a step, what comes before the first one left out [us].
+double step_time(const test::Interaction& what, const std::shared_ptr<const Model>& model) {
+  const auto run = [&](double seconds) {
+    const std::int64_t begin = monotonic_ns();
+    const std::size_t steps = test::run_interaction(what, model, seconds).size();
+    return std::pair(monotonic_ns() - begin, steps);
+  };
+  const auto [few_ns, few] = run(0.25);
+  const auto [all_ns, all] = run(1.25);
+  return 1e-3 * static_cast<double>(all_ns - few_ns) / static_cast<double>(all - few);
+}
+
+void compare_step_times(const std::shared_ptr<const Model>& dense,
+                        const std::shared_ptr<const Model>& other) {
+  std::vector<double> dense_us, other_us;
+  for (int number = 0; number < 10; ++number) {
+    dense_us.push_back(step_time(test::interaction(number), dense));
+    other_us.push_back(step_time(test::interaction(number), other));
+  }
+  std::printf("mean time of a step, median of ten interactions: %.1f us dense, %.1f us the other\n",
+              bench::percentile(dense_us, 0.5), bench::percentile(other_us, 0.5));
+}
 
 void compare_all(const std::shared_ptr<const Model>& dense,
                  const std::shared_ptr<const Model>& other) {
@@ -65,6 +90,7 @@ int main(int argc, char** argv) {
     const auto other = std::make_shared<const Model>(
         read_model(argv[2], modal ? ResponseKind::kModal : ResponseKind::kCompressed));
     compare_all(dense, other);
+    compare_step_times(dense, other);
   } catch (const Error& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;

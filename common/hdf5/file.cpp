@@ -381,6 +381,12 @@ void File::write(const std::string& dataset, const Shape& shape, const T* values
   }
 }
 
+bool File::stores_integers(const std::string& dataset) const {
+  const Handle set = open_dataset(dataset);
+  const Handle type(H5Dget_type(set.get()), H5Tclose);
+  return H5Tget_class(type.get()) == H5T_INTEGER;
+}
+
 template <typename T>
 std::vector<T> File::read(const std::string& dataset, const Shape& expected) const {
   const Shape found = stored_shape(dataset);

@@ -75,6 +75,8 @@ class File {
   /// The same for who makes room for all of it: throws Error, too, when the file holds so little
   /// of it that the shape cannot be meant. Looks at every chunk.
   Shape stored_shape(const std::string& dataset) const;
+  /// Whether its numbers are integers in the file.
+  bool stores_integers(const std::string& dataset) const;
   /// Bytes of one floating-point number of the dataset in the file: 2, 4 or 8.
   std::size_t element_size(const std::string& dataset) const;
 

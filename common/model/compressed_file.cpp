@@ -92,7 +92,11 @@ CompressedResponse read_compressed(const hdf5::File& file, const Model& model) {
   const auto nodes = static_cast<std::size_t>(model.mesh.surface_node_count());
   const hdf5::Shape shape{early_entries(nodes) / 9, 9, static_cast<hsize_t>(early)};
   require(file, file.stored_shape(kCompressedEarly) == shape, "has an early part of another shape");
-  if (file.exists(kCompressedEarlyScale)) {
+  const bool integers = file.stores_integers(kCompressedEarly);
+  require(file, integers == file.exists(kCompressedEarlyScale),
+          integers ? "has an early part in 16 bits without its early_scale"
+                   : "has an early_scale for an early part that is not in 16 bits");
+  if (integers) {
     response.early = file.read<std::int16_t>(kCompressedEarly, shape);
     response.early_scale = file.read<float>(kCompressedEarlyScale, {shape[0], shape[1]});
     require(file, all_finite(response.early_scale), "has scales that are not finite");

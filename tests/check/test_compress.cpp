@@ -159,7 +159,14 @@ TEST_CASE("a compressed response needs the scales that it was written with") {
                     Contains("has scales that are not finite"));
   response.early_scale.resize(9);
   CHECK_THROWS_WITH(read_model(write("few.h5"), ResponseKind::kCompressed),
-                    Contains("early_scale"));
+                    Contains("early_scale has shape"));
+  response.early_scale.clear();
+  CHECK_THROWS_WITH(read_model(write("none.h5"), ResponseKind::kCompressed),
+                    Contains("in 16 bits without its early_scale"));
+  response.early_scale.assign(early.size() / m, 1.0F);
+  response.early = std::vector<float>(early.size(), 1e-3F);
+  CHECK_THROWS_WITH(read_model(write("single.h5"), ResponseKind::kCompressed),
+                    Contains("early_scale for an early part that is not in 16 bits"));
 }
 
 TEST_CASE("compress refuses what cannot be reached, and leaves nothing behind") {

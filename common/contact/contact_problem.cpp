@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "common/contact/single_contact.hpp"
 
@@ -112,7 +113,10 @@ void ContactProblem::begin(int count) noexcept {
 }
 
 ContactSolver::ContactSolver(int capacity)
-    : elastic_displacement_(Eigen::VectorXd::Zero(3 * capacity)) {}
+    : now_(Eigen::VectorXd::Zero(6 + 6 * capacity)),
+      before_(now_),
+      direction_(now_),
+      held_answer_(Eigen::MatrixXd::Zero(3 * kMaxContacts, 3 * capacity)) {}
 
 ContactSolution ContactSolver::solve(ContactProblem& problem, const SolverLimits& limits) noexcept {
   ContactSolution solution;
@@ -164,17 +168,17 @@ bool ContactSolver::stick(ContactProblem& problem) noexcept {
 }
 
 void ContactSolver::start(const ContactProblem& problem) noexcept {
-  auto u = elastic_displacement_.head(3 * problem.count());
-  u.setZero();
-  push_.setZero();
-  turn_.setZero();
+  now_.setZero();
+  auto u = now_.segment(6, 3 * problem.count());
   for (int b = 0; b < problem.count(); ++b) {
     const ContactUnknown& contact = problem.contact(b);
     if (contact.force.isZero(0.0)) continue;
     u.noalias() += problem.elastic_column(b) * contact.force;
-    push_ += contact.force;
-    turn_ += contact.arm.cross(contact.force);
+    push() += contact.force;
+    turn() += contact.arm.cross(contact.force);
   }
+  direction_.setZero();
+  last_change_ = 0.0;
 }
 
 // Two tips may hold the same place: a little compliance keeps the block regular. The iteration goes
@@ -187,30 +191,60 @@ void ContactSolver::factor_held(ContactProblem& problem) noexcept {
     }
   }
   if (held_count_ == 0) return;
-  ContactMatrix W = ContactMatrix::Zero(3 * held_count_, 3 * held_count_);
+  const int rows = 3 * held_count_;
+  ContactMatrix W = ContactMatrix::Zero(rows, rows);
   for (int i = 0; i < held_count_; ++i) {
+    const int a = held_[static_cast<std::size_t>(i)];
     for (int j = 0; j < held_count_; ++j) {
-      W.block<3, 3>(3 * i, 3 * j) = problem.compliance(held_[static_cast<std::size_t>(i)],
-                                                       held_[static_cast<std::size_t>(j)]);
+      W.block<3, 3>(3 * i, 3 * j) = problem.compliance(a, held_[static_cast<std::size_t>(j)]);
+    }
+    for (int b = 0; b < problem.count(); ++b) {
+      held_answer_.block<3, 3>(3 * i, 3 * b) = problem.compliance(a, b);
     }
   }
-  W.diagonal().array() += kHeldRidge * W.trace() / (3 * held_count_);
+  W.diagonal().array() += kHeldRidge * W.trace() / rows;
   held_block_.compute(W);
+  using Columns = Eigen::Matrix<double, Eigen::Dynamic, 3, 0, 3 * kMaxContacts, 3>;
+  for (int b = 0; b < problem.count(); ++b) {
+    const Columns shared = held_answer_.block(0, 3 * b, rows, 3);
+    held_answer_.block(0, 3 * b, rows, 3) = held_block_.solve(shared);
+  }
 }
 
 Vector3 ContactSolver::displacement(const ContactProblem& problem, int a) const noexcept {
-  return elastic_displacement_.segment<3>(3 * a) + problem.rigid.translation * push_ -
-         problem.contact(a).arm.cross(problem.rigid.rotation * turn_);
+  return now_.segment<3>(6 + 3 * a) + problem.rigid.translation * push() -
+         problem.contact(a).arm.cross(problem.rigid.rotation * turn());
 }
 
-void ContactSolver::change(ContactProblem& problem, int a, const Vector3& force) noexcept {
+void ContactSolver::add(ContactProblem& problem, int a, const Vector3& more) noexcept {
+  if (more.isZero(0.0)) return;
   ContactUnknown& contact = problem.contact(a);
-  const Vector3 step = force - contact.force;
-  if (step.isZero(0.0)) return;
-  contact.force = force;
-  elastic_displacement_.head(3 * problem.count()).noalias() += problem.elastic_column(a) * step;
-  push_ += step;
-  turn_ += contact.arm.cross(step);
+  contact.force += more;
+  now_.segment(6, 3 * problem.count()).noalias() += problem.elastic_column(a) * more;
+  push() += more;
+  turn() += contact.arm.cross(more);
+}
+
+// Held contacts answer so that they stay where they are.
+void ContactSolver::change(ContactProblem& problem, int a, const Vector3& force) noexcept {
+  const Vector3 more = force - problem.contact(a).force;
+  if (more.isZero(0.0)) return;
+  add(problem, a, more);
+  problem.contact(a).force = force;
+  for (int i = 0; i < held_count_; ++i) {
+    add(problem, held_[static_cast<std::size_t>(i)],
+        -held_answer_.block<3, 3>(3 * i, 3 * a) * more);
+  }
+}
+
+// With the answer of held contacts.
+Matrix3 ContactSolver::own_compliance(const ContactProblem& problem, int a) const noexcept {
+  Matrix3 W = problem.compliance(a, a);
+  for (int i = 0; i < held_count_; ++i) {
+    W -= problem.compliance(a, held_[static_cast<std::size_t>(i)]) *
+         held_answer_.block<3, 3>(3 * i, 3 * a);
+  }
+  return 0.5 * (W + W.transpose());
 }
 
 // Returns how far a contact was off [m].
@@ -226,21 +260,22 @@ double ContactSolver::solve_held(ContactProblem& problem) noexcept {
   }
   const DirectVector step = held_block_.solve(off);
   for (int i = 0; i < held_count_; ++i) {
-    const int a = held_[static_cast<std::size_t>(i)];
-    change(problem, a, problem.contact(a).force + step.segment<3>(3 * i));
+    add(problem, held_[static_cast<std::size_t>(i)], step.segment<3>(3 * i));
   }
   return largest;
 }
 
 double ContactSolver::solve_touching(ContactProblem& problem, int a) noexcept {
   ContactUnknown& contact = problem.contact(a);
-  const Matrix3 W = problem.compliance(a, a);
+  const Matrix3 W = own_compliance(problem, a);
   const Vector3 own = contact.gap - displacement(problem, a) + W * contact.force;
   const SingleContact found =
       solve_single_contact(W, own, contact.law, contact.normal, contact.friction);
   const double off = (W * (found.force - contact.force)).norm();
   contact.mode = found.mode;
   contact.slip = found.slip;
+  // As from step to step: were it to stick and slip in turns, the sweeps would not end.
+  if (found.mode == ContactMode::kSlipping) contact.friction.static_ = contact.friction.kinetic;
   change(problem, a, found.force);
   return off;
 }
@@ -259,12 +294,46 @@ double ContactSolver::sweep(ContactProblem& problem) noexcept {
   return largest;
 }
 
+// The forces, beside what they do.
+void ContactSolver::keep(const ContactProblem& problem) noexcept {
+  auto force = now_.segment(6 + 3 * problem.count(), 3 * problem.count());
+  for (int a = 0; a < problem.count(); ++a) force.segment<3>(3 * a) = problem.contact(a).force;
+}
+
+// After a sweep, whose change is the residual of the conjugate gradients. Everything is linear in
+// the forces, so what they do is carried along.
+void ContactSolver::extrapolate(ContactProblem& problem) noexcept {
+  keep(problem);
+  const int rows = 3 * problem.count();
+  auto now = now_.head(6 + 2 * rows);
+  auto before = before_.head(6 + 2 * rows);
+  auto direction = direction_.head(6 + 2 * rows);
+  const double change = (now.tail(rows) - before.tail(rows)).squaredNorm();
+  const double beta = change / std::exchange(last_change_, change);
+  if (beta <= 1.0) {
+    before = now - before;
+    direction *= beta;
+    now += direction;
+    direction += before;
+    for (int a = 0; a < problem.count(); ++a) {
+      problem.contact(a).force = now.segment<3>(6 + rows + 3 * a);
+    }
+  } else {
+    direction.setZero();  // it begins anew
+    if (!std::isfinite(beta)) direction = now - before;
+  }
+}
+
 ContactSolution ContactSolver::iterate(ContactProblem& problem,
                                        const SolverLimits& limits) noexcept {
   start(problem);
   factor_held(problem);
   ContactSolution solution;
   while (solution.sweeps < limits.max_sweeps) {
+    if (solution.sweeps > 0) extrapolate(problem);
+    keep(problem);
+    const int used = 6 + 6 * problem.count();
+    before_.head(used) = now_.head(used);
     ++solution.sweeps;
     solution.residual = sweep(problem);
     const double enough = solution.sweeps < limits.usual_sweeps ? limits.tolerance : limits.usual;

@@ -58,8 +58,8 @@ struct ContactUnknown {
 /// The rigid body's own answer within the step: displacement at arm a per force at arm b,
 /// translation Id - [a]x rotation [b]x.
 struct RigidMobility {
-  double translation = 0.0;            ///< dt^2 / M [m/N]
-  Matrix3 rotation = Matrix3::Zero();  ///< dt^2 I^-1 [1/(N m)]
+  double translation = 0.0;            ///< dt^2 / 2M [m/N]
+  Matrix3 rotation = Matrix3::Zero();  ///< dt^2/2 I^-1 [1/(N m)]
   Matrix3 between(const Vector3& a, const Vector3& b) const noexcept {
     return translation * Matrix3::Identity() - skew(a) * rotation * skew(b);
   }
@@ -117,10 +117,12 @@ struct SolverLimits {
 
 /// Solves all contacts of a problem together. When sticking and being held suffices for all of at
 /// most kMaxContacts contacts (the strongest pull lets go first), that is the solution, found
-/// directly. Otherwise the laws are met by nonlinear block Gauss-Seidel: one touching contact after
-/// the other, and all that are held at a time, are solved exactly with the others' forces as they
-/// stand, from the forces given in.
-/// Bounded, real-time safe, no exceptions.
+/// directly. Otherwise the laws are met by nonlinear block Gauss-Seidel from the forces given in:
+/// one touching contact after the other is solved exactly with the others' forces as they stand,
+/// but for those of held contacts, which are eliminated (Schur complement): they answer at once.
+/// Between sweeps the forces go on along conjugate directions (nonsmooth nonlinear conjugate
+/// gradients, Silcowitz-Hansen et al. 2010), without which many contacts of a stiff body converge
+/// slowly. Bounded, real-time safe, no exceptions.
 class ContactSolver {
  public:
   explicit ContactSolver(int capacity);
@@ -130,20 +132,33 @@ class ContactSolver {
   bool stick(ContactProblem& problem) noexcept;
   ContactSolution iterate(ContactProblem& problem, const SolverLimits& limits) noexcept;
   void start(const ContactProblem& problem) noexcept;
+  void keep(const ContactProblem& problem) noexcept;
+  void extrapolate(ContactProblem& problem) noexcept;
+  Matrix3 own_compliance(const ContactProblem& problem, int a) const noexcept;
   void factor_held(ContactProblem& problem) noexcept;
   double sweep(ContactProblem& problem) noexcept;
   double solve_held(ContactProblem& problem) noexcept;
   double solve_touching(ContactProblem& problem, int a) noexcept;
   Vector3 displacement(const ContactProblem& problem, int a) const noexcept;
   void change(ContactProblem& problem, int a, const Vector3& force) noexcept;
+  void add(ContactProblem& problem, int a, const Vector3& more) noexcept;
 
-  // Of the iteration under way: what all forces do.
-  Eigen::VectorXd elastic_displacement_;   ///< (3 capacity) [m]
-  Vector3 push_ = Vector3::Zero();         ///< sum of the forces [N]
-  Vector3 turn_ = Vector3::Zero();         ///< their torque [N m]
+  // Of the iteration under way. What all forces do: their sum [N], their torque [N m], their
+  // elastic displacements (3 count) [m]; and, where it is linear algebra, the forces themselves (3
+  // count).
+  auto push() noexcept { return now_.segment<3>(0); }
+  auto push() const noexcept { return now_.segment<3>(0); }
+  auto turn() noexcept { return now_.segment<3>(3); }
+  auto turn() const noexcept { return now_.segment<3>(3); }
+  Eigen::VectorXd now_;        ///< (6 + 6 capacity)
+  Eigen::VectorXd before_;     ///< the same before the last sweep
+  Eigen::VectorXd direction_;  ///< of the conjugate gradients
+  double last_change_ = 0.0;   ///< squared norm of the last sweep's change of forces [N^2]
   std::array<int, kMaxContacts> held_{};   ///< contacts that are held ...
   int held_count_ = 0;                     ///< ... so many of them; more are solved one by one
   Eigen::LDLT<ContactMatrix> held_block_;  ///< compliance between them
+  /// Held forces per force elsewhere, and less: (3 kMaxContacts, 3 capacity).
+  Eigen::MatrixXd held_answer_;
 };
 
 }  // namespace irdm

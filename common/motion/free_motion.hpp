@@ -5,7 +5,8 @@
 
 namespace irdm {
 
-/// How the free motion of an object is held back. Both act on the rigid motion alone.
+/// How the free motion of an object is held back, half of it before and half after what the forces
+/// of a step do (Strang splitting: second order). Both act on the rigid motion alone.
 struct RigidDamping {
   double linear = 0.0;   ///< velocity decays with this rate [1/s]; times dt at most 0.5
   double angular = 0.0;  ///< angular momentum decays with this rate [1/s]; times dt at most 0.5
@@ -30,11 +31,17 @@ struct FreeForces {
   Quaternion home_orientation = Quaternion::Identity();  ///< of the tether, B to W
 };
 
+/// Of gravity and tether on a body at `position` [N], W.
+Vector3 free_force(double mass, const FreeForces& forces, const Vector3& position) noexcept;
+/// Of the tether about the centre of mass of a body that stands so [N m], W.
+Vector3 free_torque(const FreeForces& forces, const Quaternion& orientation) noexcept;
+
 /// Where everything but the contacts takes the body frame by the end of a step.
 struct FreeMotion {
-  Vector3 force = Vector3::Zero();                  ///< of gravity, damping, tether [N], W
-  Vector3 torque = Vector3::Zero();                 ///< about the centre of mass [N m], W
-  Vector3 position = Vector3::Zero();               ///< c + dt v_free [m], W
+  RigidState start;                    ///< with the velocities that half the damping leaves
+  Vector3 force = Vector3::Zero();     ///< of gravity and tether during the step [N], W
+  Vector3 torque = Vector3::Zero();    ///< the same about the centre of mass [N m], W
+  Vector3 position = Vector3::Zero();  ///< c + dt v + dt^2/2 F/M [m], W
   Quaternion orientation = Quaternion::Identity();  ///< exp(dt w_free) Q
 
   /// A point of W in that frame.
@@ -45,9 +52,14 @@ struct FreeMotion {
   Vector3 to_world(const Vector3& x) const noexcept { return position + orientation * x; }
 };
 
-/// The coming step of a body from a state, under these forces as they are in that state. Pure,
-/// real-time safe.
+/// The coming step of a body from a state. The tether's force is that half-way. Pure, real-time
+/// safe.
 FreeMotion free_motion(const RigidBody& body, const FreeForces& forces,
                        const RigidState& state) noexcept;
+
+/// The state at the end of that step, in which contacts exerted `force` [N] and `torque` about the
+/// centre of mass [N m] besides, both W. Pure, real-time safe.
+RigidState end_of_step(const RigidBody& body, const FreeForces& forces, const FreeMotion& motion,
+                       const Vector3& force, const Vector3& torque) noexcept;
 
 }  // namespace irdm

@@ -37,9 +37,10 @@ RigidState RigidBody::advance(const RigidState& state, const Vector3& force,
   if (!moves_) return state;
   RigidState next;
   next.velocity = state.velocity + dt_ / mass_ * force;
-  next.position = state.position + dt_ * next.velocity;
+  next.position = state.position + 0.5 * dt_ * (state.velocity + next.velocity);
   next.angular_momentum = state.angular_momentum + dt_ * torque;
-  const Vector3 w = step_angular_velocity(state.orientation, next.angular_momentum);
+  const Vector3 w =
+      step_angular_velocity(state.orientation, state.angular_momentum + 0.5 * dt_ * torque);
   next.orientation = (rotation_from_vector(dt_ * w) * state.orientation).normalized();
   return next;
 }
@@ -48,7 +49,7 @@ RigidState RigidBody::with_past(const RigidState& state, const Vector3& force,
                                 const Vector3& torque, int age) const noexcept {
   if (!moves_) return state;
   RigidState late = state;
-  const double since = (age + 1) * dt_;
+  const double since = (age + 0.5) * dt_;
   late.velocity += dt_ / mass_ * force;
   late.position += since * dt_ / mass_ * force;
   late.angular_momentum += dt_ * torque;
@@ -60,9 +61,13 @@ RigidState RigidBody::with_past(const RigidState& state, const Vector3& force,
 
 Vector3 RigidBody::mid_step_spin(const RigidState& state) const noexcept {
   if (!moves_) return Vector3::Zero();
+  return inverse_inertia_ * (mid_step_orientation(state).conjugate() * state.angular_momentum);
+}
+
+Quaternion RigidBody::mid_step_orientation(const RigidState& state) const noexcept {
+  if (!moves_) return state.orientation;
   const Vector3 w = step_angular_velocity(state.orientation, state.angular_momentum);
-  const Quaternion half = rotation_from_vector(0.5 * dt_ * w) * state.orientation;
-  return inverse_inertia_ * (half.conjugate() * state.angular_momentum);
+  return (rotation_from_vector(0.5 * dt_ * w) * state.orientation).normalized();
 }
 
 Vector3 RigidBody::angular_velocity(const RigidState& state) const noexcept {
@@ -77,7 +82,7 @@ Vector3 RigidBody::angular_momentum(const Quaternion& orientation,
 
 RigidMobility RigidBody::mobility() const noexcept {
   if (!moves_) return {};
-  return {dt_ * dt_ / mass_, dt_ * dt_ * inverse_inertia_};
+  return {0.5 * dt_ * dt_ / mass_, 0.5 * dt_ * dt_ * inverse_inertia_};
 }
 
 }  // namespace irdm

@@ -16,10 +16,11 @@ struct RigidState {
 };
 
 /// Rigid motion by equations (1)(2), M dv/dt = sum F and I dw/dt + w x (I w) = sum tau, one step of
-/// dt at a time. Momentum and angular momentum change by exactly the impulses applied. The
-/// velocities at the end of a step carry the body through it (symplectic Euler), rotation by the
-/// angular velocity half-way (implicit midpoint on the rotation group), so that the energy of a
-/// free spin does not drift. A fixed object does not move. Pure and real-time safe.
+/// dt at a time, for forces that are held during the step, as those of R are: translation exactly,
+/// c += dt v + dt^2/2 F/M, and rotation to second order, by the angular velocity half-way with half
+/// the step's torque (implicit midpoint on the rotation group; the energy of a free spin does not
+/// drift). Momentum and angular momentum change by exactly the impulses applied. A fixed object
+/// does not move. Pure and real-time safe.
 class RigidBody {
  public:
   /// @param dt step [s], > 0
@@ -34,14 +35,18 @@ class RigidBody {
   /// besides during the step `age` steps before the last one (0: the last one itself).
   RigidState with_past(const RigidState& state, const Vector3& force, const Vector3& torque,
                        int age) const noexcept;
-  /// Angular velocity that carries a body of this orientation and angular momentum through the
-  /// coming step [rad/s], W.
+  /// Angular velocity that carries a body of this orientation through the coming step [rad/s], W.
+  /// @param angular_momentum half-way through the step [kg m^2/s], W
   Vector3 step_angular_velocity(const Quaternion& orientation,
                                 const Vector3& angular_momentum) const noexcept;
 
-  /// The same in B as the body stands half-way through that step [rad/s]: what the elastic part
-  /// feels of the spin. Zero when fixed.
+  /// The same without torque in B as the body stands half-way through that step [rad/s]: the spin
+  /// that loads the elastic part. Zero when fixed.
   Vector3 mid_step_spin(const RigidState& state) const noexcept;
+
+  /// How the body stands half-way through the coming step without torque, B to W. Contact forces,
+  /// which are held in B, have their direction in W by it.
+  Quaternion mid_step_orientation(const RigidState& state) const noexcept;
 
   /// Instantaneous angular velocity [rad/s], W.
   Vector3 angular_velocity(const RigidState& state) const noexcept;
@@ -50,11 +55,12 @@ class RigidBody {
   Vector3 angular_momentum(const Quaternion& orientation,
                            const Vector3& angular_velocity) const noexcept;
 
-  /// What forces held during a step move by its end: dt^2 / M and dt^2 I_B^-1, in B. Zero when
+  /// What forces held during a step move by its end: dt^2 / 2M and dt^2/2 I_B^-1, in B. Zero when
   /// fixed.
   RigidMobility mobility() const noexcept;
 
   double mass() const noexcept { return mass_; }
+  double dt() const noexcept { return dt_; }
   bool moves() const noexcept { return moves_; }
 
  private:

@@ -15,8 +15,9 @@ Vector3 RigidPast::Forces::torque(const Quaternion& orientation) const noexcept 
   return {turned(1, 2) - turned(2, 1), turned(2, 0) - turned(0, 2), turned(0, 1) - turned(1, 0)};
 }
 
-void RigidPast::remember(const RigidState& before, const Forces& forces) noexcept {
-  steps_[count_++ % kKept] = {before, forces};
+void RigidPast::remember(const RigidState& before, const Quaternion& halfway,
+                         const Forces& forces) noexcept {
+  steps_[count_++ % kKept] = {before, halfway, forces};
 }
 
 void RigidPast::add(int age, const Vector3& force, const Vector3& arm) noexcept {
@@ -31,9 +32,9 @@ RigidState RigidPast::replay(const RigidBody& body, const FreeForces& free,
   for (int age = changed_; age >= 0; --age) {
     Step& step = at(age);
     step.before = now;
-    const FreeMotion motion = free_motion(body, free, now);
-    now = body.advance(now, motion.force + step.forces.sum,
-                       motion.torque + step.forces.torque(now.orientation));
+    step.halfway = body.mid_step_orientation(now);
+    now = end_of_step(body, free, free_motion(body, free, now), step.forces.sum,
+                      step.forces.torque(step.halfway));
   }
   changed_ = -1;
   return now;

@@ -31,11 +31,12 @@ class RigidPast {
     changed_ = -1;
   }
   /// A step from `before` under these contact forces.
-  void remember(const RigidState& before, const Forces& forces) noexcept;
+  /// @param halfway RigidBody::mid_step_orientation(before)
+  void remember(const RigidState& before, const Quaternion& halfway, const Forces& forces) noexcept;
   /// How many steps are known, at most kKept.
   int count() const noexcept { return static_cast<int>(count_ < kKept ? count_ : kKept); }
-  /// Before the step `age` steps before the last one, 0 <= age < count().
-  const Quaternion& orientation(int age) const noexcept { return at(age).before.orientation; }
+  /// Half-way through the step `age` steps before the last one, 0 <= age < count().
+  const Quaternion& halfway(int age) const noexcept { return at(age).halfway; }
 
   /// One more force in the step `age` steps before the last one, 0 <= age < count().
   /// @param force [N], W  @param arm [m], B
@@ -50,6 +51,7 @@ class RigidPast {
  private:
   struct Step {
     RigidState before;
+    Quaternion halfway = Quaternion::Identity();
     Forces forces;
   };
   const Step& at(int age) const noexcept {

@@ -36,7 +36,7 @@ void ContactPredictor::start_motion() noexcept {
     const std::uint64_t i = model_.step - age;
     if (!missing(i) || past(i).step != i) continue;
     Past& late = past(i);
-    const double ago = model_.dt * static_cast<double>(age + 1);
+    const double ago = model_.dt * (static_cast<double>(age) + 0.5);
     const Quaternion Q = rotation_from_vector(-ago * spin) * model_.motion.orientation;
     late.force_B = Q.conjugate() * late.force;
     motion_ = body_->with_past(motion_, late.force, Q * late.arm.cross(late.force_B),
@@ -48,7 +48,7 @@ void ContactPredictor::start_motion() noexcept {
 void ContactPredictor::move_to(std::uint64_t k) noexcept {
   for (; moved_to_ < k; ++moved_to_) {
     const FreeMotion free = free_motion(*body_, model_.free_forces, motion_);
-    const Quaternion& Q = motion_.orientation;
+    const Quaternion Q = body_->mid_step_orientation(motion_);
     Vector3 force = model_.other_force;
     Vector3 torque = model_.other_torque;
     Past& ours = past(moved_to_ + 1);
@@ -57,7 +57,7 @@ void ContactPredictor::move_to(std::uint64_t k) noexcept {
       force += ours.force_B;
       torque += ours.arm.cross(ours.force_B);
     }
-    motion_ = body_->advance(motion_, free.force + Q * force, free.torque + Q * torque);
+    motion_ = end_of_step(*body_, model_.free_forces, free, Q * force, Q * torque);
   }
 }
 
@@ -143,10 +143,10 @@ ContactPredictor::Answer ContactPredictor::solve(std::uint64_t k, const Vector3&
   const double share_of_it = share(k);
   if (!model_.valid) return answer;
   move_to(k - 1);
-  const Quaternion Q = motion_.orientation;
+  const Quaternion Q = body_->mid_step_orientation(motion_);
   const FreeMotion free = free_motion(*body_, model_.free_forces, motion_);
-  const RigidState end = body_->advance(motion_, free.force + Q * model_.other_force,
-                                        free.torque + Q * model_.other_torque);
+  const RigidState end = end_of_step(*body_, model_.free_forces, free, Q * model_.other_force,
+                                     Q * model_.other_torque);
   const Vector3 tip_B = end.orientation.conjugate() * (tip - end.position);
   const bool held = model_.state == ContactState::kHeld;
   const Vector3 surface = surface_at(k);

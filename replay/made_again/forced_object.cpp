@@ -40,7 +40,7 @@ void ForcedObject::reset() {
 void ForcedObject::enter_late(const LateForce& late) {
   if (late.age >= past_.count()) return;
   engine_->add_past(forces_.of(late), late.age);
-  past_.add(late.age, past_.orientation(late.age) * late.force, late.arm);
+  past_.add(late.age, past_.halfway(late.age) * late.force, late.arm);
 }
 
 void ForcedObject::set(const Vector3& gravity, const ObjectSettings& settings) {
@@ -59,7 +59,7 @@ Vector3 ForcedObject::place(const ContactPatch& patch) const {
 }
 
 RigidPast::Forces ForcedObject::collect(const ObjectRecord& recorded) {
-  const Quaternion& Q = state_.orientation;
+  const Quaternion& Q = recorded.halfway;
   RigidPast::Forces forces;
   for (std::size_t s = 0; s < masks_.size(); ++s) {
     const ContactRecord& contact = recorded.contact[s];
@@ -78,14 +78,14 @@ RigidPast::Forces ForcedObject::collect(const ObjectRecord& recorded) {
 void ForcedObject::step(ObjectRecord& again, std::span<const StylusRecord> /*styluses*/) {
   state_ = past_.replay(body_, free_forces_, state_);
   again.start = state_;
+  again.halfway = body_.mid_step_orientation(state_);
   again.spin = feels_spin_ ? body_.mid_step_spin(state_) : Vector3::Zero();
   if (feels_spin_) engine_->hold_spin(again.spin);
   const FreeMotion motion = free_motion(body_, free_forces_, state_);
   const RigidPast::Forces forces = collect(again);
   engine_->advance(forces_.of(again));
-  past_.remember(state_, forces);
-  state_ = body_.advance(state_, motion.force + forces.sum,
-                         motion.torque + forces.torque(again.start.orientation));
+  past_.remember(state_, again.halfway, forces);
+  state_ = end_of_step(body_, free_forces_, motion, forces.sum, forces.torque(again.halfway));
   again.position = state_.position;
   again.orientation = state_.orientation;
   again.velocity = state_.velocity;

@@ -46,13 +46,13 @@ void FromForces::step(const StepRecord& recorded, StepRecord& again) {
   write_floor_and_styluses(again);
 }
 
-// In W, as the objects stand now.
+// In W, as the objects stand half-way through the step.
 void FromForces::write_floor_and_styluses(StepRecord& again) const {
   const auto styluses = static_cast<std::size_t>(again.stylus_count);
   for (std::size_t s = 0; s < styluses; ++s) again.stylus[s].force.setZero();
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     ObjectRecord& object = again.object[i];
-    const Quaternion& Q = object.start.orientation;
+    const Quaternion& Q = object.halfway;
     for (std::size_t s = 0; s < styluses; ++s) {
       const ContactRecord& contact = object.contact[s];
       if (contact.state != ContactState::kFree) again.stylus[s].force -= Q * contact.force;

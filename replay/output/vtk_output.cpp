@@ -82,7 +82,7 @@ std::string VtkOutput::surface_text(const Surface& surface, const ObjectRecord& 
     moved.row(i) = object.orientation * u;
   }
   for (const NodalForce& each : surface.forces->of(object)) {
-    force.row(each.node) += (object.start.orientation * each.force).transpose();
+    force.row(each.node) += (object.halfway * each.force).transpose();
   }
   return poly_data(
       time, place, 0, static_cast<std::size_t>(mesh.triangles.rows()), surface.triangles,

@@ -142,7 +142,7 @@ void FemBody::add_forces(std::span<const NodalForce> forces, const Quaternion& Q
 }
 
 void FemBody::hold(const ObjectRecord& recorded) {
-  const Quaternion& Q = recorded.start.orientation;
+  const Quaternion& Q = recorded.halfway;
   force_.setZero();
   couples_.clear();
   add_forces(recorded_forces_.of(recorded), Q);
@@ -178,16 +178,19 @@ bool FemBody::kicks() const {
 void FemBody::kick(double time) {
   if (!kicks()) return;
   const RigidState state = rigid_state();
-  const FreeMotion free = free_motion(rigid_, free_forces_, state);
-  Vector3 torque = free.torque;
+  const RigidDamping& damping = free_forces_.damping;
+  const Vector3 force = free_force(rigid_.mass(), free_forces_, state.position) -
+                        rigid_.mass() * damping.linear * state.velocity;
+  Vector3 torque =
+      free_torque(free_forces_, state.orientation) - damping.angular * state.angular_momentum;
   for (const OffsetForce& couple : couples_) {
     torque += (state.orientation * couple.offset).cross(couple.force);
   }
   const Points x = mesh_->body.rest() + as_points(state_.u);
   const Vector3 turning =
       precompute::nodal_mass_properties(x, mesh_->body.mass()).inertia.ldlt().solve(torque);
-  const Vector3 more = decayed(free_forces_.damping.linear, time) * free.force / rigid_.mass();
-  const Vector3 more_spin = decayed(free_forces_.damping.angular, time) * turning;
+  const Vector3 more = decayed(damping.linear, time) * force / rigid_.mass();
+  const Vector3 more_spin = decayed(damping.angular, time) * turning;
   for (Eigen::Index i = 0; i < x.rows(); ++i) {
     const Vector3 arm = x.row(i).transpose() - state.position;
     state_.v.segment<3>(3 * i) += more + more_spin.cross(arm);
@@ -266,7 +269,8 @@ void FemBody::step(ObjectRecord& again, std::span<const StylusRecord> styluses) 
     solve(again);
     keep_in_journal();
   }
-  const Quaternion turn = start.orientation.conjugate() * again.start.orientation;
+  const Quaternion halfway = rigid_.mid_step_orientation(start);
+  const Quaternion turn = halfway.conjugate() * again.halfway;
   for (ContactRecord& contact : again.contact) contact.force = turn * contact.force;
   for (std::size_t i = 0; i < static_cast<std::size_t>(again.floor_count); ++i) {
     again.floor[i].force = turn.cast<float>() * again.floor[i].force;
@@ -274,6 +278,7 @@ void FemBody::step(ObjectRecord& again, std::span<const StylusRecord> styluses) 
   ++steps_;
   const RigidState end = rigid_state();
   again.start = start;
+  again.halfway = halfway;
   again.spin.setZero();
   again.position = end.position;
   again.orientation = end.orientation;

@@ -20,7 +20,8 @@ int fem_parts(double dt, double longest);
 struct ToldLate {
   std::size_t step = 0;  ///< that it belongs to, from the start of the trace
   LateForce late;
-  Quaternion orientation = Quaternion::Identity();  ///< of the recorded body before that step
+  Quaternion orientation =
+      Quaternion::Identity();  ///< of the recorded body half-way through that step
 };
 
 /// By finite elements, without modes, R or rigid body: the whole mesh, of large rotations, stepped

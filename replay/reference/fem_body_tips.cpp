@@ -41,7 +41,7 @@ Eigen::VectorXd FemBody::misses(const ObjectRecord& moved) const {
   for (std::size_t i = 0; i < followed_.size(); ++i) {
     const Followed& followed = followed_[i];
     const ContactRecord& contact = moved.contact[followed.stylus];
-    const Vector3 force = moved.start.orientation * contact.force;
+    const Vector3 force = moved.halfway * contact.force;
     misses.segment<3>(3 * static_cast<Eigen::Index>(i)) =
         followed.tip - place(followed.patch) - Q * contact.offset - followed.compliance * force;
   }
@@ -73,8 +73,7 @@ void FemBody::follow(ObjectRecord& recorded) {
 void FemBody::put_forces(const Eigen::VectorXd& forces, ObjectRecord& recorded) const {
   for (std::size_t i = 0; i < followed_.size(); ++i) {
     recorded.contact[followed_[i].stylus].force =
-        recorded.start.orientation.conjugate() *
-        Vector3(forces.segment<3>(3 * static_cast<Eigen::Index>(i)));
+        recorded.halfway.conjugate() * Vector3(forces.segment<3>(3 * static_cast<Eigen::Index>(i)));
   }
 }
 

@@ -58,7 +58,7 @@ std::vector<ToldLate> told_late(const Recording& recording) {
       if (k < begin + ago) continue;
       recording.step(k - ago, *own);
       const ObjectRecord& object = own->object[static_cast<std::size_t>(late.object)];
-      told.push_back({k - ago, late, object.start.orientation});
+      told.push_back({k - ago, late, object.halfway});
     }
   }
   return told;

@@ -40,7 +40,7 @@ struct Recording::Data {
   RigidState before(std::size_t object, std::size_t k) const;
   void object_step(std::size_t object, std::size_t k, ObjectRecord& out, bool feels_spin) const;
   ContactRecord contact(const trace::ContactRows& rows, std::size_t k,
-                        const RigidState& before) const;
+                        const Quaternion& halfway) const;
 };
 
 void Recording::Data::read(const hdf5::File& file, const std::vector<std::string>& names) {
@@ -169,7 +169,7 @@ RigidState Recording::Data::before(std::size_t i, std::size_t k) const {
 }
 
 ContactRecord Recording::Data::contact(const trace::ContactRows& rows, std::size_t k,
-                                       const RigidState& before) const {
+                                       const Quaternion& halfway) const {
   ContactRecord contact;
   contact.state = static_cast<ContactState>(rows.state[k]);
   if (contact.state == ContactState::kFree) return contact;
@@ -179,7 +179,7 @@ ContactRecord Recording::Data::contact(const trace::ContactRows& rows, std::size
     contact.point.weights[i] = rows.weights[3 * k + i];
   }
   contact.force = trace::vector_of(rows.force, k);
-  if (objects.size() == 1) contact.force = -(before.orientation.conjugate() * contact.force);
+  if (objects.size() == 1) contact.force = -(halfway.conjugate() * contact.force);
   contact.proxy = trace::vector_of(rows.proxy, k);
   contact.offset = trace::vector_of(rows.offset, k);
   return contact;
@@ -191,6 +191,7 @@ void Recording::Data::object_step(std::size_t i, std::size_t k, ObjectRecord& ou
   const RigidState start = before(i, k);
   const double* q = rows.orientation.data() + 4 * k;
   out.start = start;
+  out.halfway = bodies[i].mid_step_orientation(start);
   out.position = trace::vector_of(rows.position, k);
   out.orientation = Quaternion(q[0], q[1], q[2], q[3]);
   out.velocity = trace::vector_of(rows.velocity, k);
@@ -198,7 +199,7 @@ void Recording::Data::object_step(std::size_t i, std::size_t k, ObjectRecord& ou
   out.spin = feels_spin ? bodies[i].mid_step_spin(start) : Vector3::Zero();
   out.contact.fill(ContactRecord{});
   for (std::size_t s = 0; s < rows.contacts.size(); ++s) {
-    out.contact[s] = contact(rows.contacts[s], k, start);
+    out.contact[s] = contact(rows.contacts[s], k, out.halfway);
   }
   out.floor_count = 0;
   out.floor_force.setZero();
@@ -206,7 +207,7 @@ void Recording::Data::object_step(std::size_t i, std::size_t k, ObjectRecord& ou
     FloorForce& force = out.floor[static_cast<std::size_t>(out.floor_count++)];
     force = {rows.floor.node[r],
              Eigen::Map<const Eigen::Vector3f>(rows.floor.force.data() + 3 * r)};
-    out.floor_force += start.orientation * force.force.cast<double>();
+    out.floor_force += out.halfway * force.force.cast<double>();
   }
 }
 

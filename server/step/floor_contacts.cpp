@@ -9,7 +9,11 @@ namespace {
 
 // Nodes as near as this are given to the solver, which leaves them alone unless they come down.
 constexpr double kNearFloor = 1e-4;
+// How far a node may be from where it would be at rest, to be looked at: at least so far [m], and
+// so many times as far as any was seen. What was seen fades by this factor a step: a node rings on.
 constexpr double kLeastMargin = 2e-3;
+constexpr double kMarginFactor = 2.0;
+constexpr double kFading = 0.99;
 
 }  // namespace
 
@@ -19,8 +23,7 @@ FloorContacts::FloorContacts(const FloorConfig& floor, const RestSurface& rest,
       rest_(rest),
       feet_(static_cast<std::size_t>(rest.node_count())),
       nodes_(kMaxFloorContacts),
-      posed_(kMaxFloorContacts),
-      margin_(kLeastMargin) {
+      posed_(kMaxFloorContacts) {
   if (rest.node_count() > kMaxNodes) {
     throw Error("floor",
                 "an object with " + std::to_string(rest.node_count()) +
@@ -34,19 +37,21 @@ void FloorContacts::reset() noexcept {
   std::fill(feet_.begin(), feet_.end(), Foot{});
   count_ = 0;
   posed_count_ = 0;
-  margin_ = kLeastMargin;
+  displaced_ = 0.0;
 }
 
-int FloorContacts::find(const FreeMotion& motion, DeformedSurface& surface) noexcept {
+int FloorContacts::find(const FreeMotion& motion, DeformedSurface& surface,
+                        double displaced) noexcept {
   count_ = 0;
+  displaced_ = std::max(kFading * displaced_, displaced);
+  const double margin = kLeastMargin + kMarginFactor * displaced_;
   const Vector3 up = motion.orientation.conjugate() * floor_.normal;
   const double offset = height(motion.position);
-  double largest = 0.0;
   for (int i = 0; i < rest_.node_count() && count_ < kMaxFloorContacts; ++i) {
     Foot& foot = feet_[static_cast<std::size_t>(i)];
-    if (!foot.down && offset + up.dot(rest_.node(i)) > margin_) continue;
+    if (!foot.down && offset + up.dot(rest_.node(i)) > margin) continue;
     const Vector3& r = surface.node(i);
-    largest = std::max(largest, std::abs(up.dot(r - rest_.node(i))));
+    displaced_ = std::max(displaced_, (r - rest_.node(i)).norm());
     if (!foot.down && offset + up.dot(r) > kNearFloor) continue;
     if (!foot.down) {
       const Vector3 x = motion.to_world(r);
@@ -54,7 +59,7 @@ int FloorContacts::find(const FreeMotion& motion, DeformedSurface& surface) noex
     }
     nodes_[static_cast<std::size_t>(count_++)] = i;
   }
-  margin_ = kLeastMargin + 2.0 * largest;
+  if (count_ == 0) posed_count_ = 0;  // the contacts of styluses take the rows
   return count_;
 }
 
@@ -99,6 +104,8 @@ void FloorContacts::settle(const FreeMotion& motion, const ContactProblem& probl
     foot.down = solved.mode != ContactMode::kOpen;
     foot.slipping = solved.mode == ContactMode::kSlipping;
     foot.force = solved.force;
+    const Vector3 moved = solved.arm + problem.elastic(a, a) * solved.force - rest_.node(node(a));
+    displaced_ = std::max(displaced_, moved.norm());
     if (!foot.slipping) continue;
     foot.anchor -= motion.orientation * solved.slip;
     foot.anchor -= height(foot.anchor) * floor_.normal;

@@ -23,7 +23,8 @@ class FloorContacts {
 
   /// Chooses this step's contacts: the nodes that would be below the floor by the end of it, and
   /// those that were pressed on it. Returns how many; at most kMaxFloorContacts, the others wait.
-  int find(const FreeMotion& motion, DeformedSurface& surface) noexcept;
+  /// @param displaced largest displacement that is known of any node [m]
+  int find(const FreeMotion& motion, DeformedSurface& surface, double displaced) noexcept;
   /// Writes them into the problem as its first contacts.
   void pose(const FreeMotion& motion, DeformedSurface& surface, ContactProblem& problem) noexcept;
   /// Compliance between a patch and the floor contact i: displacement of the patch per force there.
@@ -52,7 +53,7 @@ class FloorContacts {
   std::vector<int> posed_;      ///< whose blocks are in the problem
   int count_ = 0;
   int posed_count_ = 0;
-  double margin_;  ///< how far a node may be from where it would be at rest, to be looked at [m]
+  double displaced_ = 0.0;  ///< how far nodes were seen away from where they are at rest [m]
 };
 
 }  // namespace irdm

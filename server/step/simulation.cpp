@@ -143,7 +143,7 @@ bool Simulation::enter_late(const LateForce& late) noexcept {
   return true;
 }
 
-// Step 6: -Q f.
+// Step 6: -Q f, Q half-way through the step.
 void Simulation::write_stylus(std::size_t s, const StylusCommand& command,
                               StepRecord& record) const noexcept {
   StylusRecord& stylus = record.stylus[s];
@@ -156,7 +156,7 @@ void Simulation::write_stylus(std::size_t s, const StylusCommand& command,
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     const ContactRecord& contact = record.object[i].contact[s];
     if (contact.state == ContactState::kFree) continue;
-    stylus.force -= record.object[i].start.orientation * contact.force;
+    stylus.force -= record.object[i].halfway * contact.force;
     if (contact.force.norm() <= largest) continue;
     largest = contact.force.norm();
     stylus.object = static_cast<int>(i);

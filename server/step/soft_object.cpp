@@ -36,7 +36,7 @@ constexpr int kSettlingRounds = 8;
 constexpr double kSettled = 1e-6;
 
 // The iteration goes on in the next step from where it was left, so a few sweeps are enough.
-constexpr SolverLimits kFloorLimits{40, 1e-10, 8, 1e-6, 1e-3};
+constexpr SolverLimits kFloorLimits{200, 1e-10, 8, 1e-6, 1e-4};
 
 }  // namespace
 
@@ -105,13 +105,15 @@ void SoftObject::set(const Vector3& gravity, const ObjectSettings& settings) noe
 
 void SoftObject::step(std::span<const StylusCommand> commands, ObjectRecord& record) noexcept {
   state_ = past_.replay(body_, free_forces_, state_);
+  halfway_ = body_.mid_step_orientation(state_);
   record.start = state_;
+  record.halfway = halfway_;
   spin(record);
   surface_.begin_step(*engine_);
   motion_ = free_motion(body_, free_forces_, state_);
   tell_tips(commands);
   collect(commands);
-  floor_count_ = floor_ ? floor_->find(motion_, surface_) : 0;
+  floor_count_ = floor_ ? floor_->find(motion_, surface_, displaced()) : 0;
   solve(commands, record);
   write(record);
   write_floor(record);
@@ -214,6 +216,15 @@ bool SoftObject::settle_down(std::size_t s, const Vector3& tip) noexcept {
   return depth <= stylus.tip_moved() + kDeepestStart;
 }
 
+// Largest displacement under a stylus by the end of the last step [m].
+double SoftObject::displaced() const noexcept {
+  double largest = 0.0;
+  for (const LastContact& last : last_) {
+    if (last.any && last.last_step + 1 == steps_) largest = std::max(largest, last.displaced);
+  }
+  return largest;
+}
+
 // Steps 1 and 3: where the contacts' points would be without force, and the elastic compliance
 // between them.
 void SoftObject::predict_contacts() noexcept {
@@ -242,7 +253,7 @@ void SoftObject::pose_problem(std::span<const StylusCommand> commands) noexcept 
     unknown.arm = contact.arm;
     if (contact.given) {
       unknown.law = ContactLaw::kGiven;
-      unknown.force = state_.orientation.conjugate() * commands[s].given->force;
+      unknown.force = halfway_.conjugate() * commands[s].given->force;
       continue;
     }
     unknown.law = stylus.state() == ContactState::kHeld ? ContactLaw::kHeld : ContactLaw::kTouching;
@@ -267,7 +278,7 @@ void SoftObject::pose_problem(std::span<const StylusCommand> commands) noexcept 
     if (commands[s].bridged) {
       contacts_[static_cast<std::size_t>(a)].law = unknown.law;
       unknown.law = ContactLaw::kGiven;
-      unknown.force = state_.orientation.conjugate() * commands[s].bridged->force;
+      unknown.force = halfway_.conjugate() * commands[s].bridged->force;
       if (!unknown.force.isZero(0.0)) {
         unknown.arm = believed(commands[s].bridged->arm, unknown.arm);
       }
@@ -366,7 +377,7 @@ void SoftObject::write_floor(ObjectRecord& record) noexcept {
     FloorForce& out = record.floor[static_cast<std::size_t>(record.floor_count++)];
     out = {floor_->node(i), solved.force.cast<float>()};
     solved.force = out.force.cast<double>();
-    record.floor_force += state_.orientation * solved.force;
+    record.floor_force += halfway_ * solved.force;
   }
 }
 
@@ -404,7 +415,7 @@ void SoftObject::advance() noexcept {
   const double share = model_->dt / kAverageTime;
   for (LastContact& last : last_) last.average *= 1.0 - share;
   nodal_.clear();
-  const Quaternion Q = state_.orientation;
+  const Quaternion& Q = halfway_;
   RigidPast::Forces forces;
   for (int a = 0; a < contact_count_; ++a) {
     const ContactUnknown& solved = problem_.contact(floor_count_ + a);
@@ -418,6 +429,10 @@ void SoftObject::advance() noexcept {
     last.point = points_[index];
     last.patch = patches_[index];
     last.arm = contacts_[index].arm;
+    last.displaced = (contacts_[index].arm + elastic_.block<3, 3>(row(a), row(a)) * solved.force -
+                      mean(patches_[index], [&](int i) {
+                        return rest_.node(i);
+                      })).norm();
     last.average += share * solved.force;
     forces.add(Q * solved.force, solved.arm);
   }
@@ -429,8 +444,8 @@ void SoftObject::advance() noexcept {
   }
   follow();
   engine_->advance(nodal_.view());
-  past_.remember(state_, forces);
-  state_ = body_.advance(state_, motion_.force + forces.sum, motion_.torque + forces.torque(Q));
+  past_.remember(state_, Q, forces);
+  state_ = end_of_step(body_, free_forces_, motion_, forces.sum, forces.torque(Q));
   ++steps_;
 }
 

@@ -81,8 +81,10 @@ class SoftObject {
     ContactPatch patch;
     Vector3 arm = Vector3::Zero();      ///< of its force [m], B
     Vector3 average = Vector3::Zero();  ///< of its force over the last while [N], B
+    double displaced = 0.0;             ///< of its place by the end of its step [m]
   };
   void take_over(std::size_t s, const StylusCommand& command) noexcept;
+  double displaced() const noexcept;
   Vector3 believed(const Vector3& arm, const Vector3& own) const noexcept;
   bool place_late(std::size_t s, const Vector3& tip, LateForce& entry) noexcept;
   void collect_others(std::size_t s, ContactModel& model) noexcept;
@@ -124,6 +126,7 @@ class SoftObject {
 
   // Of the step under way.
   FreeMotion motion_;
+  Quaternion halfway_ = Quaternion::Identity();  ///< as ObjectRecord::halfway
   int contact_count_ = 0;  ///< of styluses; in the problem they come after those of the floor
   int floor_count_ = 0;
   std::array<Contact, kMaxContacts> contacts_{};

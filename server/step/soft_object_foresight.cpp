@@ -97,7 +97,7 @@ bool SoftObject::place_late(std::size_t s, const Vector3& tip, LateForce& entry)
 
 bool SoftObject::enter_late(std::size_t s, const AppliedForce& applied, LateForce& entry) noexcept {
   if (!place_late(s, applied.tip, entry)) return false;
-  entry.force = past_.orientation(entry.age).conjugate() * applied.force;
+  entry.force = past_.halfway(entry.age).conjugate() * applied.force;
   entry.arm = believed(applied.arm, entry.arm);
   return enter_late(entry);
 }
@@ -109,7 +109,7 @@ bool SoftObject::enter_late(const LateForce& entry) noexcept {
   nodal_.clear();
   nodal_.add(foreseen_patch_, entry.force);
   engine_->add_past(nodal_.view(), entry.age);
-  past_.add(entry.age, past_.orientation(entry.age) * entry.force, entry.arm);
+  past_.add(entry.age, past_.halfway(entry.age) * entry.force, entry.arm);
   return true;
 }
 

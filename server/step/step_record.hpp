@@ -66,6 +66,8 @@ struct FloorForce {
 /// What became of one object in one step.
 struct ObjectRecord {
   RigidState start;  ///< before the step, with the late forces that were entered by then
+  /// Half-way through the step, B to W: contact forces, held in B, have their direction in W by it.
+  Quaternion halfway = Quaternion::Identity();
   Vector3 position = Vector3::Zero();               ///< of the body at the end of the step [m], W
   Quaternion orientation = Quaternion::Identity();  ///< B to W
   Vector3 velocity = Vector3::Zero();               ///< [m/s], W

@@ -1,4 +1,4 @@
-// A hundred scenes that nobody thought of.
+// Two hundred scenes that nobody thought of.
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
@@ -26,6 +26,7 @@ struct Hand {
   StylusCommand at(double t) const {
     Vector3 tip = middle;
     for (const Wave& wave : waves) tip += std::sin(wave.rate * t + wave.phase) * wave.size;
+    tip.y() = std::max(tip.y(), lowest);
     const bool grab = holds > 0.0 && std::fmod(t, 2.0 * holds) > holds;
     return {true, grab ? kGrabButton : 0u, tip, std::nullopt};
   }
@@ -35,6 +36,7 @@ struct Hand {
   };
   Vector3 middle;
   std::array<Wave, 3> waves;
+  double lowest = -1.0;  // a hand does not go through the floor
   double holds = 0.0;
 };
 
@@ -43,8 +45,14 @@ struct Scene {
   std::vector<Hand> hands;
 };
 
+// Soft to far too stiff for the step.
+double any_stiffness(Random& random) {
+  return 1e3 * std::pow(1e3, between(random, 0.0, 1.0));
+}
+
 Scene make_scene(Random& random) {
   Scene scene;
+  const double dt = chance(random, 0.5) ? 1e-3 : 2e-3;
   const bool floor = chance(random, 0.4);
   if (floor) {
     scene.config.gravity = Vector3(0, -9.81, 0);
@@ -55,8 +63,7 @@ Scene make_scene(Random& random) {
   const int objects = std::uniform_int_distribution(1, 3)(random);
   for (int i = 0; i < objects; ++i) {
     SimulationObject object;
-    // Soft enough for a step of 2 ms: `irdm-precompute check` says what is.
-    object.model = fem_cube({3, chance(random, 0.5) ? 1000.0 : 2000.0});
+    object.model = fem_cube({.cells = 3, .youngs_modulus = any_stiffness(random), .dt = dt});
     object.position = Vector3(0.2 * i, 0.0, 0.0);
     const double kinetic = between(random, 0.0, 1.0);
     object.friction = {kinetic * between(random, 1.0, 1.3), kinetic};
@@ -65,16 +72,16 @@ Scene make_scene(Random& random) {
     if (!floor) object.angular_velocity = anywhere(random, 2.0);
     scene.config.objects.push_back(object);
   }
-  const int styluses = std::uniform_int_distribution(1, 4)(random);
+  const int styluses = std::uniform_int_distribution(1, 2)(random);
   scene.config.styluses.clear();
   for (int s = 0; s < styluses; ++s) {
     const double radius = chance(random, 0.4) ? 0.0 : between(random, 0.003, 0.025);
-    // A point that is held rigidly can go on buzzing: a spring in between, as the scenes have it.
-    const double coupling = between(random, 300.0, 2000.0);
+    const double coupling = chance(random, 0.4) ? 0.0 : between(random, 300.0, 2000.0);
     scene.config.styluses.push_back({radius, coupling, chance(random, 0.3) ? 0.01 : 0.0});
     const int object = std::uniform_int_distribution(0, objects - 1)(random);
     scene.hands.emplace_back(random,
                              scene.config.objects[static_cast<std::size_t>(object)].position);
+    if (floor) scene.hands.back().lowest = scene.config.floor->height + 0.005;
   }
   return scene;
 }
@@ -105,7 +112,7 @@ double momentum_error(const SimulationObject& object, const SimulationConfig& co
                       const ObjectRecord& before, const ObjectRecord& now, double dt) {
   Vector3 force = object.model->body.mass * config.gravity + now.floor_force;
   for (const ContactRecord& contact : now.contact) {
-    if (contact.state != ContactState::kFree) force += before.orientation * contact.force;
+    if (contact.state != ContactState::kFree) force += now.halfway * contact.force;
   }
   return (object.model->body.mass * (now.velocity - before.velocity) - dt * force).norm();
 }
@@ -186,7 +193,7 @@ TEST_CASE("random scenes: finite, in balance, and no energy from nowhere", "[slo
   double worst = 0.0;
   double residual = 0.0;
   int unsolved = 0;
-  for (int i = 0; i < 100; ++i) {
+  for (int i = 0; i < 200; ++i) {
     const Scene scene = make_scene(random);
     const Outcome outcome = play(scene, 10.0);
     INFO("scene " << i << ": " << scene.config.objects.size() << " objects, "
@@ -196,7 +203,8 @@ TEST_CASE("random scenes: finite, in balance, and no energy from nowhere", "[slo
                   << outcome.unsolved << ", momentum off by " << outcome.momentum);
     CHECK(outcome.finite);
     CHECK(outcome.safe);
-    CHECK(outcome.residual <= 1e-3);
+    CHECK(outcome.residual <= 1e-4);
+    CHECK(outcome.unsolved == 0);
     CHECK(outcome.momentum < 1e-10);
     CHECK(outcome.excess <= 0.01 * outcome.gross);
     unsolved += outcome.unsolved;
@@ -204,8 +212,8 @@ TEST_CASE("random scenes: finite, in balance, and no energy from nowhere", "[slo
     if (outcome.gross > 0) worst = std::max(worst, outcome.excess / outcome.gross);
     residual = std::max(residual, outcome.residual);
   }
-  CHECK(touched > 80);
-  std::cout << "100 random scenes: at most " << 100 * worst
+  CHECK(touched > 160);
+  std::cout << "200 random scenes: at most " << 100 * worst
             << " % energy too much, residual at most " << residual << " m, " << unsolved
             << " steps without a solution\n";
 }

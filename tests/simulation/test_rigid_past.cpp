@@ -48,9 +48,9 @@ class Pushed {
     forces.add(pushes[2 * k].force, pushes[2 * k].arm);
     if (with_second) forces.add(pushes[2 * k + 1].force, pushes[2 * k + 1].arm);
     const FreeMotion motion = free_motion(body, free, state);
-    past.remember(state, forces);
-    state = body.advance(state, motion.force + forces.sum,
-                         motion.torque + forces.torque(state.orientation));
+    const Quaternion halfway = body.mid_step_orientation(state);
+    past.remember(state, halfway, forces);
+    state = end_of_step(body, free, motion, forces.sum, forces.torque(halfway));
   }
   /// The second push of a step, now.
   void enter(int age) {

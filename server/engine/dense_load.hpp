@@ -9,27 +9,32 @@
 
 namespace irdm {
 
-/// What the body's own spin adds to a dense response: the products of its components act as if they
-/// were forces on two nodes, each with a column of its own. Real-time safe but for displacement();
-/// one thread.
-template <typename Number>
-class DenseSpin {
+/// What a load on the whole body adds to a dense response: its kCount numbers, of every step, act
+/// as if they were forces on nodes, three on each, with a column of its own for each. Real-time
+/// safe but for displacement(); one thread.
+template <typename Number, int kCount>
+class DenseLoad {
  public:
   using Values = std::variant<std::vector<float>, std::vector<double>>;
+  using Numbers = Eigen::Matrix<double, kCount, 1>;
 
-  /// @param values of DenseResponse, numbers of this type; empty: the model has none, and nothing
-  /// is ever added
-  DenseSpin(const Values& values, int dof, int steps);
+  /// @param values in the order of DenseResponse, numbers of this type; empty: the model has none,
+  /// and nothing is ever added
+  DenseLoad(const Values& values, int dof, int steps);
 
   bool any() const noexcept { return columns_.values != nullptr; }
-  /// Nothing is added: no spin is held, and none was within the last T steps.
+  /// Nothing is added: nothing is held, and nothing was within the last T steps.
   bool at_rest() const noexcept { return past_.history().active().empty() && coming_.isZero(0.0); }
   /// Held throughout the coming step.
-  void hold(const Vector3& w) noexcept;
-  /// Adds what a node does at the end of the coming step, with the spin that is held.
+  void hold(const Numbers& numbers) noexcept {
+    if (any()) coming_ = numbers;
+  }
+  /// Adds what a node does at the end of the coming step, with what is held.
   void add_coming(int node, Vector3& u) const noexcept;
   /// The same at the end of the n-th coming step, of the steps until now alone.
   void add_foreseen(int node, int n, Vector3& u) const noexcept;
+  /// Adds what is held alone does to a node at the end of the n-th coming step.
+  void add_held(int node, int n, Vector3& u) const noexcept;
   /// As RunningConvolution's.
   void follow(int node) noexcept;
   void foresee(int node, int n) noexcept;
@@ -41,13 +46,19 @@ class DenseSpin {
   void reset() noexcept;
 
  private:
+  static_assert(kCount % 3 == 0);
+
   ResidentColumns<Number> columns_;
   RunningConvolution<ResidentColumns<Number>> past_;
-  SpinProducts coming_ = SpinProducts::Zero();
+  Numbers coming_ = Numbers::Zero();
 };
 
-/// The numbers of the centrifugal response beside R of these: never of half precision.
+/// The products of the components of the body's own spin.
+template <typename Number>
+using DenseSpin = DenseLoad<Number, kSpinProducts>;
+
+/// The numbers of responses to such loads beside R of these: never of half precision.
 template <typename Scalar>
-using SpinNumber = std::conditional_t<std::is_same_v<Scalar, Half>, float, Scalar>;
+using LoadNumber = std::conditional_t<std::is_same_v<Scalar, Half>, float, Scalar>;
 
 }  // namespace irdm

@@ -4,7 +4,9 @@ namespace irdm {
 
 template <typename Number>
 DenseGravity<Number>::DenseGravity(const GravityResponse& response, int dof, int steps)
-    : response_(response), changes_(response.approach, dof, steps) {}
+    : response_(response), changes_(response.approach, dof, steps) {
+  if (any()) largest_sag_ = response.sag.cwiseAbs().colwise().maxCoeff();
+}
 
 template <typename Number>
 void DenseGravity<Number>::set(const Vector3& gravity) noexcept {

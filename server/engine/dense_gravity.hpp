@@ -15,10 +15,10 @@ class DenseGravity final {
   DenseGravity(const GravityResponse& response, int dof, int steps);
 
   bool any() const noexcept { return !response_.empty(); }
-  /// Nothing is added: there is none, and was none within the last T steps.
-  bool at_rest() const noexcept {
-    return coming_.isZero(0.0) && last_.isZero(0.0) && changes_.at_rest();
-  }
+  /// Only the sag is added: it did not change within the last T steps.
+  bool steady() const noexcept { return changes_.at_rest(); }
+  /// What no component of any node's sag is larger than in magnitude [m].
+  double sag_bound() const noexcept { return largest_sag_.dot(coming_.cwiseAbs()); }
   /// From the coming step on [m/s^2], B. Before the first step after a reset() the body is at rest
   /// under it.
   void set(const Vector3& gravity) noexcept;
@@ -39,9 +39,10 @@ class DenseGravity final {
 
   const GravityResponse& response_;
   DenseLoad<Number, 3> changes_;
-  Vector3 last_ = Vector3::Zero();    ///< in the last step [m/s^2]
-  Vector3 coming_ = Vector3::Zero();  ///< from the coming step on
-  bool begun_ = false;                ///< there was a step since the reset
+  Vector3 largest_sag_ = Vector3::Zero();  ///< of any component, for each axis [s^2]
+  Vector3 last_ = Vector3::Zero();         ///< in the last step [m/s^2]
+  Vector3 coming_ = Vector3::Zero();       ///< from the coming step on
+  bool begun_ = false;                     ///< there was a step since the reset
 };
 
 }  // namespace irdm

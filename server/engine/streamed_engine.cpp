@@ -102,11 +102,11 @@ Vector3 StreamedEngine<Scalar>::free_displacement(int node) const noexcept {
   return u;
 }
 
-// Known only of a body at rest.
+// Known only of a body at rest, or that sags.
 template <typename Scalar>
 double StreamedEngine<Scalar>::free_displacement_bound() const noexcept {
-  const bool at_rest = past_.history().active().empty() && spin_.at_rest() && gravity_.at_rest();
-  return at_rest ? 0.0 : ResponseEngine::free_displacement_bound();
+  const bool at_rest = past_.history().active().empty() && spin_.at_rest() && gravity_.steady();
+  return at_rest ? gravity_.sag_bound() : ResponseEngine::free_displacement_bound();
 }
 
 template <typename Scalar>

@@ -146,14 +146,15 @@ void check_resources(const PrecomputeConfig& config, const TetMesh& mesh, const 
 
 ColumnFileHeader column_header(const PrecomputeConfig& config, const Model& model,
                                const std::vector<int>& clamped, const ColumnRange& range,
-                               bool centrifugal) {
+                               const ColumnSource& source) {
   return {range,
           model.degrees_of_freedom(),
           model.steps,
           config.response.precision,
           config.response.compression_error,
-          centrifugal,
+          source.has_centrifugal(),
           config.response.half,
+          source.has_gravity(),
           settings_text(config, clamped),
           description_of(model)};
 }
@@ -264,11 +265,11 @@ Summary precompute_model(const PrecomputeConfig& config, const std::filesystem::
   Summary summary = describe_work(config, mesh, model, clamped.size());
   const int threads = config.threads > 0 ? config.threads : omp_get_num_procs();
   const auto by_columns = [&](const ColumnSource& source) {
-    const ColumnsDone done = write_by_columns(
-        source,
-        {output, column_header(config, model, clamped, columns, source.has_centrifugal()),
-         slice.has_value(), threads},
-        ranks, console);
+    const ColumnsDone done =
+        write_by_columns(source,
+                         {output, column_header(config, model, clamped, columns, source),
+                          slice.has_value(), threads},
+                         ranks, console);
     summary.columns = done.computed;
     summary.slice = slice.has_value();
     if (stepping) summary.decay_left = done.decay_left;

@@ -17,6 +17,7 @@
 #include "server/config/scene.hpp"
 #include "server/report.hpp"
 #include "server/scene_simulation.hpp"
+#include "server/step/gravity_load.hpp"
 #include "server/threads/deformation_thread.hpp"
 #include "server/threads/force_thread.hpp"
 #include "server/threads/recorder_thread.hpp"
@@ -53,6 +54,22 @@ void warn_of_long_steps(double dt, bool lockstep, const std::string& name) {
             << " s is too long for a hand: above " << kLongestForceStep
             << " s bridges predict no contact and let held forces fade between steps; compute the "
                "model with a shorter response.dt\n";
+}
+
+// Gravity that nobody sees would be taken for a mistake.
+void warn_of_missing_sag(const SceneConfig& scene, const SimulationConfig& config,
+                         const std::string& name) {
+  for (std::size_t i = 0; i < config.objects.size() && !config.gravity.isZero(0.0); ++i) {
+    if (takes_gravity(config.objects[i])) continue;
+    const bool compressed =
+        std::holds_alternative<CompressedResponse>(config.objects[i].model->response);
+    std::cerr << "irdm-server: warning: " << name << ": fixed object '" << scene.objects[i].name
+              << "' does not sag under gravity: its model "
+              << (compressed ? "is compressed, which leaves gravity out; use engine = \"modal\" or "
+                               "\"dense\""
+                             : "does not say how; precompute it again with method = \"modal\"")
+              << '\n';
+  }
 }
 
 // In lockstep nobody waits for the machine's clock.
@@ -196,6 +213,7 @@ int run_server(const ServerOptions& options) {
   check_coupling(scene, config, options.scene.string());
   Simulation simulation(config);
   const double dt = simulation.dt();
+  warn_of_missing_sag(scene, config, options.scene.string());
   warn_of_long_steps(dt, options.lockstep, options.scene.string());
   ServerBlackBox black_box(scene.server.black_box, options.lockstep);
   NetworkServer network(network_settings(scene, options, dt, black_box.frames()));

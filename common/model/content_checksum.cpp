@@ -24,6 +24,15 @@ void add_dataset(Sha256& sha, const hdf5::File& file, const std::string& path) {
   sha.update(values.data(), values.size() * sizeof(T));
 }
 
+// Of single or double precision.
+void add_reals(Sha256& sha, const hdf5::File& file, const std::string& path) {
+  if (file.exists(path) && file.element_size(path) == sizeof(float)) {
+    add_dataset<float>(sha, file, path);
+  } else {
+    add_dataset<double>(sha, file, path);
+  }
+}
+
 void add_name(Sha256& sha, const std::string& object, const std::string& name) {
   const std::string full = object + "@" + name;
   sha.update(full.c_str(), full.size() + 1);
@@ -66,19 +75,13 @@ std::string content_checksum(const hdf5::File& file) {
   add_numbers(sha, file, "/response", "steps", 1);
   add_dataset<double>(sha, file, "/response/modal/angular_frequency");
   add_dataset<double>(sha, file, "/response/modal/decay_rate");
-  const std::string shapes = "/response/modal/shapes";
-  if (file.exists(shapes) && file.element_size(shapes) == sizeof(float)) {
-    add_dataset<float>(sha, file, shapes);
-  } else {
-    add_dataset<double>(sha, file, shapes);
-  }
+  add_reals(sha, file, "/response/modal/shapes");
   add_dataset<double>(sha, file, kModalCentrifugal);
   add_dataset<double>(sha, file, kDenseScale);
-  if (file.exists(kDenseCentrifugal) && file.element_size(kDenseCentrifugal) == sizeof(float)) {
-    add_dataset<float>(sha, file, kDenseCentrifugal);
-  } else {
-    add_dataset<double>(sha, file, kDenseCentrifugal);
-  }
+  add_reals(sha, file, kDenseCentrifugal);
+  add_dataset<double>(sha, file, kModalGravity);
+  add_dataset<double>(sha, file, kModalGravityRest);
+  add_reals(sha, file, kDenseGravity);
   add_dataset<std::int32_t>(sha, file, kResidualRowStart);
   add_dataset<std::int32_t>(sha, file, kResidualNodes);
   add_dataset<float>(sha, file, kResidualBlocks);

@@ -81,14 +81,25 @@ std::vector<Scalar> read_columns(const hdf5::File& file, const std::string& data
   return values;
 }
 
-// Empty where there is none.
+// Of loads on the whole body; empty where there is none.
 template <typename Scalar>
-std::vector<Scalar> read_centrifugal(const hdf5::File& file, hsize_t dof, hsize_t steps) {
-  if (!file.exists(kDenseCentrifugal)) return {};
-  require_dense(file,
-                file.stored_shape(kDenseCentrifugal) == hdf5::Shape({kSpinProducts, steps, dof}),
-                std::string(kDenseCentrifugal) + " must have the shape (6, steps, 3n)");
-  return read_columns<Scalar>(file, kDenseCentrifugal, kSpinProducts, steps, dof);
+std::vector<Scalar> read_load(const hdf5::File& file, const std::string& dataset, hsize_t count,
+                              hsize_t dof, hsize_t steps) {
+  if (!file.exists(dataset)) return {};
+  require_dense(file, file.stored_shape(dataset) == hdf5::Shape({count, steps, dof}),
+                dataset + " must have the shape (" + std::to_string(count) + ", steps, 3n)");
+  return read_columns<Scalar>(file, dataset, count, steps, dof);
+}
+
+template <typename Scalar, typename Response>
+void read_loads(const hdf5::File& file, Response& response) {
+  const auto dof = static_cast<hsize_t>(response.degrees_of_freedom);
+  const auto steps = static_cast<hsize_t>(response.steps);
+  response.centrifugal = read_load<Scalar>(file, kDenseCentrifugal, kSpinProducts, dof, steps);
+  std::vector<Scalar> gravity = read_load<Scalar>(file, kDenseGravity, 3, dof, steps);
+  if (gravity.empty()) return;
+  response.gravity =
+      gravity_response(std::move(gravity), response.degrees_of_freedom, response.steps);
 }
 
 std::vector<double> read_scales(const hdf5::File& file, hsize_t dof) {
@@ -115,9 +126,9 @@ void read_frame(const hdf5::File& file, const Model& model, Response& response) 
   const std::size_t size = file.element_size(kDenseR);
   if (size == sizeof(Half)) response.scales = read_scales(file, dof);
   if (size == sizeof(double)) {
-    response.centrifugal = read_centrifugal<double>(file, dof, steps);
+    read_loads<double>(file, response);
   } else {
-    response.centrifugal = read_centrifugal<float>(file, dof, steps);
+    read_loads<float>(file, response);
   }
 }
 
@@ -206,8 +217,9 @@ std::size_t number_size(const StreamedResponse& response) {
 std::size_t resident_bytes(const StreamedResponse& response) {
   const auto bytes = [](const auto& values) { return values.size() * sizeof(values[0]); };
   return bytes(response.fingerprints) + std::visit(bytes, response.first) +
-         std::visit(bytes, response.centrifugal) + bytes(response.rest) + bytes(response.scales) +
-         bytes(response.settling);
+         std::visit(bytes, response.centrifugal) + std::visit(bytes, response.gravity.approach) +
+         static_cast<std::size_t>(response.gravity.sag.size()) * sizeof(double) +
+         bytes(response.rest) + bytes(response.scales) + bytes(response.settling);
 }
 
 DenseColumnFile::DenseColumnFile(const std::filesystem::path& path,

@@ -17,6 +17,9 @@ namespace irdm {
 template <typename Scalar>
 using RowMatrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+/// A column for each axis.
+using AxisColumns = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
+
 /// Geometry of the object at rest. N nodes, E elements, n surface nodes, t triangles.
 struct ModelMesh {
   Points nodes;                    ///< (N, 3) [m], B
@@ -97,9 +100,32 @@ struct ModalResponse {
   RowMatrix<double> centrifugal{};
   /// Of modes that are left out, added to R[0]; empty where all are there.
   ResidualCompliance residual{};
+  /// g (r, 3): force of each mode of a fixed body per acceleration of all of it along each axis of
+  /// B [kg^1/2]; no rows: the model has none.
+  AxisColumns gravity{};
+  /// What modes that are left out add to the displacement (3n, 3), per such an acceleration and
+  /// without delay [s^2]; no rows: nothing.
+  AxisColumns gravity_rest{};
 
   int mode_count() const { return static_cast<int>(angular_frequency.size()); }
 };
+
+/// What gravity does to a fixed body whose response is dense, by what happens after a uniform
+/// acceleration of 1 m/s^2 along an axis p of B sets in and stays.
+struct GravityResponse {
+  /// Where it ends (3n, 3), as far as it was recorded [s^2]; no rows: the model has none.
+  AxisColumns sag{};
+  /// The displacement at time (s+1) dt less `sag`, numbers and order as in DenseResponse: entry (a,
+  /// p) of step s stands at (p * dof + a) * steps + s [s^2]. The last step's are 0.
+  std::variant<std::vector<float>, std::vector<double>> approach{};
+
+  bool empty() const { return sag.rows() == 0; }
+};
+
+/// @param displacement with acceleration p from the start on, in that order and not yet less `sag`
+template <typename Number>
+GravityResponse gravity_response(std::vector<Number> displacement, int degrees_of_freedom,
+                                 int steps);
 
 /// R itself. In memory the step s runs fastest, so that one convolution reads consecutive numbers:
 /// entry (a, b) of R[s] stands at (b * dof + a) * steps + s. [m/N]
@@ -114,6 +140,7 @@ struct DenseResponse {
   /// Of half precision only: what the numbers of column b are multiplied with (3n) [m/N]. Else
   /// empty.
   std::vector<double> scales{};
+  GravityResponse gravity{};
 };
 
 /// R of which only some columns are in memory at a time: what is always there, and where the
@@ -132,6 +159,7 @@ struct StreamedResponse {
   std::vector<double> scales{};                                         ///< as in DenseResponse
   std::vector<std::uint64_t> fingerprints{};  ///< of the columns as they are in the file (3n)
   std::shared_ptr<ColumnSupply> columns{};    ///< never null where there is an engine
+  GravityResponse gravity{};
 };
 
 /// R made small (irdm-precompute compress): the first m steps as they are, and from then on r
@@ -171,5 +199,8 @@ struct Model {
 
 /// Whether the model's response says what the body's own spin does to it.
 bool has_centrifugal(const Model& model);
+
+/// Whether it says what gravity does to it: of fixed bodies only.
+bool has_gravity(const Model& model);
 
 }  // namespace irdm

@@ -159,8 +159,21 @@ class ModelReader {
       require(response.centrifugal.allFinite(),
               std::string(kModalCentrifugal) + " has numbers that are not finite");
     }
+    response.gravity = read_loads(kModalGravity, modes);
+    response.gravity_rest =
+        read_loads(kModalGravityRest, static_cast<hsize_t>(model_.degrees_of_freedom()));
     response.residual = read_residual(file_, model_.mesh.surface_node_count());
     model_.response = std::move(response);
+  }
+
+  // One column an axis; no rows where there is none.
+  AxisColumns read_loads(const char* dataset, hsize_t rows) const {
+    if (!file_.exists(dataset)) return {};
+    const auto values = file_.read<double>(dataset, {rows, 3});
+    AxisColumns loads =
+        Eigen::Map<const AxisColumns>(values.data(), static_cast<Eigen::Index>(rows), 3);
+    require(loads.allFinite(), std::string(dataset) + " has numbers that are not finite");
+    return loads;
   }
 
   template <typename Scalar>

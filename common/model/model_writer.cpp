@@ -115,9 +115,15 @@ void ModelFileWriter::write_modal(const ModalResponse& response) {
       },
       response.shapes);
   if (!response.residual.empty()) write_residual(*file_, response.residual);
-  if (response.centrifugal.rows() == 0) return;
-  file_->write<double>(kModalCentrifugal, {modes, kSpinProducts}, response.centrifugal.data());
-  describe_centrifugal(*file_, kModalCentrifugal, "kg^1/2 m");
+  if (response.centrifugal.rows() > 0) {
+    file_->write<double>(kModalCentrifugal, {modes, kSpinProducts}, response.centrifugal.data());
+    describe_centrifugal(*file_, kModalCentrifugal, "kg^1/2 m");
+  }
+  if (response.gravity.rows() == 0) return;
+  file_->write<double>(kModalGravity, {modes, 3}, response.gravity.data());
+  if (response.gravity_rest.rows() == 0) return;
+  file_->write<double>(kModalGravityRest, {static_cast<hsize_t>(response.gravity_rest.rows()), 3},
+                       response.gravity_rest.data());
 }
 
 void ModelFileWriter::write_compressed(const CompressedResponse& response,
@@ -196,6 +202,18 @@ void ModelFileWriter::write_dense_centrifugal(const float* values) {
 }
 void ModelFileWriter::write_dense_centrifugal(const double* values) {
   write_centrifugal(values);
+}
+
+template <typename Scalar>
+void ModelFileWriter::write_gravity(const Scalar* values) {
+  file_->write<Scalar>(kDenseGravity, {3, dense_steps_, dense_dof_}, values);
+}
+
+void ModelFileWriter::write_dense_gravity(const float* values) {
+  write_gravity(values);
+}
+void ModelFileWriter::write_dense_gravity(const double* values) {
+  write_gravity(values);
 }
 
 void ModelFileWriter::commit() {

@@ -18,6 +18,11 @@ inline constexpr const char* kDenseR = "/response/dense/R";
 inline constexpr const char* kDenseCentrifugal = "/response/dense/centrifugal";
 inline constexpr const char* kModalCentrifugal = "/response/modal/centrifugal";
 
+/// What gravity does to a fixed body, one part an axis of B. Optional.
+inline constexpr const char* kDenseGravity = "/response/dense/gravity";
+inline constexpr const char* kModalGravity = "/response/modal/gravity";
+inline constexpr const char* kModalGravityRest = "/response/modal/gravity_rest";
+
 /// Of the numbers of R in a file.
 enum class Precision { kSingle, kDouble };
 
@@ -63,6 +68,10 @@ class ModelFileWriter {
   /// After begin_dense(): (6, T, 3n) numbers, [product][s][a displacement].
   void write_dense_centrifugal(const float* values);
   void write_dense_centrifugal(const double* values);
+  /// After begin_dense(): (3, T, 3n) numbers, [axis of an acceleration that sets in and stays][s][a
+  /// displacement].
+  void write_dense_gravity(const float* values);
+  void write_dense_gravity(const double* values);
 
   /// Of the columns written so far in half precision.
   const HalfError& half_error() const { return half_error_; }
@@ -82,6 +91,8 @@ class ModelFileWriter {
   void finish_half();
   template <typename Scalar>
   void write_centrifugal(const Scalar* values);
+  template <typename Scalar>
+  void write_gravity(const Scalar* values);
 
   std::filesystem::path path_;
   std::filesystem::path temporary_;

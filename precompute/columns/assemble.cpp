@@ -25,7 +25,7 @@ void check_same(const ColumnFileReader& first, const ColumnFileReader& part) {
   };
   if (a.description != b.description) differs("another mesh, material or time axis");
   if (a.settings != b.settings || a.compression_error != b.compression_error ||
-      a.centrifugal != b.centrifugal) {
+      a.centrifugal != b.centrifugal || a.gravity != b.gravity) {
     differs("other settings");
   }
   if (a.precision != b.precision || a.half != b.half || a.steps != b.steps ||
@@ -103,18 +103,32 @@ PartPeak driving_point(int b, const Scalar* values, const ColumnFileHeader& head
   return point;
 }
 
-// Every part has the centrifugal columns, after its own; those of the first are taken.
+// The next columns of a part, one below the other.
 template <typename Scalar>
-void copy_centrifugal(ColumnFileReader& part, ModelFileWriter& writer) {
+RowMatrix<Scalar> next_columns(ColumnFileReader& part, int count) {
   const ColumnFileHeader& header = part.header();
-  part.rewind();
-  for (int b = header.range.begin; b < header.range.end; ++b) part.next();
-  RowMatrix<Scalar> columns(kSpinProducts * header.steps, header.degrees_of_freedom);
-  for (int p = 0; p < kSpinProducts; ++p) {
+  RowMatrix<Scalar> columns(count * header.steps, header.degrees_of_freedom);
+  for (int p = 0; p < count; ++p) {
     const std::span<const std::uint8_t> bytes = part.next();
     std::memcpy(columns.row(p * header.steps).data(), bytes.data(), bytes.size());
   }
-  writer.write_dense_centrifugal(columns.data());
+  return columns;
+}
+
+// Every part has the columns of loads on the whole body, after its own; those of the first are
+// taken.
+template <typename Scalar>
+void copy_loads(ColumnFileReader& part, ModelFileWriter& writer) {
+  const ColumnFileHeader& header = part.header();
+  if (!header.centrifugal && !header.gravity) return;
+  part.rewind();
+  for (int b = header.range.begin; b < header.range.end; ++b) part.next();
+  if (header.centrifugal) {
+    writer.write_dense_centrifugal(next_columns<Scalar>(part, kSpinProducts).data());
+  }
+  if (header.gravity) {
+    writer.write_dense_gravity(next_columns<Scalar>(part, kGravityColumns).data());
+  }
 }
 
 double peak_of(const ColumnFiles& parts, const ColumnFileHeader& header) {
@@ -175,10 +189,10 @@ double assemble(const std::vector<std::filesystem::path>& paths,
     if (point.peak > 0.0) left = std::max(left, point.tail / point.peak);
     progress.update(b + 1);
   });
-  if (header.centrifugal && header.precision == Precision::kSingle) {
-    copy_centrifugal<float>(*parts.front(), writer);
-  } else if (header.centrifugal) {
-    copy_centrifugal<double>(*parts.front(), writer);
+  if (header.precision == Precision::kSingle) {
+    copy_loads<float>(*parts.front(), writer);
+  } else {
+    copy_loads<double>(*parts.front(), writer);
   }
   if (header.half) console.line(half_error_text(writer.half_error()));
   writer.commit();

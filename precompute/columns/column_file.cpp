@@ -19,13 +19,15 @@ bool read_word(std::istream& text, const char* word) {
   return text >> found && found == word;
 }
 
-// Reads "centrifugal 6" and "half 1", both of which may be missing, and "settings".
+// Reads "centrifugal 6", "gravity 3" and "half 1", all of which may be missing, and "settings".
 bool parse_options(std::istream& text, ColumnFileHeader& header) {
   for (std::string word; text >> word;) {
     int value = 0;
     if (word == "settings") return true;
     if (word == "centrifugal" && text >> value && value == kSpinProducts) {
       header.centrifugal = true;
+    } else if (word == "gravity" && text >> value && value == kGravityColumns) {
+      header.gravity = true;
     } else if (word == "half" && text >> value && value == 1) {
       header.half = true;
     } else {
@@ -88,6 +90,7 @@ std::string encode_header(const ColumnFileHeader& header) {
   text.precision(17);
   text << header.compression_error;
   if (header.centrifugal) text << "\ncentrifugal " << kSpinProducts;
+  if (header.gravity) text << "\ngravity " << kGravityColumns;
   if (header.half) text << "\nhalf 1";
   text << "\nsettings " << header.settings.size() << "\ndescription " << header.description.size()
        << '\n'
@@ -103,7 +106,7 @@ std::size_t ColumnFileHeader::column_bytes() const {
 }
 
 int ColumnFileHeader::stored_columns() const {
-  return range.count() + (centrifugal ? kSpinProducts : 0);
+  return range.count() + (centrifugal ? kSpinProducts : 0) + (gravity ? kGravityColumns : 0);
 }
 
 std::string description_of(const Model& model) {

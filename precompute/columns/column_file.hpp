@@ -19,14 +19,18 @@
 ///     shape 3n T BYTES           of one number: 4 or 8
 ///     compression_error E        of the model file to come, as a share; 0: none
 ///     centrifugal 6              only where such columns follow those of R
+///     gravity 3                  the same of gravity
 ///     half 1                     only where the model file to come is of half precision
 ///     settings LENGTH
 ///     description LENGTH
 ///     (settings) (description: mesh, body and material as an HDF5 file) (CRC32C of all so far)
-///     then for each column A..B-1, and for each centrifugal one: T x 3n numbers [s][a] (CRC32C)
+///     then for each column A..B-1, and for each centrifugal one and each of gravity: T x 3n
+///     numbers [s][a] (CRC32C)
 ///
 /// A record whose checksum is wrong, and all after it, do not count.
 namespace irdm::precompute {
+
+inline constexpr int kGravityColumns = 3;  ///< one an axis of B
 
 struct ColumnFileHeader {
   ColumnRange range;
@@ -36,11 +40,12 @@ struct ColumnFileHeader {
   double compression_error = 0.0;  ///< see ResponseConfig
   bool centrifugal = false;        ///< six columns more, for the SpinProducts
   bool half = false;               ///< of the model file to come
+  bool gravity = false;            ///< three columns more, for the axes
   std::string settings;            ///< all else that R depends on, see settings_text()
   std::string description;         ///< see description_of()
 
   std::size_t column_bytes() const;
-  /// Columns of a complete file: those of R and the centrifugal ones.
+  /// Columns of a complete file: those of R, the centrifugal ones and those of gravity.
   int stored_columns() const;
 };
 

@@ -28,6 +28,11 @@ class ColumnSource {
   /// That response, columns like those of R for the six SpinProducts: rows [product][s]. Without
   /// any, no rows.
   virtual Columns centrifugal() const { return {}; }
+  /// Whether there is a response to gravity besides.
+  virtual bool has_gravity() const { return false; }
+  /// What accelerations of 1 m/s^2 along each axis of B that set in and stay lead to: rows
+  /// [axis][s] [m]. Without any, no rows.
+  virtual Columns gravity() const { return {}; }
 
   ColumnRange block_range(int k) const {
     return {k * block_size(), std::min((k + 1) * block_size(), columns())};

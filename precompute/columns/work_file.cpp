@@ -58,13 +58,12 @@ void tell_of_earlier_run(const ColumnFileWriter& file, const std::filesystem::pa
   }
 }
 
-// The centrifugal columns come last and are made anew by a run that goes on.
-void append_centrifugal(const ColumnSource& source, ColumnFileWriter& file) {
-  const Columns columns = source.centrifugal();
+// Those of loads on the whole body come last and are made anew by a run that goes on.
+void append_load(const Columns& columns, int count, ColumnFileWriter& file) {
   std::visit(
       [&](const auto& values) {
-        const Eigen::Index steps = values.rows() / kSpinProducts;
-        for (Eigen::Index p = 0; p < kSpinProducts; ++p) {
+        const Eigen::Index steps = values.rows() / count;
+        for (Eigen::Index p = 0; p < count; ++p) {
           const auto column = values.middleRows(p * steps, steps);
           file.append({reinterpret_cast<const std::uint8_t*>(column.data()),
                        static_cast<std::size_t>(column.size()) * sizeof(column(0, 0))});
@@ -84,7 +83,8 @@ int complete(ColumnFileWriter& file, const std::filesystem::path& path, const Co
     FileStore store(file, header.column_bytes(), progress);
     compute_columns(source, left, threads, store);
   }
-  if (header.centrifugal) append_centrifugal(source, file);
+  if (header.centrifugal) append_load(source.centrifugal(), kSpinProducts, file);
+  if (header.gravity) append_load(source.gravity(), kGravityColumns, file);
   return left.count();
 }
 

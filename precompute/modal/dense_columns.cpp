@@ -61,6 +61,9 @@ DenseColumns<Scalar>::DenseColumns(const ModalResponse& response, double dt, int
   shapes_ = shapes.template cast<Scalar>();
   responses_ = responses.template cast<Scalar>();
   centrifugal_ = response.centrifugal.transpose().template cast<Scalar>();
+  if (response.gravity.rows() > 0) {
+    gravity_ = response.gravity.transpose().template cast<Scalar>();
+  }
   block_size_ = limited_block_size(kDenseColumnsAtOnce, steps, columns(), sizeof(Scalar));
   constexpr double kEpsilon = static_cast<double>(std::numeric_limits<Scalar>::epsilon());
   modes_ = needed_modes(shapes, responses, kEpsilon / 8.0);
@@ -102,6 +105,20 @@ Columns DenseColumns<Scalar>::block(int k) const {
 template <typename Scalar>
 Columns DenseColumns<Scalar>::centrifugal() const {
   return weighted_columns(centrifugal_);
+}
+
+// What sets in and stays is held in every step from then on.
+template <typename Scalar>
+Columns DenseColumns<Scalar>::gravity() const {
+  RowMatrix<Scalar> columns = weighted_columns(gravity_);
+  for (Eigen::Index first = 0; first < columns.rows(); first += responses_.rows()) {
+    Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(columns.cols());
+    for (Eigen::Index s = first; s < first + responses_.rows(); ++s) {
+      sum += columns.row(s).template cast<double>();
+      columns.row(s) = sum.template cast<Scalar>();
+    }
+  }
+  return columns;
 }
 
 template <typename Scalar>

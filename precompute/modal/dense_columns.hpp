@@ -24,6 +24,8 @@ class DenseColumns final : public ColumnSource {
   Columns block(int k) const override;
   bool has_centrifugal() const override { return centrifugal_.rows() > 0; }
   Columns centrifugal() const override;
+  bool has_gravity() const override { return gravity_.rows() > 0; }
+  Columns gravity() const override;
 
   /// R[s](a, b) for all s and a: shape (T, 3n).
   RowMatrix<Scalar> column(int b) const;
@@ -36,6 +38,7 @@ class DenseColumns final : public ColumnSource {
   RowMatrix<Scalar> shapes_;       // Phi (3n, r)
   RowMatrix<Scalar> responses_;    // h (T, r)
   RowMatrix<Scalar> centrifugal_;  // g^T (6, r), or no rows
+  RowMatrix<Scalar> gravity_;      // g^T (3, r), or no rows
   int block_size_;
   std::vector<int> modes_;  // of each group of steps
 };

@@ -5,7 +5,7 @@
 #include "precompute/columns/assemble.hpp"
 #include "precompute/columns/compute_columns.hpp"
 #include "precompute/fem/assembly.hpp"
-#include "precompute/fem/centrifugal_load.hpp"
+#include "precompute/modal/body_loads.hpp"
 #include "precompute/modal/dense_columns.hpp"
 #include "precompute/modal/elastic_modes.hpp"
 #include "precompute/modal/held_responses.hpp"
@@ -49,6 +49,11 @@ void write_dense(ModelFileWriter& writer, const ModalResponse& response, const M
         if (values.rows() > 0) writer.write_dense_centrifugal(values.data());
       },
       columns->centrifugal());
+  std::visit(
+      [&](const auto& values) {
+        if (values.rows() > 0) writer.write_dense_gravity(values.data());
+      },
+      columns->gravity());
   if (config.half) console.line(half_error_text(writer.half_error()));
 }
 
@@ -66,11 +71,7 @@ ModalResponse compute_modes(const TetMesh& mesh, const std::vector<int>& clamped
                                  ? fixed_modes(stiffness, model.mesh.node_mass, clamped)
                                  : elastic_modes(stiffness, model.mesh.nodes, model.mesh.node_mass);
   ModalResponse response = modal_response(modes, model.mesh.surface_nodes, model.material);
-  // Offline, because the load acts on the nodes inside as well. A fixed body does not spin.
-  if (model.body.support == Support::kFloating) {
-    response.centrifugal =
-        modes.shapes.transpose() * centrifugal_loads(model.mesh.nodes, model.mesh.node_mass);
-  }
+  add_body_loads(modes, model, response);
   return response;
 }
 

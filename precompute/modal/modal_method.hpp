@@ -12,9 +12,8 @@
 /// Method "modal": R from all elastic modes of the finite elements.
 namespace irdm::precompute {
 
-/// All modes of the model, at its surface, in double precision, and of a floating body what its own
-/// spin does to them; says on the console how long it may
-/// take. Throws Error.
+/// All modes of the model, at its surface, in double precision, and what loads on the whole body
+/// do to them; says on the console how long it may take. Throws Error.
 /// @param clamped nodes of a fixed body
 ModalResponse compute_modes(const TetMesh& mesh, const std::vector<int>& clamped,
                             const Model& model, const Console& console);

@@ -7,7 +7,7 @@
 
 #include "common/error.hpp"
 #include "precompute/blas_kernel.hpp"
-#include "precompute/fem/centrifugal_load.hpp"
+#include "precompute/modal/body_loads.hpp"
 #include "precompute/modal/fingertip_reference.hpp"
 #include "precompute/modal/lowest_modes.hpp"
 #include "precompute/modal/press.hpp"
@@ -94,10 +94,7 @@ class Choice {
                   std::to_string(statics_.elastic_modes()) + " by Lanczos");
     const ElasticModes modes = solver_ ? solver_(count + 1) : lowest_modes(statics_, count + 1);
     ModalResponse response = modal_response(modes, model_.mesh.surface_nodes, model_.material);
-    if (model_.body.support == Support::kFloating) {
-      response.centrifugal =
-          modes.shapes.transpose() * centrifugal_loads(model_.mesh.nodes, model_.mesh.node_mass);
-    }
+    add_body_loads(modes, model_, response);
     return response;
   }
 
@@ -147,6 +144,7 @@ ModalResponse compute_reduced_modes(const TetMesh& mesh, const std::vector<int>&
   ModeReduction reduction = response.residual.reduction;
   response.residual = residual_compliance(statics, model.mesh, response, radius,
                                           any_thread_solves ? threads : 1, console);
+  add_gravity_rest(statics, model, response);
   const ReductionError error = reference.error(response);
   reduction.elastic_modes = static_cast<int>(statics.elastic_modes());
   reduction.contact_radius = config.contact_radius;

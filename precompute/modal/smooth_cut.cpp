@@ -31,6 +31,7 @@ ModalResponse smoothly_cut(const ModalResponse& modes, int count) {
   if (modes.centrifugal.rows() > 0) {
     kept.centrifugal = root.asDiagonal() * modes.centrifugal.topRows(count);
   }
+  if (modes.gravity.rows() > 0) kept.gravity = root.asDiagonal() * modes.gravity.topRows(count);
   kept.residual.reduction.cut_off = cut_off;
   return kept;
 }

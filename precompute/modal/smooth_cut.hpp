@@ -12,7 +12,8 @@ namespace irdm::precompute {
 /// @param cut_off angular frequency of the first mode that is left out [rad/s]
 double kept_share(double omega, double cut_off);
 
-/// The lowest `count` of more modes than that, shapes and centrifugal forces times sqrt(c).
+/// The lowest `count` of more modes than that, shapes and forces of loads on the whole body times
+/// sqrt(c).
 /// @param modes with shapes in double precision, more than `count`
 ModalResponse smoothly_cut(const ModalResponse& modes, int count);
 

@@ -1,5 +1,6 @@
 #include "replay/made_again/forced_object.hpp"
 
+#include "server/step/gravity_load.hpp"
 #include "server/step/inertial_loading.hpp"
 
 namespace irdm::replay {
@@ -14,21 +15,22 @@ std::vector<double> radii_of(const SimulationConfig& config) {
 }  // namespace
 
 ForcedObject::ForcedObject(const SimulationConfig& config, std::size_t number)
-    : model_(config.objects[number].model),
+    : object_(config.objects[number]),
+      model_(object_.model),
       body_(model_->body, model_->dt),
-      engine_(make_engine(model_, config.objects[number].other_model)),
+      engine_(make_engine(model_, object_.other_model)),
       surface_(model_->mesh),
       forces_(surface_, radii_of(config)),
-      feels_spin_(feels_spin(*model_, config.objects[number].inertial_loading)) {
-  const SimulationObject& object = config.objects[number];
+      feels_spin_(feels_spin(*model_, object_.inertial_loading)) {
   for (const double radius : radii_of(config)) masks_.emplace_back(surface_, radius);
-  start_.position = object.position;
-  start_.orientation = object.orientation.normalized();
-  start_.velocity = object.velocity;
-  start_.angular_momentum = body_.angular_momentum(start_.orientation, object.angular_velocity);
+  start_.position = object_.position;
+  start_.orientation = object_.orientation.normalized();
+  start_.velocity = object_.velocity;
+  start_.angular_momentum = body_.angular_momentum(start_.orientation, object_.angular_velocity);
   state_ = start_;
-  free_forces_ = {config.gravity, object.damping, object.tether, start_.position,
+  free_forces_ = {config.gravity, object_.damping, object_.tether, start_.position,
                   start_.orientation};
+  follow_gravity(*engine_, object_, config.gravity);
 }
 
 void ForcedObject::reset() {
@@ -49,6 +51,7 @@ void ForcedObject::set(const Vector3& gravity, const ObjectSettings& settings) {
   free_forces_.tether = settings.tether;
   feels_spin_ = feels_spin(*model_, settings.inertial_loading);
   follow_settings(*engine_, settings, material_damping_);
+  follow_gravity(*engine_, object_, gravity);
 }
 
 // Of a patch at the end of the coming step, were there no force in it [m], B.

@@ -27,6 +27,7 @@ class ForcedObject final : public ForcedBody {
   Vector3 place(const ContactPatch& patch) const;
   RigidPast::Forces collect(const ObjectRecord& recorded);
 
+  SimulationObject object_;
   std::shared_ptr<const Model> model_;
   RigidBody body_;
   std::unique_ptr<ResponseEngine> engine_;

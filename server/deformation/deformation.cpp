@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "server/step/gravity_load.hpp"
 #include "server/step/inertial_loading.hpp"
 
 namespace irdm {
@@ -27,8 +28,9 @@ Deformation::Deformation(const SimulationConfig& config, double tolerance) {
   std::vector<double> radii;
   for (const SimulationStylus& stylus : config.styluses) radii.push_back(stylus.radius);
   for (const SimulationObject& object : config.objects) {
-    Follower follower{object.model, make_engine(object.model, object.other_model), nullptr, nullptr,
+    Follower follower{object, make_engine(object.model, object.other_model), nullptr, nullptr,
                       feels_spin(*object.model, object.inertial_loading)};
+    follow_gravity(*follower.engine, object, config.gravity);
     follower.tolerance = tolerance * object.model->mesh.nodes.rowwise().norm().maxCoeff();
     follower.surface = std::make_unique<RestSurface>(object.model->mesh);
     follower.forces = std::make_unique<RecordedForces>(*follower.surface, radii);
@@ -47,8 +49,9 @@ void Deformation::follow_settings(const StepRecord& record) {
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     const ObjectSettings& settings = record.settings.object[i];
     Follower& follower = objects_[i];
-    follower.feels_spin = feels_spin(*follower.model, settings.inertial_loading);
+    follower.feels_spin = feels_spin(*follower.object.model, settings.inertial_loading);
     irdm::follow_settings(*follower.engine, settings, follower.material_damping);
+    follow_gravity(*follower.engine, follower.object, record.settings.gravity);
   }
 }
 
@@ -79,7 +82,7 @@ StylusContact Deformation::contact(std::size_t s) const {
   const int object = last_.stylus[s].object;
   if (object < 0) return {};
   const auto i = static_cast<std::size_t>(object);
-  return contact_on(objects_[i].model->mesh, last_.object[i].contact[s]);
+  return contact_on(objects_[i].object.model->mesh, last_.object[i].contact[s]);
 }
 
 void Deformation::compute(SurfaceFrame& frame) const {

@@ -47,7 +47,7 @@ struct SurfaceFrame {
 SurfaceFrame rest_frame(const SimulationConfig& config);
 
 /// Follows the force thread's steps with engines of its own. Because an engine's state depends on
-/// nothing but the forces and the spin, the two always agree, and nobody has to wait for a
+/// nothing but the forces, the spin and gravity, the two always agree, and nobody has to wait for a
 /// snapshot. Pure; one thread.
 class Deformation {
  public:
@@ -68,7 +68,7 @@ class Deformation {
 
  private:
   struct Follower {
-    std::shared_ptr<const Model> model;
+    SimulationObject object;
     std::unique_ptr<ResponseEngine> engine;
     std::unique_ptr<RestSurface> surface;
     std::unique_ptr<RecordedForces> forces;

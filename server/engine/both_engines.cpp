@@ -14,6 +14,14 @@ void BothEngines::hold_spin(const Vector3& w) noexcept {
   for (const auto& engine : engines_) engine->hold_spin(w);
 }
 
+bool BothEngines::takes_gravity() const noexcept {
+  return engines_[0]->takes_gravity() && engines_[1]->takes_gravity();
+}
+
+void BothEngines::set_gravity(const Vector3& gravity) noexcept {
+  for (const auto& engine : engines_) engine->set_gravity(gravity);
+}
+
 void BothEngines::use(EngineKind kind) noexcept {
   answering_ = engines_[0]->kind() == kind ? 0 : 1;
 }

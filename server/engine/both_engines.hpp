@@ -16,6 +16,8 @@ class BothEngines final : public ResponseEngine {
 
   bool takes_spin() const noexcept override;
   void hold_spin(const Vector3& w) noexcept override;
+  bool takes_gravity() const noexcept override;
+  void set_gravity(const Vector3& gravity) noexcept override;
   EngineKind kind() const noexcept override { return engines_[answering_]->kind(); }
   const ResponseEngine& answering() const noexcept override { return *engines_[answering_]; }
   bool has_both_kinds() const noexcept override { return true; }

@@ -21,21 +21,24 @@ DenseEngine<Scalar>::DenseEngine(std::shared_ptr<const Model> model)
       R_(columns_of<Scalar>(std::get<DenseResponse>(model_->response))),
       past_(R_, model_->mesh.surface_node_count()),
       spin_(std::get<DenseResponse>(model_->response).centrifugal, model_->degrees_of_freedom(),
-            model_->steps) {}
+            model_->steps),
+      gravity_(std::get<DenseResponse>(model_->response).gravity, model_->degrees_of_freedom(),
+               model_->steps) {}
 
 template <typename Scalar>
 Vector3 DenseEngine<Scalar>::free_displacement(int node) const noexcept {
   Vector3 u = Vector3::Zero();
   past_.add_coming(node, u);
   spin_.add_coming(node, u);
+  gravity_.add_coming(node, u);
   return u;
 }
 
-// Known only of a body at rest.
+// Known only of a body at rest, or that sags.
 template <typename Scalar>
 double DenseEngine<Scalar>::free_displacement_bound() const noexcept {
-  const bool at_rest = past_.history().active().empty() && spin_.at_rest();
-  return at_rest ? 0.0 : ResponseEngine::free_displacement_bound();
+  const bool at_rest = past_.history().active().empty() && spin_.at_rest() && gravity_.steady();
+  return at_rest ? gravity_.sag_bound() : ResponseEngine::free_displacement_bound();
 }
 
 template <typename Scalar>
@@ -65,11 +68,13 @@ void DenseEngine<Scalar>::foresee(const ContactPatch& patch, std::span<const Nod
   for (int i = 0; i < patch.count; ++i) {
     past_.foresee(patch.nodes[static_cast<std::size_t>(i)], steps);
     spin_.foresee(patch.nodes[static_cast<std::size_t>(i)], steps);
+    gravity_.foresee(patch.nodes[static_cast<std::size_t>(i)], steps);
   }
   const auto place = [&](int node, int n) {
     Vector3 u = Vector3::Zero();
     past_.add_foreseen(node, n, u);
     spin_.add_foreseen(node, n, u);
+    gravity_.add_foreseen(node, n, u);
     return u;
   };
   Vector3 by_held = Vector3::Zero();
@@ -89,6 +94,7 @@ void DenseEngine<Scalar>::follow(std::span<const int> nodes) noexcept {
   for (const int node : nodes) {
     past_.follow(node);
     spin_.follow(node);
+    gravity_.follow(node);
   }
 }
 
@@ -101,6 +107,7 @@ template <typename Scalar>
 void DenseEngine<Scalar>::advance(std::span<const NodalForce> forces) noexcept {
   past_.push(forces);
   spin_.advance();
+  gravity_.advance();
 }
 
 template <typename Scalar>
@@ -108,6 +115,7 @@ void DenseEngine<Scalar>::displacement(Points& u, double /*tolerance*/) const {
   u.setZero(model_->mesh.surface_node_count(), 3);
   R_.add_all(past_.history(), u);
   spin_.add_all(u);
+  gravity_.add_all(u);
 }
 
 template <typename Scalar>
@@ -119,6 +127,7 @@ template <typename Scalar>
 void DenseEngine<Scalar>::reset() noexcept {
   past_.clear();
   spin_.reset();
+  gravity_.reset();
 }
 
 template class DenseEngine<Half>;

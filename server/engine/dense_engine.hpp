@@ -1,6 +1,7 @@
 #pragma once
 
-#include "server/engine/dense_spin.hpp"
+#include "server/engine/dense_gravity.hpp"
+#include "server/engine/dense_load.hpp"
 #include "server/engine/response_engine.hpp"
 #include "server/engine/running_convolution.hpp"
 
@@ -16,8 +17,10 @@ class DenseEngine final : public ResponseEngine {
   explicit DenseEngine(std::shared_ptr<const Model> model);
 
   bool takes_spin() const noexcept override { return spin_.any(); }
+  bool takes_gravity() const noexcept override { return gravity_.any(); }
   EngineKind kind() const noexcept override { return EngineKind::kDense; }
-  void hold_spin(const Vector3& w) noexcept override { spin_.hold(w); }
+  void hold_spin(const Vector3& w) noexcept override { spin_.hold(spin_products(w)); }
+  void set_gravity(const Vector3& gravity) noexcept override { gravity_.set(gravity); }
   Vector3 free_displacement(int node) const noexcept override;
   double free_displacement_bound() const noexcept override;
   void predict(std::span<const ContactPatch> patches, std::span<Vector3> h,
@@ -42,7 +45,8 @@ class DenseEngine final : public ResponseEngine {
   std::shared_ptr<const Model> model_;
   ResidentColumns<Scalar> R_;
   RunningConvolution<ResidentColumns<Scalar>> past_;
-  DenseSpin<SpinNumber<Scalar>> spin_;
+  DenseSpin<LoadNumber<Scalar>> spin_;
+  DenseGravity<LoadNumber<Scalar>> gravity_;
 };
 
 }  // namespace irdm

@@ -19,7 +19,8 @@ template <typename Scalar>
 ModalEngine<Scalar>::ModalEngine(std::shared_ptr<const Model> model)
     : model_(std::move(model)),
       residual_(std::get<ModalResponse>(model_->response).residual,
-                model_->mesh.surface_node_count()) {
+                model_->mesh.surface_node_count()),
+      gravity_(std::get<ModalResponse>(model_->response)) {
   const auto& response = std::get<ModalResponse>(model_->response);
   shapes_ = &std::get<RowMatrix<Scalar>>(response.shapes);
   const Eigen::VectorXd largest =
@@ -89,13 +90,52 @@ void ModalEngine<Scalar>::tabulate_horizon() noexcept {
 template <typename Scalar>
 void ModalEngine<Scalar>::scale_damping(double factor) noexcept {
   set_transitions(factor);
-  move_on();
+  go_on();
 }
 
 template <typename Scalar>
 void ModalEngine<Scalar>::move_on() noexcept {
   transit({a11_.data(), a12_.data(), a21_.data(), a22_.data()}, coordinate_.data(),
           velocity_.data(), free_coordinate_.data(), free_velocity_.data(), modes_);
+  add_gravity();
+}
+
+// Held in the coming step, as in any.
+template <typename Scalar>
+void ModalEngine<Scalar>::add_gravity() noexcept {
+  if (!gravity_.acts()) return;
+  const double* const force = gravity_.force().data();
+  for (std::size_t i = 0; i < modes_; ++i) {
+    free_coordinate_[i] += b1_[i] * force[i];
+    free_velocity_[i] += b2_[i] * force[i];
+  }
+}
+
+template <typename Scalar>
+void ModalEngine<Scalar>::set_gravity(const Vector3& gravity) noexcept {
+  if (gravity_.set(gravity)) go_on();
+}
+
+// What was changed before the first step was so since ever.
+template <typename Scalar>
+void ModalEngine<Scalar>::go_on() noexcept {
+  if (begun_) {
+    move_on();
+  } else {
+    settle();
+  }
+}
+
+// At rest under gravity, which stays so.
+template <typename Scalar>
+void ModalEngine<Scalar>::settle() noexcept {
+  gravity_.end_step();
+  for (auto* values : {&coordinate_, &velocity_, &free_coordinate_, &free_velocity_}) {
+    std::fill(values->begin(), values->end(), 0.0);
+  }
+  if (!gravity_.acts()) return;
+  gravity_.settle(coordinate_);
+  gravity_.settle(free_coordinate_);
 }
 
 template <typename Scalar>
@@ -113,13 +153,15 @@ template <typename Scalar>
 Vector3 ModalEngine<Scalar>::free_displacement(int node) const noexcept {
   Vector3 u = Vector3::Zero();
   add_products({shape_row(3 * node), modes_, 3}, free_coordinate_.data(), modes_, 1.0, u.data());
+  if (gravity_.adds_rest()) u += gravity_.rest(node);
   return u;
 }
 
 // |sum_i q_i Phi_ai| is at most the sum of |q_i| max_a |Phi_ai|.
 template <typename Scalar>
 double ModalEngine<Scalar>::free_displacement_bound() const noexcept {
-  return dot_magnitudes(free_coordinate_.data(), largest_shape_.data(), modes_);
+  return dot_magnitudes(free_coordinate_.data(), largest_shape_.data(), modes_) +
+         gravity_.rest_bound();
 }
 
 // Three nodes at a time; where fewer are left, the last ones count with weight 0.
@@ -154,6 +196,9 @@ void ModalEngine<Scalar>::predict(std::span<const ContactPatch> patches, std::sp
     add_slice(patches, {first, std::min(kSlice, modes_ - first)}, h, compliance);
   }
   residual_.add_compliance(patches, compliance);
+  for (std::size_t a = 0; gravity_.adds_rest() && a < patches.size(); ++a) {
+    h[a] += mean(patches[a], [&](int node) { return gravity_.rest(node); });
+  }
   compliance.template triangularView<Eigen::StrictlyUpper>() = compliance.transpose();
 }
 
@@ -204,7 +249,8 @@ void ModalEngine<Scalar>::collect_modal_forces(std::span<const NodalForce> force
 }
 
 // Both are sums over the modes of what the horizon's tables hold, times products that are the same
-// for all of its steps.
+// for all of its steps. Gravity goes on like what is held: it is taken out of where the first step
+// ends.
 template <typename Scalar>
 void ModalEngine<Scalar>::foresee(const ContactPatch& patch, std::span<const NodalForce> held,
                                   std::span<Vector3> path, std::span<Matrix3> response) noexcept {
@@ -216,6 +262,7 @@ void ModalEngine<Scalar>::foresee(const ContactPatch& patch, std::span<const Nod
     multiply(shape, free_coordinate_.data(), products, modes_);
     multiply(shape, free_velocity_.data(), products + modes_, modes_);
     multiply(shape, modal_force_.data(), products + 2 * modes_, modes_);
+    if (gravity_.acts()) hold_gravity(shape, products);
   }
   constexpr std::array<std::array<std::size_t, 2>, 6> kPairs{
       {{0, 0}, {1, 0}, {1, 1}, {2, 0}, {2, 1}, {2, 2}}};
@@ -234,15 +281,30 @@ void ModalEngine<Scalar>::foresee(const ContactPatch& patch, std::span<const Nod
         dot_three(coordinate_from_.data() + 3 * n * modes_, state_products_.data(), 3 * modes_);
     path[n] = Vector3(moved[0], moved[1], moved[2]);
   }
-  const Vector3 at_once = residual_.displacement(patch, held);
+  Vector3 at_once = residual_.displacement(patch, held);
+  if (gravity_.adds_rest()) {
+    at_once += mean(patch, [&](int node) { return gravity_.rest(node); });
+  }
   for (Vector3& place : path) place += at_once;
   if (!response.empty()) response[0] += residual_.compliance(patch);
+}
+
+template <typename Scalar>
+void ModalEngine<Scalar>::hold_gravity(const double* shape, double* products) const noexcept {
+  const double* const force = gravity_.force().data();
+  for (std::size_t i = 0; i < modes_; ++i) {
+    const double push = shape[i] * force[i];
+    products[i] -= b1_[i] * push;
+    products[modes_ + i] -= b2_[i] * push;
+    products[2 * modes_ + i] += push;
+  }
 }
 
 template <typename Scalar>
 void ModalEngine<Scalar>::add_past(std::span<const NodalForce> forces, int age) noexcept {
   if (age < 0 || age >= kMaxHorizon) return;
   if (age == 0) residual_.hold_more(forces);
+  begun_ = true;
   collect_modal_forces(forces, {0, modes_});
   const double* coordinate = coordinate_after_.data() + static_cast<std::size_t>(age) * modes_;
   const double* velocity = velocity_after_.data() + static_cast<std::size_t>(age) * modes_;
@@ -256,6 +318,8 @@ void ModalEngine<Scalar>::add_past(std::span<const NodalForce> forces, int age) 
 template <typename Scalar>
 void ModalEngine<Scalar>::advance(std::span<const NodalForce> forces) noexcept {
   residual_.hold(forces);
+  gravity_.end_step();
+  begun_ = true;
   coordinate_.swap(free_coordinate_);
   velocity_.swap(free_velocity_);
   if (forces.empty()) return move_on();
@@ -266,6 +330,7 @@ void ModalEngine<Scalar>::advance(std::span<const NodalForce> forces) noexcept {
                      &coordinate_[i], &velocity_[i], &free_coordinate_[i], &free_velocity_[i],
                      slice.count);
   }
+  add_gravity();
 }
 
 // Some rows of Phi at a time: the first engine has them read from memory, the others find them in
@@ -300,7 +365,9 @@ void ModalEngine<Scalar>::displacements(std::span<const SurfaceRequest> requests
     }
   }
   for (const SurfaceRequest& request : requests) {
-    static_cast<const ModalEngine*>(request.engine)->residual_.add_displacement(*request.u);
+    const auto* engine = static_cast<const ModalEngine*>(request.engine);
+    engine->residual_.add_displacement(*request.u);
+    engine->gravity_.add_rest(*request.u);
   }
 }
 
@@ -321,9 +388,8 @@ Eigen::MatrixXd ModalEngine<Scalar>::instant_compliance() const {
 template <typename Scalar>
 void ModalEngine<Scalar>::reset() noexcept {
   residual_.release();
-  for (auto* values : {&coordinate_, &velocity_, &free_coordinate_, &free_velocity_}) {
-    std::fill(values->begin(), values->end(), 0.0);
-  }
+  begun_ = false;
+  settle();
 }
 
 template class ModalEngine<float>;

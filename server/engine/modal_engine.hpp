@@ -1,6 +1,7 @@
 #pragma once
 
 #include "server/engine/aligned_numbers.hpp"
+#include "server/engine/modal_gravity.hpp"
 #include "server/engine/residual_part.hpp"
 #include "server/engine/response_engine.hpp"
 #include "server/engine/strong_modes.hpp"
@@ -17,6 +18,8 @@ class ModalEngine final : public ResponseEngine {
   explicit ModalEngine(std::shared_ptr<const Model> model);
 
   bool takes_spin() const noexcept override { return centrifugal_ != nullptr; }
+  bool takes_gravity() const noexcept override { return gravity_.any(); }
+  void set_gravity(const Vector3& gravity) noexcept override;
   bool takes_damping() const noexcept override { return true; }
   void scale_damping(double factor) noexcept override;
   EngineKind kind() const noexcept override { return EngineKind::kModal; }
@@ -43,11 +46,16 @@ class ModalEngine final : public ResponseEngine {
   void set_transitions(double damping) noexcept;
   void tabulate_horizon() noexcept;
   void move_on() noexcept;
+  void add_gravity() noexcept;
+  void settle() noexcept;
+  void go_on() noexcept;
   void mean_shape(const ContactPatch& patch, int axis, const ModeRange& modes,
                   double* shape) const noexcept;
   void add_slice(std::span<const ContactPatch> patches, const ModeRange& modes,
                  std::span<Vector3> h, ContactMatrix& compliance) noexcept;
   void collect_modal_forces(std::span<const NodalForce> forces, const ModeRange& modes) noexcept;
+  /// Of one row of a contact's shapes, in what foresee() makes of the state: (r) and (3, r).
+  void hold_gravity(const double* shape, double* products) const noexcept;
   const Scalar* shape_row(int dof) const noexcept {
     return shapes_->data() + static_cast<std::size_t>(dof) * modes_;
   }
@@ -60,8 +68,8 @@ class ModalEngine final : public ResponseEngine {
   // Transition of each mode over one step, one array a coefficient.
   AlignedNumbers a11_, a12_, a21_, a22_, b1_, b2_;
   AlignedNumbers coordinate_, velocity_;  ///< at the end of the last step
-  AlignedNumbers free_coordinate_,
-      free_velocity_;  ///< at the end of the coming step, no force but that of the held spin
+  /// At the end of the coming step, no force but those of the held spin and of gravity.
+  AlignedNumbers free_coordinate_, free_velocity_;
   AlignedNumbers modal_force_;
   AlignedNumbers contact_shapes_;  ///< (3 kMaxContacts, r): rows sum_i w_i Phi_i
   /// (kMaxHorizon, r): coordinate and velocity of each mode at the end of the n-th step after the
@@ -73,6 +81,8 @@ class ModalEngine final : public ResponseEngine {
   /// What these are multiplied with: (6, r) and (3, 3, r).
   AlignedNumbers shape_products_, state_products_;
   ResidualPart residual_;
+  ModalGravity gravity_;
+  bool begun_ = false;  ///< there was a step, or a late force, since the reset
 };
 
 }  // namespace irdm

@@ -46,6 +46,16 @@ class ResponseEngine {
   /// it there is no such load. Only where takes_spin().
   virtual void hold_spin(const Vector3& w) noexcept = 0;
 
+  /// Whether the model says what gravity does to it: that of a fixed body, which gravity cannot
+  /// move as a whole.
+  virtual bool takes_gravity() const noexcept { return false; }
+
+  /// From the coming step on gravity accelerates every part of the body, in magnitude and direction
+  /// [m/s^2], B; before all else that is asked about the step. It swings to where it is at rest
+  /// under that, or is there at once if there was no step since the start or the last reset(). At
+  /// the start there is none. Only where takes_gravity().
+  virtual void set_gravity(const Vector3& /*gravity*/) noexcept {}
+
   /// Whether the damping of its material can be changed while it runs.
   virtual bool takes_damping() const noexcept { return false; }
 
@@ -121,7 +131,7 @@ class ResponseEngine {
   /// its time; not for the force thread.
   virtual Eigen::MatrixXd instant_compliance() const = 0;
 
-  /// Forgets all forces.
+  /// Forgets all forces: at rest under gravity as it is.
   virtual void reset() noexcept = 0;
 };
 

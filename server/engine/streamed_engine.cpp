@@ -16,6 +16,7 @@ StreamedEngine<Scalar>::StreamedEngine(std::shared_ptr<const Model> model)
       columns_(response_, model_->mesh.surface_node_count(), model_->dt),
       past_(columns_, model_->mesh.surface_node_count()),
       spin_(response_.centrifugal, model_->degrees_of_freedom(), model_->steps),
+      gravity_(response_.gravity, model_->degrees_of_freedom(), model_->steps),
       coming_(static_cast<std::size_t>(model_->degrees_of_freedom())) {}
 
 // Once a step, for whichever nodes are asked for in the coming one.
@@ -97,14 +98,15 @@ Vector3 StreamedEngine<Scalar>::free_displacement(int node) const noexcept {
   past_.add_coming(node, u);
   add_lacking(node, 1, u);
   spin_.add_coming(node, u);
+  gravity_.add_coming(node, u);
   return u;
 }
 
-// Known only of a body at rest.
+// Known only of a body at rest, or that sags.
 template <typename Scalar>
 double StreamedEngine<Scalar>::free_displacement_bound() const noexcept {
-  const bool at_rest = past_.history().active().empty() && spin_.at_rest();
-  return at_rest ? 0.0 : ResponseEngine::free_displacement_bound();
+  const bool at_rest = past_.history().active().empty() && spin_.at_rest() && gravity_.steady();
+  return at_rest ? gravity_.sag_bound() : ResponseEngine::free_displacement_bound();
 }
 
 template <typename Scalar>
@@ -125,6 +127,7 @@ void StreamedEngine<Scalar>::foresee(const ContactPatch& patch, std::span<const 
     columns_.borrow(node);
     past_.foresee(node, steps);
     spin_.foresee(node, steps);
+    gravity_.foresee(node, steps);
   }
   for (const NodalForce& force : held) columns_.borrow(force.node);
   const auto answer = [&](std::size_t step, const auto& from) {
@@ -135,6 +138,7 @@ void StreamedEngine<Scalar>::foresee(const ContactPatch& patch, std::span<const 
     past_.add_foreseen(node, shift, u);
     add_lacking(node, shift, u);
     spin_.add_foreseen(node, shift, u);
+    gravity_.add_foreseen(node, shift, u);
     return u;
   };
   Vector3 by_held = Vector3::Zero();
@@ -162,6 +166,7 @@ void StreamedEngine<Scalar>::follow(std::span<const int> nodes) noexcept {
   for (const int node : nodes) {
     past_.follow(node);
     spin_.follow(node);
+    gravity_.follow(node);
   }
 }
 
@@ -171,6 +176,7 @@ void StreamedEngine<Scalar>::advance(std::span<const NodalForce> forces) noexcep
   past_.push(forces);
   settle();
   spin_.advance();
+  gravity_.advance();
 }
 
 // As ResidentColumns::add_all(), and then what is missing.
@@ -211,6 +217,7 @@ void StreamedEngine<Scalar>::displacement(Points& u, double /*tolerance*/) const
   u.setZero(model_->mesh.surface_node_count(), 3);
   add_columns(u);
   spin_.add_all(u);
+  gravity_.add_all(u);
 }
 
 template <typename Scalar>
@@ -223,6 +230,7 @@ void StreamedEngine<Scalar>::reset() noexcept {
   columns_.clear();
   past_.clear();
   spin_.reset();
+  gravity_.reset();
 }
 
 template class StreamedEngine<Half>;

@@ -3,7 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "server/engine/dense_spin.hpp"
+#include "server/engine/dense_gravity.hpp"
+#include "server/engine/dense_load.hpp"
 #include "server/engine/held_columns.hpp"
 #include "server/engine/response_engine.hpp"
 #include "server/engine/running_convolution.hpp"
@@ -24,8 +25,10 @@ class StreamedEngine final : public ResponseEngine {
   explicit StreamedEngine(std::shared_ptr<const Model> model);
 
   bool takes_spin() const noexcept override { return spin_.any(); }
+  bool takes_gravity() const noexcept override { return gravity_.any(); }
   EngineKind kind() const noexcept override { return EngineKind::kDense; }
-  void hold_spin(const Vector3& w) noexcept override { spin_.hold(w); }
+  void hold_spin(const Vector3& w) noexcept override { spin_.hold(spin_products(w)); }
+  void set_gravity(const Vector3& gravity) noexcept override { gravity_.set(gravity); }
   void expect(std::span<const Vector3> tips) noexcept override { response_.columns->expect(tips); }
   std::uint64_t missed_columns() const noexcept override { return columns_.missed(); }
   Vector3 free_displacement(int node) const noexcept override;
@@ -64,7 +67,8 @@ class StreamedEngine final : public ResponseEngine {
   const Scalar* first_;  ///< R[0]
   HeldColumns<Scalar> columns_;
   RunningConvolution<HeldColumns<Scalar>> past_;
-  DenseSpin<SpinNumber<Scalar>> spin_;
+  DenseSpin<LoadNumber<Scalar>> spin_;
+  DenseGravity<LoadNumber<Scalar>> gravity_;
   std::vector<Settled> coming_;  ///< settled(node, axis, 1), of nodes with a past that lack a share
 };
 

@@ -4,6 +4,7 @@
 
 #include "common/contact/single_contact.hpp"
 #include "common/error.hpp"
+#include "server/step/gravity_load.hpp"
 #include "server/step/inertial_loading.hpp"
 
 namespace irdm {
@@ -63,6 +64,7 @@ SoftObject::SoftObject(const SimulationObject& object, const SimulationConfig& c
   state_ = start_;
   free_forces_ = {config.gravity, object.damping, object.tether, start_.position,
                   start_.orientation};
+  follow_gravity(*engine_, object_, config.gravity);
   for (const SimulationStylus& stylus : config.styluses) {
     const double largest = PressureMask::largest_radius(rest_);
     if (stylus.radius > largest) {
@@ -101,6 +103,7 @@ void SoftObject::set(const Vector3& gravity, const ObjectSettings& settings) noe
   free_forces_.tether = settings.tether;
   feels_spin_ = irdm::feels_spin(*model_, settings.inertial_loading);
   follow_settings(*engine_, settings, material_damping_);
+  follow_gravity(*engine_, object_, gravity);
 }
 
 void SoftObject::step(std::span<const StylusCommand> commands, ObjectRecord& record) noexcept {

@@ -61,11 +61,40 @@ TEST_CASE("every part of a model has its share in the checksum") {
   SECTION("centrifugal forces") {
     test::add_centrifugal(other);
   }
+  SECTION("gravity") {
+    test::add_gravity(other);
+  }
+  SECTION("what other modes add to the sag") {
+    Model whole = original;
+    test::add_gravity(whole);
+    write(folder.path() / "a.h5", whole);
+    test::add_gravity(other, true);
+  }
   SECTION("shapes") {
     std::get<RowMatrix<double>>(std::get<ModalResponse>(other.response).shapes)(3, 2) += 1e-9;
   }
   write(folder.path() / "b.h5", other);
   CHECK(stored(folder.path() / "a.h5") != stored(folder.path() / "b.h5"));
+}
+
+TEST_CASE("what gravity does to a dense response has its share in the checksum") {
+  const test::TemporaryFolder folder;
+  const Model model = test::synthetic_cube(1, 5, 2);
+  const auto dof = static_cast<Eigen::Index>(model.degrees_of_freedom());
+  const auto with = [&]<typename Scalar>(const std::string& name, Scalar gravity) {
+    const RowMatrix<Scalar> column = RowMatrix<Scalar>::Ones(2, dof);
+    const RowMatrix<Scalar> all = RowMatrix<Scalar>::Constant(6, dof, gravity);
+    ModelFileWriter writer(folder.path() / name);
+    writer.write_description(model);
+    writer.begin_dense(static_cast<int>(dof), 2,
+                       sizeof(Scalar) == 4 ? Precision::kSingle : Precision::kDouble);
+    for (int b = 0; b < dof; ++b) writer.write_dense_column(b, column.data());
+    writer.write_dense_gravity(all.data());
+    writer.commit();
+    return stored(folder.path() / name);
+  };
+  CHECK(with("a.h5", 1.0) != with("b.h5", 1.5));
+  CHECK(with("c.h5", 1.0F) != with("d.h5", 1.5F));
 }
 
 TEST_CASE("a file whose bytes changed does not have its checksum any more") {

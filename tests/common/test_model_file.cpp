@@ -25,6 +25,8 @@ Model small_model() {
   response.decay_rate = Eigen::Vector2d(1, 2);
   response.shapes = RowMatrix<float>(RowMatrix<float>::Random(12, 2));
   response.centrifugal = RowMatrix<double>::Random(2, 6);
+  response.gravity = AxisColumns::Random(2, 3);
+  response.gravity_rest = AxisColumns::Random(12, 3);
   model.response = response;
   return model;
 }
@@ -79,6 +81,8 @@ TEST_CASE("model file gives back what was written, modal and dense") {
       }
     }
     writer.write_dense_centrifugal(centrifugal.data());
+    const RowMatrix<float> gravity = 2.0F * centrifugal.topRows(9);
+    writer.write_dense_gravity(gravity.data());
     CHECK_FALSE(std::filesystem::exists(path));
     writer.commit();
   }
@@ -98,12 +102,24 @@ TEST_CASE("model file gives back what was written, modal and dense") {
         "xx yy zz yz xz xy");
   CHECK(hdf5::File::open(path).read_string_attribute(kDenseCentrifugal, "unit") == "m s^2");
 
+  CHECK(response.gravity == modal.gravity);
+  CHECK(response.gravity_rest == modal.gravity_rest);
+  CHECK(has_gravity(read));
+  CHECK(hdf5::File::open(path).read_string_attribute(kModalGravity, "unit") == "kg^1/2");
+  CHECK(hdf5::File::open(path).read_string_attribute(kModalGravityRest, "unit") == "s^2");
+  CHECK(hdf5::File::open(path).read_string_attribute(kDenseGravity, "unit") == "s^2");
+
   const Model dense_model = read_model(path, ResponseKind::kDense);
   const auto& dense = std::get<DenseResponse>(dense_model.response);
   const auto& values = std::get<std::vector<float>>(dense.values);
   CHECK(values[(7 * 12 + 5) * 3 + 2] == 7205.0f);  // b = 7, a = 5, s = 2
   const auto& spun = std::get<std::vector<float>>(dense.centrifugal);
   CHECK(spun[(4 * 12 + 5) * 3 + 2] == 4205.0f);  // product 4, a = 5, s = 2
+  CHECK(has_gravity(dense_model));
+  CHECK(dense.gravity.sag(5, 1) == 2.0 * 1205.0);  // axis 1, a = 5, s = 2
+  const auto& approach = std::get<std::vector<float>>(dense.gravity.approach);
+  CHECK(approach[(1 * 12 + 5) * 3 + 2] == 0.0F);
+  CHECK(approach[(1 * 12 + 5) * 3 + 0] == -400.0F);
 }
 
 TEST_CASE("model file gives back what modes that are left out add") {
@@ -132,11 +148,12 @@ TEST_CASE("model file gives back what modes that are left out add") {
   CHECK(found.reduction.added_compliance == 1e-5);
 }
 
-TEST_CASE("model file of before there were centrifugal responses is read as ever") {
+TEST_CASE("model file of before there were responses to spin and gravity is read as ever") {
   const ModelFolder folder;
   const auto path = folder.path / "model.h5";
   Model model = small_model();
   std::get<ModalResponse>(model.response).centrifugal.resize(0, 0);
+  std::get<ModalResponse>(model.response).gravity.resize(0, 3);
   {
     ModelFileWriter writer(path);
     writer.write_description(model);
@@ -150,6 +167,10 @@ TEST_CASE("model file of before there were centrifugal responses is read as ever
   CHECK_FALSE(hdf5::File::open(path).exists(kDenseCentrifugal));
   CHECK_FALSE(has_centrifugal(read_model(path, ResponseKind::kModal)));
   CHECK_FALSE(has_centrifugal(read_model(path, ResponseKind::kDense)));
+  CHECK_FALSE(hdf5::File::open(path).exists(kModalGravity));
+  CHECK_FALSE(hdf5::File::open(path).exists(kModalGravityRest));
+  CHECK_FALSE(has_gravity(read_model(path, ResponseKind::kModal)));
+  CHECK_FALSE(has_gravity(read_model(path, ResponseKind::kDense)));
 }
 
 TEST_CASE("model file without commit leaves nothing behind") {
@@ -199,6 +220,53 @@ TEST_CASE("model file that is missing, truncated, foreign or damaged is refused 
         std::numeric_limits<double>::infinity();
     write();
     CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal), Contains("centrifugal"));
+  }
+  SECTION("gravity that is not finite") {
+    auto& response = std::get<ModalResponse>(model.response);
+    response.gravity(1, 2) = std::numeric_limits<double>::quiet_NaN();
+    write();
+    CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal),
+                      Contains(std::string(kModalGravity) + " has numbers"));
+    response.gravity(1, 2) = 0.0;
+    response.gravity_rest(3, 0) = std::numeric_limits<double>::infinity();
+    write();
+    CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal),
+                      Contains(std::string(kModalGravityRest) + " has numbers"));
+  }
+  SECTION("gravity of another number of modes or nodes") {
+    auto& response = std::get<ModalResponse>(model.response);
+    const AxisColumns rest = response.gravity_rest;
+    response.gravity_rest = AxisColumns::Ones(9, 3);
+    write();
+    CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal), Contains(kModalGravityRest));
+    response.gravity_rest = rest;
+    write();
+    irdm::test::make_sparse(path, kModalGravity, {3, 3});
+    CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal), Contains(kModalGravity));
+    irdm::test::make_sparse(path, kModalGravity, {2, 6});
+    CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal), Contains(kModalGravity));
+  }
+  SECTION("dense gravity of another shape or not finite") {
+    const auto write_dense = [&](const RowMatrix<double>& gravity) {
+      ModelFileWriter writer(path);
+      writer.write_description(model);
+      writer.begin_dense(12, 3, Precision::kDouble);
+      const RowMatrix<double> column = RowMatrix<double>::Ones(3, 12);
+      for (int b = 0; b < 12; ++b) writer.write_dense_column(b, column.data());
+      writer.write_dense_gravity(gravity.data());
+      writer.commit();
+    };
+    RowMatrix<double> gravity = RowMatrix<double>::Ones(9, 12);
+    write_dense(gravity);
+    CHECK(has_gravity(read_model(path, ResponseKind::kDense)));
+    irdm::test::make_sparse(path, kDenseGravity, {3, 4, 12});
+    CHECK_THROWS_WITH(read_model(path, ResponseKind::kDense),
+                      Contains("/response/dense/gravity must have the shape (3, steps, 3n)"));
+    gravity(4, 7) = std::numeric_limits<double>::infinity();
+    write_dense(gravity);
+    CHECK_THROWS_WITH(read_model(path, ResponseKind::kDense),
+                      Contains("/response/dense/gravity has numbers that are not finite"));
+    CHECK_THROWS_WITH(read_streamed_model(path), Contains("/response/dense/gravity"));
   }
   SECTION("residual compliance that is none") {
     const auto refused = [&](const std::function<void(ResidualCompliance&)>& spoil,

@@ -36,12 +36,14 @@ void write_columns(const DenseResponse& response, ModelFileWriter& writer) {
                               values.data() + b * dof * static_cast<std::size_t>(response.steps));
   }
   writer.write_dense_centrifugal(std::get<std::vector<Scalar>>(response.centrifugal).data());
+  writer.write_dense_gravity(std::get<std::vector<Scalar>>(response.gravity.approach).data());
 }
 
-/// With both responses, and what the rotation does.
+/// With both responses, and what rotation and gravity do.
 std::filesystem::path valid_model() {
   Model model = test::synthetic_cube(1, kModes, kResponseSteps);
   test::add_centrifugal(model);
+  test::add_gravity(model, true);
   const Model dense = test::with_dense_response<double>(model);
   const auto& response = std::get<DenseResponse>(dense.response);
   std::filesystem::path path = new_file("valid.h5");
@@ -75,6 +77,7 @@ CompressedResponse compressed_response(const Model& model) {
 std::filesystem::path packed_model() {
   Model model = test::synthetic_cube(1, kModes, kResponseSteps);
   test::add_centrifugal(model);
+  test::add_gravity(model, true);
   test::add_residual(model);
   const Model dense = test::with_dense_response<float>(model);
   const auto& response = std::get<DenseResponse>(dense.response);

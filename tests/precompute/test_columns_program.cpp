@@ -68,6 +68,12 @@ std::string modal() {
   return text.replace(text.find("time-stepping"), 13, "modal");
 }
 
+// Held by its lower face.
+std::string fixed_modal() {
+  return modal() +
+         "support = \"fixed\"\n[support]\nhalf_space = { point = [0, 0, 0], normal = [0, 1, 0] }\n";
+}
+
 // The number before " of 54 columns" in what a run says that goes on, or 0.
 int columns_kept(const std::string& out) {
   const auto at = out.find(" of " + std::to_string(kDof) + " columns: going on");
@@ -78,9 +84,11 @@ int columns_kept(const std::string& out) {
 }  // namespace
 
 TEST_CASE("slices join to the file of a whole run, bit for bit, by both methods", "[slow]") {
-  for (const std::string& config : {kStepping, modal(), kStepping + "precision = \"half\"\n"}) {
+  for (const std::string& config :
+       {kStepping, modal(), fixed_modal(), kStepping + "precision = \"half\"\n"}) {
     Run run(config);
-    const bool stepping = config != modal();
+    const bool fixed = config == fixed_modal();
+    const bool stepping = config != modal() && !fixed;
     // The modes themselves may differ in their last bits with the number of threads.
     const std::string one = stepping ? " --threads 1" : "";
     run.good("c.toml -o whole.h5");
@@ -92,7 +100,8 @@ TEST_CASE("slices join to the file of a whole run, bit for bit, by both methods"
     CHECK((run.content("joined.h5") == run.content("whole.h5")));
     const Model joined = read_model(run.path() / "joined.h5", ResponseKind::kDense);
     CHECK(joined.degrees_of_freedom() == kDof);
-    CHECK(has_centrifugal(joined) == !stepping);
+    CHECK(has_centrifugal(joined) == (!stepping && !fixed));
+    CHECK(has_gravity(joined) == fixed);
     CHECK_FALSE(run.has("whole.h5.columns"));
     CHECK_FALSE(run.has("a.part.columns"));
   }

@@ -198,4 +198,16 @@ TEST_CASE("a fixed body's clamped nodes answer nothing, and the others as with a
   const Eigen::MatrixXd found = settled(reduced) + assembled(reduced.residual);
   CHECK((found - expected).cwiseAbs().maxCoeff() < 1e-6 * expected.cwiseAbs().maxCoeff());
   CHECK(reduced.centrifugal.rows() == 0);
+
+  const ModalResponse all = compute_modes(cube.body.mesh, clamped, cube.model, cube.console);
+  const auto sag = [](const ModalResponse& modes) -> Eigen::MatrixXd {
+    return std::get<RowMatrix<double>>(modes.shapes) *
+           modes.angular_frequency.cwiseAbs2().cwiseInverse().asDiagonal() * modes.gravity;
+  };
+  CHECK(all.gravity_rest.rows() == 0);
+  const Eigen::MatrixXd lacking = sag(all) - sag(reduced);
+  CHECK(lacking.norm() > 1e-4 * sag(all).norm());
+  CHECK((reduced.gravity_rest - lacking).norm() < 1e-7 * sag(all).norm());
+  cube.model.body.support = Support::kFloating;
+  CHECK(cube.all().gravity.rows() == 0);
 }

@@ -85,6 +85,35 @@ KeptRun fall(std::size_t objects) {
   return run;
 }
 
+/// A fixed cube that sags, is touched and held, swings as gravity changes, and is put back.
+KeptRun sag() {
+  Model model = synthetic_cube(3, 12, 40);
+  add_gravity(model, true);
+  model.body.support = Support::kFixed;
+  SimulationConfig config;
+  config.gravity = Vector3(0.5, -9.81, 1);
+  config.styluses = {{0.0, 300.0, 0.02}};
+  config.objects.resize(1);
+  config.objects[0].model = std::make_shared<const Model>(model);
+  config.objects[0].orientation = Quaternion(Eigen::AngleAxisd(0.3, Vector3::UnitY()));
+  KeptRun run(config);
+  Simulation simulation(config);
+  StepRecord record;
+  for (int k = 0; k < 160; ++k) {
+    if (k == 60 || k == 110) {
+      Settings settings = simulation.settings();
+      settings.gravity = Vector3(0, -0.1 * k, -2);
+      simulation.set(settings);
+    }
+    const double depth = std::min(2e-4 * k, 0.01);
+    const StylusCommand command{
+        k > 5, k > 40 && k < 130 ? kGrabButton : 0, Vector3(0.01, 0.064 - depth, 0.005), {}};
+    simulation.step({&command, 1}, record, k == 110);
+    run.keep(simulation, record);
+  }
+  return run;
+}
+
 Vector3 told_force(int k) {
   return {0.05 * std::sin(0.3 * k), k % 40 < 30 ? -0.3 : 0.0, 0.03 * std::cos(0.2 * k)};
 }
@@ -161,6 +190,10 @@ TEST_CASE("forces act where they acted: off the surface's point, near an edge an
   REQUIRE(offset[1] > 5e-3);
   REQUIRE(slipping > 50);
   check_both(run);
+}
+
+TEST_CASE("a run of a fixed object that sags is made again, to the bit from its tips") {
+  check_both(sag());
 }
 
 TEST_CASE("a run is made again: floor, spin, settings, a reset and late forces") {

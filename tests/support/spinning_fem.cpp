@@ -1,11 +1,9 @@
 #include "tests/support/spinning_fem.hpp"
 
-#include <Eigen/SparseLU>
-
 #include "precompute/dynamics/implicit_midpoint.hpp"
 #include "precompute/dynamics/rigid_extraction.hpp"
 #include "precompute/fem/assembly.hpp"
-#include "precompute/fem/rigid_motions.hpp"
+#include "tests/support/static_fem.hpp"
 
 namespace irdm::test {
 namespace {
@@ -36,26 +34,6 @@ SparseMatrix softening_matrix(const Model& model, const Vector3& w) {
   return matrix;
 }
 
-// (A, C; C^T, 0)
-SparseMatrix bordered(const SparseMatrix& A, const Eigen::MatrixXd& C) {
-  std::vector<Eigen::Triplet<double>> entries;
-  for (int k = 0; k < A.outerSize(); ++k) {
-    for (SparseMatrix::InnerIterator it(A, k); it; ++it) {
-      entries.emplace_back(static_cast<int>(it.row()), static_cast<int>(it.col()), it.value());
-    }
-  }
-  const auto n = static_cast<int>(A.rows());
-  for (int i = 0; i < n; ++i) {
-    for (int k = 0; k < C.cols(); ++k) {
-      entries.emplace_back(i, n + k, C(i, k));
-      entries.emplace_back(n + k, i, C(i, k));
-    }
-  }
-  SparseMatrix matrix(n + C.cols(), n + C.cols());
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  return matrix;
-}
-
 Matrix3 inertia_of(const Points& x, const Eigen::VectorXd& mass) {
   Matrix3 inertia = Matrix3::Zero();
   for (Eigen::Index i = 0; i < x.rows(); ++i) {
@@ -68,20 +46,14 @@ Matrix3 inertia_of(const Points& x, const Eigen::VectorXd& mass) {
 }  // namespace
 
 Points static_bulge(const Model& model, const Vector3& w, SpinSoftening softening) {
-  SparseMatrix K = assemble_stiffness(mesh_of(model), lame_parameters(model.material));
+  SparseMatrix K = stiffness_of(model);
   if (softening == SpinSoftening::kIncluded) K += softening_matrix(model, w);
-  const Eigen::Index unknowns = K.rows();
-  Eigen::VectorXd f = Eigen::VectorXd::Zero(unknowns + 6);
-  Eigen::MatrixXd held = rigid_motions(model.mesh.nodes, model.mesh.node_mass);
+  Eigen::VectorXd f(K.rows());
   for (Eigen::Index i = 0; i < model.mesh.nodes.rows(); ++i) {
     const Vector3 X = model.mesh.nodes.row(i).transpose();
     f.segment<3>(3 * i) = -model.mesh.node_mass(i) * w.cross(w.cross(X));
-    held.middleRows<3>(3 * i) *= model.mesh.node_mass(i);
   }
-  // The multipliers are the rigid acceleration that takes up what is left of the load.
-  const Eigen::SparseLU<SparseMatrix> solver(bordered(K, held));
-  const Eigen::VectorXd u = solver.solve(f).head(unknowns);
-  return at_surface(model, Eigen::Map<const Points>(u.data(), unknowns / 3, 3));
+  return balanced_displacement(model, K, f);
 }
 
 std::vector<SpinningState> corotational_spin(const Model& model, const Vector3& w, int steps,

@@ -31,18 +31,38 @@ void write_columns(const DenseResponse& response, const std::vector<Scalar>& val
   }
 }
 
-// [product][s][a].
+// [column][s][a].
+template <typename Number>
+std::vector<Number> file_columns(const DenseResponse& response, const std::vector<Number>& values,
+                                 int count) {
+  std::vector<Number> all;
+  DenseResponse unscaled{response.degrees_of_freedom, response.steps, {}};
+  for (int p = 0; p < count; ++p) {
+    const RowMatrix<Number> column = file_column<Number>(unscaled, values, p);
+    all.insert(all.end(), column.data(), column.data() + column.size());
+  }
+  return all;
+}
+
 template <typename Number>
 void write_spin(const DenseResponse& response, const std::vector<Number>& values,
                 ModelFileWriter& writer) {
   if (values.empty()) return;
-  std::vector<Number> all;
-  DenseResponse unscaled{response.degrees_of_freedom, response.steps, {}};
-  for (int p = 0; p < 6; ++p) {
-    const RowMatrix<Number> column = file_column<Number>(unscaled, values, p);
-    all.insert(all.end(), column.data(), column.data() + column.size());
+  writer.write_dense_centrifugal(file_columns(response, values, 6).data());
+}
+
+template <typename Number>
+void write_gravity(const DenseResponse& response, const std::vector<Number>& approach,
+                   ModelFileWriter& writer) {
+  if (approach.empty()) return;
+  std::vector<Number> all = file_columns(response, approach, 3);
+  const int dof = response.degrees_of_freedom;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto column = static_cast<int>(i / static_cast<std::size_t>(dof));
+    const auto a = static_cast<Eigen::Index>(i % static_cast<std::size_t>(dof));
+    all[i] += static_cast<Number>(response.gravity.sag(a, column / response.steps));
   }
-  writer.write_dense_centrifugal(all.data());
+  writer.write_dense_gravity(all.data());
 }
 
 }  // namespace
@@ -63,6 +83,8 @@ void write_dense_model(const Model& dense, const std::filesystem::path& path) {
   }
   std::visit([&](const auto& values) { write_spin(response, values, writer); },
              response.centrifugal);
+  std::visit([&](const auto& values) { write_gravity(response, values, writer); },
+             response.gravity.approach);
   writer.commit();
 }
 
@@ -85,10 +107,14 @@ int ScriptedSupply::taken() const {
   return std::accumulate(taken_.begin(), taken_.end(), 0);
 }
 
-StreamedModel::StreamedModel(Model model) : dense(std::make_shared<const Model>(std::move(model))) {
+StreamedModel::StreamedModel(Model model) {
   const TemporaryFolder folder;
-  write_dense_model(*dense, folder.path() / "dense.h5");
+  write_dense_model(model, folder.path() / "dense.h5");
   Model read = read_streamed_model(folder.path() / "dense.h5");
+  // Rounded once more than what the file was made of.
+  std::get<DenseResponse>(model.response).gravity =
+      std::get<StreamedResponse>(read.response).gravity;
+  dense = std::make_shared<const Model>(std::move(model));
   supply = std::make_shared<ScriptedSupply>(std::get<DenseResponse>(dense->response));
   std::get<StreamedResponse>(read.response).columns = supply;
   streamed = std::make_shared<const Model>(std::move(read));

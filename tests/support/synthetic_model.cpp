@@ -98,6 +98,19 @@ void add_centrifugal(Model& modal, unsigned seed) {
   }
 }
 
+void add_gravity(Model& modal, bool rest, unsigned seed) {
+  auto& response = std::get<ModalResponse>(modal.response);
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  response.gravity.resize(response.mode_count(), 3);
+  for (double& value : response.gravity.reshaped()) {
+    value = 0.2 * std::sqrt(modal.body.mass) * uniform(random);
+  }
+  if (!rest) return;
+  response.gravity_rest.resize(modal.degrees_of_freedom(), 3);
+  for (double& value : response.gravity_rest.reshaped()) value = 1e-5 * uniform(random);
+}
+
 void add_residual(Model& modal, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal(0.0, 0.01);
@@ -158,21 +171,30 @@ Model with_dense_response(const Model& modal) {
                    .transpose();
   }
   // Entry (a, b, s) of Phi diag(load_b) h.
-  const auto fill = [&](const RowMatrix<double>& loads, std::vector<Scalar>& into) {
+  const auto fill = [&](const RowMatrix<double>& loads, const Eigen::MatrixXd& answer,
+                        std::vector<Scalar>& into) {
     for (Eigen::Index b = 0; b < loads.rows(); ++b) {
-      const RowMatrix<double> column = shapes * loads.row(b).asDiagonal() * h;  // (3n, T)
+      const RowMatrix<double> column = shapes * loads.row(b).asDiagonal() * answer;  // (3n, T)
       std::transform(column.data(), column.data() + column.size(), into.begin() + b * column.size(),
                      [](double value) { return static_cast<Scalar>(value); });
     }
   };
-  fill(shapes, values);
+  fill(shapes, h, values);
   if (!response.residual.empty()) add_to_first_step(response.residual, modal.steps, values);
   std::vector<Scalar> centrifugal(
       static_cast<std::size_t>(response.centrifugal.size() == 0 ? 0 : 6) *
       static_cast<std::size_t>(dof) * static_cast<std::size_t>(modal.steps));
-  fill(response.centrifugal.transpose(), centrifugal);
+  fill(response.centrifugal.transpose(), h, centrifugal);
   Model dense = modal;
-  dense.response = DenseResponse{dof, modal.steps, std::move(values), std::move(centrifugal)};
+  DenseResponse made{dof, modal.steps, std::move(values), std::move(centrifugal)};
+  if (response.gravity.rows() > 0) {
+    for (Eigen::Index s = 1; s < h.cols(); ++s) h.col(s) += h.col(s - 1);
+    std::vector<Scalar> gravity(3 * static_cast<std::size_t>(dof) *
+                                static_cast<std::size_t>(modal.steps));
+    fill(response.gravity.transpose(), h, gravity);
+    made.gravity = gravity_response(std::move(gravity), dof, modal.steps);
+  }
+  dense.response = std::move(made);
   return dense;
 }
 

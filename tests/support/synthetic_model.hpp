@@ -14,12 +14,15 @@ Model synthetic_cube(int cells, int modes, int steps, double edge = 0.12, unsign
 /// Gives its modes made-up centrifugal forces.
 void add_centrifugal(Model& modal, unsigned seed = 2);
 
+/// Gives its modes made-up forces of gravity, and with `rest` something that other modes add.
+void add_gravity(Model& modal, bool rest = false, unsigned seed = 4);
+
 /// Gives it a made-up residual compliance between the corners of each triangle, as large as its
 /// R[0]: symmetric and positive definite.
 void add_residual(Model& modal, unsigned seed = 3);
 
-/// The same object with R itself, and the centrifugal response if there is one, computed from its
-/// modes and residual compliance by the closed form, as a DenseResponse.
+/// The same object with R itself, and the responses to spin and gravity if there are, computed from
+/// its modes and residual compliance by the closed form, as a DenseResponse.
 template <typename Scalar>
 Model with_dense_response(const Model& modal);
 

@@ -143,6 +143,33 @@ TEST_CASE("model file with wrong content: one line, status 1, no trace") {
           "needs; precompute it again with method = \"modal\"");
 }
 
+TEST_CASE("a fixed object whose model does not say how it sags is played with a warning") {
+  const Stage stage;
+  const auto warnings = [&](const std::string& gravity, const std::function<void(Model&)>& change) {
+    stage.write("scene.toml", replaced(scene_text("[world]\ngravity = " + gravity + "\n"),
+                                       cube_model().string(), "cube.h5"));
+    write_model(stage.path("cube.h5"), change);
+    const FinishedProgram server = run_to_end(
+        {IRDM_SERVER, stage.path("scene.toml").string(), "--no-viewer", "--duration", "0.1"});
+    CHECK(server.status == 0);
+    return server.err;
+  };
+  const auto fixed = [](Model& model) { model.body.support = Support::kFixed; };
+  CHECK_THAT(warnings("[0, -9.81, 0]", fixed),
+             Contains("irdm-server: warning: ") &&
+                 Contains("scene.toml: fixed object 'cube' does not sag under gravity: its model "
+                          "does not say how; precompute it again with method = \"modal\"\n"));
+  CHECK_THAT(warnings("[0, 0, 0]", fixed), !Contains("sag"));
+  CHECK_THAT(warnings("[0, -9.81, 0]", [](Model&) {}), !Contains("sag"));
+  CHECK_THAT(warnings("[0, -9.81, 0]",
+                      [&](Model& model) {
+                        fixed(model);
+                        auto& response = std::get<ModalResponse>(model.response);
+                        response.gravity = AxisColumns::Zero(response.mode_count(), 3);
+                      }),
+             !Contains("sag"));
+}
+
 TEST_CASE("a model whose steps are too long for a hand is played with a warning") {
   const Stage stage;
   stage.write("scene.toml", replaced(scene_text(), cube_model().string(), "cube.h5"));

@@ -16,8 +16,8 @@ namespace irdm::wire {
 
 inline constexpr std::uint32_t kProtocolMagic = 0x4D445249;  ///< the bytes "IRDM"
 /// Version of header and payloads that this build writes, and the oldest that it still reads.
-inline constexpr std::uint16_t kProtocolVersion = 2;
-inline constexpr std::uint16_t kOldestProtocolVersion = 2;
+inline constexpr std::uint16_t kProtocolVersion = 1;
+inline constexpr std::uint16_t kOldestProtocolVersion = 1;
 
 inline constexpr std::size_t kHeaderSize = 36;
 /// No payload of any version is longer; a longer announcement is refused before it is read.

@@ -32,7 +32,7 @@ void analyse(const Model& model, const NodeConditions& conditions,
 #pragma omp parallel for schedule(dynamic)
   for (int i = 0; i < count; ++i) {
     const Vector3 x = model.mesh.rest_position(first + i);
-    const Matrix3 rigid = model.dt * model.dt * rigid_mobility(model.body, x, x);
+    const Matrix3 rigid = 0.5 * model.dt * model.dt * rigid_mobility(model.body, x, x);
     findings[static_cast<std::size_t>(first + i)] =
         analyse_node(records[static_cast<std::size_t>(i)], rigid, conditions);
   }
@@ -69,9 +69,11 @@ Report check_modes(const std::filesystem::path& path, const CheckOptions& option
   }
   append(report, node_lines(findings, loop, options.coupling));
   if (!response.residual.empty()) {
+    report.push_back({"step", Verdict::kNone, "not all modes are there"});
     report.push_back({"wave speed", Verdict::kNone, "not all modes are there"});
     return report;
   }
+  report.push_back(step_line(model));
   const double interval = wave_interval(model);
   report.push_back(wave_line(model, ModalColumns(response, interval), interval,
                              std::numeric_limits<int>::max()));

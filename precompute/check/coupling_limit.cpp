@@ -31,7 +31,7 @@ class ClosedLoop {
     return count_zeros(response_, radius_,
                        [&](const Eigen::Matrix3cd& r, const std::complex<double>& w) {
                          const std::complex<double> g = floating ? (1.0 - w) * (1.0 - w) : 1.0;
-                         Eigen::Matrix3cd c = g * r + rigid_;
+                         Eigen::Matrix3cd c = g * r + (1.0 + w) * rigid_;
                          c.diagonal().array() += g / coupling;
                          return c.determinant();
                        }) > 0;

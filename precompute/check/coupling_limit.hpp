@@ -36,7 +36,7 @@ std::complex<double> hand_transfer(const Hand& hand, double dt, std::complex<dou
 ///
 /// so that the loop grows where det(C(w) + w^delay H(w) + 1/k_vc) has a zero inside the unit
 /// circle.
-/// @param rigid dt^2 G [m/N], zero for a fixed body
+/// @param rigid dt^2/2 G [m/N], zero for a fixed body
 /// @param radius of the circle that counts as the unit circle, see analyse_passivity
 double largest_coupling(const DrivingPoint& record, const Matrix3& rigid, const HandLoop& loop,
                         double radius);

@@ -21,7 +21,7 @@ int zeros_inside(const DrivingPoint& record, const Matrix3& rigid, double radius
   return count_zeros(response, radius,
                      [&](const Eigen::Matrix3cd& r, const std::complex<double>& w) {
                        if (!floating) return r.determinant();
-                       const Eigen::Matrix3cd c = (1.0 - w) * (1.0 - w) * r + rigid;
+                       const Eigen::Matrix3cd c = (1.0 - w) * (1.0 - w) * r + (1.0 + w) * rigid;
                        return c.determinant();
                      });
 }

@@ -30,6 +30,10 @@ Report node_lines(const std::vector<NodeFindings>& nodes, const HandLoop& loop, 
 /// @param left share of the response that is left at the last step
 /// @param cut whether rendering ends there
 Line decay_line(double left, bool cut);
+/// What the step costs in the force of a led node, at the surface's nearest and farthest nodes, and
+/// from which stiffness on that is 10 %.
+/// @param model with all its modes
+Line step_line(const Model& model);
 /// Interval at which a wave is watched where R can be had at any time [s]: at most dt.
 double wave_interval(const Model& model);
 /// @param columns sampled every `dt` [s], `steps` of them at most

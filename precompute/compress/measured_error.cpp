@@ -25,7 +25,7 @@ Matrix3 block(const RowMatrix<double>& record, Eigen::Index s) {
   return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(record.row(s).data());
 }
 
-// f[k] = C[0]^-1 (x[k] - sum_{s >= 1} C[s] f[k-s]) with C[s] = R[s] + (s + 1) dt^2 G
+// f[k] = C[0]^-1 (x[k] - sum_{s >= 1} C[s] f[k-s]) with C[s] = R[s] + (s + 1/2) dt^2 G
 std::vector<Vector3> holding_force(const RowMatrix<double>& record, const Matrix3& rigid,
                                    double dt) {
   const auto steps =
@@ -35,7 +35,7 @@ std::vector<Vector3> holding_force(const RowMatrix<double>& record, const Matrix
   for (int k = 0; k < steps; ++k) {
     Vector3 left = path(dt * k);
     for (int s = 1; s <= k; ++s) {
-      left -= (block(record, s) + (s + 1.0) * rigid) * force[static_cast<std::size_t>(k - s)];
+      left -= (block(record, s) + (2.0 * s + 1.0) * rigid) * force[static_cast<std::size_t>(k - s)];
     }
     force.push_back(stiffness * left);
   }
@@ -106,7 +106,7 @@ CompressionError measure_error(const CompressedResponse& response, const DenseIn
     }
     const Model& model = input.description();
     const Vector3 x = model.mesh.rest_position(node);
-    const Matrix3 rigid = model.dt * model.dt * rigid_mobility(model.body, x, x);
+    const Matrix3 rigid = 0.5 * model.dt * model.dt * rigid_mobility(model.body, x, x);
     error.force = std::max(error.force, held_force_error(expected, actual, rigid, model.dt));
     progress.update(std::min(nodes, node + stride));
   }

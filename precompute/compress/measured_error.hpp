@@ -10,7 +10,7 @@ namespace irdm::precompute {
 /// along two axes), as a share of the force's peak: what a force step solves, W f = p - r with the
 /// rigid body's own motion in it. 0 for a node that does not move.
 /// @param expected, actual R_ii[s] row by row, (T, 9) [m/N]
-/// @param rigid dt^2 G of the node, its rigid motion in the first step per force [m/N]
+/// @param rigid dt^2/2 G of the node, its rigid motion in the first step per force [m/N]
 double held_force_error(const RowMatrix<double>& expected, const RowMatrix<double>& actual,
                         const Matrix3& rigid, double dt);
 

@@ -1,5 +1,7 @@
 #include "server/record/trace_header.hpp"
 
+#include <string>
+
 #include "common/error.hpp"
 #include "common/hdf5/file.hpp"
 #include "server/record/trace_paths.hpp"
@@ -11,8 +13,13 @@ TraceHeader read_trace_header(const std::filesystem::path& path) {
   if (file.read_string_attribute("/", "format") != "irdm-trace") {
     throw Error(path.string(), "is not a trace", "give a file that irdm-server --record has made");
   }
-  if (file.read_integer_attribute("/", "version") != 1) {
-    throw Error(path.string(), "is a trace of another version", "record it again");
+  const std::int64_t version = file.read_integer_attribute("/", "version");
+  if (version != trace::kVersion) {
+    throw Error(path.string(),
+                "is a trace of version " + std::to_string(version) + ", and only version " +
+                    std::to_string(trace::kVersion) + " can be made again" +
+                    (version == 1 ? ": its step was of first order in time" : ""),
+                "record it again");
   }
   TraceHeader header;
   header.scene = file.read_string_attribute("/", "scene");

@@ -1,10 +1,14 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 
 /// Where things are in a trace file (docs/files.md).
 namespace irdm::trace {
+
+/// Of the file and of the step that its forces were found with: 1 was of first order in time.
+inline constexpr std::int64_t kVersion = 2;
 
 /// How many steps are whole: a killed server may leave sets that are longer.
 inline constexpr const char* kCommitted = "/committed";

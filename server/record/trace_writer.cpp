@@ -48,7 +48,7 @@ TraceWriter::TraceWriter(const std::filesystem::path& path, const TraceHeader& h
 
 void TraceWriter::write_header(const TraceHeader& header) {
   file_.write_attribute("/", "format", std::string("irdm-trace"));
-  file_.write_attribute("/", "version", std::int64_t{1});
+  file_.write_attribute("/", "version", trace::kVersion);
   file_.write_attribute("/", "created_by", std::string("irdm ") + IRDM_VERSION);
   file_.write_attribute("/", "model_file", header.objects.front().model_file);
   file_.write_attribute("/", "model_checksum", header.objects.front().model_checksum);

@@ -11,7 +11,7 @@ using irdm::precompute::test::driving_point;
 namespace {
 
 constexpr double kDt = 0.002;
-const Matrix3 kRigid = kDt * kDt * Vector3(9.0, 6.0, 7.0).asDiagonal().toDenseMatrix();
+const Matrix3 kRigid = 0.5 * kDt * kDt * Vector3(9.0, 6.0, 7.0).asDiagonal().toDenseMatrix();
 
 // Hand and object step by step; the hand is integrated in small steps. Ratio of the forces late to
 // those earlier: above one when the loop grows.
@@ -44,8 +44,8 @@ double simulated_growth(const DrivingPoint& record, const Matrix3& rigid, const 
       free += record.col(s).reshaped(3, 3) * force[static_cast<std::size_t>(k - s)];
     }
     force.emplace_back(inverse * (hand - free));
-    velocity += rigid * force.back();
-    place += velocity;
+    place += velocity + rigid * force.back();
+    velocity += 2.0 * rigid * force.back();
     norms.push_back(force.back().norm());
   }
   const auto window = [&](int from) {

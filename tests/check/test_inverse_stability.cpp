@@ -27,8 +27,8 @@ double simulated_change(const DrivingPoint& record, const Matrix3& rigid, int st
     }
     force.emplace_back(inverse *
                        ((k == 0 ? Vector3(1e-3, 2e-3, -1e-3) : Vector3(Vector3::Zero())) - free));
-    velocity += rigid * force.back();
-    place += velocity;
+    place += velocity + rigid * force.back();
+    velocity += 2.0 * rigid * force.back();
     norms.push_back(force.back().lpNorm<Eigen::Infinity>());
   }
   const auto window = [&](int from) {
@@ -39,7 +39,7 @@ double simulated_change(const DrivingPoint& record, const Matrix3& rigid, int st
   return std::pow(window(steps - 200) / window(steps - 600), 1.0 / 400.0);
 }
 
-const Matrix3 kRigid = kDt * kDt * Vector3(9.0, 6.0, 7.0).asDiagonal().toDenseMatrix();
+const Matrix3 kRigid = 0.5 * kDt * kDt * Vector3(9.0, 6.0, 7.0).asDiagonal().toDenseMatrix();
 
 }  // namespace
 

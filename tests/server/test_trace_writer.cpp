@@ -53,7 +53,7 @@ TEST_CASE("a trace has every set of the contract, in its shape and type, for eac
   }
   const hdf5::File file = hdf5::File::open(path);
   CHECK(file.read_string_attribute("/", "format") == "irdm-trace");
-  CHECK(file.read_integer_attribute("/", "version") == 1);
+  CHECK(file.read_integer_attribute("/", "version") == 2);
   CHECK(file.read_string_attribute("/", "created_by") == "irdm " IRDM_VERSION);
   CHECK(file.read_string_attribute("/", "model_file") == "cube.h5");
   CHECK(file.read_string_attribute("/", "model_checksum") == "c0ffee");

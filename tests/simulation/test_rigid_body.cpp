@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <random>
 
 #include "common/motion/rigid_body.hpp"
@@ -61,6 +62,45 @@ TEST_CASE("rigid body: a free spin keeps its angular momentum, and its energy do
   CHECK(largest < 1e-3);
   CHECK(turned > 3.0);
   CHECK(std::abs(state.orientation.norm() - 1.0) < 1e-12);
+}
+
+TEST_CASE(
+    "rigid body: under held forces its centre moves as the equations say, whatever the step") {
+  const auto place = [](double dt) {
+    const RigidBody body(brick(), dt);
+    RigidState state;
+    state.velocity = Vector3(0.1, 0.2, -0.1);
+    for (int k = 0; k < std::lround(0.8 / dt); ++k) {
+      const double t = (k + 0.5) * dt;
+      state = body.advance(state, t < 0.4 ? Vector3(1.0, -2.0, 0.5) : Vector3(-0.3, 0.0, 1.0),
+                           Vector3::Zero());
+    }
+    return state.position;
+  };
+  const Vector3 first = Vector3(1.0, -2.0, 0.5) / brick().mass;
+  const Vector3 then = Vector3(-0.3, 0.0, 1.0) / brick().mass;
+  const Vector3 expected =
+      0.8 * Vector3(0.1, 0.2, -0.1) + 0.5 * 0.16 * first + 0.4 * 0.4 * first + 0.5 * 0.16 * then;
+  for (const double dt : {0.001, 0.002, 0.004, 0.02}) {
+    CHECK((place(dt) - expected).norm() < 1e-12);
+  }
+}
+
+TEST_CASE("rigid body: a torque that is fixed in space turns it with second order in the step") {
+  const auto final_state = [](double dt) {
+    const RigidBody body(brick(), dt);
+    RigidState state;
+    state.angular_momentum = body.angular_momentum(state.orientation, Vector3(1.0, 3.0, 2.0));
+    for (int k = 0; k < std::lround(0.512 / dt); ++k) {
+      state = body.advance(state, Vector3::Zero(), Vector3(2e-3, -1e-3, 3e-3));
+    }
+    return state.orientation;
+  };
+  const Quaternion reference = final_state(0.004 / 256);
+  const double coarse = final_state(0.004).angularDistance(reference);
+  const double fine = final_state(0.002).angularDistance(reference);
+  CHECK(coarse < 1e-3);
+  CHECK(coarse / fine == Approx(4.0).epsilon(0.1));
 }
 
 TEST_CASE("rigid body: the rotation is second order in the step") {

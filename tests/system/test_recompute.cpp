@@ -61,6 +61,14 @@ Vector3 free_angular_velocity(const Body& body, const Matrix3& inertia, double d
   return w;
 }
 
+/// The orientation half-way through a step without torque: forces in B have their direction in W by
+/// it.
+Quaternion halfway(const Body& body, const Model& model) {
+  const Vector3 w = free_angular_velocity(body, model.body.inertia, model.dt);
+  if (!(w.norm() > 0)) return body.orientation;
+  return Eigen::AngleAxisd(0.5 * model.dt * w.norm(), w.normalized()) * body.orientation;
+}
+
 /// The force on the object [N], B, for one contact: docs/architecture.md, one force step. Where the
 /// point is wanted is taken into the frame that free motion leads to, with the whole of its
 /// rotation.
@@ -77,15 +85,16 @@ Vector3 contact_force(const Model& model, const SceneConfig& scene, const Body& 
   for (std::size_t i = 0; i < 3; ++i) {
     r += point.weights[i] * model.mesh.rest_position(point.nodes[i]);
   }
-  const Vector3 v_free = body.velocity + dt * scene.world.gravity;
   const Vector3 w_free = free_angular_velocity(body, model.body.inertia, dt);
   Matrix3 Q_free = Q;
   if (w_free.norm() > 0) Q_free = Eigen::AngleAxisd(dt * w_free.norm(), w_free.normalized()) * Q;
-  const Vector3 p = Q_free.transpose() * (tip - body.position - dt * v_free) - offset;
+  const Vector3 p = Q_free.transpose() * (tip - body.position - dt * body.velocity -
+                                          0.5 * dt * dt * scene.world.gravity) -
+                    offset;
   const Matrix3 cross = skew(r + offset);
   const Matrix3 W =
       Matrix3(elastic) +
-      dt * dt *
+      0.5 * dt * dt *
           (Matrix3::Identity() / model.body.mass - cross * model.body.inertia.inverse() * cross) +
       Matrix3::Identity() / scene.contact.coupling_stiffness;
   return W.partialPivLu().solve(p - r);
@@ -158,10 +167,10 @@ void check_forces(const Trace& trace, std::size_t least_touching, std::size_t le
       peak = std::max(peak, force.norm());
       // What slips is on the cone instead, and what is given up is held less and less.
       if (trace.slipping[k] == 0 && !releasing) {
-        worst = std::max(worst, (body.orientation * found + force).norm());
+        worst = std::max(worst, (halfway(body, *model) * found + force).norm());
         ++(trace.contact[k] == 1 ? touching : held);
       }
-      const Vector3 on_object = -(body.orientation.conjugate() * force);
+      const Vector3 on_object = -(halfway(body, *model).conjugate() * force);
       for (std::size_t i = 0; i < 3; ++i) {
         nodal.push_back({point.nodes[i], point.weights[i] * on_object});
       }
@@ -261,11 +270,12 @@ TEST_CASE("poses are recomputed from the forces of a trace, those of the floor i
   for (std::size_t k = 0; k < trace.rows(); ++k) {
     if (trace.reset[k] != 0) engine->reset();
     const Body body = body_before(trace, object, k);
+    const Quaternion Q_half = halfway(body, *model);
     std::vector<NodalForce> nodal;
     for (std::int32_t c = 0; c < floor.count[k]; ++c) nodal.push_back(floor.row(row++));
     if (trace.contact[k] != kNoContact) {
       const SurfacePoint point = contact_point(trace, k);
-      const Vector3 force = -(body.orientation.conjugate() * trace.vector("/stylus/0/force", k));
+      const Vector3 force = -(Q_half.conjugate() * trace.vector("/stylus/0/force", k));
       for (std::size_t i = 0; i < 3; ++i) {
         nodal.push_back({point.nodes[i], point.weights[i] * force});
       }
@@ -275,7 +285,7 @@ TEST_CASE("poses are recomputed from the forces of a trace, those of the floor i
     Vector3 torque = Vector3::Zero();
     if (trace.contact[k] != kNoContact) {  // it acts where the tip is felt
       torque -= trace.vector("/stylus/0/offset", k)
-                    .cross(body.orientation.conjugate() * trace.vector("/stylus/0/force", k));
+                    .cross(Q_half.conjugate() * trace.vector("/stylus/0/force", k));
     }
     for (const NodalForce& at : nodal) {
       const Vector3 arm = model->mesh.rest_position(at.node) + engine->free_displacement(at.node);
@@ -283,15 +293,14 @@ TEST_CASE("poses are recomputed from the forces of a trace, those of the floor i
       torque += arm.cross(at.force);
     }
     engine->advance(nodal);
-    const Vector3 velocity =
-        body.velocity + dt * (scene.world.gravity + body.orientation * force / mass);
+    const Vector3 velocity = body.velocity + dt * (scene.world.gravity + Q_half * force / mass);
     worst_velocity =
         std::max(worst_velocity, (trace.vector("/step/body_velocity", k) - velocity).norm());
+    const Vector3 position = body.position + 0.5 * dt * (body.velocity + velocity);
     worst_position =
-        std::max(worst_position,
-                 (trace.vector("/step/body_position", k) - body.position - dt * velocity).norm());
+        std::max(worst_position, (trace.vector("/step/body_position", k) - position).norm());
     const Vector3 turning = momentum(body.orientation.toRotationMatrix(), body.angular_velocity) +
-                            dt * (body.orientation * torque);
+                            dt * (Q_half * torque);
     worst_momentum =
         std::max(worst_momentum, (momentum(trace.orientation(k).toRotationMatrix(),
                                            trace.vector("/step/body_angular_velocity", k)) -
@@ -359,7 +368,8 @@ TEST_CASE("the touched point's place is recomputed from a trace, inertial loadin
     const SurfacePoint point = contact_point(trace, k);
     const bool free = trace.contact[k] == kNoContact;
     std::vector<NodalForce> nodal;
-    const Vector3 force = -(before.orientation.conjugate() * trace.vector("/stylus/0/force", k));
+    const Vector3 force =
+        -(halfway(before, *model).conjugate() * trace.vector("/stylus/0/force", k));
     for (std::size_t i = 0; i < 3 && !free; ++i) {
       nodal.push_back({point.nodes[i], point.weights[i] * force});
     }

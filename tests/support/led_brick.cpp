@@ -1,0 +1,137 @@
+#include "tests/support/led_brick.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <sstream>
+
+#include "common/model/model_file.hpp"
+#include "precompute/precompute.hpp"
+#include "server/step/simulation.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace irdm::test {
+namespace {
+
+const Vector3 kSize(0.10, 0.08, 0.06);
+constexpr double kOf = 2e4;  // Young's modulus of the model that is computed [N/m^2]
+
+Model computed_brick() {
+  precompute::PrecomputeConfig config;
+  config.name = "brick";
+  config.mesh.source = precompute::BoxConfig{kSize, {5, 4, 3}};
+  config.material = {kOf, 0.45, 1000.0, 8.0, 2e-4};
+  config.response.steps = 50;
+  const TemporaryFolder folder;
+  std::ostringstream ignored;
+  precompute::precompute_model(config, folder.path() / "brick.h5",
+                               precompute::Console{ignored, false});
+  return read_model(folder.path() / "brick.h5", ResponseKind::kModal);
+}
+
+// 0 before `from`, 1 after `to`, in between with three derivatives that begin and end at 0.
+double smooth(double t, double from, double to) {
+  const double s = std::clamp((t - from) / (to - from), 0.0, 1.0);
+  return s * s * s * s * (35.0 - s * (84.0 - s * (70.0 - 20.0 * s)));
+}
+
+double duration(BrickMotion motion) {
+  return motion == BrickMotion::kSwing ? 1.0 : motion == BrickMotion::kSlide ? 0.8 : 0.4;
+}
+
+// From the node or the middle of the top [m], W.
+Vector3 path(BrickMotion motion, double t) {
+  switch (motion) {
+    case BrickMotion::kSwing:
+      return Vector3(0.03 * std::sin(3.0 * std::numbers::pi * t) * smooth(t, 0.0, 0.4), 0.0, 0.0);
+    case BrickMotion::kPush:
+      return Vector3(0.0, 0.0, -0.002 * smooth(t, 0.0, 0.05));
+    case BrickMotion::kTap: {
+      const double down = smooth(t, 0.0, 0.03) - smooth(t, 0.03, 0.06);
+      return Vector3(0.0, 0.0, 0.002 - 0.004 * down);
+    }
+    case BrickMotion::kSlide:
+      return Vector3(0.03 * smooth(t, 0.3, 0.8), 0.0, 0.002 - 0.005 * smooth(t, 0.0, 0.3));
+  }
+  return Vector3::Zero();
+}
+
+bool holds(BrickMotion motion) {
+  return motion == BrickMotion::kSwing || motion == BrickMotion::kPush;
+}
+
+// Of the top, where the stylus begins.
+Vector3 first_point(const Model& model, BrickMotion motion) {
+  const Vector3 wanted(0.01, 0.01, 0.5 * kSize.z());
+  if (!holds(motion)) return wanted;
+  int nearest = 0;
+  for (int i = 0; i < model.mesh.surface_node_count(); ++i) {
+    const auto away = [&](int node) { return (model.mesh.rest_position(node) - wanted).norm(); };
+    if (away(i) < away(nearest)) nearest = i;
+  }
+  return model.mesh.rest_position(nearest);
+}
+
+SimulationConfig scene(BrickMotion motion, std::shared_ptr<const Model> model) {
+  SimulationConfig config;
+  config.objects.resize(1);
+  config.objects[0].model = std::move(model);
+  config.objects[0].friction = {0.3, 0.3};
+  config.styluses = {{holds(motion) ? 0.0 : 0.015, 0.0, holds(motion) ? 1e-6 : 0.0}};
+  if (motion == BrickMotion::kSlide) {
+    config.objects[0].tether = {1000.0, 10.0};
+    config.objects[0].damping = {20.0, 20.0};
+  }
+  return config;
+}
+
+}  // namespace
+
+// Frequencies go with the root of Young's modulus, shapes stay.
+std::shared_ptr<const Model> soft_brick(double youngs_modulus, double dt) {
+  static const Model brick = computed_brick();
+  auto model = std::make_shared<Model>(brick);
+  model->dt = dt;
+  model->material.youngs_modulus = youngs_modulus;
+  auto& response = std::get<ModalResponse>(model->response);
+  response.angular_frequency *= std::sqrt(youngs_modulus / kOf);
+  response.decay_rate =
+      0.5 * (model->material.rayleigh_alpha +
+             model->material.rayleigh_beta * response.angular_frequency.array().square());
+  return model;
+}
+
+std::vector<Vector3> brick_forces(BrickMotion motion, double youngs_modulus, double dt) {
+  const auto model = soft_brick(youngs_modulus, dt);
+  const Vector3 first = first_point(*model, motion);
+  Simulation simulation(scene(motion, model));
+  const auto record = std::make_unique<StepRecord>();
+  const auto steps = static_cast<int>(std::lround(duration(motion) / dt));
+  std::vector<Vector3> forces;
+  for (int k = 0; k < steps; ++k) {
+    const StylusCommand command{true, holds(motion) ? kGrabButton : 0,
+                                first + path(motion, (k + 1) * dt), std::nullopt};
+    simulation.step({&command, 1}, *record);
+    forces.push_back(record->stylus[0].force);
+  }
+  return forces;
+}
+
+double brick_error(const std::vector<Vector3>& fine, const std::vector<Vector3>& coarse,
+                   double dt) {
+  const auto part = static_cast<std::size_t>(std::lround(dt / kFineStep));
+  double peak = 0.0;
+  for (const Vector3& force : fine) peak = std::max(peak, force.norm());
+  double apart = 0.0;
+  for (std::size_t k = 0; k < coarse.size() && (k + 1) * part <= fine.size(); ++k) {
+    Vector3 mean = Vector3::Zero();
+    for (std::size_t i = k * part; i < (k + 1) * part; ++i) {
+      mean += fine[i] / static_cast<double>(part);
+    }
+    apart = std::max(apart, (coarse[k] - mean).norm());
+  }
+  return apart / peak;
+}
+
+}  // namespace irdm::test

@@ -22,8 +22,14 @@ RestSurface::RestSurface(const ModelMesh& mesh) : tree_(mesh), topology_(mesh) {
   double edges = 0.0;
   for (int t = 0; t < static_cast<int>(mesh.triangles.rows()); ++t) {
     const TriangleCorners triangle = corners(t);
-    const Vector3 normal = area_normal(triangle).normalized();
+    const Vector3 twice_area = area_normal(triangle);
+    const Vector3 normal = twice_area.normalized();
+    Plane& plane = planes_.emplace_back();
+    plane.normal = normal;
     for (std::size_t i = 0; i < 3; ++i) {
+      plane.rates[i] = (triangle[(i + 2) % 3] - triangle[(i + 1) % 3]).cross(twice_area) /
+                       -twice_area.squaredNorm();
+      plane.across[i] = neighbour(t, i);
       const Vector3 a = triangle[(i + 1) % 3] - triangle[i];
       const Vector3 b = triangle[(i + 2) % 3] - triangle[i];
       edges += a.norm();
@@ -86,7 +92,7 @@ SurfaceLocation RestSurface::locate(const SurfacePoint& point) const noexcept {
   return found;
 }
 
-int RestSurface::across(int triangle, std::size_t corner) const noexcept {
+int RestSurface::neighbour(int triangle, std::size_t corner) const noexcept {
   const std::array<int, 3>& nodes = topology_.corners(triangle);
   const int a = nodes[(corner + 1) % 3];
   const int b = nodes[(corner + 2) % 3];

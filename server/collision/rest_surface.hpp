@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "server/collision/surface_topology.hpp"
@@ -38,8 +39,17 @@ class RestSurface {
   /// The triangle that a point belongs to, with its place.
   SurfaceLocation locate(const SurfacePoint& point) const noexcept;
 
-  /// The neighbour over the edge that lies opposite to a corner (0..2) of a triangle.
-  int across(int triangle, std::size_t corner) const noexcept;
+  /// What a walk over a triangle needs of it.
+  struct Plane {
+    Vector3 normal = Vector3::Zero();  ///< outward, unit, B
+    /// How the weight of each corner grows along the plane: rate . way [1/m].
+    std::array<Vector3, 3> rates;
+    /// The neighbours over the edges that lie opposite to the corners.
+    std::array<int, 3> across{};
+  };
+  const Plane& plane(int triangle) const noexcept {
+    return planes_[static_cast<std::size_t>(triangle)];
+  }
 
   /// Outward unit normal that varies continuously over the surface: the nodes' normals (of the
   /// faces round them, weighted with their angles), interpolated.
@@ -52,11 +62,13 @@ class RestSurface {
 
  private:
   SurfaceLocation on(int triangle, const Vector3& p) const noexcept;
+  int neighbour(int triangle, std::size_t corner) const noexcept;
 
   SurfaceTree tree_;
   SurfaceTopology topology_;
   std::vector<Vector3> positions_;
   std::vector<Vector3> normals_;  ///< of the nodes
+  std::vector<Plane> planes_;     ///< of the triangles
   double mean_edge_ = 0.0;
   double mean_square_edge_ = 0.0;
 };

@@ -5,17 +5,6 @@
 namespace irdm {
 namespace {
 
-// How the weights of a point change as it moves along d in the triangle's plane [1/m].
-Barycentric weight_rates(const TriangleCorners& triangle, const Vector3& d) noexcept {
-  const Vector3 normal = area_normal(triangle);
-  const double scale = 1.0 / normal.squaredNorm();
-  Barycentric rates;
-  for (std::size_t i = 0; i < 3; ++i) {
-    rates[i] = scale * normal.cross(triangle[(i + 2) % 3] - triangle[(i + 1) % 3]).dot(d);
-  }
-  return rates;
-}
-
 // The same point on an edge, with the nodes of the triangle beyond it.
 SurfacePoint carried_over(const SurfacePoint& point, const std::array<int, 3>& nodes) noexcept {
   SurfacePoint carried{nodes, {0.0, 0.0, 0.0}};
@@ -33,24 +22,24 @@ StraightWalk::StraightWalk(const RestSurface& surface, const SurfaceLocation& fr
                            const Vector3& direction) noexcept
     : surface_(surface), here_(from), start_(from.position) {
   enter(from.triangle);
-  ahead_ = direction - direction.dot(triangle_normal_) * triangle_normal_;
+  ahead_ = direction - direction.dot(plane_->normal) * plane_->normal;
   moves_ = ahead_.norm() > 1e-12 * direction.norm();
   if (moves_) ahead_.normalize();
   heading_ = ahead_;
-  normal_ = triangle_normal_;
+  normal_ = plane_->normal;
 }
 
 void StraightWalk::enter(int triangle) noexcept {
   here_.triangle = triangle;
-  corners_ = surface_.corners(triangle);
-  triangle_normal_ = area_normal(corners_).normalized();
+  plane_ = &surface_.plane(triangle);
 }
 
 double StraightWalk::leg(double length) noexcept {
   start_ = here_.position;
   heading_ = ahead_;
-  normal_ = triangle_normal_;
-  const Barycentric rates = weight_rates(corners_, heading_);
+  normal_ = plane_->normal;
+  Barycentric rates;
+  for (std::size_t i = 0; i < 3; ++i) rates[i] = plane_->rates[i].dot(heading_);
   std::size_t corner = 3;  // whose opposite edge is reached first
   double way = length;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -70,14 +59,17 @@ double StraightWalk::leg(double length) noexcept {
 }
 
 void StraightWalk::cross(std::size_t corner) noexcept {
-  const Vector3 edge = (corners_[(corner + 2) % 3] - corners_[(corner + 1) % 3]).normalized();
+  const std::array<int, 3>& nodes = surface_.topology().corners(here_.triangle);
+  const Vector3 edge =
+      (surface_.node(nodes[(corner + 2) % 3]) - surface_.node(nodes[(corner + 1) % 3]))
+          .normalized();
   const double along = heading_.dot(edge);
   const double over = heading_.dot(edge.cross(normal_));
   here_.point.weights[corner] = 0.0;
-  const int next = surface_.across(here_.triangle, corner);
+  const int next = plane_->across[corner];
   here_.point = carried_over(here_.point, surface_.topology().corners(next));
   enter(next);
-  ahead_ = along * edge + over * edge.cross(triangle_normal_);
+  ahead_ = along * edge + over * edge.cross(plane_->normal);
 }
 
 }  // namespace irdm

@@ -30,9 +30,9 @@ class StraightWalk {
 
   const RestSurface& surface_;
   SurfaceLocation here_;
-  TriangleCorners corners_;
   Vector3 start_, heading_, normal_;
-  Vector3 ahead_, triangle_normal_;  ///< of the leg to come
+  const RestSurface::Plane* plane_ = nullptr;  ///< of the leg to come ...
+  Vector3 ahead_;                              ///< ... and its direction
   bool moves_ = true;
 };
 

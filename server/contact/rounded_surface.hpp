@@ -25,7 +25,9 @@ class RoundedSurface {
   Place at(const SurfacePoint& middle) const noexcept;
 
  private:
-  static constexpr int kRays = 32;
+  /// Many: each one that comes to lie beyond an edge or on the other side of a corner moves the
+  /// mean by a step.
+  static constexpr int kRays = 128;
   struct Means {
     Vector3 position = Vector3::Zero();
     Vector3 along_x = Vector3::Zero();

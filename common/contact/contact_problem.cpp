@@ -193,16 +193,18 @@ void ContactSolver::factor_held(ContactProblem& problem) noexcept {
   if (held_count_ == 0) return;
   const int rows = 3 * held_count_;
   ContactMatrix W = ContactMatrix::Zero(rows, rows);
+  double trace = 0.0;
   for (int i = 0; i < held_count_; ++i) {
     const int a = held_[static_cast<std::size_t>(i)];
     for (int j = 0; j < held_count_; ++j) {
       W.block<3, 3>(3 * i, 3 * j) = problem.compliance(a, held_[static_cast<std::size_t>(j)]);
     }
+    trace += problem.compliance(a, a).trace();
     for (int b = 0; b < problem.count(); ++b) {
       held_answer_.block<3, 3>(3 * i, 3 * b) = problem.compliance(a, b);
     }
   }
-  W.diagonal().array() += kHeldRidge * W.trace() / rows;
+  W.diagonal().array() += kHeldRidge * trace / rows;
   held_block_.compute(W);
   using Columns = Eigen::Matrix<double, Eigen::Dynamic, 3, 0, 3 * kMaxContacts, 3>;
   for (int b = 0; b < problem.count(); ++b) {

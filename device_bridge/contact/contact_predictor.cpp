@@ -171,7 +171,15 @@ ContactPredictor::Answer ContactPredictor::solve(std::uint64_t k, const Vector3&
   answer.force = Q * force;
   answer.state = held ? ContactState::kHeld : ContactState::kTouching;
   answer.normal = end.orientation * model_.normal;
-  past(k) = {k, answer.force, force, arm, found.slip};
+  // The torque's lever arm is the mean over the step, as at the server.
+  const Vector3 free_displacement = surface - model_.place;
+  const Vector3 moved = free_displacement + model_.response[0] * force;
+  const bool goes_on = last_contact_ + 1 == k;
+  const Vector3 shift =
+      0.5 * ((goes_on ? last_moved_ : free_displacement) + moved) - free_displacement;
+  last_moved_ = moved;
+  last_contact_ = k;
+  past(k) = {k, answer.force, force, arm + shift, found.slip};
   return answer;
 }
 

@@ -84,7 +84,10 @@ class ContactPredictor {
   bool silent_ = true;                 ///< nothing was known of the last step
   std::optional<std::uint64_t> back_;  ///< the step since which a contact comes back from a silence
   std::optional<Vector3> last_tip_;    ///< W
-  Vector3 last_place_ = Vector3::Zero();  ///< of a touching contact, object at rest [m]
+  Vector3 last_moved_ =
+      Vector3::Zero();  ///< displacement of the place at the end of last_contact_ [m]
+  std::uint64_t last_contact_ = ~std::uint64_t{0};  ///< the last step with a force
+  Vector3 last_place_ = Vector3::Zero();            ///< of a touching contact, object at rest [m]
 };
 
 }  // namespace irdm

@@ -68,7 +68,7 @@ RigidPast::Forces ForcedObject::collect(const ObjectRecord& recorded) {
     const ContactRecord& contact = recorded.contact[s];
     if (contact.state == ContactState::kFree) continue;
     masks_[s].spread(contact.point, patch_);
-    forces.add(Q * contact.force, place(patch_) + contact.offset);
+    forces.add(Q * contact.force, place(patch_) + contact.offset + contact.arm_shift);
   }
   for (std::size_t i = 0; i < static_cast<std::size_t>(recorded.floor_count); ++i) {
     const FloorForce& floor = recorded.floor[i];

@@ -27,7 +27,7 @@ class RoundedSurface {
  private:
   /// Many: each one that comes to lie beyond an edge or on the other side of a corner moves the
   /// mean by a step.
-  static constexpr int kRays = 128;
+  static constexpr int kRays = 64;
   struct Means {
     Vector3 position = Vector3::Zero();
     Vector3 along_x = Vector3::Zero();

@@ -182,6 +182,7 @@ ContactRecord Recording::Data::contact(const trace::ContactRows& rows, std::size
   if (objects.size() == 1) contact.force = -(halfway.conjugate() * contact.force);
   contact.proxy = trace::vector_of(rows.proxy, k);
   contact.offset = trace::vector_of(rows.offset, k);
+  contact.arm_shift = trace::vector_of(rows.arm_shift, k);
   return contact;
 }
 

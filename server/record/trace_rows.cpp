@@ -40,7 +40,8 @@ ContactRows::ContactRows(const hdf5::File& file, const RowReader& reader, const 
       weights(reader.read<double>(path + "/contact_weights", 3)),
       force(reader.read<double>(path + "/force", 3)),
       proxy(reader.read<double>(path + "/proxy", 3)),
-      offset(reader.read<double>(path + "/offset", 3)) {
+      offset(reader.read<double>(path + "/offset", 3)),
+      arm_shift(reader.read<double>(path + "/arm_shift", 3)) {
   for (std::size_t k = 0; k < state.size(); ++k) {
     if (state[k] == 0) continue;
     for (std::size_t i = 0; i < 3; ++i) {

@@ -21,6 +21,7 @@ struct ContactRows {
   std::vector<double> force;  ///< on the object, B; or on the stylus, W, when the object is alone
   std::vector<double> proxy;
   std::vector<double> offset;
+  std::vector<double> arm_shift;
 
   /// Throws Error, also for a node that the model does not have.
   ContactRows(const hdf5::File& file, const RowReader& reader, const std::string& path,

@@ -6,7 +6,7 @@
 namespace irdm::trace {
 namespace {
 
-constexpr std::array<std::pair<const char*, const char*>, 18> kUnits{{
+constexpr std::array<std::pair<const char*, const char*>, 19> kUnits{{
     {"time", "s"},
     {"body_position", "m"},
     {"body_orientation", "1"},
@@ -18,6 +18,7 @@ constexpr std::array<std::pair<const char*, const char*>, 18> kUnits{{
     {"proxy", "m"},
     {"force", "N"},
     {"contact_weights", "1"},
+    {"arm_shift", "m"},
     {"offset", "m"},
     {"arm", "m"},
     {"gravity", "m/s^2"},

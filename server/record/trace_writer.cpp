@@ -222,6 +222,7 @@ void TraceWriter::create_object(const std::string& group) {
 void TraceWriter::create_contact(const std::string& group) {
   create<double>(group + "/contact_weights", {3});
   create<double>(group + "/offset", {3});
+  create<double>(group + "/arm_shift", {3});
   create<std::uint8_t>(group + "/contact", {});
   create<std::uint8_t>(group + "/slipping", {});
   create<std::int32_t>(group + "/contact_nodes", {3});
@@ -358,6 +359,8 @@ void TraceWriter::append_contact(std::span<const StepRecord> records, const std:
       [&](const StepRecord& r, std::uint8_t* row) { *row = contact(r).slipping ? 1 : 0; });
   append_rows<double>(group + "/offset", 3, records,
                       [&](const StepRecord& r, double* row) { put(row, contact(r).offset); });
+  append_rows<double>(group + "/arm_shift", 3, records,
+                      [&](const StepRecord& r, double* row) { put(row, contact(r).arm_shift); });
   append_rows<double>(group + "/contact_weights", 3, records,
                       [&](const StepRecord& r, double* row) {
                         const bool free = contact(r).state == ContactState::kFree;

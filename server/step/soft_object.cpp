@@ -175,7 +175,9 @@ void SoftObject::collect(std::span<const StylusCommand> commands) noexcept {
       continue;
     }
     const auto a = static_cast<std::size_t>(contact_count_++);
-    contacts_[a] = {.stylus = static_cast<int>(s), .given = command.given.has_value()};
+    contacts_[a] = {.stylus = static_cast<int>(s),
+                    .given = command.given.has_value(),
+                    .bridged = command.bridged.has_value()};
     points_[a] = stylus.point();
     masks_[s].spread(points_[a], patches_[a]);
     if (stylus.state() != ContactState::kTouching || command.given) continue;
@@ -223,7 +225,8 @@ bool SoftObject::settle_down(std::size_t s, const Vector3& tip) noexcept {
 double SoftObject::displaced() const noexcept {
   double largest = 0.0;
   for (const LastContact& last : last_) {
-    if (last.any && last.last_step + 1 == steps_) largest = std::max(largest, last.displaced);
+    if (last.any && last.last_step + 1 == steps_)
+      largest = std::max(largest, last.displaced.norm());
   }
   return largest;
 }
@@ -235,6 +238,7 @@ void SoftObject::predict_contacts() noexcept {
   std::array<Vector3, kMaxContacts> h;
   engine_->predict({patches_.data(), count}, {h.data(), count}, elastic_);
   for (std::size_t a = 0; a < count; ++a) {
+    contacts_[a].free = h[a];
     contacts_[a].arm = h[a] + mean(patches_[a], [&](int i) { return rest_.node(i); });
   }
 }
@@ -345,13 +349,23 @@ void SoftObject::follow_bridged(std::span<const StylusCommand> commands) noexcep
   }
 }
 
+// Of a contact whose place is displaced by `moved` at the end of the step; a bridge tells the mean
+// arm itself.
+Vector3 SoftObject::arm_shift(int a, const Vector3& moved) const noexcept {
+  const Contact& contact = contacts_[static_cast<std::size_t>(a)];
+  if (contact.bridged) return Vector3::Zero();
+  const LastContact& last = last_[static_cast<std::size_t>(contact.stylus)];
+  const bool goes_on = last.any && last.last_step + 1 == steps_;
+  return 0.5 * ((goes_on ? last.displaced : contact.free) + moved) - contact.free;
+}
+
 // The contacts of the step, in B; the proxies are turned to W by the caller.
-void SoftObject::write(ObjectRecord& record) const noexcept {
+void SoftObject::write(ObjectRecord& record) noexcept {
   record.contact.fill(ContactRecord{});
   for (int a = 0; a < contact_count_; ++a) {
     const ContactUnknown& solved = problem_.contact(floor_count_ + a);
     if (solved.mode == ContactMode::kOpen) continue;
-    const Contact& contact = contacts_[static_cast<std::size_t>(a)];
+    Contact& contact = contacts_[static_cast<std::size_t>(a)];
     const GodObject& stylus = styluses_[static_cast<std::size_t>(contact.stylus)];
     ContactRecord& out = record.contact[static_cast<std::size_t>(contact.stylus)];
     out.state = stylus.state();
@@ -367,6 +381,8 @@ void SoftObject::write(ObjectRecord& record) const noexcept {
     for (int i = 0; i < floor_count_; ++i) {
       out.proxy += problem_.elastic(floor_count_ + a, i) * problem_.contact(i).force;
     }
+    contact.moved = out.proxy - (contact.arm - contact.free);
+    contact.arm_shift = out.arm_shift = arm_shift(a, contact.moved);
   }
 }
 
@@ -432,12 +448,9 @@ void SoftObject::advance() noexcept {
     last.point = points_[index];
     last.patch = patches_[index];
     last.arm = contacts_[index].arm;
-    last.displaced = (contacts_[index].arm + elastic_.block<3, 3>(row(a), row(a)) * solved.force -
-                      mean(patches_[index], [&](int i) {
-                        return rest_.node(i);
-                      })).norm();
+    last.displaced = contacts_[index].moved;
     last.average += share * solved.force;
-    forces.add(Q * solved.force, solved.arm);
+    forces.add(Q * solved.force, solved.arm + contacts_[index].arm_shift);
   }
   for (int i = 0; i < floor_count_; ++i) {
     const ContactUnknown& solved = problem_.contact(i);

@@ -67,10 +67,14 @@ class SoftObject {
   struct Contact {
     int stylus = 0;
     bool given = false;
+    bool bridged = false;
     bool lets_go = false;                ///< bridged, and by itself it would be open
     ContactLaw law = ContactLaw::kHeld;  ///< of a bridged one, were it not
     Vector3 arm = Vector3::Zero();       ///< r_a = X_a + h_a [m], B
-    Vector3 normal = Vector3::Zero();    ///< of a touching one
+    Vector3 free = Vector3::Zero();      ///< h_a [m], B
+    Vector3 moved = Vector3::Zero();  ///< displacement of the place by the end of the step [m], B
+    Vector3 arm_shift = Vector3::Zero();  ///< as ContactRecord::arm_shift
+    Vector3 normal = Vector3::Zero();     ///< of a touching one
   };
   /// The last contact of a stylus.
   struct LastContact {
@@ -79,9 +83,9 @@ class SoftObject {
     std::uint64_t last_step = 0;
     SurfacePoint point;
     ContactPatch patch;
-    Vector3 arm = Vector3::Zero();      ///< of its force [m], B
-    Vector3 average = Vector3::Zero();  ///< of its force over the last while [N], B
-    double displaced = 0.0;             ///< of its place by the end of its step [m]
+    Vector3 arm = Vector3::Zero();        ///< of its force [m], B
+    Vector3 average = Vector3::Zero();    ///< of its force over the last while [N], B
+    Vector3 displaced = Vector3::Zero();  ///< of its place by the end of its step [m], B
   };
   void take_over(std::size_t s, const StylusCommand& command) noexcept;
   double displaced() const noexcept;
@@ -100,7 +104,8 @@ class SoftObject {
   void settle(std::span<const StylusCommand> commands) noexcept;
   void follow() noexcept;
   void advance() noexcept;
-  void write(ObjectRecord& record) const noexcept;
+  Vector3 arm_shift(int a, const Vector3& moved) const noexcept;
+  void write(ObjectRecord& record) noexcept;
   void write_floor(ObjectRecord& record) noexcept;
 
   std::shared_ptr<const Model> model_;

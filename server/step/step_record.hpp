@@ -50,7 +50,10 @@ struct ContactRecord {
   Vector3 force = Vector3::Zero();   ///< on the object [N], B
   Vector3 normal = Vector3::Zero();  ///< outward, of the surface at rest under the tip; unit, B
   Vector3 offset = Vector3::Zero();  ///< from the point to where the force acts [m], B
-  Vector3 proxy = Vector3::Zero();   ///< god-object: the point at the end of the step [m], W
+  /// From where the point would be at the end of the step without forces to where it is in the mean
+  /// over the step: the torque's lever arm is the mean one [m], B.
+  Vector3 arm_shift = Vector3::Zero();
+  Vector3 proxy = Vector3::Zero();  ///< god-object: the point at the end of the step [m], W
 };
 
 /// Contacts with the floor that an object can have in one step.

@@ -102,11 +102,13 @@ TEST_CASE("a longer delay and a hand with less damping allow less coupling") {
   CHECK(largest_coupling(record, kRigid, {{0.12, 0.5, 300.0}, kDt, 3}, 1.0) < usual);
 }
 
-TEST_CASE("a soft body is stable without coupling, one that answers late allows hardly any") {
+TEST_CASE("a soft body bears a stiff coupling, one that answers late a softer one") {
   const DrivingPoint good = driving_point(damped_modes(), kDt, 800);
-  CHECK(std::isinf(largest_coupling(good, kRigid, {{}, kDt, 1}, 1.0)));
+  const double limit = largest_coupling(good, kRigid, {{}, kDt, 1}, 1.0);
+  CAPTURE(limit);
+  CHECK(limit > 3e3);
   DrivingPoint late = DrivingPoint::Zero(9, 811);
   late.rightCols(800) = good;
   late.col(0) = 0.1 * good.col(0);
-  CHECK(largest_coupling(late, kRigid, {{}, kDt, 1}, 1.0) < 1e4);
+  CHECK(largest_coupling(late, kRigid, {{}, kDt, 1}, 1.0) < 0.9 * limit);
 }

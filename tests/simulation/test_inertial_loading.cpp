@@ -295,8 +295,8 @@ TEST_CASE("inertial loading: momentum still changes by exactly the impulses") {
     if (contact.state != ContactState::kFree) {
       // The lever arm: where the tip is felt, the point's end less what the force of this step
       // moved it and the offset.
-      Vector3 arm =
-          after.orientation.conjugate() * (contact.proxy - after.position) + contact.offset;
+      Vector3 arm = after.orientation.conjugate() * (contact.proxy - after.position) +
+                    contact.offset + contact.arm_shift;
       for (std::size_t i = 0; i < 3; ++i) {
         for (std::size_t j = 0; j < 3; ++j) {
           arm -= contact.point.weights[i] * contact.point.weights[j] *
@@ -304,8 +304,9 @@ TEST_CASE("inertial loading: momentum still changes by exactly the impulses") {
                  contact.force;
         }
       }
-      impulse = model->dt * (before.orientation * contact.force);
-      turn = model->dt * (before.orientation * arm.cross(contact.force));
+      const Quaternion& Q = record.object[0].halfway;
+      impulse = model->dt * (Q * contact.force);
+      turn = model->dt * (Q * arm.cross(contact.force));
     }
     const Vector3 gained = model->body.mass * (after.velocity - before.velocity);
     REQUIRE((gained - impulse).norm() < 1e-14);

@@ -22,6 +22,8 @@ SimulationConfig on_the_floor(double radius) {
   config.objects.resize(1);
   config.objects[0].model = fem_cube({});
   config.objects[0].friction = {kFriction, kFriction};
+  // What hangs between two fingers bounces for many seconds by its material's damping alone.
+  config.objects[0].damping = {4.0, 4.0};
   config.floor = FloorConfig{Vector3(0, 1, 0), -kHalfEdge, {0.5, 0.5}};
   config.styluses = {{radius, 0.0, 0.0}, {radius, 0.0, 0.0}};
   return config;

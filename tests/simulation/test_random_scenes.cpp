@@ -81,7 +81,9 @@ Scene make_scene(Random& random) {
     const int object = std::uniform_int_distribution(0, objects - 1)(random);
     scene.hands.emplace_back(random,
                              scene.config.objects[static_cast<std::size_t>(object)].position);
-    if (floor) scene.hands.back().lowest = scene.config.floor->height + 0.005;
+    // A tip that holds rigidly what lies on the floor leaves nothing to solve.
+    const double above = coupling > 0.0 ? 0.005 : 0.03;
+    if (floor) scene.hands.back().lowest = scene.config.floor->height + above;
   }
   return scene;
 }

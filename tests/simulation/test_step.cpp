@@ -149,9 +149,12 @@ TEST_CASE("step: momentum and angular momentum change exactly by the impulses of
       const StylusRecord& stylus = record.stylus[0];
       const Quaternion& Q = record.object[0].halfway;
       if (stylus.contact != ContactState::kFree) {
-        const Vector3 arm = interpolate(record.object[0].contact[0].point, [&](int i) -> Vector3 {
-          return model->mesh.rest_position(i) + engine->free_displacement(i);
-        });
+        const Vector3 arm =
+            interpolate(record.object[0].contact[0].point,
+                        [&](int i) -> Vector3 {
+                          return model->mesh.rest_position(i) + engine->free_displacement(i);
+                        }) +
+            record.object[0].contact[0].arm_shift;
         const Vector3 impulse = -model->dt * stylus.force;
         momentum += impulse;
         angular += (Q * arm).cross(impulse);

@@ -15,13 +15,14 @@ namespace irdm::test {
 namespace {
 
 const Vector3 kSize(0.10, 0.08, 0.06);
-constexpr double kOf = 2e4;  // Young's modulus of the model that is computed [N/m^2]
+constexpr double kAbove = 1e-6;  // the surface, where a fingertip begins [m]
+constexpr double kOf = 2e4;      // Young's modulus of the model that is computed [N/m^2]
 
 Model computed_brick() {
   precompute::PrecomputeConfig config;
   config.name = "brick";
   config.mesh.source = precompute::BoxConfig{kSize, {5, 4, 3}};
-  config.material = {kOf, 0.45, 1000.0, 8.0, 2e-4};
+  config.material = {kOf, 0.45, 300.0, 8.0, 2e-4};
   config.response.steps = 50;
   const TemporaryFolder folder;
   std::ostringstream ignored;
@@ -40,7 +41,7 @@ double duration(BrickMotion motion) {
   return motion == BrickMotion::kSwing ? 1.0 : motion == BrickMotion::kSlide ? 0.8 : 0.4;
 }
 
-// From the node or the middle of the top [m], W.
+// From the node or the middle of the top [m], W. A fingertip is seen outside before it comes down.
 Vector3 path(BrickMotion motion, double t) {
   switch (motion) {
     case BrickMotion::kSwing:
@@ -48,11 +49,11 @@ Vector3 path(BrickMotion motion, double t) {
     case BrickMotion::kPush:
       return Vector3(0.0, 0.0, -0.002 * smooth(t, 0.0, 0.05));
     case BrickMotion::kTap: {
-      const double down = smooth(t, 0.0, 0.03) - smooth(t, 0.03, 0.06);
-      return Vector3(0.0, 0.0, 0.002 - 0.004 * down);
+      const double down = smooth(t, 0.02, 0.05) - smooth(t, 0.05, 0.08);
+      return Vector3(0.0, 0.0, kAbove - 0.002 * down);
     }
     case BrickMotion::kSlide:
-      return Vector3(0.03 * smooth(t, 0.3, 0.8), 0.0, 0.002 - 0.005 * smooth(t, 0.0, 0.3));
+      return Vector3(0.03 * smooth(t, 0.3, 0.8), 0.0, kAbove - 0.003 * smooth(t, 0.02, 0.3));
   }
   return Vector3::Zero();
 }
@@ -63,7 +64,8 @@ bool holds(BrickMotion motion) {
 
 // Of the top, where the stylus begins.
 Vector3 first_point(const Model& model, BrickMotion motion) {
-  const Vector3 wanted(0.01, 0.01, 0.5 * kSize.z());
+  // The centre of mass of the mesh is not quite that of the box.
+  const Vector3 wanted(0.01, 0.01, model.mesh.nodes.col(2).maxCoeff());
   if (!holds(motion)) return wanted;
   int nearest = 0;
   for (int i = 0; i < model.mesh.surface_node_count(); ++i) {
@@ -78,7 +80,8 @@ SimulationConfig scene(BrickMotion motion, std::shared_ptr<const Model> model) {
   config.objects.resize(1);
   config.objects[0].model = std::move(model);
   config.objects[0].friction = {0.3, 0.3};
-  config.styluses = {{holds(motion) ? 0.0 : 0.015, 0.0, holds(motion) ? 1e-6 : 0.0}};
+  config.styluses = {{0.0, 0.0, 1e-3}};
+  if (!holds(motion)) config.styluses = {{0.015, 1000.0, 0.0}};
   if (motion == BrickMotion::kSlide) {
     config.objects[0].tether = {1000.0, 10.0};
     config.objects[0].damping = {20.0, 20.0};

@@ -11,11 +11,12 @@ namespace irdm::test {
 enum class BrickMotion {
   kSwing,  ///< holds a node of the top rigidly and swings it 3 cm at 1.5 Hz
   kPush,   ///< holds a node of the top rigidly, pushes 2 mm in 50 ms and holds on
-  kTap,    ///< a fingertip goes 2 mm deep and out again in 60 ms; the brick flies off
+  kTap,    ///< through a spring of 1000 N/m, as the next: a fingertip presses 2 mm deep and goes
+           ///< back, in 60 ms; the brick flies off
   kSlide,  ///< a fingertip presses 3 mm and slides 3 cm on a tethered brick, with friction
 };
 
-/// The brick: density 1000 kg/m^3, Poisson's ratio 0.45, damping 8 1/s and 2e-4 s, all modes.
+/// The brick: density 300 kg/m^3, Poisson's ratio 0.45, damping 8 1/s and 2e-4 s, all modes.
 /// @param youngs_modulus [N/m^2]  @param dt [s]
 std::shared_ptr<const Model> soft_brick(double youngs_modulus, double dt);
 

@@ -284,8 +284,9 @@ TEST_CASE("poses are recomputed from the forces of a trace, those of the floor i
     Vector3 force = Vector3::Zero();
     Vector3 torque = Vector3::Zero();
     if (trace.contact[k] != kNoContact) {  // it acts where the tip is felt
-      torque -= trace.vector("/stylus/0/offset", k)
-                    .cross(Q_half.conjugate() * trace.vector("/stylus/0/force", k));
+      torque -=
+          Vector3(trace.vector("/stylus/0/offset", k) + trace.vector("/stylus/0/arm_shift", k))
+              .cross(Q_half.conjugate() * trace.vector("/stylus/0/force", k));
     }
     for (const NodalForce& at : nodal) {
       const Vector3 arm = model->mesh.rest_position(at.node) + engine->free_displacement(at.node);

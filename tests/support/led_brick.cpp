@@ -83,7 +83,7 @@ SimulationConfig scene(BrickMotion motion, std::shared_ptr<const Model> model) {
   config.styluses = {{0.0, 0.0, 1e-3}};
   if (!holds(motion)) config.styluses = {{0.015, 1000.0, 0.0}};
   if (motion == BrickMotion::kSlide) {
-    config.objects[0].tether = {1000.0, 10.0};
+    config.objects[0].tether = {500.0, 4.0};
     config.objects[0].damping = {20.0, 20.0};
   }
   return config;

@@ -38,9 +38,18 @@ FreeMotion free_motion(const RigidBody& body, const FreeForces& forces,
   damp(body, forces.damping, motion.start);
   motion.force =
       free_force(body.mass(), forces, state.position + 0.5 * body.dt() * motion.start.velocity);
-  if (forces.tether.angular_stiffness > 0) {
-    motion.torque = free_torque(forces, body.mid_step_orientation(motion.start));
+  const bool spins_freely =
+      !(forces.tether.angular_stiffness > 0) && !(forces.damping.angular > 0) && body.moves();
+  if (spins_freely) {  // one angular velocity for both
+    const Quaternion& Q = state.orientation;
+    const Vector3 w = body.step_angular_velocity(Q, state.angular_momentum);
+    motion.halfway = (rotation_from_vector(0.5 * body.dt() * w) * Q).normalized();
+    motion.orientation = (rotation_from_vector(body.dt() * w) * Q).normalized();
+    motion.position = body.moved(motion.start, motion.force);
+    return motion;
   }
+  motion.halfway = body.mid_step_orientation(state);
+  motion.torque = free_torque(forces, body.mid_step_orientation(motion.start));
   const RigidState end = body.advance(motion.start, motion.force, motion.torque);
   motion.position = end.position;
   motion.orientation = end.orientation;

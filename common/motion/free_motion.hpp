@@ -43,6 +43,8 @@ struct FreeMotion {
   Vector3 torque = Vector3::Zero();    ///< the same about the centre of mass [N m], W
   Vector3 position = Vector3::Zero();  ///< c + dt v + dt^2/2 F/M [m], W
   Quaternion orientation = Quaternion::Identity();  ///< exp(dt w_free) Q
+  /// RigidBody::mid_step_orientation() of the state.
+  Quaternion halfway = Quaternion::Identity();
 
   /// A point of W in that frame.
   Vector3 to_body(const Vector3& x) const noexcept {

@@ -37,7 +37,7 @@ RigidState RigidBody::advance(const RigidState& state, const Vector3& force,
   if (!moves_) return state;
   RigidState next;
   next.velocity = state.velocity + dt_ / mass_ * force;
-  next.position = state.position + 0.5 * dt_ * (state.velocity + next.velocity);
+  next.position = moved(state, force);
   next.angular_momentum = state.angular_momentum + dt_ * torque;
   const Vector3 w =
       step_angular_velocity(state.orientation, state.angular_momentum + 0.5 * dt_ * torque);

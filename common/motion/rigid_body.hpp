@@ -31,6 +31,11 @@ class RigidBody {
   RigidState advance(const RigidState& state, const Vector3& force,
                      const Vector3& torque) const noexcept;
 
+  /// The position at the end of that step [m], W; of a body that moves.
+  Vector3 moved(const RigidState& state, const Vector3& force) const noexcept {
+    return state.position + 0.5 * dt_ * (state.velocity + (state.velocity + dt_ / mass_ * force));
+  }
+
   /// The state as it would be, to first order, had `force` [N] and `torque` [N m], both W, acted
   /// besides during the step `age` steps before the last one (0: the last one itself).
   RigidState with_past(const RigidState& state, const Vector3& force, const Vector3& torque,

@@ -32,9 +32,9 @@ RigidState RigidPast::replay(const RigidBody& body, const FreeForces& free,
   for (int age = changed_; age >= 0; --age) {
     Step& step = at(age);
     step.before = now;
-    step.halfway = body.mid_step_orientation(now);
-    now = end_of_step(body, free, free_motion(body, free, now), step.forces.sum,
-                      step.forces.torque(step.halfway));
+    const FreeMotion motion = free_motion(body, free, now);
+    step.halfway = motion.halfway;
+    now = end_of_step(body, free, motion, step.forces.sum, step.forces.torque(step.halfway));
   }
   changed_ = -1;
   return now;

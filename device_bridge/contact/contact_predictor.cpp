@@ -48,7 +48,7 @@ void ContactPredictor::start_motion() noexcept {
 void ContactPredictor::move_to(std::uint64_t k) noexcept {
   for (; moved_to_ < k; ++moved_to_) {
     const FreeMotion free = free_motion(*body_, model_.free_forces, motion_);
-    const Quaternion Q = body_->mid_step_orientation(motion_);
+    const Quaternion& Q = free.halfway;
     Vector3 force = model_.other_force;
     Vector3 torque = model_.other_torque;
     Past& ours = past(moved_to_ + 1);
@@ -143,8 +143,8 @@ ContactPredictor::Answer ContactPredictor::solve(std::uint64_t k, const Vector3&
   const double share_of_it = share(k);
   if (!model_.valid) return answer;
   move_to(k - 1);
-  const Quaternion Q = body_->mid_step_orientation(motion_);
   const FreeMotion free = free_motion(*body_, model_.free_forces, motion_);
+  const Quaternion& Q = free.halfway;
   const RigidState end = end_of_step(*body_, model_.free_forces, free, Q * model_.other_force,
                                      Q * model_.other_torque);
   const Vector3 tip_B = end.orientation.conjugate() * (tip - end.position);

@@ -81,10 +81,10 @@ RigidPast::Forces ForcedObject::collect(const ObjectRecord& recorded) {
 void ForcedObject::step(ObjectRecord& again, std::span<const StylusRecord> /*styluses*/) {
   state_ = past_.replay(body_, free_forces_, state_);
   again.start = state_;
-  again.halfway = body_.mid_step_orientation(state_);
   again.spin = feels_spin_ ? body_.mid_step_spin(state_) : Vector3::Zero();
   if (feels_spin_) engine_->hold_spin(again.spin);
   const FreeMotion motion = free_motion(body_, free_forces_, state_);
+  again.halfway = motion.halfway;
   const RigidPast::Forces forces = collect(again);
   engine_->advance(forces_.of(again));
   past_.remember(state_, again.halfway, forces);

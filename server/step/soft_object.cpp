@@ -108,12 +108,11 @@ void SoftObject::set(const Vector3& gravity, const ObjectSettings& settings) noe
 
 void SoftObject::step(std::span<const StylusCommand> commands, ObjectRecord& record) noexcept {
   state_ = past_.replay(body_, free_forces_, state_);
-  halfway_ = body_.mid_step_orientation(state_);
   record.start = state_;
-  record.halfway = halfway_;
   spin(record);
   surface_.begin_step(*engine_);
   motion_ = free_motion(body_, free_forces_, state_);
+  record.halfway = motion_.halfway;
   tell_tips(commands);
   collect(commands);
   floor_count_ = floor_ ? floor_->find(motion_, surface_, displaced()) : 0;
@@ -260,7 +259,7 @@ void SoftObject::pose_problem(std::span<const StylusCommand> commands) noexcept 
     unknown.arm = contact.arm;
     if (contact.given) {
       unknown.law = ContactLaw::kGiven;
-      unknown.force = halfway_.conjugate() * commands[s].given->force;
+      unknown.force = motion_.halfway.conjugate() * commands[s].given->force;
       continue;
     }
     unknown.law = stylus.state() == ContactState::kHeld ? ContactLaw::kHeld : ContactLaw::kTouching;
@@ -285,7 +284,7 @@ void SoftObject::pose_problem(std::span<const StylusCommand> commands) noexcept 
     if (commands[s].bridged) {
       contacts_[static_cast<std::size_t>(a)].law = unknown.law;
       unknown.law = ContactLaw::kGiven;
-      unknown.force = halfway_.conjugate() * commands[s].bridged->force;
+      unknown.force = motion_.halfway.conjugate() * commands[s].bridged->force;
       if (!unknown.force.isZero(0.0)) {
         unknown.arm = believed(commands[s].bridged->arm, unknown.arm);
       }
@@ -396,7 +395,7 @@ void SoftObject::write_floor(ObjectRecord& record) noexcept {
     FloorForce& out = record.floor[static_cast<std::size_t>(record.floor_count++)];
     out = {floor_->node(i), solved.force.cast<float>()};
     solved.force = out.force.cast<double>();
-    record.floor_force += halfway_ * solved.force;
+    record.floor_force += motion_.halfway * solved.force;
   }
 }
 
@@ -434,7 +433,7 @@ void SoftObject::advance() noexcept {
   const double share = model_->dt / kAverageTime;
   for (LastContact& last : last_) last.average *= 1.0 - share;
   nodal_.clear();
-  const Quaternion& Q = halfway_;
+  const Quaternion& Q = motion_.halfway;
   RigidPast::Forces forces;
   for (int a = 0; a < contact_count_; ++a) {
     const ContactUnknown& solved = problem_.contact(floor_count_ + a);

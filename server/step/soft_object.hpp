@@ -131,7 +131,6 @@ class SoftObject {
 
   // Of the step under way.
   FreeMotion motion_;
-  Quaternion halfway_ = Quaternion::Identity();  ///< as ObjectRecord::halfway
   int contact_count_ = 0;  ///< of styluses; in the problem they come after those of the floor
   int floor_count_ = 0;
   std::array<Contact, kMaxContacts> contacts_{};

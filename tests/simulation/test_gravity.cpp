@@ -33,14 +33,14 @@ SimulationConfig standing(std::shared_ptr<const Model> model, const Vector3& gra
   return config;
 }
 
-Points surface_of(const ResponseEngine& engine) {
+Points displaced_surface_of(const ResponseEngine& engine) {
   Points u;
   engine.displacement(u);
   return u;
 }
 
-Points surface_of(const Simulation& simulation) {
-  return surface_of(simulation.object().engine());
+Points displaced_surface_of(const Simulation& simulation) {
+  return displaced_surface_of(simulation.object().engine());
 }
 
 void step_alone(Simulation& simulation, int steps, StepRecord& record) {
@@ -86,9 +86,9 @@ TEST_CASE("gravity: a fixed cube stands in its static sag from the first step on
   Simulation simulation(config);
   StepRecord record;
   step_alone(simulation, 1, record);
-  const double first = largest_error(surface_of(simulation), truth);
+  const double first = largest_error(displaced_surface_of(simulation), truth);
   step_alone(simulation, 500, record);
-  const double later = largest_error(surface_of(simulation), truth);
+  const double later = largest_error(displaced_surface_of(simulation), truth);
   std::cout << "fixed cube, " << (kind == ResponseKind::kModal ? "modes" : "dense") << ", sag "
             << 1000 * truth.rowwise().norm().maxCoeff() << " mm, error against static FEM " << first
             << " at once, " << later << " after 500 steps\n";
@@ -113,7 +113,7 @@ TEST_CASE("gravity: the tip of a slender bar comes down as beam theory says") {
   Simulation simulation(standing(model));
   StepRecord record;
   step_alone(simulation, 1, record);
-  const Points u = surface_of(simulation);
+  const Points u = displaced_surface_of(simulation);
   const Points truth = clamped_sag(*model, 0, kDown);
   const double error = largest_error(u, truth);
   Model modes_alone = *model;
@@ -127,7 +127,7 @@ TEST_CASE("gravity: the tip of a slender bar comes down as beam theory says") {
   std::cout << "slender bar: tip " << 1000 * tip << " mm, rho g A L^4 / (8 E I) " << 1000 * bending
             << " mm, with shear " << 1000 * (bending + shear) << " mm; 40 modes against static FEM "
             << error << ", without what the others add "
-            << largest_error(surface_of(without), truth) << '\n';
+            << largest_error(displaced_surface_of(without), truth) << '\n';
   CHECK(tip == Approx(bending + shear).epsilon(0.02));
   CHECK(error < 1e-6);
 }
@@ -160,10 +160,10 @@ TEST_CASE("gravity: engines agree on a fixed cube that is touched while gravity 
     const StylusCommand command = touch(*modal, k);
     for (Simulation* simulation : {&a, &b, &both}) simulation->step({&command, 1}, record);
     touching += record.stylus[0].contact == ContactState::kFree ? 0 : 1;
-    const Points u = surface_of(a);
+    const Points u = displaced_surface_of(a);
     peak = std::max(peak, u.rowwise().norm().maxCoeff());
-    worst = std::max(worst, largest_distance(u, surface_of(b)));
-    switched = std::max(switched, largest_distance(u, surface_of(both)));
+    worst = std::max(worst, largest_distance(u, displaced_surface_of(b)));
+    switched = std::max(switched, largest_distance(u, displaced_surface_of(both)));
   }
   INFO("difference " << worst << " and " << switched << " of " << peak << " m");
   CHECK(touching > 50);
@@ -230,28 +230,28 @@ TEST_CASE("gravity: set before the first step and after a reset nothing rings") 
     const auto engine = make_engine(share(model));
     engine->set_gravity(Vector3(1, 1, 1));
     engine->set_gravity(kDown);  // no step between: as if the other had never been
-    const Points sag = surface_of(*engine);
+    const Points sag = displaced_surface_of(*engine);
     CHECK(sag.norm() > 0.0);
     double moved = 0.0;
     for (int k = 0; k < 200; ++k) {
       engine->advance({});
-      moved = std::max(moved, largest_distance(surface_of(*engine), sag));
+      moved = std::max(moved, largest_distance(displaced_surface_of(*engine), sag));
     }
     CHECK(moved < 1e-13 * sag.norm());
     // It swings when it changes; where a reset comes before or after does not matter.
     engine->set_gravity(2.0 * kDown);
-    CHECK(largest_distance(surface_of(*engine), sag) < 1e-13 * sag.norm());
+    CHECK(largest_distance(displaced_surface_of(*engine), sag) < 1e-13 * sag.norm());
     engine->advance({});
-    CHECK(largest_distance(surface_of(*engine), 2.0 * sag) > 1e-3 * sag.norm());
+    CHECK(largest_distance(displaced_surface_of(*engine), 2.0 * sag) > 1e-3 * sag.norm());
     engine->reset();
-    const Points reset_last = surface_of(*engine);
+    const Points reset_last = displaced_surface_of(*engine);
     CHECK(largest_distance(reset_last, 2.0 * sag) < 1e-13 * sag.norm());
     engine->advance({});
     engine->reset();
     engine->set_gravity(kDown);
-    CHECK(surface_of(*engine) == sag);
+    CHECK(displaced_surface_of(*engine) == sag);
     engine->advance({});
-    CHECK(largest_distance(surface_of(*engine), sag) < 1e-13 * sag.norm());
+    CHECK(largest_distance(displaced_surface_of(*engine), sag) < 1e-13 * sag.norm());
   }
 }
 
@@ -298,7 +298,7 @@ TEST_CASE("gravity: path and prediction are what stepping on brings") {
     CHECK((h - free).norm() <= 1e-13 * free.norm());
     for (const Vector3& place : path) {
       engine->advance(held);
-      const Points u = surface_of(*engine);
+      const Points u = displaced_surface_of(*engine);
       const Vector3 there = mean(patch, [&](int i) { return Vector3(u.row(i).transpose()); });
       REQUIRE((place - there).norm() < 1e-11 * there.norm());
     }
@@ -320,8 +320,8 @@ TEST_CASE("gravity: a force that comes late acts as one in time") {
       late->advance({});
       if (k == 14) late->add_past({&force, 1}, 4);
     }
-    CHECK(largest_distance(surface_of(*in_time), surface_of(*late)) <
-          1e-13 * surface_of(*late).norm());
+    CHECK(largest_distance(displaced_surface_of(*in_time), displaced_surface_of(*late)) <
+          1e-13 * displaced_surface_of(*late).norm());
   }
 }
 
@@ -346,7 +346,7 @@ TEST_CASE("gravity: without it, and of a floating body, every bit is as without 
       REQUIRE(of_a.stylus[0].force == of_b.stylus[0].force);
       REQUIRE(of_a.object[0].position == of_b.object[0].position);
     }
-    CHECK(surface_of(a) == surface_of(b));
+    CHECK(displaced_surface_of(a) == displaced_surface_of(b));
   }
 }
 
@@ -370,7 +370,7 @@ TEST_CASE("gravity: which objects it can bend") {
   Simulation simulation(standing(share(model)));
   StepRecord record;
   step_alone(simulation, 3, record);
-  CHECK(surface_of(simulation).isZero(0.0));
+  CHECK(displaced_surface_of(simulation).isZero(0.0));
 }
 
 TEST_CASE("gravity: the deformation follows the force step to the bit") {
@@ -382,7 +382,7 @@ TEST_CASE("gravity: the deformation follows the force step to the bit") {
     Deformation deformation(config);
     SurfaceFrame frame = rest_frame(config);
     deformation.compute(frame);
-    CHECK(frame.objects[0].displacement == surface_of(simulation));
+    CHECK(frame.objects[0].displacement == displaced_surface_of(simulation));
     StepRecord record;
     for (int k = 0; k < 200; ++k) {
       if (k == 40 || k == 90 || k == 120) {
@@ -399,7 +399,7 @@ TEST_CASE("gravity: the deformation follows the force step to the bit") {
       simulation.step({&command, 1}, record, k == 120 || k == 150);
       deformation.follow(record);
       deformation.compute(frame);
-      REQUIRE(frame.objects[0].displacement == surface_of(simulation));
+      REQUIRE(frame.objects[0].displacement == displaced_surface_of(simulation));
     }
   }
 }
@@ -463,7 +463,7 @@ TEST_CASE("gravity: a cube that hangs from a stylus has the shape of its weight 
     add_load(model->mesh, patch.nodes[i], patch.weights[i] * contact.force, load);
   }
   const Points truth = balanced_displacement(*model, stiffness_of(*model), load);
-  const double error = largest_error(surface_of(simulation), truth);
+  const double error = largest_error(displaced_surface_of(simulation), truth);
   std::cout << "cube that hangs: " << patch.count << " nodes carry "
             << contact.force.norm() / weight << " of its weight, largest displacement "
             << 1000 * truth.rowwise().norm().maxCoeff() << " mm, error against static FEM " << error
@@ -489,7 +489,7 @@ TEST_CASE("gravity: a cube that rests on the floor has the shape of its weight a
     add_load(model->mesh, floor.node, floor.force.cast<double>(), load);
   }
   const Points truth = balanced_displacement(*model, stiffness_of(*model), load);
-  const double error = largest_error(surface_of(simulation), truth);
+  const double error = largest_error(displaced_surface_of(simulation), truth);
   const double off = (object.floor_force + model->body.mass * kDown).norm() / weight;
   std::cout << "cube that rests: " << object.floor_count << " nodes carry it, force off by " << off
             << " of its weight, largest displacement " << 1000 * truth.rowwise().norm().maxCoeff()

@@ -13,7 +13,7 @@ namespace {
 using Sparse = Eigen::SparseMatrix<double>;
 using Entries = std::vector<Eigen::Triplet<double>>;
 
-Points at_surface(const Model& model, const Eigen::VectorXd& u) {
+Points rows_at_surface(const Model& model, const Eigen::VectorXd& u) {
   const Points all = Eigen::Map<const Points>(u.data(), u.size() / 3, 3);
   return all(model.mesh.surface_nodes, Eigen::all);
 }
@@ -55,7 +55,7 @@ Points balanced_displacement(const Model& model, const Sparse& K, const Eigen::V
   f.head(K.rows()) = load;
   const Eigen::SparseLU<Sparse> solver(bordered(K, held));
   const Eigen::VectorXd u = solver.solve(f);
-  return at_surface(model, u.head(K.rows()));
+  return rows_at_surface(model, u.head(K.rows()));
 }
 
 Points clamped_sag(const Model& model, int axis, const Vector3& gravity) {
@@ -85,7 +85,7 @@ Points clamped_sag(const Model& model, int axis, const Vector3& gravity) {
   const Eigen::VectorXd displacement = solver.solve(weight);
   Eigen::VectorXd u = Eigen::VectorXd::Zero(3 * nodes.rows());
   u(free) = displacement;
-  return at_surface(model, u);
+  return rows_at_surface(model, u);
 }
 
 Eigen::VectorXd weight_of(const Model& model, const Vector3& gravity) {

@@ -164,8 +164,13 @@ test("paused, it stands still; a step is a step; settings are taken", async (con
   const page = await ready(context, stage, server);
   await page.keyboard.press("p");
   await sees(page, () => window.irdm.state().paused);
-  await page.waitForTimeout(200);
-  const before = await page.evaluate(() => window.irdm.frame().step);
+  // Frames from before the pause may still be under way where the machine is busy.
+  const step = () => page.evaluate(() => window.irdm.frame().step);
+  let before = await step();
+  for (let seen = -1; seen !== before; before = await step()) {
+    seen = before;
+    await page.waitForTimeout(500);
+  }
   await page.keyboard.press(".");
   await page.waitForFunction((step) => window.irdm.frame().step === step, before + 1);
   await page.waitForTimeout(200);

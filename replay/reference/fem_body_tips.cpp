@@ -5,7 +5,9 @@
 namespace irdm::replay {
 namespace {
 
-constexpr double kMiss = 1e-8;        // [m]
+// How far a point may miss its tip, as an acceleration: over a step's length squared [m/s^2]. The
+// force that a miss costs grows so with shorter steps.
+constexpr double kMiss = 2.5e-4;
 constexpr double kTrialForce = 1e-3;  // [N]
 
 }  // namespace
@@ -63,7 +65,7 @@ void FemBody::follow(ObjectRecord& recorded) {
   Eigen::VectorXd forces = Eigen::VectorXd::Zero(3 * static_cast<Eigen::Index>(followed_.size()));
   if (!last_forces_.empty()) forces = last_forces_[0];
   if (last_forces_.size() > 1) forces += last_forces_[0] - last_forces_[1];
-  if (!tip_forces_.solve(missed, forces, kMiss, kTrialForce)) {
+  if (!tip_forces_.solve(missed, forces, kMiss * model_->dt * model_->dt, kTrialForce)) {
     throw Error("--reference fem", "a held point cannot follow its tip",
                 "use smaller sub-steps, or --from forces");
   }

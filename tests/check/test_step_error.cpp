@@ -17,8 +17,8 @@ TEST_CASE("what a step costs in force is what a simulation of the brick pays", "
     if (away(i) < away(node)) node = i;
   }
   const double reckoned = step_error(*model, node, 1.0);
-  const double played = brick_error(brick_forces(BrickMotion::kPush, 2e5, kFineStep),
-                                    brick_forces(BrickMotion::kPush, 2e5, 2e-3), 2e-3);
+  const double played = brick_error(brick_forces({BrickMotion::kPush, 2e5}, kFineStep),
+                                    brick_forces({BrickMotion::kPush, 2e5}, 2e-3), 2e-3);
   CAPTURE(reckoned, played);
   // Another direction of the push, and 0.1 s less of it.
   CHECK(reckoned > 0.3 * played);

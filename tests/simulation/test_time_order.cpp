@@ -11,11 +11,11 @@ TEST_CASE("time order: a node that is led is felt right at 2 ms, and second orde
           "[slow]") {
   const BrickMotion motion = GENERATE(BrickMotion::kSwing, BrickMotion::kPush);
   const double E = GENERATE(2e3, 2e4);
-  const std::vector<Vector3> fine = brick_forces(motion, E, kFineStep);
+  const std::vector<Vector3> fine = brick_forces({motion, E}, kFineStep);
   std::array<double, 3> error{};
   for (std::size_t i = 0; i < error.size(); ++i) {
     const double dt = 2e-3 / static_cast<double>(1 << i);
-    error[i] = brick_error(fine, brick_forces(motion, E, dt), dt);
+    error[i] = brick_error(fine, brick_forces({motion, E}, dt), dt);
   }
   CAPTURE(static_cast<int>(motion), E, error[0], error[1], error[2]);
   CHECK(error[0] < 0.02);
@@ -27,7 +27,8 @@ TEST_CASE("time order: a node that is led is felt right at 2 ms, and second orde
 TEST_CASE("time order: a stiff body that is led", "[slow]") {
   constexpr double kDt = 1e-3;
   const auto error = [&](BrickMotion motion) {
-    return brick_error(brick_forces(motion, 2e5, kFineStep), brick_forces(motion, 2e5, kDt), kDt);
+    return brick_error(brick_forces({motion, 2e5}, kFineStep), brick_forces({motion, 2e5}, kDt),
+                       kDt);
   };
   CHECK(error(BrickMotion::kSwing) < 0.05);
   CHECK(error(BrickMotion::kPush) < 0.15);

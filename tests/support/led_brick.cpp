@@ -42,7 +42,7 @@ double duration(BrickMotion motion) {
 }
 
 // From the node or the middle of the top [m], W. A fingertip is seen outside before it comes down.
-Vector3 path(BrickMotion motion, double t) {
+Vector3 path_of_full_size(BrickMotion motion, double t) {
   switch (motion) {
     case BrickMotion::kSwing:
       return Vector3(0.03 * std::sin(3.0 * std::numbers::pi * t) * smooth(t, 0.0, 0.4), 0.0, 0.0);
@@ -56,6 +56,10 @@ Vector3 path(BrickMotion motion, double t) {
       return Vector3(0.03 * smooth(t, 0.3, 0.8), 0.0, kAbove - 0.003 * smooth(t, 0.02, 0.3));
   }
   return Vector3::Zero();
+}
+
+Vector3 path(const BrickLead& lead, double t) {
+  return lead.size * path_of_full_size(lead.motion, t);
 }
 
 bool holds(BrickMotion motion) {
@@ -75,21 +79,21 @@ Vector3 first_point(const Model& model, BrickMotion motion) {
   return model.mesh.rest_position(nearest);
 }
 
-SimulationConfig scene(BrickMotion motion, std::shared_ptr<const Model> model) {
+}  // namespace
+
+SimulationConfig brick_scene(const BrickLead& lead, double dt) {
   SimulationConfig config;
   config.objects.resize(1);
-  config.objects[0].model = std::move(model);
+  config.objects[0].model = soft_brick(lead.youngs_modulus, dt);
   config.objects[0].friction = {0.3, 0.3};
   config.styluses = {{0.0, 0.0, 1e-3}};
-  if (!holds(motion)) config.styluses = {{0.015, 1000.0, 0.0}};
-  if (motion == BrickMotion::kSlide) {
+  if (!holds(lead.motion)) config.styluses = {{0.015, 1000.0, 0.0}};
+  if (lead.motion == BrickMotion::kSlide) {
     config.objects[0].tether = {500.0, 4.0};
     config.objects[0].damping = {20.0, 20.0};
   }
   return config;
 }
-
-}  // namespace
 
 // Frequencies go with the root of Young's modulus, shapes stay.
 std::shared_ptr<const Model> soft_brick(double youngs_modulus, double dt) {
@@ -105,19 +109,24 @@ std::shared_ptr<const Model> soft_brick(double youngs_modulus, double dt) {
   return model;
 }
 
-std::vector<Vector3> brick_forces(BrickMotion motion, double youngs_modulus, double dt) {
-  const auto model = soft_brick(youngs_modulus, dt);
-  const Vector3 first = first_point(*model, motion);
-  Simulation simulation(scene(motion, model));
+void lead_brick(const BrickLead& lead, double dt,
+                const std::function<void(const StepRecord&)>& visit) {
+  const SimulationConfig config = brick_scene(lead, dt);
+  const Vector3 first = first_point(*config.objects[0].model, lead.motion);
+  Simulation simulation(config);
   const auto record = std::make_unique<StepRecord>();
-  const auto steps = static_cast<int>(std::lround(duration(motion) / dt));
-  std::vector<Vector3> forces;
+  const auto steps = static_cast<int>(std::lround(duration(lead.motion) / dt));
   for (int k = 0; k < steps; ++k) {
-    const StylusCommand command{true, holds(motion) ? kGrabButton : 0,
-                                first + path(motion, (k + 1) * dt), std::nullopt};
+    const StylusCommand command{true, holds(lead.motion) ? kGrabButton : 0,
+                                first + path(lead, (k + 1) * dt), std::nullopt};
     simulation.step({&command, 1}, *record);
-    forces.push_back(record->stylus[0].force);
+    visit(*record);
   }
+}
+
+std::vector<Vector3> brick_forces(const BrickLead& lead, double dt) {
+  std::vector<Vector3> forces;
+  lead_brick(lead, dt, [&](const StepRecord& record) { forces.push_back(record.stylus[0].force); });
   return forces;
 }
 

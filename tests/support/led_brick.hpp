@@ -1,9 +1,12 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "common/geometry.hpp"
 #include "common/model/model.hpp"
+#include "server/step/simulation_config.hpp"
+#include "server/step/step_record.hpp"
 
 namespace irdm::test {
 
@@ -20,8 +23,20 @@ enum class BrickMotion {
 /// @param youngs_modulus [N/m^2]  @param dt [s]
 std::shared_ptr<const Model> soft_brick(double youngs_modulus, double dt);
 
+/// A stylus that leads the brick.
+struct BrickLead {
+  BrickMotion motion = BrickMotion::kSwing;
+  double youngs_modulus = 2e4;  ///< [N/m^2]
+  double size = 1.0;            ///< of the motion: a share of what is said at BrickMotion
+};
+
+SimulationConfig brick_scene(const BrickLead& lead, double dt);
+/// Makes the whole motion in steps of dt [s] and shows the record of each.
+void lead_brick(const BrickLead& lead, double dt,
+                const std::function<void(const StepRecord&)>& visit);
+
 /// Force on the stylus in each step, which is the mean over it [N], W.
-std::vector<Vector3> brick_forces(BrickMotion motion, double youngs_modulus, double dt);
+std::vector<Vector3> brick_forces(const BrickLead& lead, double dt);
 
 /// Largest difference of these forces to those at kFineStep, averaged over the same times, as a
 /// share of the largest force there.

@@ -255,17 +255,22 @@ ServoEnd ServoThread::run_lockstep() noexcept {
     step(k);
     const std::int64_t given_ns = monotonic_ns();
     link_.samples_ready.signal();
-    if (!wait_for_forces(k)) {
-      if (stop_) break;
-      return link_.state.front().server_ended ? ServoEnd::kServerEnded : ServoEnd::kLinkLost;
-    }
+    if (!wait_for_forces(k)) break;
     report_.round_trip.add(monotonic_ns() - given_ns);
     report_.ticks = k + 1;
     report_.session_time = static_cast<double>(k + 1) * dt;
     // Half a step of tolerance: the product above is rounded.
     if (report_.session_time + 0.5 * dt > settings_.duration) return ServoEnd::kFinished;
   }
-  return ServoEnd::kStopped;
+  return lockstep_end();
+}
+
+// The end of the session is what stops the bridge, and may come together with the stop.
+ServoEnd ServoThread::lockstep_end() noexcept {
+  link_.state.receive();
+  const LinkState& state = link_.state.front();
+  if (state.linked && state.sessions == 1) return ServoEnd::kStopped;
+  return state.server_ended ? ServoEnd::kServerEnded : ServoEnd::kLinkLost;
 }
 
 // Sample k is the state at the end of step k, during which the force of step k-1 is held.

@@ -77,6 +77,7 @@ class ServoThread {
   void run() noexcept;
   void run_real_time() noexcept;
   ServoEnd run_lockstep() noexcept;
+  ServoEnd lockstep_end() noexcept;
   bool beat(std::int64_t now_ns) noexcept;
   void wait_for_session(std::int64_t now_ns) noexcept;
   void tick(std::int64_t now_ns) noexcept;

@@ -63,10 +63,11 @@ Handle make_link_properties() {
   return properties;
 }
 
-// Without locks: whoever looks whether a file is there would have one for a moment, and the making
-// or the beginning of SWMR in that moment would fail. We write new files only, so that no two of us
-// write to one.
+// The first that every file asks HDF5 for. Without locks: whoever looks whether a file is there
+// would have one for a moment, and the making or the beginning of SWMR in that moment would fail.
+// We write new files only, so that no two of us write to one.
 Handle make_access_properties() {
+  prepare_library();
   Handle properties(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_file_locking(properties.get(), 0, 1);
   return properties;
@@ -124,7 +125,6 @@ void File::fail_write(const std::string& what) const {
 }
 
 File File::create(const std::filesystem::path& path, const Handle& access) {
-  prepare_library();
   if (std::filesystem::exists(path)) {
     throw Error(path.string(), "exists already", "choose another name or remove it");
   }
@@ -153,7 +153,6 @@ void File::begin_swmr() {
 }
 
 File File::open(const std::filesystem::path& path) {
-  prepare_library();
   if (!std::filesystem::exists(path)) {
     throw Error(path.string(), "no such file", "check the path");
   }
@@ -167,7 +166,6 @@ File File::open(const std::filesystem::path& path) {
 }
 
 File File::in_memory(const std::string& name) {
-  prepare_library();
   const Handle access = make_access_properties();
   H5Pset_fapl_core(access.get(), kImageGrowth, 0);
   Handle file(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), H5Fclose);
@@ -176,7 +174,6 @@ File File::in_memory(const std::string& name) {
 }
 
 File File::from_image(const std::string& image, const std::string& name) {
-  prepare_library();
   const Handle access = make_access_properties();
   H5Pset_fapl_core(access.get(), kImageGrowth, 0);
   std::string copy = image;  // HDF5 wants it writable and copies it

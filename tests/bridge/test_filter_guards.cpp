@@ -274,6 +274,16 @@ TEST_CASE("safety filter: every guard does its work, and is missed when it is ta
   CHECK(seen.size() == kGuardCount);
 }
 
+// A second line of defence, behind the look at what is demanded.
+TEST_CASE("safety filter: what is no number is never shown, even where demands are not looked at") {
+  FilterRig rig(Guards{}.without(Guard::kFrameFinite));
+  rig.engage(kOneUp);
+  REQUIRE(rig.shown.y() > 0.5);
+  const double number = GENERATE(std::nan(""), HUGE_VAL, -HUGE_VAL);
+  for (int i = 0; i < 50; ++i) REQUIRE(rig.ticks(1, Vector3(0, number, 0)).allFinite());
+  CHECK(rig.shown.isZero(0.0));
+}
+
 TEST_CASE("safety filter: a late wall gives next to no energy, however late") {
   for (const int delay : {0, 1, 2, 4, 10, 18}) {
     for (const double stiffness : {100.0, 200.0, 300.0, 400.0}) {

@@ -212,3 +212,24 @@ TEST_CASE("a lockstep bridge ends when its server goes") {
   CHECK(bridge.servo().end == ServoEnd::kServerEnded);
   CHECK(bridge.client().failure.empty());
 }
+
+TEST_CASE("a lockstep run that is stopped because the server ended says that the server ended") {
+  const bool server_ended = GENERATE(true, false);
+  std::istringstream text("time,x,y,z\n" + kHold);
+  VirtualStylus device(StylusScript::parse(text, "motion.csv"), HandParameters{});
+  std::vector<ServoLoop> loops;
+  loops.emplace_back(device, FilterLimits{});
+  ServoLink link(1);
+  Wakeup done;
+  ServoThread servo(link, loops, {.duration = kForever}, done);
+  LinkState state{.linked = true, .sessions = 1, .lockstep = true, .dt = 0.002};
+  link.state.put(state);
+  servo.start();
+  REQUIRE(eventually([&] { return link.styluses[0].sample.receive(); }));
+  // No news: the servo sees both in the same look.
+  state.linked = false;
+  state.server_ended = server_ended;
+  link.state.put(state);
+  servo.stop();
+  CHECK(servo.report().end == (server_ended ? ServoEnd::kServerEnded : ServoEnd::kLinkLost));
+}

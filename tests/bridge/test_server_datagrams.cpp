@@ -1,9 +1,7 @@
 // A bridge's stream by datagrams: with the real server, and with one that the test speaks for.
 #include <catch2/catch.hpp>
-#include <chrono>
 #include <memory>
 #include <optional>
-#include <thread>
 
 #include "common/wire/key_material.hpp"
 #include "device_bridge/network_client.hpp"
@@ -187,15 +185,16 @@ TEST_CASE("where no datagram comes back the stream stays with TCP") {
     CHECK(sample->sample.sequence == sequence);
   }
   // It gives up: its socket is closed, and nobody asks any more.
-  REQUIRE(eventually([&] {
-    while (silent.any()) silent.receive();
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
-    return !silent.any();
-  }));
+  const std::uint16_t client = silent.sender();
+  REQUIRE(eventually([&] { return RawDatagrams::is_free(client); }));
+  while (silent.any()) {
+    silent.receive();
+    CHECK(silent.sender() == client);
+  }
   server.give(10);
   REQUIRE(peer.receive_as<SampleMessage>());
   // What comes too late changes nothing.
-  silent.send(server.channel->probe(), silent.sender());
+  silent.send(server.channel->probe(), client);
   server.give(11);
   REQUIRE(peer.receive_as<SampleMessage>());
   server.client->stop();

@@ -6,6 +6,7 @@
 #include "common/error.hpp"
 #include "tests/openhaptics/fake_session.hpp"
 #include "tests/support/allocation_guard.hpp"
+#include "tests/support/left_out.hpp"
 
 using Catch::Matchers::Contains;
 using namespace irdm;
@@ -295,7 +296,7 @@ TEST_CASE("a rate that the driver does not run at is refused, but for the one th
 }
 
 TEST_CASE("a tick with a device of OpenHaptics allocates nothing of its own") {
-  if (!AllocationGuard::active()) return;
+  if (!AllocationGuard::active()) return leave_out(kNotCounted);
   static hd::Callback callback = nullptr;
   static void* data = nullptr;
   const hd::Api quiet{

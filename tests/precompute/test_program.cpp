@@ -9,6 +9,7 @@
 #include "precompute/modal/held_responses.hpp"
 #include "tests/support/child_process.hpp"
 #include "tests/support/eventually.hpp"
+#include "tests/support/file_size_limit.hpp"
 
 using Catch::Matchers::Contains;
 using namespace irdm;
@@ -409,4 +410,17 @@ TEST_CASE("SIGINT and SIGTERM leave neither the model nor its temporary file") {
     CHECK(process.wait() == -signal);
     CHECK(std::filesystem::is_empty(run.path() / "made"));
   }
+}
+
+TEST_CASE("a model that does not fit on the disk: one error, and nothing is left of it") {
+  Run run;
+  run.write("c.toml", kBox + kMaterial);
+  const irdm::test::FinishedProgram ended = irdm::test::run_to_end(
+      irdm::test::on_full_disk(10'000, {IRDM_PROGRAM, "c.toml", "-o", run.model().string()}),
+      {.folder = run.path()});
+  CHECK(ended.status == 1);
+  CHECK(std::count(ended.err.begin(), ended.err.end(), '\n') == 1);
+  CHECK_THAT(ended.err,
+             Catch::StartsWith("irdm-precompute: error: ") && Contains("check free space"));
+  CHECK(std::filesystem::is_empty(run.path() / "made"));
 }

@@ -12,6 +12,7 @@
 #include "tests/simulation/pressed_cube.hpp"
 #include "tests/support/allocation_guard.hpp"
 #include "tests/support/fixed_box.hpp"
+#include "tests/support/left_out.hpp"
 #include "tests/support/shared_model.hpp"
 #include "tests/support/spinning_fem.hpp"
 #include "tests/support/static_fem.hpp"
@@ -405,7 +406,7 @@ TEST_CASE("gravity: the deformation follows the force step to the bit") {
 }
 
 TEST_CASE("gravity: nothing allocates while a fixed object sags, swings and is touched") {
-  if (!AllocationGuard::active()) return;
+  if (!AllocationGuard::active()) return leave_out(kNotCounted);
   FixedBox box;
   box.cells = {2, 2, 2};
   const int form = GENERATE(0, 1, 2);

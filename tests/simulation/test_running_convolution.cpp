@@ -4,6 +4,7 @@
 #include "server/engine/running_convolution.hpp"
 #include "tests/simulation/random_numbers.hpp"
 #include "tests/support/allocation_guard.hpp"
+#include "tests/support/left_out.hpp"
 
 using namespace irdm;
 using namespace irdm::test;
@@ -237,7 +238,7 @@ TEST_CASE("what a step sees has the same bits whether somebody looks ahead or no
 }
 
 TEST_CASE("more nodes than can be followed are answered, too, and nothing allocates") {
-  if (!AllocationGuard::active()) return;
+  if (!AllocationGuard::active()) return leave_out(kNotCounted);
   constexpr int kNodes = 400;
   PlainConvolution<double> plain(kNodes, 20);
   ResidentColumns<double> columns = plain.columns();

@@ -4,6 +4,7 @@
 #include "server/step/simulation.hpp"
 #include "tests/support/allocation_guard.hpp"
 #include "tests/support/fem_cube.hpp"
+#include "tests/support/left_out.hpp"
 
 using namespace irdm;
 using namespace irdm::test;
@@ -11,7 +12,7 @@ using namespace irdm::test;
 TEST_CASE(
     "step: nothing allocates, free, touching, held or put back, with two styluses and all "
     "engines, with and without inertial loading") {
-  if (!AllocationGuard::active()) return;
+  if (!AllocationGuard::active()) return leave_out(kNotCounted);
   const ResponseKind kind =
       GENERATE(ResponseKind::kModal, ResponseKind::kDense, ResponseKind::kCompressed);
   SimulationConfig config;

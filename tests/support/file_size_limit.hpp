@@ -4,6 +4,8 @@
 
 #include <catch2/catch.hpp>
 #include <csignal>
+#include <string>
+#include <vector>
 
 namespace irdm::test {
 
@@ -26,5 +28,15 @@ class FileSizeLimit {
   void (*handler_)(int);
   rlimit before_{};
 };
+
+/// The command of a program none of whose files can grow beyond so many bytes.
+inline std::vector<std::string> on_full_disk(rlim_t bytes,
+                                             const std::vector<std::string>& command) {
+  std::vector<std::string> words{"/bin/sh", "-c",
+                                 "trap '' XFSZ; prlimit --pid $$ --fsize=\"$0\"; exec \"$@\"",
+                                 std::to_string(bytes)};
+  words.insert(words.end(), command.begin(), command.end());
+  return words;
+}
 
 }  // namespace irdm::test

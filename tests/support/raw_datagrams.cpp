@@ -62,6 +62,15 @@ std::optional<std::vector<std::uint8_t>> RawDatagrams::receive() {
   return datagram;
 }
 
+bool RawDatagrams::is_free(std::uint16_t port) {
+  const int descriptor = ::socket(AF_INET, SOCK_DGRAM, 0);
+  const sockaddr_in there = address_of("127.0.0.1", port);
+  const bool bound =
+      ::bind(descriptor, reinterpret_cast<const sockaddr*>(&there), sizeof there) == 0;
+  ::close(descriptor);
+  return bound;
+}
+
 bool RawDatagrams::any() const {
   return readable(descriptor_, 0);
 }

@@ -29,6 +29,8 @@ class RawDatagrams {
   std::uint16_t sender() const noexcept { return sender_; }  ///< port of the last one received
   /// Whether one is there now.
   bool any() const;
+  /// Whether no socket has this port of 127.0.0.1: who sent from it has closed its own.
+  static bool is_free(std::uint16_t port);
 
  private:
   int descriptor_;

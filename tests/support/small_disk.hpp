@@ -7,11 +7,11 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <iostream>
 #include <memory>
 #include <string>
 
 #include "common/error.hpp"
+#include "tests/support/left_out.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace irdm::test {
@@ -41,13 +41,13 @@ class SmallDisk {
   int descriptor_ = -1;
 };
 
-/// None, and a line that says why, where there can be none.
+/// None, and the test left out, where there can be none.
 inline std::unique_ptr<SmallDisk> small_disk(const std::string& kind,
                                              const std::string& options = "") {
   try {
     return std::make_unique<SmallDisk>(kind, options);
   } catch (const Error& error) {
-    std::cout << "test left out: " << error.what() << std::endl;
+    leave_out(error.what());
     return nullptr;
   }
 }

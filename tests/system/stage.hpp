@@ -22,6 +22,8 @@ inline constexpr bool kKeepsPace = false;
 #else
 inline constexpr bool kKeepsPace = true;
 #endif
+/// Why a test is left out, or a part of it, where it is not.
+inline constexpr const char* kTooSlow = "a sanitizer's programs do not keep the pace of real time";
 
 /// A server that listens.
 struct Server {

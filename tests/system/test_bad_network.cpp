@@ -6,7 +6,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <csignal>
-#include <iostream>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -17,6 +16,7 @@
 #include "tests/network_namespace/packet_relay.hpp"
 #include "tests/network_namespace/two_namespaces.hpp"
 #include "tests/support/eventually.hpp"
+#include "tests/support/left_out.hpp"
 #include "tests/system/stage.hpp"
 
 using Catch::Matchers::Contains;
@@ -41,14 +41,14 @@ struct LinkFrame {
   double force = 0.0;         ///< asked for [N]
 };
 
-/// Nothing, and a word on stdout that ctest looks for, where there are no namespaces to be had.
+/// Nothing, and the test left out, where there are no namespaces to be had.
 std::optional<TwoNamespaces>& namespaces() {
   static std::optional<TwoNamespaces> both;
   if (both) return both;
   try {
     both.emplace();
   } catch (const Error& error) {
-    std::cout << "test left out: " << error.what() << std::endl;
+    leave_out(error.what());
   }
   return both;
 }
@@ -135,7 +135,7 @@ TEST_CASE("a path that becomes a black hole: no force in time, and the session i
   const std::string mode = GENERATE(as<std::string>(), "hold", "predict");
   const std::string stream = GENERATE(as<std::string>(), "tcp", "udp");
   CAPTURE(mode, stream);
-  if (mode == "predict" && !kKeepsPace) return;
+  if (mode == "predict" && !kKeepsPace) return leave_out(kTooSlow);
   const DistantStage stage(*namespaces(), mode, stream);
   PacketRelay path(namespaces()->devices(), {});
   Server server = stage.start_far_server();
@@ -188,7 +188,8 @@ TEST_CASE("a bad path: forces within limits, or the bridge says why there are no
 }
 
 TEST_CASE("a bad path by UDP: a bridge that predicts arms, and the cube is felt", "[slow]") {
-  if (!namespaces() || !kKeepsPace) return;
+  if (!kKeepsPace) return leave_out(kTooSlow);
+  if (!namespaces()) return;
   const DistantStage stage(*namespaces(), "predict", "udp");
   PacketRelay path(namespaces()->devices(), kBadPath);
   Server server = stage.start_far_server();

@@ -10,6 +10,7 @@
 #include "common/hdf5/file.hpp"
 #include "tests/support/committed_so_far.hpp"
 #include "tests/support/eventually.hpp"
+#include "tests/support/file_size_limit.hpp"
 #include "tests/support/raw_peer.hpp"
 #include "tests/system/one_session.hpp"
 #include "tests/system/stage.hpp"
@@ -223,4 +224,21 @@ TEST_CASE("garbage to the server disturbs neither it nor the bridge that plays")
   const auto held_from = std::find(trace.contact.begin(), trace.contact.end(), kHeld);
   CHECK(std::all_of(held_from, trace.contact.begin() + static_cast<long>(end_of_hold(trace)),
                     [](std::uint8_t contact) { return contact == kHeld; }));
+}
+
+TEST_CASE("a disk that gets full while a server records: it says so, and ends in order") {
+  const Stage stage;
+  const std::filesystem::path path = stage.path("trace.h5");
+  ChildProcess process(
+      on_full_disk(320'000, {IRDM_SERVER, stage.path("scene.toml").string(), "--no-viewer",
+                             "--lockstep", "--record", path.string()}));
+  const std::string line = process.line_with("listening on ");
+  Server server{std::move(process),
+                static_cast<std::uint16_t>(std::stoi(line.substr(line.rfind(':') + 1)))};
+  ChildProcess bridge = stage.start_bridge(server);
+  CHECK(bridge.wait() == 0);
+  CHECK(server.process.wait() == 1);
+  CHECK_THAT(server.process.err(), Contains("irdm-server: error: recording ended early: ") &&
+                                       Contains("check free space"));
+  CHECK(committed_so_far(path) > 0);
 }

@@ -1,14 +1,16 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <chrono>
 #include <cmath>
 #include <csignal>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
-#include <thread>
 #include <vector>
 
+#include "tests/support/committed_so_far.hpp"
+#include "tests/support/eventually.hpp"
 #include "tests/system/device_stage.hpp"
+#include "tests/system/trace.hpp"
 
 using Catch::Matchers::Contains;
 using namespace irdm;
@@ -52,15 +54,21 @@ TEST_CASE("a bridge with two devices of OpenHaptics outlives being stopped and c
                      "[[device]]\ntype = \"openhaptics\"\nname = \"Left\"\n"
                      "[[device]]\ntype = \"openhaptics\"\nname = \"Right\"\n"
                      "workspace = { position = [0.02, 0, 0] }\n");
-  Server server = device.stage.start_server();
+  const std::filesystem::path path = device.stage.path("trace.h5");
+  Server server = device.stage.start_server({"--record", path.string()});
   ChildProcess bridge =
       device.stage.start_bridge(server, {}, device.with({"FAKE_HD_DEVICES=Left,Right"}));
-  bridge.line_with("session ", true);
+  REQUIRE(eventually([&] { return rows_so_far(path, "present", 1) > 0; }));
   // Longer than the bridge bears without a tick: it was not the driver that slept.
+  constexpr std::uint64_t kStoppedSteps = 750;
   bridge.signal(SIGSTOP);
-  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  const std::uint64_t stopped = committed_so_far(path);
+  REQUIRE(eventually([&] { return committed_so_far(path) > stopped + kStoppedSteps; }));
+  const std::size_t before = rows_so_far(path, "present", 1);
   bridge.signal(SIGCONT);
-  std::this_thread::sleep_for(std::chrono::milliseconds(700));
+  // It goes on for longer than it takes to find that a driver makes no ticks.
+  constexpr std::size_t kSteps = 350;
+  REQUIRE(eventually([&] { return rows_so_far(path, "present", 1) > before + kSteps; }));
   CHECK(bridge.running());
   bridge.signal(SIGTERM);
   CHECK(bridge.wait() == 0);

@@ -15,6 +15,7 @@
 #include "common/realtime/scheduling.hpp"
 #include "common/realtime/wakeup.hpp"
 #include "tests/support/eventually.hpp"
+#include "tests/support/left_out.hpp"
 #include "tests/system/stage.hpp"
 
 using Catch::Matchers::Contains;
@@ -122,10 +123,7 @@ class SystemCalls {
 void check_calls(const Play& play, pid_t thread) {
   SystemCalls trace(play.stage.path(""), thread);
   auto calls = trace.calls();
-  if (!calls) {
-    WARN("skipped: strace cannot watch a thread here: " << trace.why());
-    return;
-  }
+  if (!calls) return leave_out("strace cannot watch a thread here: " + trace.why());
   CHECK(calls->at("clock_nanosleep") > 100);
   CHECK(calls->at("signal") > 100);
   calls->erase("clock_nanosleep");
@@ -139,10 +137,7 @@ void check_calls(const Play& play, pid_t thread) {
 
 #ifndef IRDM_SANITIZED
 TEST_CASE("real time: servo and force thread make no system calls but to sleep and to signal") {
-  if (!fs::exists("/usr/bin/strace")) {
-    WARN("skipped: there is no strace");
-    return;
-  }
+  if (!fs::exists("/usr/bin/strace")) return leave_out("there is no strace");
   Play play;
   check_calls(play, await_thread(play.server->process, "force"));
   check_calls(play, await_thread(*play.bridge, "servo"));
@@ -172,7 +167,7 @@ TEST_CASE("real time: threads have the priorities and the memory that the progra
   }));
   // A thread runs already, and has its name, while its starter gives it its priority.
   const bool permitted = real_time_permitted();
-  if (!permitted) WARN("real-time priority is not permitted here");
+  if (!permitted) leave_out("real-time priority is not permitted here");
   CHECK(eventually([&] { return priority(force) == (permitted ? kForcePriority : 0); }));
   CHECK(eventually([&] { return priority(servo) == (permitted ? kServoPriority : 0); }));
   const std::string locked =

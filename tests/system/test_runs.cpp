@@ -6,6 +6,7 @@
 #include "common/checksum.hpp"
 #include "common/hdf5/file.hpp"
 #include "tests/support/eventually.hpp"
+#include "tests/support/left_out.hpp"
 #include "tests/system/one_session.hpp"
 #include "tests/system/stage.hpp"
 #include "tests/system/trace.hpp"
@@ -71,7 +72,7 @@ TEST_CASE("a run in real time: both end in order, and the trace says what they s
   CHECK(number_after(bridge.out(), "forces: ") > 0);
   CHECK(number_after(bridge.out(), "contact models: ") > 10);
   CHECK_THAT(bridge.out(), Contains(" 0 not believed"));
-  if (!kKeepsPace) return;
+  if (!kKeepsPace) return leave_out(kTooSlow);
   CHECK(rows_in(trace, kTouching) > 0);
   CHECK(rows_in(trace, kHolding) > 0);
   CHECK(number_after(bridge.out(), "peak force: ") > 0.1);
@@ -86,7 +87,8 @@ TEST_CASE("a run in real time whose bridge holds the server's forces") {
   server.process.signal(SIGTERM);
   check_ended_well(server.process);
   CHECK_THAT(bridge.out(), !Contains("contact models"));
-  CHECK((!kKeepsPace || number_after(bridge.out(), "peak force: ") > 0.1));
+  if (!kKeepsPace) return leave_out(kTooSlow);
+  CHECK(number_after(bridge.out(), "peak force: ") > 0.1);
 }
 
 TEST_CASE("a run in real time with columns of R from the disk, as many as a finger needs") {
@@ -102,7 +104,8 @@ TEST_CASE("a run in real time with columns of R from the disk, as many as a fing
   CHECK(number_after(said, "nodes whose columns were read: ") >= 12);
   CHECK(number_after(said, "steps without a finite solution: ") == 0);
   check_whole(read_trace(stage.path("trace.h5")), said);
-  CHECK((!kKeepsPace || number_after(bridge.out(), "peak force: ") > 0.1));
+  if (!kKeepsPace) return leave_out(kTooSlow);
+  CHECK(number_after(bridge.out(), "peak force: ") > 0.1);
 }
 
 TEST_CASE("a budget that is too small for a finger is refused") {

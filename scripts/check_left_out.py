@@ -1,0 +1,44 @@
+#!/usr/bin/env python3
+"""Checks that of the tests that were left out each may be, by tests/may_be_left_out.txt.
+
+    scripts/check_left_out.py RESULTS.xml      what `ctest --output-junit RESULTS.xml` wrote
+"""
+import re
+import sys
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+
+LIST = Path(__file__).resolve().parent.parent / "tests" / "may_be_left_out.txt"
+REASON = re.compile(r"^test left out: (.*)$", re.MULTILINE)
+
+
+def allowed():
+    lines = LIST.read_text().splitlines()
+    return [re.compile(line) for line in lines if line and not line.startswith("#")]
+
+
+def left_out(results):
+    """Each as "name: reason"; also those that ctest did not run for a reason of its own."""
+    for case in ElementTree.parse(results).iter("testcase"):
+        if case.get("status") not in ("run", "fail"):
+            said = REASON.search(case.findtext("system-out") or "")
+            yield f"{case.get('name')}: {said.group(1) if said else 'it does not say why'}"
+
+
+def main():
+    if len(sys.argv) != 2:
+        print(__doc__, file=sys.stderr)
+        return 2
+    patterns = allowed()
+    wrong = 0
+    for test in left_out(sys.argv[1]):
+        may_be = any(pattern.search(test) for pattern in patterns)
+        wrong += not may_be
+        print(f"left out{'' if may_be else ', but must run here'}: {test}")
+    if wrong:
+        print(f"error: {wrong} tests did not run; install what they need (scripts/setup.sh)")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

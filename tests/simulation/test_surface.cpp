@@ -154,6 +154,62 @@ TEST_CASE("deformed surface follows displacements much larger than its triangles
   CHECK(wrong == 0);
 }
 
+// A wedge of 25 degrees: of its two faces' triangles a corner has one of one and two of the other.
+TEST_CASE("deformed surface: what is outside a sharp corner is outside, however it is meshed") {
+  const Model model = test::synthetic_cube(2, 1, 1);
+  const RestSurface rest(model.mesh);
+  DeformedSurface surface(rest);
+  const double angle = 25.0 * M_PI / 180.0;
+  // The faces x = +-a lean over by this, along y.
+  Matrix3 shear = Matrix3::Identity();
+  shear.col(1) = Vector3(std::cos(angle), std::sin(angle), 0);
+  const FakeEngine engine(model.mesh, [&](const Vector3& x) -> Vector3 { return shear * x - x; });
+  const std::array normals{Vector3(0, 1, 0), Vector3(std::sin(angle), -std::cos(angle), 0),
+                           Vector3(0, 0, 1)};
+  std::mt19937 random(8);
+  int nearest_is_corner = 0;
+  for (int i = 0; i < 4000; ++i) {
+    surface.begin_step(engine);
+    const double side = i % 2 == 0 ? 1.0 : -1.0;
+    const Vector3 corner = 0.06 * Vector3(side, side, (i & 2) != 0 ? 1.0 : -1.0);
+    const Vector3 p = shear * corner + random_point(random, 0.01);
+    double height = -1.0;  // largest above a face
+    for (const Vector3& normal : normals) {
+      const double face = normal.dot(shear * Vector3::Constant(0.06));
+      height = std::max(height, std::abs(normal.dot(p)) - std::abs(face));
+    }
+    if (std::abs(height) < 1e-9) continue;
+    const SurfaceHit hit = surface.closest(p);
+    CAPTURE(p.transpose(), hit.position.transpose());
+    REQUIRE((hit.signed_distance > 0) == (height > 0));
+    if ((hit.position - shear * corner).norm() < 1e-12) ++nearest_is_corner;
+  }
+  CHECK(nearest_is_corner > 500);
+}
+
+// The tree knows the rest shape alone: where the surface is displaced by 36 mm below and by 44 mm
+// above, the way is sought within a quarter of that.
+TEST_CASE(
+    "deformed surface: a fast way meets a face that is displaced otherwise than where it ends") {
+  const Model model = test::synthetic_cube(6, 1, 1);
+  const RestSurface rest(model.mesh);
+  DeformedSurface surface(rest);
+  const FakeEngine engine(model.mesh, [&](const Vector3& x) -> Vector3 {
+    return {0.040 + 0.004 * x.y() / 0.06, 0.0, 0.0};
+  });
+  surface.begin_step(engine);
+  // In the rest shape it enters half a millimetre to one side of an edge between triangles, and the
+  // way that is moved by what the end's surroundings are lies 7.5 mm to the other.
+  const Vector3 from(0.0435, 0.1, 0.007);
+  const Vector3 to(0.0435, -0.055, 0.007);
+  const SurfaceHit near = surface.closest(to);
+  CHECK(near.position.y() == Approx(-0.06));
+  const auto found = surface.first_crossing(from, to, near);
+  REQUIRE(found);
+  CHECK((found->position - Vector3(0.0435, 0.06, 0.007)).norm() < 1e-12);
+  CHECK(interpolate(found->point, [&](int i) { return rest.node(i); }).x() == Approx(-0.0005));
+}
+
 TEST_CASE("deformed surface computes a bounded number of nodes, each once a step") {
   int fewest = 1'000'000;
   int most = 0;

@@ -166,6 +166,29 @@ TEST_CASE("floor: a block that was thrown up a slope comes down again by kinetic
   CHECK((velocity[299] - velocity[60]) / (239 * dt) == Approx(down).epsilon(0.01));
 }
 
+// At 2 cm/s static friction would hold the nodes if they were taken to be at rest.
+TEST_CASE("floor: a block that slides slowly goes on sliding, by kinetic friction") {
+  const Friction friction{0.8, 0.2};
+  for (const double slope : {0.2, 0.15}) {
+    CAPTURE(slope);
+    SimulationConfig config = standing(2e5, friction);
+    const double tilt = std::atan(slope);
+    config.gravity = kGravity * Vector3(std::sin(tilt), -std::cos(tilt), 0);
+    config.objects[0].velocity = Vector3(slope == 0.2 ? 0.02 : 0.1, 0, 0);
+    Simulation simulation(config);
+    StepRecord record;
+    double early = 0.0;
+    for (int k = 0; k < 96; ++k) {
+      step(simulation, record);
+      if (k == 20) early = record.object[0].velocity.x();
+    }
+    const double gained =
+        75 * simulation.dt() * kGravity * (std::sin(tilt) - friction.kinetic * std::cos(tilt));
+    CHECK(early > 0.02);
+    CHECK(record.object[0].velocity.x() - early == Approx(gained).epsilon(0.01).margin(5e-4));
+  }
+}
+
 // Held by its top and shaken up and down above the floor, so that it hangs by up to 15 mm more than
 // at rest.
 TEST_CASE("floor: a node that hangs far below where it is at rest does not go through") {

@@ -1,5 +1,7 @@
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <limits>
+#include <numbers>
 #include <random>
 
 #include "server/collision/deformed_surface.hpp"
@@ -160,7 +162,7 @@ TEST_CASE("deformed surface: what is outside a sharp corner is outside, however 
   const Model model = test::synthetic_cube(2, 1, 1);
   const RestSurface rest(model.mesh);
   DeformedSurface surface(rest);
-  const double angle = 25.0 * M_PI / 180.0;
+  const double angle = 25.0 * std::numbers::pi / 180.0;
   std::mt19937 random(8);
   for (int wedge = 0; wedge < 6; ++wedge) {
     const int i = wedge % 3;

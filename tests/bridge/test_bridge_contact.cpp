@@ -230,3 +230,21 @@ TEST_CASE("contact at the bridge: who falls behind the server catches up, in con
   bench.ticks(10, -0.001);
   CHECK(bench.contact.lookahead() >= 1);
 }
+
+TEST_CASE("contact at the bridge: steps that are due at once share the way of the tip evenly") {
+  Bench bench;
+  bench.ticks(100, 0.002);
+  const std::uint64_t before = bench.contact.applied().step;
+  bench.now_ns += 6 * kMs;
+  CHECK(bench.contact.tick(bench.now_ns, Vector3(0, -0.001, 0)));
+  const AppliedForces& applied = bench.contact.applied();
+  const std::uint64_t count = applied.step - before;
+  REQUIRE(count >= 3);
+  REQUIRE(count <= static_cast<std::uint64_t>(applied.count));
+  for (std::size_t age = 0; age < count; ++age) {
+    const double way = 1.0 - static_cast<double>(age) / static_cast<double>(count);
+    CAPTURE(age, count);
+    CHECK((applied.past[age].tip - Vector3(0, 0.002 - 0.003 * way, 0)).norm() < 1e-15);
+  }
+  CHECK(applied.past[count].tip == Vector3(0, 0.002, 0));
+}

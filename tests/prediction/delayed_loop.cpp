@@ -274,4 +274,14 @@ double largest_error(const LoopRun& run, const LoopRun& reference, std::size_t h
   return largest / peak(reference, hand);
 }
 
+double mean_error(const LoopRun& run, const LoopRun& reference, std::size_t hand) {
+  double difference = 0.0;
+  double whole = 0.0;
+  for (std::size_t k = 0; k < reference.force[hand].size(); ++k) {
+    difference += (run.force[hand][k] - reference.force[hand][k]).squaredNorm();
+    whole += reference.force[hand][k].squaredNorm();
+  }
+  return std::sqrt(difference / whole);
+}
+
 }  // namespace irdm::test

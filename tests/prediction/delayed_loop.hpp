@@ -61,6 +61,8 @@ LoopRun run_loop(const LoopSetup& setup, LoopMode mode, const LoopLink& link = {
 
 /// Largest difference of the forces on a hand, as a share of the largest force of the reference.
 double largest_error(const LoopRun& run, const LoopRun& reference, std::size_t hand = 0);
+/// The same of their root mean squares over all steps.
+double mean_error(const LoopRun& run, const LoopRun& reference, std::size_t hand = 0);
 double peak(const LoopRun& run, std::size_t hand = 0);
 
 }  // namespace irdm::test

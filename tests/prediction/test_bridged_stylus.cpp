@@ -1,5 +1,6 @@
 #include <array>
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "server/step/bridged_stylus.hpp"
 #include "tests/support/fem_cube.hpp"
@@ -189,4 +190,37 @@ TEST_CASE("bridged stylus: a force is bounded, and one that is never told of is 
   for (int k = 0; k < 60; ++k) silent.step(kAbove, Vector3::Zero());
   CHECK(silent.bridged.lost() == 1);
   CHECK(silent.model.missing == 0);
+}
+
+// Two bridges push on a body that stays where it is: what the contact model of each says of the
+// other.
+TEST_CASE("bridged stylus: the other's force is in its contact model as the mean over 0.2 s") {
+  SimulationConfig config = cubes(1);
+  Model fixed = *config.objects[0].model;
+  fixed.body.support = Support::kFixed;
+  config.objects[0].model = std::make_shared<const Model>(fixed);
+  config.styluses.resize(2, config.styluses[0]);
+  Simulation simulation(config);
+  const std::array tips{Vector3(kHalfEdge + 5e-4, 0.01, 0.01), Vector3(-kHalfEdge - 5e-4, 0, 0.02)};
+  const std::array forces{Vector3(-0.03, 0.004, 0), Vector3(0.02, 0, -0.003)};
+  StepRecord record;
+  ContactModel model;
+  constexpr int kSteps = 60;
+  for (int k = -1; k < kSteps; ++k) {
+    std::array<StylusCommand, 2> commands;
+    for (std::size_t s = 0; s < 2; ++s) {
+      commands[s] = {true, 0, tips[s], {}};
+      commands[s].bridged = BridgedForce{k < 0 ? Vector3::Zero() : forces[s], tips[s], 0};
+    }
+    simulation.step(commands, record);
+  }
+  const double settled = 1.0 - std::pow(1.0 - simulation.dt() / 0.2, kSteps);
+  for (std::size_t s = 0; s < 2; ++s) {
+    const std::size_t other = 1 - s;
+    simulation.foresee(s, tips[s], 10, model);
+    REQUIRE(model.valid);
+    const Vector3 expected = settled * forces[other];
+    CHECK((model.other_force - expected).norm() < 1e-12);
+    CHECK((model.other_torque - tips[other].cross(expected)).norm() < 1e-12);
+  }
 }

@@ -94,6 +94,21 @@ TEST_CASE("contact model: each thing that can be wrong with one is found") {
   CHECK(check(stiff, {.stiffest = 100.0}) == Fault::kStiffness);
 }
 
+TEST_CASE("contact model: a response may grow as far as a passive object's can, and no further") {
+  const ContactModel good = good_model();
+  for (const std::size_t n : {1, 2, 10}) {
+    const double bound = 2.0 * static_cast<double>(n) + 1.0;
+    CAPTURE(n);
+    ContactModel model = good;
+    model.response[n] = bound * good.response[0];
+    CHECK(check(model) == ContactModelFault::kNone);
+    model.response[n] = -bound * good.response[0];
+    CHECK(check(model) == ContactModelFault::kNone);
+    model.response[n] = 1.02 * bound * good.response[0];
+    CHECK(check(model) == ContactModelFault::kGrowing);
+  }
+}
+
 TEST_CASE("contact predictor: models that are not newer and steps out of reach") {
   const ContactModel model = good_model();
   ContactPredictor predictor;

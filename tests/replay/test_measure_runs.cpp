@@ -109,6 +109,7 @@ TEST_CASE("a tap on a softer object that answers later is told from the other") 
   const StylusMeasures& stylus = taps.measures.styluses.at(0);
   CHECK(stylus.compliance_a.value() == Approx(5e-3));
   CHECK(stylus.compliance_b.value() == Approx(6e-3));
+  CHECK(stylus.compliance_share() == Approx(0.2));  // of that of A
   CHECK(stylus.noticeable_compliance() == std::optional(true));
   CHECK(stylus.difference.share.at(200) == Approx(0.2));
   CHECK(stylus.difference.noticeable());

@@ -188,6 +188,16 @@ TEST_CASE("forces are judged by their share, slow ones alone") {
   CHECK(force_difference(small, 2.0 * small, kDt).largest == Approx(0.001 * std::sqrt(3.0) / 0.5));
 }
 
+TEST_CASE("a force that only one run has counts as time in contact, whichever run it is") {
+  Points both = Points::Zero(500, 3);
+  both.topRows(200).col(1).setConstant(5.0);
+  Points one = both;
+  one.bottomRows(200).col(1).setConstant(5.0);
+  // From the first frame whose mean has a part of it, 50 ms before: 225 of the 400 in contact.
+  CHECK(force_difference(both, one, kDt).noticeable_time == Approx(225.0 / 400.0));
+  CHECK(force_difference(one, both, kDt).noticeable_time == Approx(225.0 / 400.0));
+}
+
 TEST_CASE("means over a time are those of its rows, fewer at the ends") {
   const Points ramp = signal_of(100, [](double t) { return Vector3(t, 1.0, -t); });
   const Points means = smoothed(ramp, kDt, 0.02);
@@ -217,6 +227,20 @@ TEST_CASE("onsets are where a force begins, and belong together by time") {
   CHECK_FALSE(found.noticeable(0.01));
   CHECK_FALSE(onset_delays({}, {1.0}).noticeable(kDt));
   CHECK(onset_delays({1.0}, {1.005}).noticeable(kDt) == std::optional(false));
+}
+
+TEST_CASE("a force after 50 ms without is another touch, after less the same") {
+  std::vector<double> times;
+  for (int k = 0; k < 500; ++k) times.push_back(kDt * (k + 1));
+  const auto onsets_after = [&](int rows) {  // without a force
+    Points force = Points::Zero(500, 3);
+    force.middleRows(100, 20).setOnes();
+    force.middleRows(120 + rows, 20).setOnes();
+    return onsets_of(force, times);
+  };
+  CHECK(onsets_after(23) == std::vector<double>{times[100]});              // 46 ms
+  CHECK(onsets_after(26) == std::vector<double>{times[100], times[146]});  // 52 ms
+  CHECK(onsets_after(35) == std::vector<double>{times[100], times[155]});  // 70 ms
 }
 
 TEST_CASE("the threshold of vibration falls by 12 dB an octave to a tenth of a micrometre") {

@@ -372,12 +372,14 @@ double held_force_apart(double dt) {
 
 }  // namespace
 
+// Motions of 0.5 mm at 60 mm from the middle: what is not linear is below 1 % of them. It is 0.2 %,
+// and up to as much again the reference's own substep makes; the server's step makes no difference.
 TEST_CASE("a held point of the reference follows its tip by the server's force", "[slow]") {
   const double coarse = held_force_apart(0.002);
   const double fine = held_force_apart(0.001);
   CAPTURE(coarse, fine);
-  CHECK(coarse < 0.02);
-  CHECK(fine < 0.006);
+  CHECK(coarse < 0.005);
+  CHECK(fine < 0.005);
 }
 
 TEST_CASE("what a bridge told too late acts in the step that it belongs to") {
@@ -417,7 +419,8 @@ TEST_CASE("what a bridge told too late acts in the step that it belongs to") {
   CHECK(late_apart.largest < 0.01 * late_apart.peak);
 }
 
-// Both are linear elasticity for small strains: what sets them apart is of second order.
+// Both are linear elasticity for small strains: what sets them apart is of second order, so that
+// its share grows with the force. What is of third order is a third of a percent of it here.
 TEST_CASE("a tap by neo-Hookean elements is that by corotational ones, the nearer the gentler") {
   const auto apart = [](double peak) {
     const KeptRun run =
@@ -442,8 +445,8 @@ TEST_CASE("a tap by neo-Hookean elements is that by corotational ones, the neare
   const double gentle = apart(0.05);
   CAPTURE(firm, gentle);
   CHECK(gentle > 1e-5);
-  CHECK(gentle < 0.03);
-  CHECK(firm / gentle == Approx(10.0).epsilon(0.25));
+  CHECK(gentle < 0.01);
+  CHECK(firm / gentle == Approx(10.0).epsilon(0.01));
 }
 
 TEST_CASE("a reference takes its steps from a journal to the bit, and no step for another") {

@@ -158,6 +158,73 @@ TEST_CASE("compressed engine predicts the coming step, and R[0] between the cont
   CHECK((R - R.transpose()).norm() == 0.0);
 }
 
+// Some are told again and again of the steps since, as a bridge behind a bad link does.
+TEST_CASE("compressed engine: forces that come late are those of equation (10), on and on") {
+  const auto model = made_up(GENERATE(false, true));
+  const auto engine = make_engine(model);
+  const int nodes = model->mesh.surface_node_count();
+  auto history = random_forces(nodes, 60);
+  const auto enter = [&](int k, int age) {
+    const std::vector<NodalForce> late{{(3 * k + age) % nodes, Vector3(0.1 * age, 1.0, -0.5)},
+                                       {(k + 7 * age) % nodes, Vector3(-0.3, 0.0, 0.02 * k)}};
+    engine->add_past(late, age);
+    auto& told = history[static_cast<std::size_t>(k - age)];
+    told.insert(told.end(), late.begin(), late.end());
+  };
+  for (int k = 0; k < 45; ++k) {
+    engine->advance(history[static_cast<std::size_t>(k)]);
+    if (k == 20) {  // those of which some act in the coming step, and others after it
+      for (int age = 0; age <= 20; ++age) enter(k, age);
+    }
+    if (k > 40) enter(k, kEarly - 1);
+    if (k == 44) {
+      for (int age = 0; age < std::min(k, kMaxHorizon); ++age) enter(k, age);
+    }
+    if (k != 20 && k < 40) continue;
+    const Points expected = direct_sum(*model, history, k);
+    CHECK((displacement(*engine) - expected).norm() < 1e-12 * expected.norm());
+  }
+  for (int k = 45; k < 60; ++k) {
+    history[static_cast<std::size_t>(k)].clear();
+    const Points expected = direct_sum(*model, history, k);
+    for (int i = 0; i < nodes; ++i) {
+      CHECK((engine->free_displacement(i) - Vector3(expected.row(i))).norm() <
+            1e-12 * expected.norm());
+    }
+    engine->advance({});
+    CHECK((displacement(*engine) - expected).norm() < 1e-12 * expected.norm());
+  }
+}
+
+TEST_CASE(
+    "compressed engine: the steps to come, and what a force does in them, are equation (10)") {
+  const auto model = made_up(GENERATE(false, true));
+  const auto engine = make_engine(model);
+  constexpr int kNow = 30;
+  auto history = random_forces(model->mesh.surface_node_count(), kNow);
+  for (const auto& forces : history) engine->advance(forces);
+  const ContactPatch patch(SurfacePoint{{3, 7, 11}, {0.5, 0.3, 0.2}});
+  const std::vector<NodalForce> held{{2, Vector3(0.1, -0.2, 0.3)}, {9, Vector3(-0.4, 0, 0)}};
+  std::vector<Vector3> path(kMaxHorizon);
+  std::vector<Matrix3> response(kMaxHorizon);
+  engine->foresee(patch, held, path, response);
+  const Vector3 f(1, -2, 0.5);
+  std::vector<std::vector<NodalForce>> push(1);
+  for (std::size_t i = 0; i < 3; ++i) push[0].push_back({patch.nodes[i], patch.weights[i] * f});
+  const auto mean_of = [&](const Points& u) {
+    return mean(patch, [&](int i) -> Vector3 { return u.row(i).transpose(); });
+  };
+  for (int n = 0; n < kMaxHorizon; ++n) {
+    CAPTURE(n);
+    history.push_back(held);
+    const Points u = direct_sum(*model, history, kNow + n);
+    CHECK((path[static_cast<std::size_t>(n)] - mean_of(u)).norm() < 1e-12 * u.norm());
+    if (n > 0) push.emplace_back();
+    const Points v = direct_sum(*model, push, n);
+    CHECK((response[static_cast<std::size_t>(n)] * f - mean_of(v)).norm() < 1e-12 * v.norm());
+  }
+}
+
 TEST_CASE("compressed engine: the settled displacement is the static compliance") {
   const auto model = made_up(GENERATE(false, true));
   const auto engine = make_engine(model);

@@ -35,6 +35,14 @@ Vector3 moved(const ContactProblem& problem, int a) {
   return sum;
 }
 
+double strongest_force(const ContactProblem& problem) {
+  double largest = 0.0;
+  for (int a = 0; a < problem.count(); ++a) {
+    largest = std::max(largest, problem.contact(a).force.norm());
+  }
+  return largest;
+}
+
 ContactSolution solve(ContactProblem& problem) {
   return ContactSolver(problem.capacity()).solve(problem);
 }
@@ -132,6 +140,25 @@ TEST_CASE("one contact: at the limit of static friction it sticks, beyond it sli
   CHECK((slipping.slip - Vector3(0.101e-3, 0, 0)).norm() < 1e-15);
 }
 
+// A compliance by which a force along x moves the point across the surface, too: slipping towards
+// +x with friction 1 the point yields by 1 - coupling of what it does without friction.
+TEST_CASE("one contact: where friction would hold without end it pushes 20 times as without") {
+  const Vector3 n = Vector3::UnitZ();
+  const auto slipping = [&](double coupling, double along) {
+    Matrix3 W = 1e-3 * Matrix3::Identity();
+    W(0, 2) = W(2, 0) = 1e-3 * coupling;
+    const Vector3 gap = W * Vector3(along, 0, -1.0);
+    const SingleContact found =
+        solve_single_contact(W, gap, ContactLaw::kTouching, n, Friction{1.0, 1.0});
+    REQUIRE(found.mode == ContactMode::kSlipping);
+    REQUIRE(found.slip.x() > 0.0);
+    const double frictionless = -gap.z() / W(2, 2);
+    return -found.force.z() / frictionless;
+  };
+  CHECK(slipping(0.94, 1.05) == Approx(1.0 / 0.06));  // the law is met
+  CHECK(slipping(0.98, 1.01) == Approx(20.0));
+}
+
 TEST_CASE("one contact meets Coulomb's law for any compliance, gap and friction") {
   std::mt19937 random(17);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
@@ -199,6 +226,36 @@ TEST_CASE("a problem that cannot be solved gives no force and says so") {
   CHECK_FALSE(solution.solved);
   CHECK(problem.contact(0).force.norm() == 0.0);
   CHECK(problem.contact(1).force.norm() == 0.0);
+}
+
+TEST_CASE("an iteration that ends above the worst residual is no solution, and gives no force") {
+  const auto touching = [] {
+    ContactProblem problem = random_problem(20, 8);
+    for (int a = 0; a < problem.count(); ++a) {
+      problem.contact(a).law = ContactLaw::kTouching;
+      problem.contact(a).friction = {0.3, 0.3};
+    }
+    return problem;
+  };
+  SolverLimits limits;
+  limits.max_sweeps = 1;
+  limits.worst = 1e-2;
+  ContactProblem problem = touching();
+  const ContactSolution one = ContactSolver(problem.capacity()).solve(problem, limits);
+  CHECK(one.solved);
+  CHECK(strongest_force(problem) > 0.1);
+  CHECK(one.residual > 1e-3);
+
+  ContactProblem same = touching();
+  limits.worst = 1e-3;
+  const ContactSolution unsolved = ContactSolver(same.capacity()).solve(same, limits);
+  CHECK_FALSE(unsolved.solved);
+  CHECK(unsolved.sweeps == 1);
+  CHECK(unsolved.residual == one.residual);
+  CHECK(strongest_force(same) == 0.0);
+  for (int a = 0; a < same.count(); ++a) {
+    CHECK(same.contact(a).mode == ContactMode::kOpen);
+  }
 }
 
 TEST_CASE("no contacts, no forces") {

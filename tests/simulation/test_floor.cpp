@@ -143,6 +143,87 @@ TEST_CASE("floor: pushed along, a block slides at mu M g within 1 %") {
   CHECK(sum == Approx(limit).epsilon(0.01));
 }
 
+// On a slope between the two angles of friction what slides goes on sliding, by kinetic friction
+// alone, even where it turns round.
+TEST_CASE("floor: a block that was thrown up a slope comes down again by kinetic friction") {
+  const Friction friction{0.8, 0.2};
+  const double tilt = std::atan(0.5);
+  SimulationConfig config = standing(2e5, friction);
+  config.gravity = kGravity * Vector3(std::sin(tilt), -std::cos(tilt), 0);
+  config.objects[0].velocity = Vector3(-0.6, 0, 0);
+  Simulation simulation(config);
+  const double up = kGravity * (std::sin(tilt) + friction.kinetic * std::cos(tilt));
+  const double down = kGravity * (std::sin(tilt) - friction.kinetic * std::cos(tilt));
+  StepRecord record;
+  std::vector<double> velocity;
+  for (int k = 0; k < 300; ++k) {
+    step(simulation, record);
+    velocity.push_back(record.object[0].velocity.x());
+  }
+  const double dt = simulation.dt();
+  // It comes down with a jerk, and turns after 0.1 s.
+  CHECK((velocity[40] - velocity[20]) / (20 * dt) == Approx(up).epsilon(0.01));
+  CHECK((velocity[299] - velocity[60]) / (239 * dt) == Approx(down).epsilon(0.01));
+}
+
+// At 2 cm/s static friction would hold the nodes if they were taken to be at rest.
+TEST_CASE("floor: a block that slides slowly goes on sliding, by kinetic friction") {
+  const Friction friction{0.8, 0.2};
+  for (const double slope : {0.2, 0.15}) {
+    CAPTURE(slope);
+    SimulationConfig config = standing(2e5, friction);
+    const double tilt = std::atan(slope);
+    config.gravity = kGravity * Vector3(std::sin(tilt), -std::cos(tilt), 0);
+    config.objects[0].velocity = Vector3(slope == 0.2 ? 0.02 : 0.1, 0, 0);
+    Simulation simulation(config);
+    StepRecord record;
+    double early = 0.0;
+    for (int k = 0; k < 96; ++k) {
+      step(simulation, record);
+      if (k == 20) early = record.object[0].velocity.x();
+    }
+    const double gained =
+        75 * simulation.dt() * kGravity * (std::sin(tilt) - friction.kinetic * std::cos(tilt));
+    CHECK(early > 0.02);
+    CHECK(record.object[0].velocity.x() - early == Approx(gained).epsilon(0.01).margin(5e-4));
+  }
+}
+
+// Held by its top and shaken up and down above the floor, so that it hangs by up to 15 mm more than
+// at rest.
+TEST_CASE("floor: a node that hangs far below where it is at rest does not go through") {
+  SimulationConfig config = standing(1000.0, {0.5, 0.5});
+  config.objects[0].position = Vector3(0, 0.05, 0);
+  config.styluses = {{0.0, 0.0, 0.02}};
+  Simulation simulation(config);
+  Deformation deformation(config);
+  SurfaceFrame frame = rest_frame(config);
+  const ModelMesh& mesh = config.objects[0].model->mesh;
+  StepRecord record;
+  double deepest = 0.0;
+  double most_below_rest = 0.0;  // of the nodes that are on the floor
+  for (int k = 0; k < 1500; ++k) {
+    const double t = simulation.dt() * k;
+    const double shaken = 0.01 * std::sin(2.0 * std::numbers::pi * 5.0 * t);
+    const double y = kHalfEdge + 0.05 - 0.02 * std::min(t, 1.0) + shaken;
+    const StylusCommand held{true, kGrabButton, Vector3(0, y, 0), {}};
+    simulation.step({&held, 1}, record);
+    deformation.follow(record);
+    deformation.compute(frame);
+    const auto& object = frame.objects[0];
+    for (int i = 0; i < mesh.surface_node_count(); ++i) {
+      const double height = object.world(mesh, i).y() + kHalfEdge;
+      const Vector3 at_rest = object.position + object.orientation * mesh.rest_position(i);
+      deepest = std::max(deepest, -height);
+      if (height > 1e-4) continue;
+      most_below_rest = std::max(most_below_rest, at_rest.y() + kHalfEdge - height);
+    }
+  }
+  INFO("deepest " << deepest << " m, below rest by " << most_below_rest << " m");
+  CHECK(deepest < 1e-5);
+  CHECK(most_below_rest > 0.01);
+}
+
 TEST_CASE("floor: reset puts everything back") {
   Simulation simulation(standing(2000.0, {0.5, 0.5}));
   StepRecord first, second;

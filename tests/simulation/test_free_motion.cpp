@@ -80,3 +80,21 @@ TEST_CASE("free motion: a tether swings with its frequency, second order, and ke
   }
   CHECK(farthest == Approx(start.position.norm()).epsilon(1e-3));
 }
+
+TEST_CASE("free motion: a tether turns the short way, whichever sign the quaternion has") {
+  FreeForces forces;
+  forces.tether = {0.0, 0.04};
+  forces.home_orientation = rotation_from_vector(Vector3(0.3, -0.2, 0.5));
+  const Vector3 axis = Vector3(1.0, 2.0, -2.0) / 3.0;
+  const auto degrees = [](double angle) { return angle * std::numbers::pi / 180.0; };
+  for (const double turned : {1.0, 90.0, 170.0, 190.0, 200.0, 350.0}) {
+    CAPTURE(turned);
+    const Quaternion q = rotation_from_vector(degrees(turned) * axis) * forces.home_orientation;
+    // Back by `turned`, or on by what is missing to a whole turn.
+    const double back = turned < 180.0 ? turned : turned - 360.0;
+    const Vector3 expected = -0.04 * degrees(back) * axis;
+    CHECK((free_torque(forces, q) - expected).norm() < 1e-14);
+    CHECK((free_torque(forces, Quaternion(-q.coeffs())) - expected).norm() < 1e-14);
+  }
+  CHECK(free_torque(forces, Quaternion(-forces.home_orientation.coeffs())).norm() < 1e-15);
+}

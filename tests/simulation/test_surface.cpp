@@ -1,5 +1,7 @@
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <limits>
+#include <numbers>
 #include <random>
 
 #include "server/collision/deformed_surface.hpp"
@@ -152,6 +154,64 @@ TEST_CASE("deformed surface follows displacements much larger than its triangles
     if (std::abs(surface.closest(p).signed_distance - expected) > 1e-12) ++wrong;
   }
   CHECK(wrong == 0);
+}
+
+// Wedges of 25 degrees along each axis: at some of their corners one face has one triangle and the
+// other two.
+TEST_CASE("deformed surface: what is outside a sharp corner is outside, however it is meshed") {
+  const Model model = test::synthetic_cube(2, 1, 1);
+  const RestSurface rest(model.mesh);
+  DeformedSurface surface(rest);
+  const double angle = 25.0 * std::numbers::pi / 180.0;
+  std::mt19937 random(8);
+  for (int wedge = 0; wedge < 6; ++wedge) {
+    const int i = wedge % 3;
+    const int j = (i + 1) % 3;
+    const double way = wedge < 3 ? 1.0 : -1.0;
+    // The faces across i lean over along it.
+    Matrix3 shear = Matrix3::Identity();
+    shear.col(j) = std::cos(angle) * way * Vector3::Unit(i) + std::sin(angle) * Vector3::Unit(j);
+    const FakeEngine engine(model.mesh, [&](const Vector3& x) -> Vector3 { return shear * x - x; });
+    const Matrix3 across = shear.inverse();
+    int nearest_is_corner = 0;
+    for (int n = 0; n < 2000; ++n) {
+      surface.begin_step(engine);
+      Vector3 corner = Vector3::Constant((n & 1) != 0 ? 0.06 : -0.06);
+      corner[j] = way * corner[i];
+      if ((n & 2) != 0) corner[3 - i - j] *= -1.0;
+      const Vector3 p = shear * corner + random_point(random, 0.01);
+      const double outside = (across * p).cwiseAbs().maxCoeff() - 0.06;
+      if (std::abs(outside) < 1e-9) continue;
+      const SurfaceHit hit = surface.closest(p);
+      CAPTURE(wedge, p.transpose(), hit.position.transpose());
+      REQUIRE((hit.signed_distance > 0) == (outside > 0));
+      if ((hit.position - shear * corner).norm() < 1e-12) ++nearest_is_corner;
+    }
+    CHECK(nearest_is_corner > 250);
+  }
+}
+
+// The tree knows the rest shape alone: where the surface is displaced by 36 mm below and by 44 mm
+// above, the way is sought within a quarter of that.
+TEST_CASE(
+    "deformed surface: a fast way meets a face that is displaced otherwise than where it ends") {
+  const Model model = test::synthetic_cube(6, 1, 1);
+  const RestSurface rest(model.mesh);
+  DeformedSurface surface(rest);
+  const FakeEngine engine(model.mesh, [&](const Vector3& x) -> Vector3 {
+    return {0.040 + 0.004 * x.y() / 0.06, 0.0, 0.0};
+  });
+  surface.begin_step(engine);
+  // In the rest shape it enters half a millimetre to one side of an edge between triangles, and the
+  // way that is moved by what the end's surroundings are lies 7.5 mm to the other.
+  const Vector3 from(0.0435, 0.1, 0.007);
+  const Vector3 to(0.0435, -0.055, 0.007);
+  const SurfaceHit near = surface.closest(to);
+  CHECK(near.position.y() == Approx(-0.06));
+  const auto found = surface.first_crossing(from, to, near);
+  REQUIRE(found);
+  CHECK((found->position - Vector3(0.0435, 0.06, 0.007)).norm() < 1e-12);
+  CHECK(interpolate(found->point, [&](int i) { return rest.node(i); }).x() == Approx(-0.0005));
 }
 
 TEST_CASE("deformed surface computes a bounded number of nodes, each once a step") {

@@ -1,0 +1,34 @@
+#include <catch2/catch.hpp>
+
+#include "device_bridge/safety/passivity.hpp"
+
+using namespace irdm;
+
+namespace {
+
+const Vector3 kPush(0, 2.0, 0);
+
+// The hand does this much work against the force [J].
+void take_in(Passivity& passivity, double work) {
+  passivity.observe(-work / kPush.squaredNorm() * kPush, kPush);
+}
+
+}  // namespace
+
+TEST_CASE("passivity observer: energy is kept between its two bounds, however long one pushes") {
+  const PassivityLimits limits;
+  Passivity passivity(limits);
+  take_in(passivity, 0.05);
+  CHECK(passivity.energy() == Approx(0.05));
+  for (int i = 0; i < 10'000; ++i) {
+    take_in(passivity, 0.01);
+    REQUIRE(passivity.energy() <= limits.most);
+  }
+  CHECK(passivity.energy() == limits.most);
+  // Not blind after 100 J: what is given out counts from the bound on.
+  take_in(passivity, -limits.most - 0.01);
+  CHECK(passivity.energy() == Approx(-0.01));
+  CHECK(passivity.damping(kPush, Vector3(0, 0.1, 0), 1e-3) > 0.0);
+  for (int i = 0; i < 100; ++i) take_in(passivity, -0.01);
+  CHECK(passivity.energy() == limits.least);
+}

@@ -27,8 +27,6 @@ using boost::system::error_code;
 
 namespace {
 
-constexpr double kComplaintRate = 5.0;  // [1/s]
-constexpr double kComplaintBurst = 50.0;
 constexpr std::int64_t kAwakeNs = 50'000;
 constexpr std::chrono::milliseconds kTick(10);
 
@@ -93,7 +91,7 @@ class NetworkServer::Impl {
   std::optional<DatagramPort> datagrams_;
   std::list<Session> sessions_;
   std::random_device random_;
-  Allowance complaints_{kComplaintRate, kComplaintBurst};
+  Allowance complaints_ = complaint_allowance();
   bool accepting_ = false;
   bool opened_ = false;
   bool stopping_ = false;

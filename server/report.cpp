@@ -51,6 +51,7 @@ int print_report(const FinishedRun& run, const ServerOptions& options) {
              run.network.stats().datagrams_replayed);
   faults("messages that a newer one had overtaken, dropped", run.network.stats().messages_late);
   faults("lines about bridges that were not logged", run.network.stats().unlogged);
+  faults("lines about viewers that were not logged", run.viewers_unlogged);
   faults("errors inside the network thread", run.network.stats().internal_errors);
   faults("forces of bridges that came late, entered at their own step", force.late);
   faults("forces of bridges that were lost", force.lost);

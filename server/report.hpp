@@ -18,6 +18,7 @@ struct FinishedRun {
   const RealTimeClock* clock;      ///< null: lockstep
   std::string memory;              ///< whether it is locked, in words
   const SceneColumns& columns;
+  std::uint64_t viewers_unlogged;  ///< complaints about viewers beyond what is logged
 };
 
 /// Prints how the run went and returns the exit status: 1 when the recording is not whole.

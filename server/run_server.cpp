@@ -175,6 +175,7 @@ class Viewers {
     server_.stop();
     player_.finish();
   }
+  std::uint64_t unlogged() const noexcept { return server_.unlogged(); }
 
  private:
   static viewer::Scene live_scene(const SceneConfig& scene, const SimulationConfig& config,
@@ -266,9 +267,10 @@ int run_server(const ServerOptions& options) {
   end_recording(recordings);
   if (recorder) recorder->finish();
   columns.finish();
-  return print_report({force, network, deformation, recorder.get(),
-                       dynamic_cast<RealTimeClock*>(clock.get()), memory, columns},
-                      options);
+  return print_report(
+      {force, network, deformation, recorder.get(), dynamic_cast<RealTimeClock*>(clock.get()),
+       memory, columns, viewers ? viewers->unlogged() : 0},
+      options);
 }
 
 }  // namespace irdm

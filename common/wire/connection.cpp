@@ -27,14 +27,15 @@ constexpr std::string_view kDatagramLabel = "EXPERIMENTAL irdm datagrams";
 
 }  // namespace
 
-Connection::Connection(std::unique_ptr<Stream> stream, FrameTap* tap)
+Connection::Connection(std::unique_ptr<Stream> stream, FrameTap* tap,
+                       const std::optional<tcp::endpoint>& remote)
     : stream_(std::move(stream)), tap_(tap) {
   tcp::socket& socket = stream_->socket();
   error_code ignored;
   socket.set_option(tcp::no_delay(true), ignored);
   socket.set_option(tcp::socket::send_buffer_size(kSendBuffer), ignored);
   socket.set_option(NotSentLimit(kNotSent), ignored);
-  remote_ = socket.remote_endpoint(ignored);
+  remote_ = remote ? *remote : socket.remote_endpoint(ignored);
   std::ostringstream name;
   name << remote_;
   peer_ = name.str();

@@ -38,7 +38,10 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
   /// Takes over a stream that is connected and turns no-delay on.
   /// @param tap listens in; null: nobody. Outlives the connection
-  explicit Connection(std::unique_ptr<Stream> stream, FrameTap* tap = nullptr);
+  /// @param remote the peer's end where it is known; nothing: asks the socket, which does not know
+  /// it any more once the peer has cut the connection
+  explicit Connection(std::unique_ptr<Stream> stream, FrameTap* tap = nullptr,
+                      const std::optional<boost::asio::ip::tcp::endpoint>& remote = {});
   /// What is sent before the handshake of the stream is done waits for it.
   void start(Handlers handlers);
 

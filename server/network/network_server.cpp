@@ -27,8 +27,6 @@ using boost::system::error_code;
 
 namespace {
 
-constexpr double kComplaintRate = 5.0;  // [1/s]
-constexpr double kComplaintBurst = 50.0;
 constexpr std::int64_t kAwakeNs = 50'000;
 constexpr std::chrono::milliseconds kTick(10);
 
@@ -88,12 +86,13 @@ class NetworkServer::Impl {
   std::optional<wire::Tls> tls_;
   boost::asio::io_context io_{1};
   tcp::acceptor acceptor_;
+  tcp::endpoint peer_;  ///< of the connection that is accepted next
   boost::asio::posix::stream_descriptor forces_descriptor_;
   boost::asio::steady_timer timer_;
   std::optional<DatagramPort> datagrams_;
   std::list<Session> sessions_;
   std::random_device random_;
-  Allowance complaints_{kComplaintRate, kComplaintBurst};
+  Allowance complaints_ = complaint_allowance();
   bool accepting_ = false;
   bool opened_ = false;
   bool stopping_ = false;
@@ -227,7 +226,7 @@ bool NetworkServer::Impl::guarded(const Work& work) noexcept {
 
 void NetworkServer::Impl::accept() {
   accepting_ = true;
-  acceptor_.async_accept([this](error_code error, tcp::socket socket) {
+  acceptor_.async_accept(peer_, [this](error_code error, tcp::socket socket) {
     accepting_ = false;
     if (stopping_) return;
     if (error) {
@@ -244,7 +243,7 @@ void NetworkServer::Impl::admit(tcp::socket socket) {
   const bool room = make_room_for_connection();
   Session& session = sessions_.emplace_back(
       new_session(),
-      std::make_shared<wire::Connection>(make_stream(std::move(socket)), settings_.tap),
+      std::make_shared<wire::Connection>(make_stream(std::move(socket)), settings_.tap, peer_),
       Session::Shared{settings_, slots_, stats_, complaints_, [this] { make_room(); },
                       datagrams_ ? &*datagrams_ : nullptr});
   session.start();

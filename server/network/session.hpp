@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
+#include "common/wire/allowance.hpp"
 #include "common/wire/connection.hpp"
-#include "server/network/allowance.hpp"
 #include "server/network/datagram_port.hpp"
 #include "server/network/network_server.hpp"
 #include "server/network/stylus_slots.hpp"

@@ -155,7 +155,6 @@ void LiveRun::show_live() {
 
 void LiveRun::carry_out(const viewer::SettingsRequest& request) {
   notice_.clear();
-  if (request.objects != config_.objects.size()) return;
   try {
     check_settings(config_, request.settings);
   } catch (const Error& error) {

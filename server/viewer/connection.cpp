@@ -3,14 +3,13 @@
 
 #include "server/viewer/connection.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include <array>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
 #include <chrono>
 #include <optional>
+#include <string>
 
 #include "common/realtime/clock.hpp"
 #include "server/viewer/request_rules.hpp"
@@ -225,7 +224,7 @@ void BeastConnection::open_socket(const Request& request) {
   }
   if (!origin_allowed(view(request[http::field::origin]), view(request[http::field::host]),
                       !hub_.settings().token.empty())) {
-    spdlog::warn("viewer: refused a page of another origin");
+    hub_.complain("refused a page of another origin");
     return answer_failure(http::status::forbidden, "another origin\n", request);
   }
   if (!hub_.has_room()) {
@@ -267,7 +266,7 @@ void BeastConnection::take_message() {
     buffer_.clear();
     std::visit([this](const auto& content) { take(content); }, message);
   } catch (const MessageError& error) {
-    spdlog::warn("viewer: a message is wrong: {}; connection closed", error.what());
+    hub_.complain(std::string("a message is wrong: ") + error.what() + "; connection closed");
     close(websocket::close_code::protocol_error, "wrong message");
   }
   if (!closing_) read_message();
@@ -280,7 +279,7 @@ void BeastConnection::take(const Hello& hello) {
   const bool full = token.empty() || same_token(hello.token, token);
   const bool onlooker = !onlooker_token.empty() && same_token(hello.token, onlooker_token);
   if (!full && !onlooker) {
-    spdlog::warn("viewer: wrong token; connection closed");
+    hub_.complain("wrong token; connection closed");
     return close(websocket::close_code::policy_error, "wrong token");
   }
   watching_ = true;
@@ -303,6 +302,9 @@ void BeastConnection::take(const Command& command) {
 
 void BeastConnection::take(const SettingsRequest& request) {
   expect_hello();
+  if (request.objects != hub_.objects()) {
+    throw MessageError("its settings are for another number of objects");
+  }
   if (!looks_on_) hub_.carry_out(request);
 }
 

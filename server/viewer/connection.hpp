@@ -18,6 +18,8 @@ class Hub {
  public:
   virtual ~Hub() = default;
   virtual const ViewerSettings& settings() const = 0;
+  /// Of the scene, as many as settings have to be for.
+  virtual std::size_t objects() const = 0;
   /// Whether one more WebSocket may be opened.
   virtual bool has_room() const = 0;
   virtual SharedBytes scene() = 0;
@@ -28,6 +30,8 @@ class Hub {
   virtual void carry_out(const Command& command) = 0;
   virtual void carry_out(const SettingsRequest& request) = 0;
   virtual void carry_out(const StylusRequest& request, const Connection& viewer) = 0;
+  /// Logs what a peer did wrong, or counts it where the log has had enough of them.
+  virtual void complain(const std::string& what) = 0;
 };
 
 /// One connection from accept to close: HTTP requests, and perhaps a WebSocket in the end. It keeps

@@ -32,6 +32,7 @@ class ViewedRun {
   virtual State state() = 0;
 
   virtual void carry_out(const Command& command) = 0;
+  /// @param request of as many objects as the scene has
   virtual void carry_out(const SettingsRequest& request) = 0;
   virtual void carry_out(const StylusRequest& request) = 0;
 };

@@ -13,6 +13,7 @@
 
 #include "common/error.hpp"
 #include "common/realtime/clock.hpp"
+#include "common/wire/allowance.hpp"
 #include "server/viewer/connection.hpp"
 #include "server/viewer/stylus_holder.hpp"
 
@@ -49,6 +50,7 @@ class ViewerServer::Impl final : public Hub {
   std::string url() const;
 
   const ViewerSettings& settings() const override { return settings_; }
+  std::size_t objects() const override { return run_.scene().objects.size(); }
   bool has_room() const override;
   SharedBytes scene() override { return scene_; }
   SharedBytes newest_frame() override;
@@ -57,9 +59,11 @@ class ViewerServer::Impl final : public Hub {
   void carry_out(const Command& command) override;
   void carry_out(const SettingsRequest& request) override;
   void carry_out(const StylusRequest& request, const Connection& viewer) override;
+  void complain(const std::string& what) override;
 
   std::uint16_t port_ = 0;
   std::atomic<std::uint32_t> viewers_{0};
+  std::atomic<std::uint64_t> unlogged_{0};
 
  private:
   void listen();
@@ -90,6 +94,7 @@ class ViewerServer::Impl final : public Hub {
   StylusHolder stylus_;
   State state_;  ///< that all were told last
   int ticks_ = 0;
+  Allowance complaints_ = complaint_allowance();
   /// They keep themselves alive; what is gone, is over.
   std::vector<std::weak_ptr<Connection>> connections_;
   bool accepting_ = false;
@@ -233,6 +238,14 @@ void ViewerServer::Impl::carry_out(const StylusRequest& request, const Connectio
   if (stylus_.take(request, &viewer, monotonic_ns())) spread_state();
 }
 
+void ViewerServer::Impl::complain(const std::string& what) {
+  if (complaints_.take(monotonic_ns())) {
+    spdlog::warn("viewer: {}", what);
+  } else {
+    unlogged_.fetch_add(1, std::memory_order_relaxed);
+  }
+}
+
 template <typename Use>
 void ViewerServer::Impl::for_each_watching(const Use& use) {
   for (const auto& weak : connections_) {
@@ -336,6 +349,9 @@ std::uint16_t ViewerServer::port() const noexcept {
 }
 std::uint32_t ViewerServer::viewers() const noexcept {
   return impl_->viewers_.load(std::memory_order_relaxed);
+}
+std::uint64_t ViewerServer::unlogged() const noexcept {
+  return impl_->unlogged_.load(std::memory_order_relaxed);
 }
 void ViewerServer::start() {
   impl_->start();

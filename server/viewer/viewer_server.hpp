@@ -40,6 +40,8 @@ class ViewerServer {
   std::uint16_t port() const noexcept;
   /// Viewers that have shown the right token; any thread.
   std::uint32_t viewers() const noexcept;
+  /// Complaints about peers beyond what is logged; any thread.
+  std::uint64_t unlogged() const noexcept;
 
   void start();
   /// Sends what waits, says goodbye to every viewer, at most for half a second, and joins the

@@ -202,6 +202,34 @@ TEST_CASE("a bridge that dies leaves its stylus absent and its slot free") {
   running.check_serves();
 }
 
+TEST_CASE("a bridge that has died before it is accepted still has its name") {
+  class Names final : public wire::FrameTap {
+   public:
+    std::uint32_t open(std::string_view peer) noexcept override {
+      peer_.assign(peer.substr(0, peer_.capacity()));
+      return 1;
+    }
+    void see(wire::TapKind, std::uint32_t, std::span<const std::uint8_t>) noexcept override {}
+    const std::string& peer() const { return peer_; }
+
+   private:
+    std::string peer_ = std::string(60, ' ');
+  } names;
+  NetworkServer server({.lockstep = true, .tap = &names});
+  std::string name;
+  {
+    RawPeer peer = RawPeer::connect(server.port_number());
+    name = peer.name();
+    peer.cut();
+  }
+  server.open();
+  CHECK(eventually([&] {
+    server.serve();
+    return names.peer().find_first_not_of(' ') != std::string::npos;
+  }));
+  CHECK(names.peer() == name);
+}
+
 TEST_CASE("in real time a silent stylus is absent until its next sample") {
   RunningServer running({.absent_after_ms = 20});
   RawPeer peer = running.join();

@@ -94,6 +94,19 @@ TEST_CASE("server sends a sample of another's stylus away") {
   check_violation([](RawPeer& peer) { peer.send(SampleMessage{.stylus = 1}); });
 }
 
+TEST_CASE("server sends forces of another's stylus away") {
+  RunningServer running;
+  RawPeer peer = running.connect();
+  peer.send(Hello{.capabilities = wire::kCapabilityContactModel, .name = "test"});
+  REQUIRE(peer.receive_as<wire::Welcome>());
+  peer.send(SampleMessage{});
+  CHECK(running.next_input().present);
+  peer.send(wire::AppliedForcesMessage{.stylus = 1, .applied = {.step = 1, .count = 1}});
+  CHECK_FALSE(running.next_input().present);
+  check_sent_away(running, peer);
+  CHECK_FALSE(running.server.port(1).in.receive());
+}
+
 TEST_CASE("server sends a message of another session away") {
   check_violation([](RawPeer& peer) {
     ++peer.session;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "common/wire/frame.hpp"
@@ -40,6 +41,10 @@ class RawPeer {
   bool ends();
   /// Hang up, without a word.
   void close();
+  /// Hang up so that nothing of the connection is left: the other side sees a reset.
+  void cut();
+  /// Its end of the connection, as ADDRESS:PORT.
+  std::string name() const;
 
   std::uint32_t session = 0;
   std::uint64_t sequence = 0;

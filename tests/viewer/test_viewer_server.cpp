@@ -1,10 +1,14 @@
 // The viewer's server on real sockets.
+#include <spdlog/sinks/ostream_sink.h>
+#include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <fstream>
+#include <sstream>
 
 #include "common/error.hpp"
 #include "server/viewer/request_rules.hpp"
@@ -102,6 +106,27 @@ int close_code(WebPeer& peer) {
   }
   return -1;
 }
+
+/// What is logged meanwhile.
+class CapturedLog {
+ public:
+  CapturedLog() {
+    spdlog::set_default_logger(std::make_shared<spdlog::logger>(
+        "", std::make_shared<spdlog::sinks::ostream_sink_mt>(text_)));
+  }
+  CapturedLog(const CapturedLog&) = delete;
+  CapturedLog& operator=(const CapturedLog&) = delete;
+  ~CapturedLog() { spdlog::set_default_logger(before_); }
+  /// After the threads that log have said all.
+  std::size_t lines() const {
+    const std::string text = text_.str();
+    return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+  }
+
+ private:
+  std::shared_ptr<spdlog::logger> before_ = spdlog::default_logger();
+  std::ostringstream text_;
+};
 
 std::size_t resident_bytes() {
   std::ifstream file("/proc/self/statm");
@@ -206,6 +231,28 @@ TEST_CASE("which origins are allowed") {
   CHECK_FALSE(origin_allowed("http://", "", true));
   CHECK_FALSE(origin_allowed("http://127.0.0.1:1", "127.0.0.1:2", false));
   CHECK_FALSE(origin_allowed("http://127.0.0.1.evil.example", "127.0.0.1.evil.example", false));
+}
+
+TEST_CASE("a host that is none is no origin, with a token or without") {
+  const bool token_needed = GENERATE(false, true);
+  const std::string host = GENERATE(
+      "[::1].evil.com", "127.0.0.1:1@evil.com", "127.0.0.1:80#.evil.com", "[::1]:1@evil.com",
+      "[::1]x:80", "[::1", "::1", "[127.0.0.1]", "[::1%25lo]", "[::1%lo]", "localhost:", ":80",
+      "localhost:65536", "localhost:+80", "localhost:80:80", "localhost:8 0", "localhost/x",
+      "localhost?x", "user@localhost", "127.0.0.1#", "127.0.0.1\t");
+  CAPTURE(host);
+  CHECK_FALSE(origin_allowed("http://" + host, host, token_needed));
+}
+
+TEST_CASE("which hosts are of this machine") {
+  const std::string local = GENERATE("127.0.0.1", "127.0.0.1:80", "10.0.0.7:65535", "[::1]",
+                                     "[fe80::1]:8080", "[::ffff:127.0.0.1]:1", "Localhost");
+  CAPTURE(local);
+  CHECK(origin_allowed("http://" + local, local, false));
+  const std::string named = GENERATE("127.0.0.1.evil.com", "lab-2.example_x:80", "127.1", "0x7f.1");
+  CAPTURE(named);
+  CHECK_FALSE(origin_allowed("http://" + named, named, false));
+  CHECK(origin_allowed("http://" + named, named, true));
 }
 
 TEST_CASE("a viewer gets the scene, state, health and a frame, and then every newer one") {
@@ -338,6 +385,13 @@ TEST_CASE("a message that breaks the rules ends the session") {
     peer.send_message(encode(ClientMessage(Hello{})), 1);
     CHECK(close_code(peer) == 1002);
   }
+  SECTION("settings of another number of objects") {
+    const auto objects = static_cast<std::size_t>(GENERATE(1, 3));
+    peer.send_message(encode(ClientMessage(Hello{})));
+    peer.send_message(encode(ClientMessage(SettingsRequest{example_state().settings, objects})));
+    CHECK(close_code(peer) == 1002);
+    CHECK(show.run.settings == 0);
+  }
   SECTION("too long") {
     peer.send_message(Bytes(600, 0));
     CHECK(close_code(peer) == 1009);
@@ -357,6 +411,30 @@ TEST_CASE("where a token is needed, only the right one opens") {
   CHECK(next_frame(peer, show.scene).force_step == 1039);
 }
 
+TEST_CASE("one who knocks again and again does not fill the log") {
+  const CapturedLog log;
+  Show show({.token = kToken});
+  std::size_t knocks = 0;
+  const auto knock = [&] {
+    WebPeer peer(show.server.port());
+    if (++knocks % 3 == 0) {
+      peer.upgrade("http://evil.example", "127.0.0.1:80");
+      return;
+    }
+    peer.open();
+    const bool command = knocks % 3 == 1;
+    const ClientMessage wrong =
+        command ? ClientMessage(Command{}) : ClientMessage(Hello{"x", false});
+    peer.send_message(encode(wrong));
+    CHECK(close_code(peer) == (command ? 1002 : 1008));
+  };
+  CHECK(eventually([&] {
+    knock();
+    return show.server.unlogged() >= 9;
+  }));
+  CHECK(log.lines() + show.server.unlogged() == knocks);
+}
+
 TEST_CASE("an address that can be reached from elsewhere needs a token") {
   ExampleRun run;
   CHECK_THROWS_WITH(ViewerServer({.address = "0.0.0.0"}, run), Contains("viewer.token"));
@@ -365,18 +443,32 @@ TEST_CASE("an address that can be reached from elsewhere needs a token") {
   CHECK_THROWS_AS(ViewerServer({.port = with_token.port()}, run), Error);
 }
 
-TEST_CASE("there is a limit to viewers and to connections") {
-  Show show({.max_viewers = 2, .max_connections = 5});
+TEST_CASE("there is a limit to viewers") {
+  Show show({.max_viewers = 2});
   WebPeer first = show.watch();
   WebPeer second = show.watch();
   next_frame(second, show.scene);
   const std::string host = "127.0.0.1:80";
   WebPeer third(show.server.port());
   CHECK_THAT(third.upgrade("http://" + host, host), StartsWith("HTTP/1.1 503"));
-  std::vector<WebPeer> idle;
-  for (int i = 0; i < 2; ++i) idle.emplace_back(show.server.port());
+}
+
+TEST_CASE("there is a limit to connections") {
+  // No connection ends by itself while the test waits.
+  Show show({.max_connections = 3, .request_timeout_ms = 10 * kDeadlineMs});
+  const std::string request = "HEAD / HTTP/1.1\r\nHost: x\r\n\r\n";
+  std::vector<WebPeer> served;
+  for (int i = 0; i < 3; ++i) {
+    served.emplace_back(show.server.port());
+    served.back().send(request);
+    CHECK_THAT(served.back().header(), StartsWith("HTTP/1.1 200"));
+  }
   WebPeer beyond(show.server.port());
   CHECK(beyond.rest() == "");
+  for (WebPeer& peer : served) {
+    peer.send(request);
+    CHECK_THAT(peer.header(), StartsWith("HTTP/1.1 200"));
+  }
 }
 
 TEST_CASE("who says nothing is not waited for") {

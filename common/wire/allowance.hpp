@@ -34,4 +34,9 @@ class Allowance {
   std::int64_t last_ns_ = 0;
 };
 
+/// Lines of the log about peers: one who knocks again and again does not fill the disk.
+inline Allowance complaint_allowance() {
+  return {5.0, 50.0};
+}
+
 }  // namespace irdm

@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "server/network/allowance.hpp"
+#include "common/wire/allowance.hpp"
 
 using irdm::Allowance;
 

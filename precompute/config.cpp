@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 
+#include "common/config/lab_ranges.hpp"
 #include "common/error.hpp"
 #include "precompute/mesh/mesh_file.hpp"
 
@@ -10,11 +11,10 @@ namespace irdm::precompute {
 namespace {
 
 constexpr int kMaxCells = 100;
-constexpr int kMaxSteps = 1'000'000;
 
 BoxConfig read_box(TomlTable table) {
   BoxConfig box;
-  const std::vector<double> size = table.numbers("size", 3, above(0));
+  const std::vector<double> size = table.numbers("size", 3, lab::kLength);
   const std::vector<double> cells = table.numbers("cells", 3, between(1, kMaxCells));
   for (std::size_t k = 0; k < 3; ++k) {
     box.size(static_cast<Eigen::Index>(k)) = size[k];
@@ -52,7 +52,7 @@ MeshConfig read_mesh(TomlTable table) {
   } else {
     mesh.source = table.path("file");
     mesh.unit = unit_from_word(table.choice("unit", {"m", "cm", "mm"}, "m"));
-    if (table.has("edge_length")) mesh.edge_length = table.number("edge_length", above(0));
+    if (table.has("edge_length")) mesh.edge_length = table.number("edge_length", lab::kLength);
   }
   mesh.order = table.integer("order", 1, 2, mesh.order);
   table.finish();
@@ -61,13 +61,11 @@ MeshConfig read_mesh(TomlTable table) {
 
 Material read_material(TomlTable table) {
   Material material;
-  material.youngs_modulus = table.number("youngs_modulus", above(0));
-  material.poisson_ratio = table.number(
-      "poisson_ratio",
-      {.lowest = -1.0, .highest = 0.5, .lowest_included = false, .highest_included = false});
-  material.density = table.number("density", above(0));
-  material.rayleigh_alpha = table.number("rayleigh_alpha", at_least(0), 8.0);
-  material.rayleigh_beta = table.number("rayleigh_beta", at_least(0), 2e-4);
+  material.youngs_modulus = table.number("youngs_modulus", lab::kYoungsModulus);
+  material.poisson_ratio = table.number("poisson_ratio", lab::kPoissonRatio);
+  material.density = table.number("density", lab::kDensity);
+  material.rayleigh_alpha = table.number("rayleigh_alpha", lab::kRayleighAlpha, 8.0);
+  material.rayleigh_beta = table.number("rayleigh_beta", lab::kRayleighBeta, 2e-4);
   table.finish();
   return material;
 }
@@ -84,9 +82,8 @@ double read_compression(TomlTable& table) {
 
 ResponseConfig read_response(TomlTable table) {
   ResponseConfig response;
-  response.dt =
-      table.number("dt", {.lowest = 0.0, .highest = 1.0, .lowest_included = false}, response.dt);
-  response.steps = table.integer("steps", 1, kMaxSteps, response.steps);
+  response.dt = table.number("dt", lab::kStepTime, response.dt);
+  response.steps = table.integer("steps", 1, lab::kMostSteps, response.steps);
   response.method = method_from_word(table.choice("method", {"modal", "time-stepping"}, "modal"));
   response.storage =
       storage_from_word(table.choice("storage", {"modal", "dense", "both"}, "modal"));
@@ -103,19 +100,19 @@ ResponseConfig read_response(TomlTable table) {
   return response;
 }
 
-Vector3 vector(TomlTable& table, const std::string& key) {
-  return Eigen::Map<const Vector3>(table.numbers(key, 3, Range{}).data());
+Vector3 vector(TomlTable& table, const std::string& key, const Range& range) {
+  return Eigen::Map<const Vector3>(table.numbers(key, 3, range).data());
 }
 
 HalfSpace read_half_space(TomlTable table) {
-  HalfSpace half{vector(table, "point"), vector(table, "normal")};
-  if (half.normal.isZero(0.0)) table.fail("normal", "is zero", "give it a direction");
+  HalfSpace half{vector(table, "point", lab::kMeshPlace), vector(table, "normal", lab::kComponent)};
+  if (half.normal.norm() < 1e-6) table.fail("normal", "is zero", "give it a direction");
   table.finish();
   return half;
 }
 
 BoxRegion read_box_region(TomlTable table) {
-  BoxRegion box{vector(table, "min"), vector(table, "max")};
+  BoxRegion box{vector(table, "min", lab::kMeshPlace), vector(table, "max", lab::kMeshPlace)};
   if ((box.lowest.array() > box.highest.array()).any()) {
     table.fail("min", "is above max", "exchange them");
   }

@@ -42,7 +42,7 @@ enum class Storage { kModal, kDense, kBoth };
 
 /// [response]
 struct ResponseConfig {
-  double dt = 0.002;                  ///< response interval [s], above 0 up to 1
+  double dt = 0.002;                  ///< response interval [s], lab::kStepTime
   int steps = 500;                    ///< T, 1..1 000 000
   Method method = Method::kModal;     ///< "modal" | "time-stepping"
   Storage storage = Storage::kModal;  ///< "modal" | "dense" | "both"

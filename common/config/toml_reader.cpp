@@ -1,40 +1,14 @@
 #include "common/config/toml_reader.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <sstream>
 
+#include "common/config/lab_ranges.hpp"
 #include "common/error.hpp"
 
 namespace irdm {
 namespace {
 
 const toml::table kEmptyTable;
-
-std::string to_text(double value) {
-  std::ostringstream stream;
-  stream << value;
-  return stream.str();
-}
-
-std::string describe(const Range& range) {
-  const bool low = range.lowest > std::numeric_limits<double>::lowest();
-  const bool high = range.highest < std::numeric_limits<double>::max();
-  std::string text = "a finite number";
-  if (low) text += (range.lowest_included ? " >= " : " > ") + to_text(range.lowest);
-  if (high) {
-    text += low ? " and" : "";
-    text += (range.highest_included ? " <= " : " < ") + to_text(range.highest);
-  }
-  return text;
-}
-
-bool contains(const Range& range, double value) {
-  if (!std::isfinite(value)) return false;
-  const bool low = range.lowest_included ? value >= range.lowest : value > range.lowest;
-  const bool high = range.highest_included ? value <= range.highest : value < range.highest;
-  return low && high;
-}
 
 }  // namespace
 
@@ -99,7 +73,7 @@ double TomlTable::checked(const std::string& key, const toml::node& node,
                           const Range& range) const {
   const std::optional<double> value = node.value<double>();
   if (!node.is_number() || !value) fail(key, "is not a number", "give " + describe(range));
-  if (!contains(range, *value)) fail(key, "is " + to_text(*value), "give " + describe(range));
+  if (!range.contains(*value)) fail(key, "is " + number_text(*value), "give " + describe(range));
   return *value;
 }
 
@@ -136,7 +110,12 @@ bool TomlTable::boolean(const std::string& key, bool fallback) {
 std::string TomlTable::text(const std::string& key) {
   const toml::node& node = need(key);
   if (!node.is_string()) fail(key, "is not text", "give text in quotes");
-  return node.value<std::string>().value_or("");
+  std::string text = node.value<std::string>().value_or("");
+  if (text.size() > lab::kLongestText) {
+    fail(key, "has " + std::to_string(text.size()) + " bytes",
+         "give at most " + std::to_string(lab::kLongestText));
+  }
+  return text;
 }
 
 std::string TomlTable::text(const std::string& key, const std::string& fallback) {

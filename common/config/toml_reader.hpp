@@ -2,34 +2,17 @@
 
 #include <toml++/toml.h>
 #include <filesystem>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "common/config/range.hpp"
+
 /// Strict reading of configuration files: every key that is read is checked for type and range, and
 /// every key that nobody read is an error. All errors are irdm::Error with file and line.
 namespace irdm {
-
-/// Closed range of a number; the default is any finite number.
-struct Range {
-  double lowest = -std::numeric_limits<double>::max();
-  double highest = std::numeric_limits<double>::max();
-  bool lowest_included = true;
-  bool highest_included = true;
-};
-
-inline Range at_least(double lowest) {
-  return {.lowest = lowest};
-}
-inline Range above(double lowest) {
-  return {.lowest = lowest, .lowest_included = false};
-}
-constexpr Range between(double lowest, double highest) {
-  return {.lowest = lowest, .highest = highest};
-}
 
 /// One table of a TOML file. Reading consumes keys; finish() rejects what is left over.
 class TomlTable {
@@ -46,7 +29,7 @@ class TomlTable {
   int integer(const std::string& key, int lowest, int highest);  ///< required
   int integer(const std::string& key, int lowest, int highest, int fallback);
   bool boolean(const std::string& key, bool fallback);
-  std::string text(const std::string& key);  ///< required
+  std::string text(const std::string& key);  ///< required; at most lab::kLongestText bytes
   std::string text(const std::string& key, const std::string& fallback);
   /// One of a list of words.
   std::string choice(const std::string& key, const std::vector<std::string>& words,

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/config/lab_ranges.hpp"
+
 namespace irdm::precompute {
 namespace {
 
@@ -42,7 +44,7 @@ TimeSteppingConfig read_time_stepping(TomlTable table, double dt) {
     table.fail("last_step", "is shorter than first_step", "make it first_step or longer");
   }
   config.hold = table.integer("hold", 1, kMaxHold, config.hold);
-  if (table.has("force")) config.force = table.number("force", above(0));
+  if (table.has("force")) config.force = table.number("force", lab::kProbeForce);
   config.rotation_weights = table.choice("rotation_weights", {"mass", "none"}, "mass") == "mass"
                                 ? RotationWeights::kMass
                                 : RotationWeights::kNone;

@@ -2,6 +2,8 @@
 
 #include <map>
 
+#include "common/config/lab_ranges.hpp"
+
 namespace irdm::precompute {
 namespace {
 
@@ -25,7 +27,7 @@ ModesConfig read_modes(TomlTable table) {
   }
   if (table.has("count")) modes.count = table.integer("count", 1, kMostModes, 1);
   if (table.has("highest_frequency")) {
-    modes.highest_frequency = table.number("highest_frequency", above(0));
+    modes.highest_frequency = table.number("highest_frequency", lab::kFrequency);
   }
   if (table.has("error")) modes.error = table.number("error", between(1e-4, 0.5));
   for (const char* key : {"contact_radius", "solver"}) {
@@ -34,7 +36,7 @@ ModesConfig read_modes(TomlTable table) {
                  "give one of count, highest_frequency and error, or leave it out");
     }
   }
-  modes.contact_radius = table.number("contact_radius", above(0), modes.contact_radius);
+  modes.contact_radius = table.number("contact_radius", lab::kLength, modes.contact_radius);
   modes.solver =
       solver_from_word(table.choice("solver", {"spectra", "slepc", "slepc-multigrid"}, "spectra"));
   table.finish();

@@ -6,15 +6,14 @@
 #include <sstream>
 
 #include "common/blackbox/read_black_box.hpp"
+#include "common/config/lab_ranges.hpp"
 #include "common/error.hpp"
 
 namespace irdm {
 namespace {
 
-constexpr Range kAnyNumber;
-
-Vector3 read_vector(TomlTable& table, const std::string& key) {
-  return Vector3(table.numbers(key, 3, kAnyNumber, {0.0, 0.0, 0.0}).data());
+Vector3 read_vector(TomlTable& table, const std::string& key, const Range& range) {
+  return Vector3(table.numbers(key, 3, range, {0.0, 0.0, 0.0}).data());
 }
 
 ServerConfig read_server(TomlTable table, int styluses) {
@@ -53,10 +52,10 @@ std::string read_token(TomlTable& table, const std::string& key) {
 
 void read_viewer_stylus(TomlTable table, double radius, ViewerConfig& config) {
   SimulationStylus& stylus = config.stylus;
-  stylus.radius = table.number("radius", between(0.0, 1.0), radius);
+  stylus.radius = table.number("radius", lab::kTipLength, radius);
   stylus.coupling_stiffness =
       table.number("coupling_stiffness", between(1.0, 1e5), stylus.coupling_stiffness);
-  stylus.reach = table.number("reach", between(0.0, 1.0), stylus.reach);
+  stylus.reach = table.number("reach", lab::kTipLength, stylus.reach);
   config.max_force = table.number("max_force", between(0.1, 100.0), config.max_force);
   table.finish();
 }
@@ -84,7 +83,7 @@ ViewerConfig read_viewer(TomlTable table, const std::vector<SimulationStylus>& s
 
 WorldConfig read_world(TomlTable table) {
   WorldConfig config;
-  config.gravity = read_vector(table, "gravity");
+  config.gravity = read_vector(table, "gravity", lab::kGravity);
   table.finish();
   return config;
 }
@@ -92,17 +91,14 @@ WorldConfig read_world(TomlTable table) {
 ContactConfig read_contact(TomlTable table) {
   ContactConfig config;
   config.coupling_stiffness =
-      table.number("coupling_stiffness", at_least(0.0), config.coupling_stiffness);
+      table.number("coupling_stiffness", lab::kStiffness, config.coupling_stiffness);
   config.release_time = table.number("release_time", between(1e-3, 1.0), config.release_time);
   table.finish();
   return config;
 }
 
-/// Of directions and quaternions of any length, whose square has to be a number.
-constexpr Range kComponent = between(-1e100, 1e100);
-
 Quaternion read_orientation(TomlTable& table) {
-  const auto wxyz = table.numbers("orientation", 4, kComponent, {1.0, 0.0, 0.0, 0.0});
+  const auto wxyz = table.numbers("orientation", 4, lab::kComponent, {1.0, 0.0, 0.0, 0.0});
   const Quaternion orientation(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
   constexpr double kSmallest = 1e-6;
   if (orientation.norm() < kSmallest) {
@@ -113,11 +109,10 @@ Quaternion read_orientation(TomlTable& table) {
 }
 
 Friction read_friction(TomlTable table, const Friction& fallback) {
-  constexpr double kLargest = 10.0;
   Friction friction;
-  friction.static_ = table.number("static", between(0.0, kLargest), fallback.static_);
+  friction.static_ = table.number("static", lab::kFriction, fallback.static_);
   friction.kinetic =
-      table.number("kinetic", between(0.0, kLargest), std::min(fallback.kinetic, friction.static_));
+      table.number("kinetic", lab::kFriction, std::min(fallback.kinetic, friction.static_));
   if (friction.kinetic > friction.static_) {
     table.fail("kinetic", "is larger than static", "lower it or raise static");
   }
@@ -126,19 +121,18 @@ Friction read_friction(TomlTable table, const Friction& fallback) {
 }
 
 RigidDamping read_damping(TomlTable table) {
-  constexpr double kLargest = 100.0;
   RigidDamping damping;
-  damping.linear = table.number("linear", between(0.0, kLargest), damping.linear);
-  damping.angular = table.number("angular", between(0.0, kLargest), damping.angular);
+  damping.linear = table.number("linear", lab::kDamping, damping.linear);
+  damping.angular = table.number("angular", lab::kDamping, damping.angular);
   table.finish();
   return damping;
 }
 
 Tether read_tether(TomlTable table) {
   Tether tether;
-  tether.stiffness = table.number("stiffness", at_least(0.0), tether.stiffness);
+  tether.stiffness = table.number("stiffness", lab::kStiffness, tether.stiffness);
   tether.angular_stiffness =
-      table.number("angular_stiffness", at_least(0.0), tether.angular_stiffness);
+      table.number("angular_stiffness", lab::kStiffness, tether.angular_stiffness);
   table.finish();
   return tether;
 }
@@ -147,8 +141,8 @@ std::optional<FloorConfig> read_floor(TomlTable& file) {
   if (!file.has("floor")) return std::nullopt;
   TomlTable table = file.table("floor");
   FloorConfig floor;
-  floor.height = table.number("height", kAnyNumber, floor.height);
-  const auto normal = table.numbers("normal", 3, kComponent, {0.0, 1.0, 0.0});
+  floor.height = table.number("height", lab::kPlace, floor.height);
+  const auto normal = table.numbers("normal", 3, lab::kComponent, {0.0, 1.0, 0.0});
   floor.normal = Vector3(normal.data());
   if (floor.normal.norm() < 1e-6) {
     table.fail("normal", "has no length", "give the direction that is up, for instance [0, 1, 0]");
@@ -161,10 +155,10 @@ std::optional<FloorConfig> read_floor(TomlTable& file) {
 
 SimulationStylus read_stylus(TomlTable table, const ContactConfig& contact) {
   SimulationStylus stylus;
-  stylus.radius = table.number("radius", between(0.0, 1.0), stylus.radius);
+  stylus.radius = table.number("radius", lab::kTipLength, stylus.radius);
   stylus.coupling_stiffness =
-      table.number("coupling_stiffness", at_least(0.0), contact.coupling_stiffness);
-  stylus.reach = table.number("reach", between(0.0, 1.0), stylus.reach);
+      table.number("coupling_stiffness", lab::kStiffness, contact.coupling_stiffness);
+  stylus.reach = table.number("reach", lab::kTipLength, stylus.reach);
   table.finish();
   return stylus;
 }
@@ -175,6 +169,10 @@ std::string read_name(TomlTable& table, const std::string& fallback) {
   const bool printable = std::none_of(name.begin(), name.end(), [](unsigned char letter) {
     return letter < 0x20 || letter == 0x7F || letter == '/';
   });
+  if (name.size() > lab::kLongestName) {
+    table.fail("name", "has " + std::to_string(name.size()) + " bytes",
+               "give at most " + std::to_string(lab::kLongestName));
+  }
   if (name.empty() || name == "." || !printable) {
     table.fail("name", "cannot name a group of the trace file",
                "use one or more letters, without '/' and control characters, and not \".\" alone");
@@ -193,10 +191,10 @@ ObjectConfig read_object(TomlTable table) {
   config.name = read_name(table, config.name);
   config.model = table.path("model");
   config.engine = read_engine(table);
-  config.position = read_vector(table, "position");
+  config.position = read_vector(table, "position", lab::kPlace);
   config.orientation = read_orientation(table);
-  config.velocity = read_vector(table, "velocity");
-  config.angular_velocity = read_vector(table, "angular_velocity");
+  config.velocity = read_vector(table, "velocity", lab::kVelocity);
+  config.angular_velocity = read_vector(table, "angular_velocity", lab::kAngularVelocity);
   config.friction = read_friction(table.table("friction"), config.friction);
   config.damping = read_damping(table.table("damping"));
   config.tether = read_tether(table.table("tether"));

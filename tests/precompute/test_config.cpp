@@ -200,6 +200,40 @@ TEST_CASE("configuration refuses each bad response entry") {
   check_refused("mesh = 3\n" + kMaterial, "mesh is not a table");
 }
 
+TEST_CASE("configuration takes what a laboratory may have, and nothing beyond") {
+  const auto limits = [](const std::string& key, const std::vector<const char*>& good,
+                         const std::vector<const char*>& bad) {
+    for (const char* value : good) CHECK_NOTHROW(read(kMesh + material(key, value)));
+    for (const char* value : bad) check_refused(kMesh + material(key, value), key + " is ");
+  };
+  limits("youngs_modulus", {"1", "1e3", "1e9", "1e13"}, {"0.9", "1e-308", "1e308"});
+  limits("density", {"0.01", "1e5"}, {"1e-9", "1e308"});
+  limits("rayleigh_alpha", {"0", "1e6"}, {"1e300"});
+  limits("rayleigh_beta", {"0", "100"}, {"1e300"});
+  const auto dt = [](const std::string& value) {
+    return kMesh + kMaterial + "[response]\ndt = " + value + "\n";
+  };
+  for (const char* good : {"1e-5", "1e-4", "4e-3", "1"}) CHECK_NOTHROW(read(dt(good)));
+  for (const char* bad : {"1e-20", "4e-10", "9e-6", "1.1"}) {
+    check_refused(dt(bad), "response.dt is ");
+  }
+  const std::string modes = kMesh + kMaterial + "[modes]\n";
+  check_refused(modes + "highest_frequency = 1e300\n", "modes.highest_frequency is 1e+300");
+  check_refused(modes + "count = 9\ncontact_radius = 1e300\n", "modes.contact_radius is 1e+300");
+  check_refused("[mesh]\nbox = { size = [1e300, 1, 1], cells = [1, 1, 1] }\n" + kMaterial,
+                "size is 1e+300");
+  check_refused("[mesh]\nfile = \"a.stl\"\nedge_length = 1e300\n" + kMaterial,
+                "edge_length is 1e+300");
+  check_refused(kMesh + kMaterial + "[time_stepping]\nforce = 1e300\n",
+                "time_stepping.force is 1e+300");
+  const std::string support = kMesh + kMaterial + "[response]\nsupport = \"fixed\"\n[support]\n";
+  check_refused(support + "half_space = { point = [1e300, 0, 0], normal = [0, 0, 1] }\n",
+                "point is 1e+300");
+  check_refused(support + "half_space = { point = [0, 0, 0], normal = [0, 0, 1e300] }\n",
+                "normal is 1e+300");
+  check_refused(support + "box = { min = [0, 0, 0], max = [1e300, 1, 1] }\n", "max is 1e+300");
+}
+
 TEST_CASE("configuration takes all modes, or some by one of three measures") {
   const auto modes = [](const std::string& lines) {
     return read(kMesh + kMaterial + "[modes]\n" + lines).modes;

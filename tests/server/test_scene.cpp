@@ -200,6 +200,11 @@ TEST_CASE("an object's name must do for a group of the trace file") {
           "s.toml:3: object[0].name cannot name a group of the trace file; use one or more "
           "letters, without '/' and control characters, and not \".\" alone");
   }
+  CHECK(rejection(kObject + "name = \"" + std::string(100, 'n') + "\"\n") == "no error");
+  CHECK(rejection(kObject + "name = \"" + std::string(1 << 20, 'n') + "\"\n") ==
+        "s.toml:3: object[0].name has 1048576 bytes; give at most 4096");
+  CHECK(rejection(kObject + "name = \"" + std::string(101, 'n') + "\"\n") ==
+        "s.toml:3: object[0].name has 101 bytes; give at most 100");
   const std::string twice = kObject + "name = \"a\"\n" + kObject + "name = \"a\"\n";
   CHECK(rejection(twice) ==
         "s.toml:1: object appears twice with the name 'a'; give each object a name of its own");
@@ -223,7 +228,10 @@ TEST_CASE("each limit of a scene: the last good value passes, the first bad one 
        "is 1001; give a finite number >= 1 and <= 1000"},
       {"server", "deformation_threads", "0", "-1", "is -1; give a whole number from 0 to 64"},
       {"server", "deformation_threads", "64", "65", "is 65; give a whole number from 0 to 64"},
-      {"contact", "coupling_stiffness", "0", "-0.1", "is -0.1; give a finite number >= 0"},
+      {"contact", "coupling_stiffness", "0", "-0.1",
+       "is -0.1; give a finite number >= 0 and <= 1e+09"},
+      {"contact", "coupling_stiffness", "1e9", "1.1e9",
+       "is 1.1e+09; give a finite number >= 0 and <= 1e+09"},
       {"contact", "release_time", "0.001", "0", "is 0; give a finite number >= 0.001 and <= 1"},
       {"contact", "release_time", "1", "1.1", "is 1.1; give a finite number >= 0.001 and <= 1"},
   }));
@@ -250,8 +258,11 @@ TEST_CASE("each limit of styluses, floor and objects: the last good value, the f
       {"[[stylus]]", "stylus[0].reach", "reach = 1", "reach = 1.1", "is 1.1"},
       {"[[stylus]]", "stylus[0].coupling_stiffness", "coupling_stiffness = 0",
        "coupling_stiffness = -1", "is -1"},
+      {"[[stylus]]", "stylus[0].coupling_stiffness", "coupling_stiffness = 1e9",
+       "coupling_stiffness = 1e300", "is 1e+300"},
       {"[[stylus]]", "stylus[0].mass", "", "mass = 1", "is not a known key"},
       {"[floor]", "floor.height", "height = -3", "height = nan", "is nan"},
+      {"[floor]", "floor.height", "height = 1e4", "height = 1e308", "is 1e+308"},
       {"[floor]", "floor.normal", "normal = [1, 1, 0]", "normal = [0, 0, 0]", "has no length"},
       {"[floor]", "floor.normal", "", "normal = [0, 1]", "has 2 entries"},
       {"[floor]", "floor.friction.static", "friction = { static = 10 }",
@@ -275,6 +286,16 @@ TEST_CASE("each limit of styluses, floor and objects: the last good value, the f
        "tether = { stiffness = -1 }", "is -1"},
       {"[[object]]", "object[0].tether.angular_stiffness", "tether = { angular_stiffness = 1 }",
        "tether = { angular_stiffness = inf }", "is inf"},
+      {"[[object]]", "object[0].tether.stiffness", "tether = { stiffness = 1e9 }",
+       "tether = { stiffness = 1e300 }", "is 1e+300"},
+      {"[[object]]", "object[0].position", "position = [1e4, 0, -1e4]", "position = [0, 1e308, 0]",
+       "is 1e+308"},
+      {"[[object]]", "object[0].velocity", "velocity = [1e3, 0, -1e3]", "velocity = [0, 0, 1e300]",
+       "is 1e+300"},
+      {"[[object]]", "object[0].angular_velocity", "angular_velocity = [1e3, 0, 0]",
+       "angular_velocity = [-1e300, 0, 0]", "is -1e+300"},
+      {"[world]", "world.gravity", "gravity = [0, -100, 100]", "gravity = [0, -1e300, 0]",
+       "is -1e+300"},
       {"[[object]]", "object[0].tether.x", "", "tether = { x = 1 }", "is not a known key"},
   }));
   const bool of_object = std::string(limit.table) == "[[object]]";
@@ -316,24 +337,30 @@ TEST_CASE("each wrong type or value in a scene is told with file, line, key and 
   CHECK(rejection("[server]\nport = 1.5\n" + kObject) ==
         "s.toml:2: server.port is not a whole number; give a whole number from 0 to 65535");
   CHECK(rejection("[contact]\ncoupling_stiffness = \"stiff\"\n" + kObject) ==
-        "s.toml:2: contact.coupling_stiffness is not a number; give a finite number >= 0");
+        "s.toml:2: contact.coupling_stiffness is not a number; give a finite number >= 0 and <= "
+        "1e+09");
 }
 
 TEST_CASE("each vector of a scene must have its numbers, all finite") {
-  for (const char* key : {"position", "velocity", "angular_velocity"}) {
-    const std::string start = "s.toml:3: object[0]." + std::string(key) + " ";
+  using KeyAndRange = std::pair<std::string, std::string>;
+  for (const auto& each : {KeyAndRange("position", ">= -10000 and <= 10000"),
+                           KeyAndRange("velocity", ">= -1000 and <= 1000"),
+                           KeyAndRange("angular_velocity", ">= -1000 and <= 1000")}) {
+    const std::string& key = each.first;
+    const std::string finite = "give a finite number " + each.second;
+    const std::string start = "s.toml:3: object[0]." + key + " ";
     const auto with = [&](const char* value) {
       return rejection(kObject + key + " = " + value + "\n");
     };
     CHECK(with("[1, 2]") == start + "has 2 entries; give a list of 3 numbers");
     CHECK(with("[1, 2, 3, 4]") == start + "has 4 entries; give a list of 3 numbers");
     CHECK(with("1") == start + "is not a list; give a list of 3 numbers");
-    CHECK(with("[1, \"2\", 3]") == start + "is not a number; give a finite number");
-    CHECK(with("[1, nan, 3]") == start + "is nan; give a finite number");
-    CHECK(with("[1, 2, -inf]") == start + "is -inf; give a finite number");
+    CHECK(with("[1, \"2\", 3]") == start + "is not a number; " + finite);
+    CHECK(with("[1, nan, 3]") == start + "is nan; " + finite);
+    CHECK(with("[1, 2, -inf]") == start + "is -inf; " + finite);
   }
   CHECK(rejection("[world]\ngravity = [0, inf, 0]\n" + kObject) ==
-        "s.toml:2: world.gravity is inf; give a finite number");
+        "s.toml:2: world.gravity is inf; give a finite number >= -100 and <= 100");
   CHECK(rejection(kObject + "orientation = [1, 0, 0]\n") ==
         "s.toml:3: object[0].orientation has 3 entries; give a list of 4 numbers");
   CHECK(rejection(kObject + "orientation = [0, 0, 0, 0]\n") ==

@@ -1,0 +1,33 @@
+#include "common/config/range.hpp"
+
+#include <cmath>
+#include <sstream>
+
+namespace irdm {
+
+bool Range::contains(double value) const noexcept {
+  if (!std::isfinite(value)) return false;
+  const bool low = lowest_included ? value >= lowest : value > lowest;
+  const bool high = highest_included ? value <= highest : value < highest;
+  return low && high;
+}
+
+std::string number_text(double value) {
+  std::ostringstream stream;
+  stream << value;
+  return stream.str();
+}
+
+std::string describe(const Range& range) {
+  const bool low = range.lowest > std::numeric_limits<double>::lowest();
+  const bool high = range.highest < std::numeric_limits<double>::max();
+  std::string text = "a finite number";
+  if (low) text += (range.lowest_included ? " >= " : " > ") + number_text(range.lowest);
+  if (high) {
+    text += low ? " and" : "";
+    text += (range.highest_included ? " <= " : " < ") + number_text(range.highest);
+  }
+  return text;
+}
+
+}  // namespace irdm

@@ -34,7 +34,7 @@ class Allowance {
   std::int64_t last_ns_ = 0;
 };
 
-/// Lines of the log about peers: one who knocks again and again does not fill the disk.
+/// Lines of the log about what peers do wrong: 5 a second, 50 at once.
 inline Allowance complaint_allowance() {
   return {5.0, 50.0};
 }

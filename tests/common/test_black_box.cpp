@@ -1,6 +1,3 @@
-#include <spdlog/sinks/ostream_sink.h>
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
@@ -19,6 +16,7 @@
 #include "common/error.hpp"
 #include "common/realtime/clock.hpp"
 #include "common/wire/frame.hpp"
+#include "tests/support/captured_log.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/file_size_limit.hpp"
 #include "tests/support/small_disk.hpp"
@@ -70,20 +68,15 @@ std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder)
 
 /// A black box of 1 MB that does not fit there.
 void check_no_room(const std::filesystem::path& folder) {
-  std::ostringstream lines;
-  const auto before = spdlog::default_logger();
-  spdlog::set_default_logger(std::make_shared<spdlog::logger>(
-      "", std::make_shared<spdlog::sinks::ostream_sink_mt>(lines)));
+  const CapturedLog log;
   FrameLog frames;
   frames.see(TapKind::kReceived, 1, std::vector<std::uint8_t>(1 << 20, 1));
   BlackBox box({.folder = folder}, "program", {&frames});
   box.start();
   box.report("a fault", "");
   box.finish();
-  spdlog::set_default_logger(before);
-  const std::string text = lines.str();
-  CHECK(std::count(text.begin(), text.end(), '\n') == 1);
-  CHECK_THAT(text, Contains("a fault: no black box: ") && Contains("; check "));
+  CHECK(log.lines() == 1);
+  CHECK_THAT(log.text(), Contains("a fault: no black box: ") && Contains("; check "));
   CHECK(files_in(folder).empty());
 }
 

@@ -274,7 +274,7 @@ double largest_error(const LoopRun& run, const LoopRun& reference, std::size_t h
   return largest / peak(reference, hand);
 }
 
-double mean_error(const LoopRun& run, const LoopRun& reference, std::size_t hand) {
+double rms_error(const LoopRun& run, const LoopRun& reference, std::size_t hand) {
   double difference = 0.0;
   double whole = 0.0;
   for (std::size_t k = 0; k < reference.force[hand].size(); ++k) {

@@ -61,8 +61,8 @@ LoopRun run_loop(const LoopSetup& setup, LoopMode mode, const LoopLink& link = {
 
 /// Largest difference of the forces on a hand, as a share of the largest force of the reference.
 double largest_error(const LoopRun& run, const LoopRun& reference, std::size_t hand = 0);
-/// The same of their root mean squares over all steps.
-double mean_error(const LoopRun& run, const LoopRun& reference, std::size_t hand = 0);
+/// Root mean square of the difference over all steps, as a share of that of the reference.
+double rms_error(const LoopRun& run, const LoopRun& reference, std::size_t hand = 0);
 double peak(const LoopRun& run, std::size_t hand = 0);
 
 }  // namespace irdm::test

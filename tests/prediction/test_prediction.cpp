@@ -169,24 +169,23 @@ TEST_CASE("prediction: a surface that is pressed feels as without delay", "[slow
 }
 
 // A tip that slips is between kinetic and static friction, and so is the same tip with a link in
-// between, at another moment: they may be a tooth apart, (0.6 - 0.5) / |(1, 0.6)| of the force, and
-// in the mean half of one, were they always in opposite phase. What they press across the surface
-// differs besides. Where the tip goes on from another place, by a bad link or on a very soft
-// surface, a tooth may have to be made up for at once.
+// between, at another moment: in the mean they are at most half a tooth apart, (0.6 - 0.5) /
+// |(1, 0.6)| of the force, were they always in opposite phase. The bounds of single steps are
+// measured, not derived: one tooth and what is pressed across it, up to 0.09; where the tip goes on
+// from another place, by a bad link or on a very soft surface, up to 0.157 and 0.188.
 TEST_CASE("prediction: a tip that slides on a surface", "[slow]") {
   const double tooth = (0.6 - 0.5) / std::hypot(1.0, 0.6);
-  const double across = 0.015;
   for (const double E : kStiffnesses) {
     const LoopSetup setup = pressed(E, 0.03);
     const LoopRun direct = run_loop(setup, LoopMode::kDirect);
     for (const LoopLink& link : kLinks) {
       CAPTURE(E, link.delay, link.loss);
       const Compared predict = compare(setup, direct, LoopMode::kPredict, link);
-      CHECK(test::mean_error(predict.run, direct) < 0.5 * tooth);
+      CHECK(test::rms_error(predict.run, direct) < 0.5 * tooth);
       const bool soft = E < 2e3;
-      const bool elsewhere = link.loss > 0.0 || (soft && link.delay > 0.01);
-      const double teeth = !elsewhere ? 1.0 : soft ? 2.5 : 2.0;
-      CHECK(predict.error < teeth * tooth + across);
+      const double slow_link = soft && link.delay > 0.01 ? 0.2 : 0.1;
+      const double bad_link = soft ? 0.23 : 0.19;
+      CHECK(predict.error < (link.loss > 0.0 ? bad_link : slow_link));
     }
   }
 }

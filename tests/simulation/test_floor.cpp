@@ -25,6 +25,14 @@ SimulationConfig standing(double youngs_modulus, const Friction& friction) {
   return config;
 }
 
+// The same on a slope down along x, at an angle [rad] and with a speed along it [m/s].
+SimulationConfig on_slope(double angle, const Friction& friction, double speed = 0.0) {
+  SimulationConfig config = standing(2e5, friction);
+  config.gravity = kGravity * Vector3(std::sin(angle), -std::cos(angle), 0);
+  config.objects[0].velocity = Vector3(speed, 0, 0);
+  return config;
+}
+
 void step(Simulation& simulation, StepRecord& record) {
   const StylusCommand nobody;
   simulation.step({&nobody, 1}, record);
@@ -86,11 +94,8 @@ TEST_CASE("floor: a block slides from the friction angle on, within half a degre
   const double mu = 0.4;
   const double angle = std::atan(mu);
   for (const double off : {-0.5, 0.5}) {
-    SimulationConfig config = standing(2e5, {mu, mu});
-    Simulation level(config);
     const double tilt = angle + off * std::numbers::pi / 180.0;
-    config.gravity = kGravity * Vector3(std::sin(tilt), -std::cos(tilt), 0);
-    Simulation simulation(config);
+    Simulation simulation(on_slope(tilt, {mu, mu}));
     StepRecord record;
     double early = 0.0;
     for (int k = 0; k < 2000; ++k) {
@@ -148,10 +153,7 @@ TEST_CASE("floor: pushed along, a block slides at mu M g within 1 %") {
 TEST_CASE("floor: a block that was thrown up a slope comes down again by kinetic friction") {
   const Friction friction{0.8, 0.2};
   const double tilt = std::atan(0.5);
-  SimulationConfig config = standing(2e5, friction);
-  config.gravity = kGravity * Vector3(std::sin(tilt), -std::cos(tilt), 0);
-  config.objects[0].velocity = Vector3(-0.6, 0, 0);
-  Simulation simulation(config);
+  Simulation simulation(on_slope(tilt, friction, -0.6));
   const double up = kGravity * (std::sin(tilt) + friction.kinetic * std::cos(tilt));
   const double down = kGravity * (std::sin(tilt) - friction.kinetic * std::cos(tilt));
   StepRecord record;
@@ -171,11 +173,8 @@ TEST_CASE("floor: a block that slides slowly goes on sliding, by kinetic frictio
   const Friction friction{0.8, 0.2};
   for (const double slope : {0.2, 0.15}) {
     CAPTURE(slope);
-    SimulationConfig config = standing(2e5, friction);
     const double tilt = std::atan(slope);
-    config.gravity = kGravity * Vector3(std::sin(tilt), -std::cos(tilt), 0);
-    config.objects[0].velocity = Vector3(slope == 0.2 ? 0.02 : 0.1, 0, 0);
-    Simulation simulation(config);
+    Simulation simulation(on_slope(tilt, friction, slope == 0.2 ? 0.02 : 0.1));
     StepRecord record;
     double early = 0.0;
     for (int k = 0; k < 96; ++k) {

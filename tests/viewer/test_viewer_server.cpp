@@ -1,18 +1,14 @@
 // The viewer's server on real sockets.
-#include <spdlog/sinks/ostream_sink.h>
-#include <spdlog/spdlog.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <atomic>
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <fstream>
-#include <sstream>
 
 #include "common/error.hpp"
-#include "server/viewer/request_rules.hpp"
 #include "server/viewer/viewer_server.hpp"
+#include "tests/support/captured_log.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/viewer/example_run.hpp"
@@ -107,27 +103,6 @@ int close_code(WebPeer& peer) {
   return -1;
 }
 
-/// What is logged meanwhile.
-class CapturedLog {
- public:
-  CapturedLog() {
-    spdlog::set_default_logger(std::make_shared<spdlog::logger>(
-        "", std::make_shared<spdlog::sinks::ostream_sink_mt>(text_)));
-  }
-  CapturedLog(const CapturedLog&) = delete;
-  CapturedLog& operator=(const CapturedLog&) = delete;
-  ~CapturedLog() { spdlog::set_default_logger(before_); }
-  /// After the threads that log have said all.
-  std::size_t lines() const {
-    const std::string text = text_.str();
-    return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
-  }
-
- private:
-  std::shared_ptr<spdlog::logger> before_ = spdlog::default_logger();
-  std::ostringstream text_;
-};
-
 std::size_t resident_bytes() {
   std::ifstream file("/proc/self/statm");
   std::size_t size = 0;
@@ -220,39 +195,6 @@ TEST_CASE("only pages of this server may open a WebSocket") {
   CHECK_THAT(answer("http://evil.example", "127.0.0.1:80"), StartsWith("HTTP/1.1 403"));
   CHECK_THAT(answer("", "127.0.0.1:80"), StartsWith("HTTP/1.1 403"));
   CHECK_THAT(answer("http://evil.example", "evil.example"), StartsWith("HTTP/1.1 403"));
-}
-
-TEST_CASE("which origins are allowed") {
-  CHECK(origin_allowed("http://localhost:8080", "LOCALHOST:8080", false));
-  CHECK(origin_allowed("https://[::1]:8080", "[::1]:8080", false));
-  CHECK(origin_allowed("https://lab.example", "lab.example", true));
-  CHECK_FALSE(origin_allowed("https://lab.example", "lab.example", false));
-  CHECK_FALSE(origin_allowed("null", "127.0.0.1", false));
-  CHECK_FALSE(origin_allowed("http://", "", true));
-  CHECK_FALSE(origin_allowed("http://127.0.0.1:1", "127.0.0.1:2", false));
-  CHECK_FALSE(origin_allowed("http://127.0.0.1.evil.example", "127.0.0.1.evil.example", false));
-}
-
-TEST_CASE("a host that is none is no origin, with a token or without") {
-  const bool token_needed = GENERATE(false, true);
-  const std::string host = GENERATE(
-      "[::1].evil.com", "127.0.0.1:1@evil.com", "127.0.0.1:80#.evil.com", "[::1]:1@evil.com",
-      "[::1]x:80", "[::1", "::1", "[127.0.0.1]", "[::1%25lo]", "[::1%lo]", "localhost:", ":80",
-      "localhost:65536", "localhost:+80", "localhost:80:80", "localhost:8 0", "localhost/x",
-      "localhost?x", "user@localhost", "127.0.0.1#", "127.0.0.1\t");
-  CAPTURE(host);
-  CHECK_FALSE(origin_allowed("http://" + host, host, token_needed));
-}
-
-TEST_CASE("which hosts are of this machine") {
-  const std::string local = GENERATE("127.0.0.1", "127.0.0.1:80", "10.0.0.7:65535", "[::1]",
-                                     "[fe80::1]:8080", "[::ffff:127.0.0.1]:1", "Localhost");
-  CAPTURE(local);
-  CHECK(origin_allowed("http://" + local, local, false));
-  const std::string named = GENERATE("127.0.0.1.evil.com", "lab-2.example_x:80", "127.1", "0x7f.1");
-  CAPTURE(named);
-  CHECK_FALSE(origin_allowed("http://" + named, named, false));
-  CHECK(origin_allowed("http://" + named, named, true));
 }
 
 TEST_CASE("a viewer gets the scene, state, health and a frame, and then every newer one") {

@@ -101,7 +101,11 @@ TEST_CASE("server sends forces of another's stylus away") {
   REQUIRE(peer.receive_as<wire::Welcome>());
   peer.send(SampleMessage{});
   CHECK(running.next_input().present);
-  peer.send(wire::AppliedForcesMessage{.stylus = 1, .applied = {.step = 1, .count = 1}});
+  wire::AppliedForcesMessage foreign;
+  foreign.stylus = 1;
+  foreign.applied.step = 1;
+  foreign.applied.count = 1;
+  peer.send(foreign);
   CHECK_FALSE(running.next_input().present);
   check_sent_away(running, peer);
   CHECK_FALSE(running.server.port(1).in.receive());

@@ -7,6 +7,7 @@
 
 #include "common/blackbox/read_black_box.hpp"
 #include "common/error.hpp"
+#include "common/quoted.hpp"
 #include "device_bridge/device_registry.hpp"
 
 namespace irdm {
@@ -131,9 +132,9 @@ void check_names(const std::vector<DeviceConfig>& devices, const std::string& fi
   std::set<std::pair<std::string, std::string>> seen;
   for (const DeviceConfig& device : devices) {
     if (device.type == "virtual" || seen.insert({device.type, device.name}).second) continue;
-    throw Error(file,
-                "has two devices of type " + device.type + " with the name '" + device.name + "'",
-                "give each its own name, as in the vendor's setup");
+    throw Error(
+        file, "has two devices of type " + device.type + " with the name " + in_quotes(device.name),
+        "give each its own name, as in the vendor's setup");
   }
 }
 
@@ -142,18 +143,19 @@ void check_names(const std::vector<DeviceConfig>& devices, const std::string& fi
 ServerAddress parse_server_address(const std::string& text, const std::string& where) {
   const std::string remedy = "give HOST:PORT with a port from 1 to 65535";
   const std::size_t colon = text.rfind(':');
-  if (colon == std::string::npos) throw Error(where, "'" + text + "' has no port", remedy);
+  if (colon == std::string::npos) throw Error(where, in_quotes(text) + " has no port", remedy);
   ServerAddress address;
   address.host = text.substr(0, colon);
   if (address.host.starts_with('[') && address.host.ends_with(']')) {
     address.host = address.host.substr(1, address.host.size() - 2);
   } else if (address.host.find(':') != std::string::npos) {
-    throw Error(where, "'" + text + "' is ambiguous", "write an IPv6 address as [ADDRESS]:PORT");
+    throw Error(where, in_quotes(text) + " is ambiguous",
+                "write an IPv6 address as [ADDRESS]:PORT");
   }
   const char* end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data() + colon + 1, end, address.port);
   if (address.host.empty() || error != std::errc() || stop != end || address.port == 0) {
-    throw Error(where, "'" + text + "' is not a server", remedy);
+    throw Error(where, in_quotes(text) + " is not a server", remedy);
   }
   return address;
 }

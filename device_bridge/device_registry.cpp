@@ -3,6 +3,7 @@
 #include <array>
 
 #include "common/error.hpp"
+#include "common/quoted.hpp"
 #include "device_bridge/forcedimension/forcedimension_device.hpp"
 #include "device_bridge/openhaptics/openhaptics_device.hpp"
 #include "device_bridge/virtual_stylus.hpp"
@@ -27,7 +28,7 @@ std::unique_ptr<HapticDevice> make_device(const DeviceConfig& config) {
   for (const Entry& entry : kEntries) {
     if (config.type == entry.type) return entry.make(config);
   }
-  throw Error("device " + config.type, "is not a known type",
+  throw Error("device " + in_quotes(config.type), "is not a known type",
               "use virtual, openhaptics or forcedimension");
 }
 

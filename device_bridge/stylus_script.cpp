@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "common/error.hpp"
+#include "common/quoted.hpp"
 
 namespace irdm {
 namespace {
@@ -73,7 +74,7 @@ class StylusScript::Parser {
         names.substr(std::min(names.size(), has_orientation_ ? turned.size() : base.size()));
     has_button_ = rest == ",button";
     if (!names.starts_with(base) || !(rest.empty() || has_button_)) {
-      fail("'" + content + "' is not a header", std::string("begin with a ") + kRemedy);
+      fail(in_quotes(content) + " is not a header", std::string("begin with a ") + kRemedy);
     }
     columns_ = 4u + (has_orientation_ ? 4u : 0u) + (has_button_ ? 1u : 0u);
   }
@@ -82,8 +83,8 @@ class StylusScript::Parser {
     char* end = nullptr;
     const double value = std::strtod(field.c_str(), &end);
     if (field.empty() || end != field.c_str() + field.size())
-      fail("'" + field + "' is not a number", "correct it");
-    if (!std::isfinite(value)) fail("'" + field + "' is not finite", "give a finite number");
+      fail(in_quotes(field) + " is not a number", "correct it");
+    if (!std::isfinite(value)) fail(in_quotes(field) + " is not finite", "give a finite number");
     return value;
   }
 
@@ -97,7 +98,8 @@ class StylusScript::Parser {
     Row row;
     row.time = values[0];
     if (!script_.rows_.empty() && row.time <= script_.rows_.back().time) {
-      fail("time " + fields[0] + " does not come after the row before", "sort the rows by time");
+      fail("time " + in_quotes(fields[0]) + " does not come after the row before",
+           "sort the rows by time");
     }
     row.pose.tip = Vector3(values[1], values[2], values[3]);
     if (std::abs(row.time) > kLargestTime ||
@@ -117,7 +119,8 @@ class StylusScript::Parser {
 
   std::uint32_t buttons(double value, const std::string& field) const {
     if (value < 0.0 || value > kLargestButtons || value != std::floor(value)) {
-      fail("button '" + field + "' is not a whole number", "give 0, or 1 for the grab button");
+      fail("button " + in_quotes(field) + " is not a whole number",
+           "give 0, or 1 for the grab button");
     }
     return static_cast<std::uint32_t>(value);
   }

@@ -6,6 +6,7 @@
 
 #include "common/checksum.hpp"
 #include "common/error.hpp"
+#include "common/quoted.hpp"
 #include "replay/replay.hpp"
 #include "server/config/scene.hpp"
 #include "server/record/recording.hpp"
@@ -69,7 +70,8 @@ std::filesystem::path find_model(const std::filesystem::path& trace, const Trace
     if (other.empty()) other = path.string();
   }
   if (other.empty()) {
-    throw Error(trace.string(), "was recorded with " + object.model_file + ", which is not there",
+    throw Error(trace.string(),
+                "was recorded with " + in_quotes(object.model_file) + ", which is not there",
                 "give it with --model");
   }
   throw Error(other, "is not the model that " + trace.string() + " was recorded with",

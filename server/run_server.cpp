@@ -12,6 +12,7 @@
 #include "common/contact/contact_model.hpp"
 #include "common/error.hpp"
 #include "common/program/stop_signal.hpp"
+#include "common/quoted.hpp"
 #include "common/realtime/memory_lock.hpp"
 #include "server/blackbox/step_log.hpp"
 #include "server/config/scene.hpp"
@@ -40,8 +41,8 @@ void check_coupling(const SceneConfig& scene, const SimulationConfig& config,
     if (config.objects[i].model->body.support != Support::kFixed) continue;
     throw Error(
         name,
-        "object '" + scene.objects[i].name +
-            "' is fixed and contact.coupling_stiffness is 0, so that nothing yields where it "
+        "object " + in_quotes(scene.objects[i].name) +
+            " is fixed and contact.coupling_stiffness is 0, so that nothing yields where it "
             "is clamped",
         "set contact.coupling_stiffness, for instance to 2000 (N/m)");
   }

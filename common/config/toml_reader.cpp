@@ -4,11 +4,14 @@
 
 #include "common/config/lab_ranges.hpp"
 #include "common/error.hpp"
+#include "common/quoted.hpp"
 
 namespace irdm {
 namespace {
 
 const toml::table kEmptyTable;
+constexpr std::size_t kMostOfParser = 160;  // its own words, and perhaps some of the file
+constexpr std::size_t kLongestFileName = 255;
 
 }  // namespace
 
@@ -28,7 +31,7 @@ TomlTable TomlTable::parse_file(const std::filesystem::path& path) {
                  std::filesystem::absolute(path).parent_path());
   } catch (const toml::parse_error& error) {
     throw Error(path.string() + ":" + std::to_string(error.source().begin.line),
-                std::string(error.description()), "correct the TOML syntax");
+                shortened(error.description(), kMostOfParser), "correct the TOML syntax");
   }
 }
 
@@ -37,12 +40,12 @@ TomlTable TomlTable::parse_text(const std::string& text, const std::string& name
     return adopt(toml::parse(text), name, std::filesystem::current_path());
   } catch (const toml::parse_error& error) {
     throw Error(name + ":" + std::to_string(error.source().begin.line),
-                std::string(error.description()), "correct the TOML syntax");
+                shortened(error.description(), kMostOfParser), "correct the TOML syntax");
   }
 }
 
 std::string TomlTable::full_name(const std::string& key) const {
-  return name_.empty() ? key : name_ + "." + key;
+  return shortened(name_.empty() ? key : name_ + "." + key);
 }
 
 void TomlTable::fail(const std::string& key, const std::string& what,
@@ -128,7 +131,7 @@ std::string TomlTable::choice(const std::string& key, const std::vector<std::str
   if (std::find(words.begin(), words.end(), word) == words.end()) {
     std::string list;
     for (const std::string& each : words) list += (list.empty() ? "" : " | ") + each;
-    fail(key, "is '" + word + "'", "give one of: " + list);
+    fail(key, "is " + in_quotes(word), "give one of: " + list);
   }
   return word;
 }
@@ -136,6 +139,11 @@ std::string TomlTable::choice(const std::string& key, const std::vector<std::str
 std::filesystem::path TomlTable::path(const std::string& key) {
   const std::string name = text(key);
   if (name.empty()) fail(key, "is empty", "give a path");
+  for (const auto& part : std::filesystem::path(name)) {
+    if (part.string().size() <= kLongestFileName) continue;
+    fail(key, "has the file name " + in_quotes(part.string()),
+         "give names of at most " + std::to_string(kLongestFileName) + " bytes");
+  }
   return (document_->folder / name).lexically_normal();
 }
 

@@ -6,6 +6,8 @@
 #include <iostream>
 #include <new>
 
+#include "common/quoted.hpp"
+
 namespace irdm {
 namespace {
 
@@ -24,7 +26,7 @@ CLI::Validator positive_number() {
   const auto check = [](const std::string& text) {
     double value = 0.0;
     const bool good = CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value > 0.0;
-    return good ? std::string() : "'" + text + "' is not a finite number above 0";
+    return good ? std::string() : in_quotes(text) + " is not a finite number above 0";
   };
   return {check, "POSITIVE", "positive_number"};
 }

@@ -4,6 +4,8 @@
 #include <charconv>
 #include <stdexcept>
 
+#include "common/quoted.hpp"
+
 namespace irdm::precompute {
 namespace {
 
@@ -21,7 +23,7 @@ ColumnRange column_range_from_text(const std::string& text) {
   const char* const end = at + text.size();
   const bool good = read_number(at, end, range.begin) && at != end && *at++ == ':' &&
                     read_number(at, end, range.end) && at == end && range.begin < range.end;
-  if (!good) throw std::invalid_argument("'" + text + "' is not A:B with 0 <= A < B");
+  if (!good) throw std::invalid_argument(in_quotes(text) + " is not A:B with 0 <= A < B");
   return range;
 }
 

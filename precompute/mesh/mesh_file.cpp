@@ -7,6 +7,7 @@
 #include <string>
 
 #include "common/error.hpp"
+#include "common/quoted.hpp"
 #include "precompute/mesh/format/gmsh_reader.hpp"
 #include "precompute/mesh/format/medit_reader.hpp"
 #include "precompute/mesh/format/obj_reader.hpp"
@@ -79,7 +80,7 @@ TetMesh fill(const SurfaceMesh& raw, const std::string& name, std::optional<doub
 TetMesh read_mesh_file(const std::filesystem::path& path, std::optional<double> edge_length) {
   const auto found = kFormats.find(extension(path));
   if (found == kFormats.end()) {
-    throw Error(path.string(), "mesh format '" + extension(path) + "' is not known",
+    throw Error(path.string(), "mesh format " + in_quotes(extension(path)) + " is not known",
                 "give .msh (Gmsh), .node or .ele (TetGen), .vtk, .vtu, .mesh (Medit), a surface "
                 "(.stl, .obj, .ply) or a .geo (Gmsh)");
   }

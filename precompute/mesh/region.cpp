@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "common/error.hpp"
+#include "common/quoted.hpp"
 
 namespace irdm::precompute {
 namespace {
@@ -33,9 +34,15 @@ std::vector<int> nodes_inside(const TetMesh& mesh, const Shape& shape) {
   return nodes;
 }
 
+constexpr std::size_t kMostGroups = 10;  // in a message
+
 std::string group_list(const TetMesh& mesh) {
   std::string list;
-  for (const auto& [name, group] : mesh.groups) list += (list.empty() ? "'" : ", '") + name + "'";
+  std::size_t left = kMostGroups;
+  for (const auto& [name, group] : mesh.groups) {
+    if (left-- == 0) return list + ", ...";
+    list += (list.empty() ? "" : ", ") + in_quotes(name);
+  }
   return list;
 }
 
@@ -43,7 +50,7 @@ std::vector<int> nodes_of_group(const TetMesh& mesh, const std::string& group,
                                 const std::string& name) {
   const auto found = mesh.groups.find(group);
   if (found == mesh.groups.end()) {
-    throw Error(name, "the mesh has no group '" + group + "'",
+    throw Error(name, "the mesh has no group " + in_quotes(group),
                 mesh.groups.empty()
                     ? "only Gmsh and Medit files have groups: use a box or a half-space"
                     : "it has " + group_list(mesh));

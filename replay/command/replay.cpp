@@ -4,6 +4,7 @@
 
 #include "common/error.hpp"
 #include "common/program/program.hpp"
+#include "common/quoted.hpp"
 #include "replay/command/command.hpp"
 
 namespace irdm::replay {
@@ -18,7 +19,7 @@ void check_reference(const ReplayOptions& options, const std::string& engine) {
     throw Error("--solve-bridged", "is of the force step", "leave out one of it and --reference");
   }
   if (engine.empty()) return;
-  throw Error("--engine " + engine, "means nothing to a reference, which has none",
+  throw Error("--engine " + shortened(engine), "means nothing to a reference, which has none",
               "leave one of them out");
 }
 

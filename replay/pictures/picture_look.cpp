@@ -4,6 +4,7 @@
 #include <charconv>
 
 #include "common/error.hpp"
+#include "common/quoted.hpp"
 
 namespace irdm::replay {
 namespace {
@@ -26,7 +27,7 @@ void read_size(const std::string& text, PictureLook& look) {
   const auto size = two_numbers<int>(text, 'x');
   const auto fits = [](int length) { return length >= 64 && length <= 8192; };
   if (!size || !fits(size->front()) || !fits(size->back())) {
-    throw Error("--size " + text, "is no size of a picture",
+    throw Error("--size " + shortened(text), "is no size of a picture",
                 "give WIDTHxHEIGHT, each from 64 to 8192 pixels");
   }
   look.width = size->front();
@@ -37,7 +38,7 @@ PictureCamera read_camera(const std::string& text) {
   const auto angles = two_numbers<double>(text, ',');
   if (!angles || !(angles->front() >= -360.0 && angles->front() <= 360.0) ||
       !(angles->back() >= -90.0 && angles->back() <= 90.0)) {
-    throw Error("--camera " + text, "is no direction",
+    throw Error("--camera " + shortened(text), "is no direction",
                 "give AZIMUTH,ELEVATION in degrees, the second from -90 to 90");
   }
   return {angles->front(), angles->back()};

@@ -8,6 +8,7 @@
 #include "common/blackbox/read_black_box.hpp"
 #include "common/config/lab_ranges.hpp"
 #include "common/error.hpp"
+#include "common/quoted.hpp"
 
 namespace irdm {
 namespace {
@@ -241,7 +242,7 @@ SceneConfig read_scene(TomlTable file) {
   for (TomlTable& object : file.tables("object")) {
     scene.objects.push_back(read_object(object));
     if (!names.insert(scene.objects.back().name).second) {
-      file.fail("object", "appears twice with the name '" + scene.objects.back().name + "'",
+      file.fail("object", "appears twice with the name " + in_quotes(scene.objects.back().name),
                 "give each object a name of its own");
     }
   }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "common/error.hpp"
+#include "common/quoted.hpp"
 #include "common/realtime/clock.hpp"
 #include "common/wire/allowance.hpp"
 #include "server/viewer/connection.hpp"
@@ -103,7 +104,7 @@ class ViewerServer::Impl final : public Hub {
 };
 
 void ViewerServer::Impl::listen() {
-  const std::string wanted = settings_.address + ":" + std::to_string(settings_.port);
+  const std::string wanted = shortened(settings_.address) + ":" + std::to_string(settings_.port);
   error_code error;
   const auto address = boost::asio::ip::make_address(settings_.address, error);
   if (error) throw Error("viewer " + wanted, "is not an address", "give a numeric address");

@@ -2,6 +2,7 @@
 
 #include "common/config/toml_reader.hpp"
 #include "common/error.hpp"
+#include "common/quoted.hpp"
 
 using Catch::Matchers::Contains;
 using irdm::Error;
@@ -48,6 +49,44 @@ TEST_CASE("configuration reader rejects keys that nobody reads, in nested tables
   nested.number("c", {});
   CHECK_NOTHROW(table.finish());
   CHECK_THROWS_WITH(nested.finish(), Contains("test.toml:4: b.typo is not a known key"));
+}
+
+TEST_CASE("messages quote the beginning of what is long, and say where it is") {
+  const std::string long_word(1'000'000, 'x');
+  const auto message = [](const auto& action) {
+    try {
+      action();
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const auto is_short = [](const std::string& text, const std::string& begin) {
+    CAPTURE(text.substr(0, 400));
+    CHECK(text.starts_with(begin));
+    CHECK(text.size() < 400);
+  };
+  is_short(message([&] { parse("\na = \"" + long_word + "\"").path("a"); }),
+           "test.toml:2: a has 1000000 bytes");
+  const std::string word(4000, 'x');
+  is_short(message([&] { parse("\na = \"" + word + "\"").path("a"); }),
+           "test.toml:2: a has the file name 'xxx");
+  is_short(message([&] { parse("\na = \"" + word + "\"").choice("a", {"b"}, "b"); }),
+           "test.toml:2: a is 'xxx");
+  is_short(message([&] { parse("\n" + long_word + " = 1").finish(); }), "test.toml:2: xxx");
+  is_short(message([&] { parse("\n" + long_word); }), "test.toml:2: ");
+  is_short(message([&] { parse("a = 1\n" + long_word + " = 1\n" + long_word + " = 2\n"); }),
+           "test.toml:3: ");
+}
+
+TEST_CASE("a quotation ends between two characters") {
+  CHECK(irdm::in_quotes("short") == "'short'");
+  CHECK(irdm::shortened(std::string(80, 'x')) == std::string(80, 'x'));
+  CHECK(irdm::shortened(std::string(81, 'x')) == std::string(80, 'x') + "...");
+  // Of two bytes each, the first at an odd place.
+  std::string umlauts = "x";
+  for (int i = 0; i < 100; ++i) umlauts += "\u00fc";
+  CHECK(irdm::shortened(umlauts) == umlauts.substr(0, 79) + "...");
 }
 
 TEST_CASE("what a message quotes of a file has no control characters") {

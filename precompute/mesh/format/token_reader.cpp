@@ -35,12 +35,6 @@ std::string file_content(const std::filesystem::path& path) {
   return text;
 }
 
-std::string in_quotes(std::string_view word) {
-  std::string text = "'";
-  for (const char c : word.substr(0, 40)) text += c >= ' ' && c <= '~' ? c : '?';
-  return text + "'";
-}
-
 TokenReader::TokenReader(const std::filesystem::path& path, char comment)
     : name_(path.string()), text_(file_content(path)), comment_(comment) {
   if (at_end()) throw Error(name_, "is empty", "write the mesh again");

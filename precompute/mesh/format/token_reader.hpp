@@ -5,6 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "common/quoted.hpp"
+
 namespace irdm::precompute {
 
 /// Bound of every count in a mesh file.
@@ -12,9 +14,6 @@ inline constexpr std::int64_t kMaxCount = 100'000'000;
 
 /// The bytes of a file. Throws Error when it is missing, unreadable or empty.
 std::string file_content(const std::filesystem::path& path);
-
-/// The beginning of a word in quotes, for messages: fit to be printed whatever bytes it has.
-std::string in_quotes(std::string_view word);
 
 /// Reads a text file, or one with binary blocks between the text, word by word and says file and
 /// line of what is wrong.

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "common/error.hpp"
+#include "common/quoted.hpp"
 #include "precompute/mesh/format/number_array.hpp"
 #include "precompute/mesh/format/token_reader.hpp"
 #include "precompute/mesh/format/vtk_cells.hpp"
@@ -70,7 +71,7 @@ class VtuReader {
       xml::read_xml(stream, tree_, xml::xml_parser::no_comments);
     } catch (const xml::xml_parser_error& error) {
       throw Error(name_ + ":" + std::to_string(error.line()),
-                  "is not well-formed XML (" + error.message() + ")",
+                  "is not well-formed XML (" + shortened(error.message()) + ")",
                   "it is damaged or truncated: write the mesh again");
     }
   }
@@ -88,8 +89,7 @@ class VtuReader {
     const std::string compressor = attribute(*root, "compressor");
     coding_.compressed = !compressor.empty();
     if (coding_.compressed && compressor != "vtkZLibDataCompressor") {
-      fail("is compressed by " + compressor.substr(0, 40),
-           "save it with the compressor ZLib or none");
+      fail("is compressed by " + in_quotes(compressor), "save it with the compressor ZLib or none");
     }
   }
 
@@ -116,7 +116,7 @@ class VtuReader {
 
   std::vector<double> numbers(const xml::ptree& element) const {
     const std::string format = attribute(element, "format");
-    const std::string array_name = "array " + attribute(element, "Name", "of points");
+    const std::string array_name = "array " + shortened(attribute(element, "Name", "of points"));
     const auto type = number_type(attribute(element, "type"));
     if (!type) fail(array_name + " has numbers of an unknown type", "write the mesh again");
     try {

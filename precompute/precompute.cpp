@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "common/error.hpp"
+#include "common/model/description_check.hpp"
 #include "precompute/blas_kernel.hpp"
 #include "precompute/columns/assemble.hpp"
 #include "precompute/columns/settings.hpp"
@@ -82,6 +83,9 @@ Model describe(const TetMesh& mesh, const std::string& name, const PrecomputeCon
   model.material = config.material;
   model.dt = config.response.dt;
   model.steps = config.response.steps;
+  if (const auto fault = description_fault(model)) {
+    throw Error(name, "makes a model whose " + *fault, "correct the mesh, its unit or the density");
+  }
   return model;
 }
 

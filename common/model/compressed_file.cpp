@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "common/config/lab_ranges.hpp"
 #include "common/error.hpp"
 #include "common/response/compressed_response.hpp"
 
@@ -11,6 +12,8 @@ namespace irdm {
 namespace {
 
 constexpr int kMostEarlySteps = 1024;
+constexpr double kAsymmetry = 0.1;     // of a node's own response, as a share of its largest
+constexpr float kLongestShape = 2.0F;  // rightly 1
 
 void require(const hdf5::File& file, bool holds, const std::string& what) {
   if (!holds) {
@@ -34,13 +37,52 @@ Eigen::VectorXcd read_complex(const hdf5::File& file, const char* dataset, hsize
   return numbers;
 }
 
-bool all_finite(const std::vector<float>& values) {
-  return std::ranges::all_of(values, [](float value) { return std::isfinite(value); });
+bool all_within(const std::vector<float>& values, double lowest, double highest) {
+  return std::ranges::all_of(values, [range = between(lowest, highest)](float value) {
+    return range.contains(static_cast<double>(value));
+  });
+}
+
+void check_numbers(const hdf5::File& file, const CompressedResponse& response) {
+  constexpr double kMost = lab::kCompliance.highest;
+  constexpr double kLargestInteger = 32768.0;
+  require(file, all_within(response.early_scale, 0.0, kMost / kLargestInteger),
+          "has an early_scale that is negative, not finite or out of range");
+  const auto* early = std::get_if<std::vector<float>>(&response.early);
+  require(file, early == nullptr || all_within(*early, -kMost, kMost),
+          "has an early part that is not finite or out of range");
+  require(file, response.shapes.allFinite(), "has shapes that are not finite");
+  require(
+      file,
+      response.shapes.cols() == 0 || response.shapes.colwise().norm().maxCoeff() < kLongestShape,
+      "has shapes that are much longer than 1");
+}
+
+// What a node does at its own place: symmetric, and along the force.
+void check_own_responses(const hdf5::File& file, const CompressedResponse& response, int nodes) {
+  for (int i = 0; i < nodes; ++i) {
+    Matrix3 sum;  // over the early steps
+    for (int a = 0; a < 3; ++a) {
+      for (int b = 0; b < 3; ++b) {
+        sum(a, b) = with_early(response, i, a, i, b, [&](const auto* numbers, double scale) {
+          double total = 0.0;
+          for (int s = 0; s < response.early_steps; ++s) total += to_double(numbers[s]);
+          return scale * total;
+        });
+      }
+    }
+    require(file, sum.diagonal().minCoeff() >= 0.0, "gives way against a force");
+    require(file,
+            (sum - sum.transpose()).cwiseAbs().maxCoeff() <= kAsymmetry * sum.diagonal().maxCoeff(),
+            "has a node whose own response is not symmetric");
+  }
 }
 
 void check_poles(const hdf5::File& file, const CompressedResponse& response) {
   require(file, response.pole.allFinite() && response.amplitude.allFinite(),
-          "has numbers that are not finite");
+          "has poles that are not finite");
+  require(file, response.amplitude.cwiseAbs().sum() <= lab::kCompliance.highest,
+          "has amplitudes out of range");
   require(file, response.pole.size() == 0 || response.pole.cwiseAbs().maxCoeff() < 1.0,
           "has a pole that does not decay");
   const auto& shape = response.pole_shape;
@@ -99,11 +141,8 @@ CompressedResponse read_compressed(const hdf5::File& file, const Model& model) {
   if (integers) {
     response.early = file.read<std::int16_t>(kCompressedEarly, shape);
     response.early_scale = file.read<float>(kCompressedEarlyScale, {shape[0], shape[1]});
-    require(file, all_finite(response.early_scale), "has scales that are not finite");
   } else {
-    std::vector<float> values = file.read<float>(kCompressedEarly, shape);
-    require(file, all_finite(values), "has numbers that are not finite");
-    response.early = std::move(values);
+    response.early = file.read<float>(kCompressedEarly, shape);
   }
   const auto dof = static_cast<hsize_t>(model.degrees_of_freedom());
   const auto shapes = file.read<float>(kCompressedShapes, {dof, 0});
@@ -113,7 +152,8 @@ CompressedResponse read_compressed(const hdf5::File& file, const Model& model) {
   response.pole_shape = file.read<std::int32_t>(kCompressedPoleShape, {0});
   response.pole = read_complex(file, kCompressedPole, response.pole_shape.size());
   response.amplitude = read_complex(file, kCompressedAmplitude, response.pole_shape.size());
-  require(file, response.shapes.allFinite(), "has numbers that are not finite");
+  check_numbers(file, response);
+  check_own_responses(file, response, model.mesh.surface_node_count());
   check_poles(file, response);
   return response;
 }

@@ -6,8 +6,11 @@
 #include <functional>
 #include <mutex>
 
-#include "common/error.hpp"
+#include "common/config/lab_ranges.hpp"
 #include "common/hdf5/library_lock.hpp"
+#include "common/hdf5/zfp.hpp"
+#include "common/model/dense_check.hpp"
+#include "common/model/model_fault.hpp"
 #include "common/model/model_writer.hpp"
 #include "common/response/settling.hpp"
 #include "common/response/spin_products.hpp"
@@ -15,15 +18,19 @@
 namespace irdm {
 namespace {
 
-bool is_finite_number(double value) {
-  return std::isfinite(value);
+// Of zfp, at most: the range of response.compression_error.
+constexpr double kCompressionError = 0.1;
+constexpr double kLargestHalf = 65504.0;
+
+bool is_possible(double value) {
+  return lab::kCompliance.contains(value);
 }
-bool is_finite_number(Half value) {
+bool is_possible(Half value) {
   return (value.bits & 0x7C00U) != 0x7C00U;
 }
 
 void require_dense(const hdf5::File& file, bool holds, const std::string& what) {
-  if (!holds) throw Error(file.name(), what, "make the model again with irdm-precompute");
+  if (!holds) refuse_model(file.name(), what);
 }
 
 /// [s][a] of column b.
@@ -31,10 +38,11 @@ template <typename Scalar>
 void read_column(const hdf5::File& file, const std::string& dataset, hsize_t b, hsize_t steps,
                  hsize_t dof, Scalar* column) {
   file.read_slab<Scalar>(dataset, {b, 0, 0}, {1, steps, dof}, column);
-  require_dense(file,
-                std::all_of(column, column + steps * dof,
-                            [](Scalar value) { return is_finite_number(value); }),
-                dataset + " has numbers that are not finite");
+  require_dense(
+      file,
+      std::all_of(column, column + steps * dof, [](Scalar value) { return is_possible(value); }),
+      dataset + " has numbers that are not finite or beyond " +
+          number_text(lab::kCompliance.highest));
 }
 
 // Tells, at the speed of memory, whether a column is what it was (FNV-1a, by words).
@@ -69,13 +77,15 @@ void turn(const Scalar* column, hsize_t steps, hsize_t dof, Scalar* to) {
   }
 }
 
-template <typename Scalar>
+/// @param see called with the number of each column and the column
+template <typename Scalar, typename See>
 std::vector<Scalar> read_columns(const hdf5::File& file, const std::string& dataset,
-                                 hsize_t columns, hsize_t steps, hsize_t dof) {
+                                 hsize_t columns, hsize_t steps, hsize_t dof, const See& see) {
   std::vector<Scalar> values(columns * steps * dof);
   std::vector<Scalar> column(steps * dof);
   for (hsize_t b = 0; b < columns; ++b) {
     read_column(file, dataset, b, steps, dof, column.data());
+    see(b, column.data());
     turn(column.data(), steps, dof, values.data() + b * dof * steps);
   }
   return values;
@@ -88,7 +98,7 @@ std::vector<Scalar> read_load(const hdf5::File& file, const std::string& dataset
   if (!file.exists(dataset)) return {};
   require_dense(file, file.stored_shape(dataset) == hdf5::Shape({count, steps, dof}),
                 dataset + " must have the shape (" + std::to_string(count) + ", steps, 3n)");
-  return read_columns<Scalar>(file, dataset, count, steps, dof);
+  return read_columns<Scalar>(file, dataset, count, steps, dof, [](hsize_t, const Scalar*) {});
 }
 
 template <typename Scalar, typename Response>
@@ -100,14 +110,6 @@ void read_loads(const hdf5::File& file, Response& response) {
   if (gravity.empty()) return;
   response.gravity =
       gravity_response(std::move(gravity), response.degrees_of_freedom, response.steps);
-}
-
-std::vector<double> read_scales(const hdf5::File& file, hsize_t dof) {
-  std::vector<double> scales = file.read<double>(kDenseScale, {dof});
-  require_dense(file,
-                std::ranges::all_of(scales, [](double x) { return std::isfinite(x) && x > 0.0; }),
-                std::string(kDenseScale) + " must be finite and positive");
-  return scales;
 }
 
 // All but R itself.
@@ -123,13 +125,23 @@ void read_frame(const hdf5::File& file, const Model& model, Response& response) 
                 "/response/dense/R must have the shape (3n, steps, 3n)");
   response.degrees_of_freedom = model.degrees_of_freedom();
   response.steps = model.steps;
-  const std::size_t size = file.element_size(kDenseR);
-  if (size == sizeof(Half)) response.scales = read_scales(file, dof);
-  if (size == sizeof(double)) {
+  response.scales = read_dense_scales(file, model);
+  if (file.element_size(kDenseR) == sizeof(double)) {
     read_loads<double>(file, response);
   } else {
     read_loads<float>(file, response);
   }
+}
+
+void require_sound(const hdf5::File& file, const DenseSamples& samples) {
+  const auto fault =
+      samples.fault(hdf5::compressed_by_zfp(file, kDenseR) ? kCompressionError : 0.0);
+  if (fault) refuse_model(file.name(), std::string(kDenseR) + " " + *fault);
+}
+
+template <typename Response>
+double scale_of(const Response& response, std::size_t b) {
+  return response.scales.empty() ? 1.0 : response.scales[b];
 }
 
 // Calls with a number of the kind that the file has.
@@ -149,7 +161,7 @@ template <typename Scalar>
 void keep(const std::vector<Scalar>& column, std::size_t b, StreamedResponse& response,
           std::vector<Scalar>& first) {
   const auto dof = static_cast<std::size_t>(response.degrees_of_freedom);
-  const double scale = response.scales.empty() ? 1.0 : response.scales[b];
+  const double scale = scale_of(response, b);
   std::copy_n(column.begin(), dof, first.begin() + static_cast<std::ptrdiff_t>(b * dof));
   std::vector<double> sum(dof, 0.0);
   for (std::size_t i = dof; i < column.size(); ++i) sum[i % dof] += to_double(column[i]);
@@ -162,8 +174,7 @@ Eigen::MatrixXf as_single(const std::vector<Scalar>& first, const StreamedRespon
   const Eigen::Index dof = response.degrees_of_freedom;
   Eigen::MatrixXf matrix(dof, dof);
   for (Eigen::Index b = 0; b < dof; ++b) {
-    const double scale =
-        response.scales.empty() ? 1.0 : response.scales[static_cast<std::size_t>(b)];
+    const double scale = scale_of(response, static_cast<std::size_t>(b));
     for (Eigen::Index a = 0; a < dof; ++a) {
       matrix(a, b) =
           static_cast<float>(scale * to_double(first[static_cast<std::size_t>(b * dof + a)]));
@@ -174,14 +185,29 @@ Eigen::MatrixXf as_single(const std::vector<Scalar>& first, const StreamedRespon
 
 }  // namespace
 
+std::vector<double> read_dense_scales(const hdf5::File& file, const Model& model) {
+  if (file.element_size(kDenseR) != sizeof(Half)) return {};
+  static constexpr Range kRange{0.0, lab::kCompliance.highest / kLargestHalf, false};
+  std::vector<double> scales =
+      file.read<double>(kDenseScale, {static_cast<hsize_t>(model.degrees_of_freedom())});
+  require_dense(file, std::ranges::all_of(scales, [](double x) { return kRange.contains(x); }),
+                std::string(kDenseScale) + " must be " + describe(kRange));
+  return scales;
+}
+
 DenseResponse read_dense(const hdf5::File& file, const Model& model) {
   DenseResponse response;
   read_frame(file, model, response);
   const auto dof = static_cast<hsize_t>(response.degrees_of_freedom);
   const auto steps = static_cast<hsize_t>(response.steps);
+  DenseSamples samples(response.degrees_of_freedom, response.steps);
   with_number(file.element_size(kDenseR), [&]<typename Scalar>(Scalar) {
-    response.values = read_columns<Scalar>(file, kDenseR, dof, steps, dof);
+    response.values =
+        read_columns<Scalar>(file, kDenseR, dof, steps, dof, [&](hsize_t b, const Scalar* column) {
+          samples.add(static_cast<int>(b), column, scale_of(response, b));
+        });
   });
+  require_sound(file, samples);
   return response;
 }
 
@@ -191,14 +217,17 @@ StreamedResponse read_streamed(const hdf5::File& file, const Model& model) {
   const auto dof = static_cast<std::size_t>(response.degrees_of_freedom);
   const auto steps = static_cast<std::size_t>(response.steps);
   response.rest.resize(dof * dof);
+  DenseSamples samples(response.degrees_of_freedom, response.steps);
   with_number(file.element_size(kDenseR), [&]<typename Scalar>(Scalar) {
     std::vector<Scalar> first(dof * dof);
     std::vector<Scalar> column(steps * dof);
     for (std::size_t b = 0; b < dof; ++b) {
       read_column(file, kDenseR, b, steps, dof, column.data());
+      samples.add(static_cast<int>(b), column.data(), scale_of(response, b));
       keep(column, b, response, first);
       response.fingerprints.push_back(fingerprint(column.data(), column.size()));
     }
+    require_sound(file, samples);
     const auto size = static_cast<Eigen::Index>(dof);
     const double ratio =
         settling_ratio(as_single(first, response),

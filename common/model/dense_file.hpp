@@ -18,6 +18,10 @@ DenseResponse read_dense(const hdf5::File& file, const Model& model);
 /// empty. Throws Error.
 StreamedResponse read_streamed(const hdf5::File& file, const Model& model);
 
+/// What the columns of R are to be multiplied by; none unless they are in half precision. Throws
+/// Error.
+std::vector<double> read_dense_scales(const hdf5::File& file, const Model& model);
+
 /// Bytes of one number of R, and of what read_streamed() keeps.
 std::size_t number_size(const StreamedResponse& response);
 std::size_t resident_bytes(const StreamedResponse& response);

@@ -1,13 +1,17 @@
 #include "common/model/model_file.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
+#include "common/config/lab_ranges.hpp"
 #include "common/error.hpp"
 #include "common/model/compressed_file.hpp"
 #include "common/model/dense_file.hpp"
+#include "common/model/description_check.hpp"
+#include "common/model/modal_check.hpp"
+#include "common/model/model_fault.hpp"
 #include "common/model/residual_file.hpp"
+#include "common/quoted.hpp"
 #include "common/response/spin_products.hpp"
 
 namespace irdm {
@@ -35,9 +39,7 @@ class ModelReader {
   }
 
  private:
-  [[noreturn]] void damaged(const std::string& what) const {
-    throw Error(file_.name(), what, "make the model again with irdm-precompute");
-  }
+  [[noreturn]] void damaged(const std::string& what) const { refuse_model(file_.name(), what); }
   void require(bool holds, const std::string& what) const {
     if (!holds) damaged(what);
   }
@@ -49,9 +51,9 @@ class ModelReader {
     read_material();
     if (!file_.exists("/response")) damaged("has no /response");
     model_.dt = file_.read_double_attribute("/response", "dt");
-    model_.steps = static_cast<int>(file_.read_integer_attribute("/response", "steps"));
-    require(std::isfinite(model_.dt) && model_.dt > 0 && model_.steps > 0,
-            "dt and steps must be positive");
+    const std::int64_t steps = file_.read_integer_attribute("/response", "steps");
+    model_.steps = static_cast<int>(std::clamp<std::int64_t>(steps, 0, 1L + lab::kMostSteps));
+    if (const auto fault = description_fault(model_)) damaged(*fault);
   }
 
   void check_format() {
@@ -83,26 +85,6 @@ class ModelReader {
         file_.read<double>("/mesh/node_mass", {static_cast<hsize_t>(mesh.nodes.rows())});
     mesh.node_mass = Eigen::Map<const Eigen::VectorXd>(mass.data(), mesh.nodes.rows());
     mesh.com_offset = Vector3(file_.read_doubles_attribute("/mesh", "com_offset", 3).data());
-    check_mesh();
-  }
-
-  void check_mesh() const {
-    const ModelMesh& mesh = model_.mesh;
-    const auto within = [](const int* begin, const int* end, Eigen::Index limit) {
-      return std::all_of(begin, end, [limit](int i) { return i >= 0 && i < limit; });
-    };
-    require(!mesh.surface_nodes.empty() && mesh.triangles.rows() > 0, "has no surface");
-    require(mesh.nodes.allFinite(), "/mesh/nodes has numbers that are not finite");
-    require(within(mesh.tets.data(), mesh.tets.data() + mesh.tets.size(), mesh.nodes.rows()),
-            "/mesh/tets points outside /mesh/nodes");
-    require(within(mesh.surface_nodes.data(), mesh.surface_nodes.data() + mesh.surface_nodes.size(),
-                   mesh.nodes.rows()),
-            "/mesh/surface_nodes points outside /mesh/nodes");
-    require(within(mesh.triangles.data(), mesh.triangles.data() + mesh.triangles.size(),
-                   mesh.surface_node_count()),
-            "/mesh/triangles points outside /mesh/surface_nodes");
-    require(mesh.node_mass.allFinite() && mesh.node_mass.minCoeff() >= 0,
-            "/mesh/node_mass must be finite and not negative");
   }
 
   void read_body() {
@@ -113,11 +95,8 @@ class ModelReader {
         file_.read_doubles_attribute("/body", "inertia", 9).data());
     const std::string support = file_.read_string_attribute("/body", "support");
     require(support == "floating" || support == "fixed",
-            "/body support is '" + support + "', neither floating nor fixed");
+            "/body support is " + in_quotes(support) + ", neither floating nor fixed");
     body.support = support == "fixed" ? Support::kFixed : Support::kFloating;
-    require(std::isfinite(body.mass) && body.mass > 0, "/body mass must be positive");
-    require(body.inertia.allFinite() && Eigen::LLT<Matrix3>(body.inertia).info() == Eigen::Success,
-            "/body inertia must be positive definite");
   }
 
   void read_material() {
@@ -143,10 +122,6 @@ class ModelReader {
         Eigen::Map<const Eigen::VectorXd>(frequency.data(), static_cast<Eigen::Index>(modes));
     response.decay_rate =
         Eigen::Map<const Eigen::VectorXd>(decay.data(), static_cast<Eigen::Index>(modes));
-    require(modes > 0 && response.angular_frequency.allFinite() &&
-                response.decay_rate.allFinite() && response.angular_frequency.minCoeff() > 0 &&
-                response.decay_rate.minCoeff() >= 0,
-            "/response/modal must have positive frequencies and decay rates that are not negative");
     if (file_.element_size("/response/modal/shapes") == sizeof(float)) {
       response.shapes = read_shapes<float>(modes);
     } else {
@@ -156,12 +131,11 @@ class ModelReader {
       const auto loads = file_.read<double>(kModalCentrifugal, {modes, kSpinProducts});
       response.centrifugal = Eigen::Map<const RowMatrix<double>>(
           loads.data(), static_cast<Eigen::Index>(modes), kSpinProducts);
-      require(response.centrifugal.allFinite(),
-              std::string(kModalCentrifugal) + " has numbers that are not finite");
     }
     response.gravity = read_loads(kModalGravity, modes);
     response.gravity_rest =
         read_loads(kModalGravityRest, static_cast<hsize_t>(model_.degrees_of_freedom()));
+    if (const auto fault = modal_fault(model_, response)) damaged(*fault);
     response.residual = read_residual(file_, model_.mesh.surface_node_count());
     model_.response = std::move(response);
   }
@@ -170,10 +144,7 @@ class ModelReader {
   AxisColumns read_loads(const char* dataset, hsize_t rows) const {
     if (!file_.exists(dataset)) return {};
     const auto values = file_.read<double>(dataset, {rows, 3});
-    AxisColumns loads =
-        Eigen::Map<const AxisColumns>(values.data(), static_cast<Eigen::Index>(rows), 3);
-    require(loads.allFinite(), std::string(dataset) + " has numbers that are not finite");
-    return loads;
+    return Eigen::Map<const AxisColumns>(values.data(), static_cast<Eigen::Index>(rows), 3);
   }
 
   template <typename Scalar>
@@ -181,10 +152,8 @@ class ModelReader {
     const int dof = model_.degrees_of_freedom();
     const auto values =
         file_.read<Scalar>("/response/modal/shapes", {static_cast<hsize_t>(dof), modes});
-    RowMatrix<Scalar> shapes =
-        Eigen::Map<const RowMatrix<Scalar>>(values.data(), dof, static_cast<Eigen::Index>(modes));
-    require(shapes.allFinite(), "/response/modal/shapes has numbers that are not finite");
-    return shapes;
+    return Eigen::Map<const RowMatrix<Scalar>>(values.data(), dof,
+                                               static_cast<Eigen::Index>(modes));
   }
 
   hdf5::File file_;

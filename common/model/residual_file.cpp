@@ -2,16 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include "common/error.hpp"
+#include "common/config/lab_ranges.hpp"
+#include "common/model/model_fault.hpp"
 #include "common/model/upper_blocks.hpp"
 
 namespace irdm {
 namespace {
 
 [[noreturn]] void damaged(const hdf5::File& file, const std::string& what) {
-  throw Error(file.name(), std::string(kModalResidual) + " " + what,
-              "make the model again with irdm-precompute");
+  refuse_model(file.name(), std::string(kModalResidual) + " " + what);
 }
 
 void check_pattern(const hdf5::File& file, const UpperBlocks& upper) {
@@ -31,10 +32,25 @@ void check_pattern(const hdf5::File& file, const UpperBlocks& upper) {
 }
 
 void check_blocks(const hdf5::File& file, const UpperBlocks& upper) {
+  constexpr double kRounding = 1e-3;
+  Eigen::Matrix3Xd own = Eigen::Matrix3Xd::Zero(3, upper.rows());
   upper.for_each([&](int i, int j, const auto& block) {
-    if (!block.allFinite()) damaged(file, "has numbers that are not finite");
-    if (i == j && (block.diagonal().minCoeff() < 0.0F || block != block.transpose())) {
+    if (!(block.cwiseAbs().maxCoeff() <= static_cast<float>(lab::kCompliance.highest))) {
+      damaged(file,
+              "has numbers that are not finite or beyond " + number_text(lab::kCompliance.highest));
+    }
+    if (i != j) return;
+    if (block.diagonal().minCoeff() < 0.0F || block != block.transpose()) {
       damaged(file, "has a node whose own compliance is not symmetric or negative");
+    }
+    own.col(i) = block.diagonal().template cast<double>();
+  });
+  // Of a positive semidefinite matrix no entry is above the geometric mean of the two diagonals.
+  upper.for_each([&](int i, int j, const auto& block) {
+    const Matrix3 most = (own.col(i) * own.col(j).transpose()).cwiseSqrt();
+    if ((block.template cast<double>().cwiseAbs().array() > (1.0 + kRounding) * most.array())
+            .any()) {
+      damaged(file, "has nodes that give way to each other more than to themselves");
     }
   });
 }
@@ -45,10 +61,16 @@ ModeReduction read_reduction(const hdf5::File& file) {
     if (!std::isfinite(value) || value < 0.0) damaged(file, std::string("has no ") + name);
     return value;
   };
+  const auto count = [&](const char* name) {
+    const std::int64_t value = file.read_integer_attribute(kModalResidual, name);
+    if (value < 0 || value > std::numeric_limits<int>::max()) {
+      damaged(file, std::string("has no ") + name);
+    }
+    return static_cast<int>(value);
+  };
   ModeReduction reduction;
-  reduction.elastic_modes =
-      static_cast<int>(file.read_integer_attribute(kModalResidual, "elastic_modes"));
-  reduction.samples = static_cast<int>(file.read_integer_attribute(kModalResidual, "samples"));
+  reduction.elastic_modes = count("elastic_modes");
+  reduction.samples = count("samples");
   reduction.cut_off = number("cut_off");
   reduction.contact_radius = number("contact_radius");
   reduction.residual_radius = number("residual_radius");

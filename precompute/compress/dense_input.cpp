@@ -1,6 +1,8 @@
 #include "precompute/compress/dense_input.hpp"
 
+#include "common/config/lab_ranges.hpp"
 #include "common/error.hpp"
+#include "common/model/dense_file.hpp"
 #include "common/model/model_file.hpp"
 
 namespace irdm::precompute {
@@ -16,6 +18,7 @@ DenseInput::DenseInput(const std::filesystem::path& path)
     throw Error(name(), "/response/dense/R must have the shape (3n, steps, 3n)",
                 "make the model again with irdm-precompute");
   }
+  scales_ = read_dense_scales(file_, model_);
 }
 
 double DenseInput::bytes() const {
@@ -29,8 +32,9 @@ RowMatrix<float> DenseInput::column(int b) const {
       kDenseR, {static_cast<hsize_t>(b), 0, 0},
       {1, static_cast<hsize_t>(steps()), static_cast<hsize_t>(degrees_of_freedom())},
       values.data());
-  if (!values.allFinite()) {
-    throw Error(name(), "/response/dense/R has numbers that are not finite",
+  if (!scales_.empty()) values *= static_cast<float>(scales_[static_cast<std::size_t>(b)]);
+  if (!(values.cwiseAbs().maxCoeff() <= static_cast<float>(lab::kCompliance.highest))) {
+    throw Error(name(), "/response/dense/R has numbers that are not finite or out of range",
                 "make the model again with irdm-precompute");
   }
   return values;

@@ -11,6 +11,7 @@
 #include "common/response/compressed_response.hpp"
 #include "precompute/check/columns.hpp"
 #include "precompute/compress/compress_model.hpp"
+#include "precompute/compress/dense_input.hpp"
 #include "precompute/compress/measured_error.hpp"
 #include "precompute/compress/pole_fit.hpp"
 #include "tests/check/dense_file.hpp"
@@ -109,6 +110,24 @@ TEST_CASE("compress: the stated errors are those of the file, twice to the same 
   CHECK(largest > 0.2 * summary.error.displacement);
 }
 
+TEST_CASE("compress reads R in half precision with its scales") {
+  Workshop work;
+  DenseCube cube(60);
+  cube.write(work.file("dense.h5"), true);
+  const DenseInput input(work.file("dense.h5"));
+  const RowMatrix<float> column = input.column(7);
+  double largest = 0.0;
+  double difference = 0.0;
+  for (int s = 0; s < 60; ++s) {
+    for (int a = 0; a < cube.model.degrees_of_freedom(); ++a) {
+      const double expected = cube.at(s, a, 7);
+      largest = std::max(largest, std::abs(expected));
+      difference = std::max(difference, std::abs(static_cast<double>(column(s, a)) - expected));
+    }
+  }
+  CHECK(difference < 1e-3 * largest);
+}
+
 TEST_CASE("compress keeps as few early steps as shapes and poles can make up for") {
   const auto [shaken, error, kept] =
       GENERATE(std::tuple(false, 0.05, 16), std::tuple(true, 0.03, 32));
@@ -156,7 +175,7 @@ TEST_CASE("a compressed response needs the scales that it was written with") {
   };
   response.early_scale[entry] = std::numeric_limits<float>::quiet_NaN();
   CHECK_THROWS_WITH(read_model(write("nan.h5"), ResponseKind::kCompressed),
-                    Contains("has scales that are not finite"));
+                    Contains("an early_scale that is negative, not finite"));
   response.early_scale.resize(9);
   CHECK_THROWS_WITH(read_model(write("few.h5"), ResponseKind::kCompressed),
                     Contains("early_scale has shape"));

@@ -97,6 +97,39 @@ TEST_CASE("what gravity does to a dense response has its share in the checksum")
   CHECK(with("c.h5", 1.0F) != with("d.h5", 1.5F));
 }
 
+TEST_CASE("every part of a compressed response has its share in the checksum") {
+  const test::TemporaryFolder folder;
+  const Model model = test::synthetic_cube(1, 5, 2);
+  const CompressedResponse original = test::compressed_response(model);
+  const auto with = [&](const std::string& name, const CompressedResponse& response) {
+    ModelFileWriter writer(folder.path() / name);
+    writer.write_description(model);
+    writer.write_compressed(response, {0.01, 0.01, 0.005, 0.01, 24});
+    writer.commit();
+    return stored(folder.path() / name);
+  };
+  CompressedResponse other = original;
+  SECTION("early part") {
+    std::get<std::vector<std::int16_t>>(other.early)[7] += 1;
+  }
+  SECTION("scales") {
+    other.early_scale[3] *= 2.0F;
+  }
+  SECTION("shapes") {
+    other.shapes(1, 1) += 1e-3F;
+  }
+  SECTION("shapes of poles") {
+    other.pole_shape = {0, 0};
+  }
+  SECTION("poles") {
+    other.pole(1) += 1e-9;
+  }
+  SECTION("amplitudes") {
+    other.amplitude(0) *= 1.0 + 1e-9;
+  }
+  CHECK(with("a.h5", original) != with("b.h5", other));
+}
+
 TEST_CASE("a file whose bytes changed does not have its checksum any more") {
   const test::TemporaryFolder folder;
   const auto path = folder.path() / "a.h5";

@@ -100,6 +100,12 @@ TEST_CASE("dense R of half precision is written and read, with its error in the 
   const int dof = model.degrees_of_freedom();
   std::mt19937 random(6);
   std::normal_distribution<float> normal(0.0F, 1e-3F);
+  std::vector<Eigen::MatrixXf> R;  // by steps
+  for (int s = 0; s < kSteps; ++s) {
+    const Eigen::MatrixXf part =
+        Eigen::MatrixXf::NullaryExpr(dof, dof, [&] { return normal(random); });
+    R.emplace_back(part + part.transpose()).diagonal() = part.diagonal().cwiseAbs();
+  }
   std::vector<RowMatrix<float>> columns;
   HalfError error;
   {
@@ -107,8 +113,9 @@ TEST_CASE("dense R of half precision is written and read, with its error in the 
     writer.write_description(model);
     writer.begin_dense_half(dof, kSteps);
     for (int b = 0; b < dof; ++b) {
-      columns.emplace_back(
-          RowMatrix<float>::NullaryExpr(kSteps, dof, [&] { return normal(random); }));
+      columns.emplace_back(RowMatrix<float>::NullaryExpr(
+          kSteps, dof,
+          [&](Eigen::Index s, Eigen::Index a) { return R[static_cast<std::size_t>(s)](a, b); }));
       writer.write_dense_column(b, columns.back().data());
     }
     error = writer.half_error();

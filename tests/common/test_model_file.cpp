@@ -38,12 +38,18 @@ ResidualCompliance small_residual() {
   upper.nodes = {0, 2, 1, 2, 3};
   for (int k = 0; k < 5; ++k) {
     const UpperBlocks::Block part = UpperBlocks::Block::Random();
-    const UpperBlocks::Block block = k == 1 ? part : UpperBlocks::Block(part * part.transpose());
+    const UpperBlocks::Block own = part * part.transpose() + UpperBlocks::Block::Identity();
+    const UpperBlocks::Block block = k == 1 ? part : own;
     upper.blocks.insert(upper.blocks.end(), block.data(), block.data() + 9);
   }
   ResidualCompliance residual = both_halves(upper);
   residual.reduction = {6, 300.0, 0.015, 0.03, 0.1, 0.004, 0.02, 8, 1e-5};
   return residual;
+}
+
+// As symmetric as a reader wants it, with numbers that tell b, s and a apart.
+double r_entry(int b, int s, int a) {
+  return 1'000'000 + 1000 * b + 100 * s + a;
 }
 
 struct ModelFolder {
@@ -68,7 +74,7 @@ TEST_CASE("model file gives back what was written, modal and dense") {
     for (int b = 0; b < 12; ++b) {
       RowMatrix<float> column(3, 12);
       for (int s = 0; s < 3; ++s) {
-        for (int a = 0; a < 12; ++a) column(s, a) = static_cast<float>(1000 * b + 100 * s + a);
+        for (int a = 0; a < 12; ++a) column(s, a) = static_cast<float>(r_entry(b, s, a));
       }
       writer.write_dense_column(b, column.data());
     }
@@ -112,7 +118,8 @@ TEST_CASE("model file gives back what was written, modal and dense") {
   const Model dense_model = read_model(path, ResponseKind::kDense);
   const auto& dense = std::get<DenseResponse>(dense_model.response);
   const auto& values = std::get<std::vector<float>>(dense.values);
-  CHECK(values[(7 * 12 + 5) * 3 + 2] == 7205.0f);  // b = 7, a = 5, s = 2
+  CHECK(values[(7 * 12 + 5) * 3 + 2] ==
+        static_cast<float>(r_entry(7, 2, 5)));  // b = 7, a = 5, s = 2
   const auto& spun = std::get<std::vector<float>>(dense.centrifugal);
   CHECK(spun[(4 * 12 + 5) * 3 + 2] == 4205.0f);  // product 4, a = 5, s = 2
   CHECK(has_gravity(dense_model));
@@ -288,7 +295,7 @@ TEST_CASE("model file that is missing, truncated, foreign or damaged is refused 
   SECTION("negative frequency") {
     std::get<ModalResponse>(model.response).angular_frequency(0) = -1;
     write();
-    CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal), Contains("frequencies"));
+    CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal), Contains("angular_frequency"));
   }
   SECTION("shapes that there is neither memory nor a number for") {
     write();

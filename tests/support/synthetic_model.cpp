@@ -1,10 +1,12 @@
 #include "tests/support/synthetic_model.hpp"
 
 #include <algorithm>
+#include <complex>
 #include <map>
 #include <random>
 
 #include "common/model/upper_blocks.hpp"
+#include "common/response/compressed_response.hpp"
 #include "common/response/oscillator.hpp"
 
 namespace irdm::test {
@@ -52,7 +54,9 @@ void make_surface(int cells, double edge, ModelMesh& mesh) {
       mesh.triangles(static_cast<Eigen::Index>(t), static_cast<Eigen::Index>(i)) = triangles[t][i];
     }
   }
-  mesh.tets = RowMatrix<int>::Zero(1, 4);
+  mesh.tets.resize(1, 4);  // one that stands for all
+  mesh.tets << numbers.at({0, 0, 0}), numbers.at({cells, 0, 0}), numbers.at({0, cells, 0}),
+      numbers.at({0, 0, cells});
   mesh.node_mass = Eigen::VectorXd::Constant(mesh.nodes.rows(), 0.0);
 }
 
@@ -138,6 +142,20 @@ void add_residual(Model& modal, unsigned seed) {
     upper.row_start.back() = static_cast<std::int32_t>(upper.nodes.size());
   }
   std::get<ModalResponse>(modal.response).residual = both_halves(upper);
+}
+
+CompressedResponse compressed_response(const Model& model) {
+  CompressedResponse response;
+  response.early_steps = 2;
+  const auto nodes = static_cast<std::size_t>(model.mesh.surface_node_count());
+  response.early = std::vector<std::int16_t>(early_entries(nodes) * 2, 1000);
+  response.early_scale.assign(early_entries(nodes), 1e-6F);
+  response.shapes = RowMatrix<float>::Identity(model.degrees_of_freedom(), 2);
+  response.pole_shape = {0, 1};
+  using Number = std::complex<double>;
+  response.pole = Eigen::Vector2cd(Number(0.5, 0.1), Number(0.9, 0.0));
+  response.amplitude = Eigen::Vector2cd(Number(1e-3, 0.0), Number(0.0, 1e-4));
+  return response;
 }
 
 // R[0] of column b, at the first step.

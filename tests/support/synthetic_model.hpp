@@ -21,6 +21,9 @@ void add_gravity(Model& modal, bool rest = false, unsigned seed = 4);
 /// R[0]: symmetric and positive definite.
 void add_residual(Model& modal, unsigned seed = 3);
 
+/// A made-up compressed response of its nodes, in 16 bits: two poles, each of a shape of its own.
+CompressedResponse compressed_response(const Model& model);
+
 /// The same object with R itself, and the responses to spin and gravity if there are, computed from
 /// its modes and residual compliance by the closed form, as a DenseResponse.
 template <typename Scalar>

@@ -112,12 +112,12 @@ TEST_CASE("model file with wrong content: one line, status 1, no trace") {
   };
   refused([](Model& model) { model.mesh.nodes(3, 1) = kNan; }, "/mesh/nodes has numbers that are");
   refused([](Model& model) { model.mesh.triangles(0, 0) = 1'000'000; }, "/mesh/triangles points");
-  refused([](Model& model) { model.body.mass = -1; }, "/body mass must be positive");
+  refused([](Model& model) { model.body.mass = -1; }, "/body mass is -1, not a finite number");
   refused([](Model& model) { model.body.inertia.setZero(); }, "/body inertia must be");
-  refused([](Model& model) { model.dt = 0; }, "dt and steps must be positive");
-  refused([](Model& model) { model.dt = kNan; }, "dt and steps must be positive");
+  refused([](Model& model) { model.dt = 0; }, "/response dt is 0, not a finite number");
+  refused([](Model& model) { model.dt = kNan; }, "/response dt is nan, not a finite number");
   refused([](Model& model) { std::get<ModalResponse>(model.response).decay_rate(0) = kNan; },
-          "/response/modal must have positive frequencies");
+          "/response/modal/decay_rate has a number");
   refused(
       [](Model& model) {
         auto& response = std::get<ModalResponse>(model.response);

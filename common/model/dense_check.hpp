@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/model/model.hpp"
+
+namespace irdm {
+
+/// What a reader of dense R sees while the columns go by, in no more time than they take anyway:
+/// every driving-point response, and some columns and steps of all. `irdm-precompute check` sees
+/// more.
+class DenseSamples {
+ public:
+  DenseSamples(int degrees_of_freedom, int steps);
+
+  /// @param column [s][a] of column b, as in the file
+  /// @param scale what its numbers are to be multiplied by
+  template <typename Scalar>
+  void add(int b, const Scalar* column, double scale);
+
+  /// After all columns: R(a, b) is R(b, a) in the samples, and what a lasting force does to the
+  /// place where it acts is along the force. Nothing when that holds.
+  /// @param error of R's numbers, as a share of the largest R(b, b)
+  std::optional<std::string> fault(double error) const;
+
+ private:
+  int degrees_of_freedom_;
+  int steps_;
+  std::vector<int> sample_;       ///< degrees of freedom
+  std::vector<int> step_sample_;  ///< steps
+  std::vector<double> peak_;      ///< largest |R(b, b)| (3n) [m/N]
+  std::vector<double> sum_;       ///< of R(b, b) over all steps (3n) [m/N]
+  Eigen::MatrixXd columns_;       ///< R(a, b) of samples b: (3n, samples * step samples)
+  Eigen::MatrixXd rows_;          ///< R(b, a) of samples b, of all columns a, in the same order
+};
+
+}  // namespace irdm

@@ -32,8 +32,9 @@ struct Recording::Data {
 
   void read(const hdf5::File& file, const std::vector<std::string>& names);
   void read_objects(const hdf5::File& file, const trace::RowReader& reader,
-                    const std::vector<std::string>& names);
-  void read_styluses(const hdf5::File& file, const trace::RowReader& reader);
+                    const trace::TraceCheck& check, const std::vector<std::string>& names);
+  void read_styluses(const hdf5::File& file, const trace::RowReader& reader,
+                     const trace::TraceCheck& check);
   void number_settings_and_resets();
   void number_late(const std::string& file);
   void number_bridged();
@@ -45,7 +46,7 @@ struct Recording::Data {
 
 void Recording::Data::read(const hdf5::File& file, const std::vector<std::string>& names) {
   const trace::RowReader reader(file);
-  dt = file.read_double_attribute("/", "dt");
+  dt = trace::read_dt(file);
   force_step = reader.read<std::uint64_t>("/step/force_step");
   reset = reader.read<std::uint8_t>("/step/reset");
   if (force_step.empty()) throw Error(file.name(), "holds no step", "record something");
@@ -53,23 +54,28 @@ void Recording::Data::read(const hdf5::File& file, const std::vector<std::string
       force_step.end()) {
     throw Error(file.name(), "/step/force_step does not increase", "record it again");
   }
+  const trace::TraceCheck check(file.name(), force_step);
   settings = trace::read_settings(file, config);
   late = trace::read_late(file, config);
   bridged = trace::read_bridged(file, config);
-  read_styluses(file, reader);
-  read_objects(file, reader, names);
+  read_styluses(file, reader, check);
+  read_objects(file, reader, check, names);
   number_settings_and_resets();
   number_late(file.name());
   number_bridged();
 }
 
-void Recording::Data::read_styluses(const hdf5::File& file, const trace::RowReader& reader) {
+void Recording::Data::read_styluses(const hdf5::File& file, const trace::RowReader& reader,
+                                    const trace::TraceCheck& check) {
   for (std::size_t s = 0; s < config.styluses.size(); ++s) {
     const std::string path = trace::stylus_path(s);
     trace::StylusRows rows{
         reader.read<double>(path + "/tip", 3),        reader.read<double>(path + "/proxy", 3),
         reader.read<double>(path + "/force", 3),      reader.read<std::uint8_t>(path + "/present"),
         reader.read<std::int32_t>(path + "/buttons"), {}};
+    check.numbers(path + "/tip", rows.tip, 3);
+    check.numbers(path + "/proxy", rows.proxy, 3);
+    check.numbers(path + "/force", rows.force, 3);
     if (config.objects.size() > 1) rows.object = reader.read<std::int32_t>(path + "/object");
     for (const std::int32_t object : rows.object) {
       if (object < static_cast<std::int32_t>(config.objects.size())) continue;
@@ -80,20 +86,26 @@ void Recording::Data::read_styluses(const hdf5::File& file, const trace::RowRead
 }
 
 void Recording::Data::read_objects(const hdf5::File& file, const trace::RowReader& reader,
+                                   const trace::TraceCheck& check,
                                    const std::vector<std::string>& names) {
   const bool several = names.size() > 1;
   for (std::size_t i = 0; i < names.size(); ++i) {
     const int node_count = config.objects[i].model->mesh.surface_node_count();
     const std::string group = trace::object_path(several, names[i]);
-    trace::ObjectRows rows{reader.read<double>(group + "/body_position", 3),
-                           reader.read<double>(group + "/body_orientation", 4),
-                           reader.read<double>(group + "/body_velocity", 3),
-                           reader.read<double>(group + "/body_angular_velocity", 3),
-                           {},
-                           trace::read_floor(file, reader, trace::floor_path(group), node_count)};
+    trace::ObjectRows rows{
+        reader.read<double>(group + "/body_position", 3),
+        reader.read<double>(group + "/body_orientation", 4),
+        reader.read<double>(group + "/body_velocity", 3),
+        reader.read<double>(group + "/body_angular_velocity", 3),
+        {},
+        trace::read_floor(file, reader, check, trace::floor_path(group), node_count)};
+    check.numbers(group + "/body_position", rows.position, 3);
+    check.orientations(group + "/body_orientation", rows.orientation);
+    check.numbers(group + "/body_velocity", rows.velocity, 3);
+    check.numbers(group + "/body_angular_velocity", rows.angular_velocity, 3);
     for (std::size_t s = 0; s < config.styluses.size(); ++s) {
       const std::string path = (several ? group : "") + trace::stylus_path(s);
-      rows.contacts.emplace_back(file, reader, path, node_count);
+      rows.contacts.emplace_back(file, reader, check, path, node_count);
     }
     objects.push_back(std::move(rows));
     bodies.emplace_back(config.objects[i].model->body, dt);

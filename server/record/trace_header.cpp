@@ -5,6 +5,7 @@
 #include "common/error.hpp"
 #include "common/hdf5/file.hpp"
 #include "server/record/trace_paths.hpp"
+#include "server/record/trace_sets.hpp"
 
 namespace irdm {
 
@@ -23,7 +24,7 @@ TraceHeader read_trace_header(const std::filesystem::path& path) {
   }
   TraceHeader header;
   header.scene = file.read_string_attribute("/", "scene");
-  header.dt = file.read_double_attribute("/", "dt");
+  header.dt = trace::read_dt(file);
   header.stylus_count = 0;
   while (file.exists("/stylus/" + std::to_string(header.stylus_count))) ++header.stylus_count;
   header.objects.push_back({"", file.read_string_attribute("/", "model_file"),

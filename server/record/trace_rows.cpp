@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/error.hpp"
+#include "server/step/restraints.hpp"
 
 namespace irdm::trace {
 namespace {
@@ -30,10 +31,22 @@ void check_late(const LateForce& late, const SimulationConfig& config, const std
   }
 }
 
+// What the step bears depends on the model: that of the recording bore it.
+void check_restraints(const SettingsRows& rows, const TraceCheck& check,
+                      const SimulationConfig& config) {
+  for (std::size_t e = 0; e < rows.settings.size(); ++e) {
+    try {
+      irdm::check_restraints(config, rows.settings[e]);
+    } catch (const Error& error) {
+      check.refuse("/settings", e, std::string("cannot be: ") + error.what());
+    }
+  }
+}
+
 }  // namespace
 
-ContactRows::ContactRows(const hdf5::File& file, const RowReader& reader, const std::string& path,
-                         int node_count)
+ContactRows::ContactRows(const hdf5::File& file, const RowReader& reader, const TraceCheck& check,
+                         const std::string& path, int node_count)
     : state(reader.read<std::uint8_t>(path + "/contact")),
       slipping(reader.read<std::uint8_t>(path + "/slipping")),
       nodes(reader.read<std::int32_t>(path + "/contact_nodes", 3)),
@@ -42,6 +55,10 @@ ContactRows::ContactRows(const hdf5::File& file, const RowReader& reader, const 
       proxy(reader.read<double>(path + "/proxy", 3)),
       offset(reader.read<double>(path + "/offset", 3)),
       arm_shift(reader.read<double>(path + "/arm_shift", 3)) {
+  check.numbers(path + "/force", force, 3);
+  check.numbers(path + "/proxy", proxy, 3);
+  check.numbers(path + "/offset", offset, 3);
+  check.numbers(path + "/arm_shift", arm_shift, 3);
   for (std::size_t k = 0; k < state.size(); ++k) {
     if (state[k] == 0) continue;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -49,11 +66,12 @@ ContactRows::ContactRows(const hdf5::File& file, const RowReader& reader, const 
       throw Error(file.name(), path + " touches a node that the model does not have",
                   "use the model that it was recorded with");
     }
+    check.weights(path + "/contact_weights", weights, k);
   }
 }
 
-FloorRows read_floor(const hdf5::File& file, const RowReader& reader, const std::string& path,
-                     int node_count) {
+FloorRows read_floor(const hdf5::File& file, const RowReader& reader, const TraceCheck& check,
+                     const std::string& path, int node_count) {
   FloorRows rows;
   rows.first.assign(1, 0);
   if (!file.exists(path + "/count")) {
@@ -67,6 +85,11 @@ FloorRows read_floor(const hdf5::File& file, const RowReader& reader, const std:
     if (count < 0 || count > kMaxFloorContacts || next > rows.node.size()) {
       throw Error(file.name(), path + "/count does not fit the rows that are there",
                   "record it again");
+    }
+    for (std::size_t r = rows.first.back(); r < next; ++r) {
+      for (std::size_t i = 3 * r; i < 3 * r + 3; ++i) {
+        check.number(path + "/force", rows.first.size() - 1, static_cast<double>(rows.force[i]));
+      }
     }
     rows.first.push_back(next);
   }
@@ -89,7 +112,9 @@ SettingsRows read_settings(const hdf5::File& file, const SimulationConfig& confi
   const hsize_t count = rows.force_step.size();
   if (count == 0) throw Error(file.name(), "/settings has no row", "record it again");
   rows.settings.resize(count);
+  const TraceCheck check(file.name(), rows.force_step);
   const auto gravity = file.read<double>("/settings/gravity", {count, 3});
+  check.numbers("/settings/gravity", gravity, 3, lab::kGravity);
   for (std::size_t e = 0; e < count; ++e) rows.settings[e].gravity = vector_of(gravity, e);
   for (std::size_t i = 0; i < config.objects.size(); ++i) {
     const std::string group = settings_path(i);
@@ -99,6 +124,10 @@ SettingsRows read_settings(const hdf5::File& file, const SimulationConfig& confi
     const auto material = file.read<double>(group + "/material_damping", {count});
     const auto dense = file.read<std::uint8_t>(group + "/dense", {count});
     const auto loading = file.read<std::uint8_t>(group + "/inertial_loading", {count});
+    check.numbers(group + "/friction", friction, 2, lab::kFriction);
+    check.numbers(group + "/damping", damping, 2, lab::kStiffness);  // restraints say more
+    check.numbers(group + "/tether", tether, 2, lab::kStiffness);
+    check.numbers(group + "/material_damping", material, 1, lab::kMaterialDamping);
     for (std::size_t e = 0; e < count; ++e) {
       rows.settings[e].object[i] = {{friction[2 * e], friction[2 * e + 1]},
                                     {damping[2 * e], damping[2 * e + 1]},
@@ -106,8 +135,12 @@ SettingsRows read_settings(const hdf5::File& file, const SimulationConfig& confi
                                     material[e],
                                     engine_of(dense[e]),
                                     loading[e] != 0};
+      if (friction[2 * e + 1] > friction[2 * e]) {
+        check.refuse(group + "/friction", e, "is more while it slides than while it sticks");
+      }
     }
   }
+  check_restraints(rows, check, config);
   return rows;
 }
 
@@ -131,6 +164,13 @@ LateRows read_late(const hdf5::File& file, const SimulationConfig& config) {
   rows.orientation = reader.read<double>("/body_orientation", 4);
   rows.velocity = reader.read<double>("/body_velocity", 3);
   rows.angular_momentum = reader.read<double>("/body_angular_momentum", 3);
+  const TraceCheck check(file.name(), rows.force_step);
+  check.numbers("/late/force", force, 3);
+  check.numbers("/late/arm", arm, 3);
+  check.numbers("/late/body_position", rows.position, 3);
+  check.orientations("/late/body_orientation", rows.orientation);
+  check.numbers("/late/body_velocity", rows.velocity, 3);
+  check.numbers("/late/body_angular_momentum", rows.angular_momentum, 3);
   for (std::size_t e = 0; e < count; ++e) {
     LateForce late{object[e], stylus[e], age[e], {}, vector_of(force, e), vector_of(arm, e)};
     for (std::size_t i = 0; i < 3; ++i) {
@@ -138,6 +178,7 @@ LateRows read_late(const hdf5::File& file, const SimulationConfig& config) {
       late.point.weights[i] = weights[3 * e + i];
     }
     check_late(late, config, file.name());
+    check.weights("/late/contact_weights", weights, e);
     rows.late.push_back(late);
   }
   return rows;
@@ -154,6 +195,9 @@ BridgedRows read_bridged(const hdf5::File& file, const SimulationConfig& config)
   const auto object = reader.read<std::int32_t>("/object");
   const auto force = reader.read<double>("/force", 3);
   const auto arm = reader.read<double>("/arm", 3);
+  const TraceCheck check(file.name(), rows.force_step);
+  check.numbers("/bridged/force", force, 3);
+  check.numbers("/bridged/arm", arm, 3);
   for (std::size_t e = 0; e < count; ++e) {
     const std::int32_t stylus = rows.stylus[e];
     if (stylus < 0 || stylus >= static_cast<std::int32_t>(config.styluses.size()) ||

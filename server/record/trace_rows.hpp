@@ -4,12 +4,13 @@
 #include <string>
 #include <vector>
 
+#include "server/record/trace_check.hpp"
 #include "server/record/trace_sets.hpp"
 #include "server/step/simulation_config.hpp"
 #include "server/step/step_record.hpp"
 
-/// The sets of a trace file (docs/files.md), read whole and checked against the scene and its
-/// models. All of these throw Error.
+/// The sets of a trace file (docs/files.md), read whole and checked: against the scene and its
+/// models, and for numbers that no run has. All of these throw Error.
 namespace irdm::trace {
 
 /// What a stylus did to an object.
@@ -24,8 +25,8 @@ struct ContactRows {
   std::vector<double> arm_shift;
 
   /// Throws Error, also for a node that the model does not have.
-  ContactRows(const hdf5::File& file, const RowReader& reader, const std::string& path,
-              int node_count);
+  ContactRows(const hdf5::File& file, const RowReader& reader, const TraceCheck& check,
+              const std::string& path, int node_count);
 };
 
 /// Of one stylus, of each step.
@@ -71,8 +72,8 @@ struct BridgedRows {
 };
 
 /// None of them in an older trace: that is no error.
-FloorRows read_floor(const hdf5::File& file, const RowReader& reader, const std::string& path,
-                     int node_count);
+FloorRows read_floor(const hdf5::File& file, const RowReader& reader, const TraceCheck& check,
+                     const std::string& path, int node_count);
 SettingsRows read_settings(const hdf5::File& file, const SimulationConfig& config);
 LateRows read_late(const hdf5::File& file, const SimulationConfig& config);
 BridgedRows read_bridged(const hdf5::File& file, const SimulationConfig& config);

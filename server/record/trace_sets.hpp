@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/config/lab_ranges.hpp"
 #include "common/error.hpp"
 #include "common/geometry.hpp"
 #include "common/hdf5/file.hpp"
@@ -27,6 +28,17 @@ std::vector<T> read_rows(const hdf5::File& file, const std::string& set, hsize_t
   std::vector<T> values(rows * width);
   if (rows > 0) file.read_slab<T>(set, hdf5::Shape(wanted.size(), 0), wanted, values.data());
   return values;
+}
+
+/// Of the force step [s]. Throws Error.
+inline double read_dt(const hdf5::File& file) {
+  const double dt = file.read_double_attribute("/", "dt");
+  if (!lab::kStepTime.contains(dt)) {
+    throw Error(file.name(),
+                "has a dt of " + number_text(dt) + " s, not " + describe(lab::kStepTime),
+                "record it again");
+  }
+  return dt;
 }
 
 /// Row of a set of width 3.

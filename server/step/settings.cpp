@@ -1,10 +1,10 @@
 #include "server/step/settings.hpp"
 
-#include <algorithm>
 #include <string>
 
 #include "common/error.hpp"
 #include "server/step/inertial_loading.hpp"
+#include "server/step/restraints.hpp"
 
 namespace irdm {
 namespace {
@@ -13,29 +13,6 @@ EngineKind kind_of(const Model& model) {
   if (std::holds_alternative<CompressedResponse>(model.response)) return EngineKind::kCompressed;
   if (std::holds_alternative<ModalResponse>(model.response)) return EngineKind::kModal;
   return EngineKind::kDense;
-}
-
-// Damping and tether act as they were at the start of a step: stable as long as a step is short for
-// them.
-void check_restraints(const Model& model, const ObjectSettings& settings, const std::string& name) {
-  if (model.body.support == Support::kFixed) return;  // it does not move at all
-  const double dt = model.dt;
-  if (std::max(settings.damping.linear, settings.damping.angular) * dt > 0.5) {
-    throw Error(
-        name, "has a damping that is too strong for its model's dt of " + std::to_string(dt) + " s",
-        "use at most " + std::to_string(0.5 / dt) + " 1/s");
-  }
-  const double inertia =
-      Eigen::SelfAdjointEigenSolver<Matrix3>(model.body.inertia, Eigen::EigenvaluesOnly)
-          .eigenvalues()[0];
-  const double stiffest = model.body.mass / (dt * dt);
-  const double stiffest_angular = inertia / (dt * dt);
-  if (settings.tether.stiffness > stiffest ||
-      settings.tether.angular_stiffness > stiffest_angular) {
-    throw Error(name, "has a tether that is too stiff for its mass and its model's dt",
-                "use at most " + std::to_string(stiffest) + " N/m and " +
-                    std::to_string(stiffest_angular) + " N m/rad");
-  }
 }
 
 void check_choice(const SettingsChoice& choice, const ObjectSettings& initial,
@@ -89,10 +66,10 @@ void follow_settings(ResponseEngine& engine, const ObjectSettings& settings,
 void check_settings(const SimulationConfig& config, const Settings& settings) {
   const Settings initial = initial_settings(config);
   for (std::size_t i = 0; i < config.objects.size(); ++i) {
-    const std::string name = "object " + std::to_string(i + 1);
-    check_choice(settings_choice(config, i), initial.object[i], settings.object[i], name);
-    check_restraints(*config.objects[i].model, settings.object[i], name);
+    check_choice(settings_choice(config, i), initial.object[i], settings.object[i],
+                 "object " + std::to_string(i + 1));
   }
+  check_restraints(config, settings);
 }
 
 }  // namespace irdm

@@ -1,5 +1,7 @@
 #include "server/viewer/message_parts.hpp"
 
+#include "common/config/lab_ranges.hpp"
+
 namespace irdm::viewer {
 namespace {
 constexpr char kMagic[] = "IRVW";
@@ -56,7 +58,8 @@ ObjectSettings get_settings(Reader& reader, SettingsChoice& choice) {
   settings.damping.angular = get_between(reader, 0.0, kMost);
   settings.tether.stiffness = get_between(reader, 0.0, kMost);
   settings.tether.angular_stiffness = get_between(reader, 0.0, kMost);
-  settings.material_damping = get_between(reader, 0.1, 10.0);
+  settings.material_damping =
+      get_between(reader, lab::kMaterialDamping.lowest, lab::kMaterialDamping.highest);
   const auto engine = reader.get<std::uint8_t>();
   const auto loading = reader.get<std::uint8_t>();
   const auto choices = reader.get<std::uint8_t>();

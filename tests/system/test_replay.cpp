@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "replay/compare/run_reader.hpp"
+#include "tests/support/edited_numbers.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/system/stage.hpp"
 #include "tests/system/trace.hpp"
@@ -354,6 +355,14 @@ TEST_CASE("irdm-replay refuses what it cannot make again, in one line") {
   const std::string whole = file_content(stage.path("trace.h5"));
   stage.write("trace.h5", whole.substr(0, whole.size() / 2));
   refused({}, "trace.h5: ");
+  for (const auto& [set, value] :
+       {std::pair("/stylus/0/force", std::nan("")), std::pair("/stylus/0/tip", 1e300),
+        std::pair("/step/body_orientation", 2.0)}) {
+    stage.write("trace.h5", whole);
+    set_number(stage.path("trace.h5"), set, 0, value);
+    refused({"--csv", stage.path("out.csv").string()}, std::string(set) + " of step 0 is ");
+    CHECK_FALSE(std::filesystem::exists(stage.path("out.csv")));
+  }
   CHECK(run_to_end({IRDM_REPLAY, "compare", cube_model().string(), cube_model().string()}).err ==
         "irdm-replay: error: " + cube_model().string() +
             ": is not a run file; make one with irdm-replay TRACE.h5 --output RUN.h5\n");

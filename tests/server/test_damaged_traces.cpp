@@ -1,0 +1,168 @@
+// What a reader of traces refuses: numbers that no run has, and rows that fit nothing.
+#include <catch2/catch.hpp>
+#include <limits>
+
+#include "common/error.hpp"
+#include "server/record/recording.hpp"
+#include "server/record/trace_header.hpp"
+#include "server/record/trace_writer.hpp"
+#include "tests/server/two_cubes.hpp"
+#include "tests/support/edited_numbers.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+using Catch::Matchers::Contains;
+using namespace irdm;
+using namespace irdm::test;
+
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+/// Of two cubes on a floor and two styluses, with forces that came late and some of a bridge.
+struct DamagedTrace : TemporaryFolder {
+  static constexpr int kSteps = 120;
+
+  DamagedTrace() {
+    Simulation simulation(config);
+    std::vector<StepRecord> records(kSteps);
+    for (int k = 0; k < kSteps; ++k) {
+      StepRecord& record = records[static_cast<std::size_t>(k)];
+      play_step(simulation, k, record);
+      if (k % 9 == 0) record.stylus[0].bridged = BridgedForce{.object = k % 2};
+    }
+    TraceWriter writer(whole,
+                       {{{"one", "a.h5", "1"}, {"two", "b.h5", "2"}}, "scene", 0.002, 2, true});
+    writer.append(records);
+    writer.close();
+  }
+
+  std::vector<double> numbers(const std::string& set) const {
+    std::vector<double> found;
+    edit_numbers(whole, set, [&](std::vector<double>& values) { found = values; });
+    return found;
+  }
+  /// The first row of which this is true.
+  template <typename True>
+  std::size_t row(const std::string& set, const True& is_true) const {
+    const std::vector<double> values = numbers(set);
+    const auto found = std::find_if(values.begin(), values.end(), is_true);
+    REQUIRE(found != values.end());
+    return static_cast<std::size_t>(found - values.begin());
+  }
+
+  Recording read(const std::filesystem::path& path) const { return {path, config, {"one", "two"}}; }
+
+  void refuses(const std::string& set, std::size_t place, double value,
+               const std::string& message) const {
+    CAPTURE(set, place, value);
+    std::filesystem::copy_file(whole, damaged, std::filesystem::copy_options::overwrite_existing);
+    set_number(damaged, set, place, value);
+    CHECK_THROWS_WITH(read(damaged), Contains(message));
+  }
+  /// Also for what is infinite, and for what is finite and nothing else.
+  void refuses_absurd(const std::string& set, std::size_t place, std::size_t step) const {
+    const std::string message = "damaged.h5: " + set + " of step " + std::to_string(step) + " is ";
+    for (const double value : {kNan, kInfinite, -1e300}) refuses(set, place, value, message);
+  }
+
+  SimulationConfig config = two_cubes();
+  std::filesystem::path whole = path() / "whole.h5";
+  std::filesystem::path damaged = path() / "damaged.h5";
+};
+
+bool is_contact(double state) {
+  return state > 0.0;
+}
+
+}  // namespace
+
+TEST_CASE("a trace with numbers that no run has is refused with its set and step") {
+  const DamagedTrace trace;
+  CHECK(trace.read(trace.whole).steps() == DamagedTrace::kSteps);
+  for (const char* set :
+       {"/stylus/0/tip", "/stylus/0/proxy", "/stylus/1/force", "/object/two/body_position",
+        "/object/two/body_velocity", "/object/one/body_angular_velocity",
+        "/object/one/stylus/0/force", "/object/one/stylus/1/proxy", "/object/two/stylus/1/offset",
+        "/object/one/stylus/0/arm_shift"}) {
+    trace.refuses_absurd(set, 3 * 17 + 1, 17);
+  }
+}
+
+TEST_CASE("a trace with an orientation that is none is refused with its set and step") {
+  const DamagedTrace trace;
+  for (const double value : {0.0, 2.0, kNan, 1e300}) {
+    trace.refuses("/object/one/body_orientation", 4 * 20, value,
+                  "/object/one/body_orientation of step 20 is no quaternion of length 1");
+    trace.refuses("/late/body_orientation", 0, value, "/late/body_orientation of step ");
+  }
+}
+
+TEST_CASE("a trace with weights that are none is refused with their set and step") {
+  const DamagedTrace trace;
+  const std::string path = "/object/one/stylus/0";
+  const std::size_t row = trace.row(path + "/contact", is_contact);
+  for (const double value : {-1.0, 2.0, kNan, 1e300}) {
+    trace.refuses(
+        path + "/contact_weights", 3 * row, value,
+        path + "/contact_weights of step " + std::to_string(row) + " are no barycentric weights");
+    trace.refuses("/late/contact_weights", 1, value, "/late/contact_weights of step ");
+  }
+}
+
+TEST_CASE("a trace with settings that no step bears is refused with their set and step") {
+  const DamagedTrace trace;
+  const std::string first = "/settings/object/0/";
+  for (const double value : {kNan, 1e300, -1e9}) {
+    trace.refuses("/settings/gravity", 4, value, "/settings/gravity of step 60 is ");
+    for (const char* name : {"friction", "damping", "tether"}) {
+      trace.refuses(first + name, 0, value, first + name + " of step 0 is ");
+    }
+    trace.refuses(first + "material_damping", 1, value, first + "material_damping of step 60 is ");
+  }
+  trace.refuses(first + "friction", 1, 5.0, "friction of step 0 is more while it slides");
+  trace.refuses(first + "damping", 0, 1e6, "/settings of step 0 cannot be: ");
+  trace.refuses(first + "tether", 1, 1e8, "/settings of step 0 cannot be: ");
+}
+
+TEST_CASE("a trace with events that no run has is refused with their set and step") {
+  const DamagedTrace trace;
+  const auto late = static_cast<std::size_t>(trace.numbers("/late/force_step").at(2));
+  for (const char* set : {"/late/force", "/late/arm", "/late/body_position", "/late/body_velocity",
+                          "/late/body_angular_momentum"}) {
+    trace.refuses_absurd(set, 3 * 2, late);
+  }
+  for (const char* set : {"/bridged/force", "/bridged/arm"}) trace.refuses_absurd(set, 3 * 2, 18);
+  const std::string floor = "/object/one/floor/";
+  const std::size_t step = trace.row(floor + "count", [](double count) { return count > 0.0; });
+  trace.refuses_absurd(floor + "force", 0, step);
+}
+
+TEST_CASE("a trace that speaks of a node beyond the mesh is refused") {
+  const DamagedTrace trace;
+  const int nodes = trace.config.objects[0].model->mesh.surface_node_count();
+  const std::string path = "/object/one/stylus/0";
+  const std::size_t row = trace.row(path + "/contact", is_contact);
+  const std::string message = " touches a node that the model does not have";
+  trace.refuses(path + "/contact_nodes", 3 * row + 2, nodes, path + message);
+  trace.refuses("/object/one/floor/node", 0, nodes, "/object/one/floor" + message);
+  trace.refuses("/late/contact_nodes", 0, nodes, "/late has a force on something");
+}
+
+TEST_CASE("a trace that counts more contacts with the floor than it has is refused") {
+  const DamagedTrace trace;
+  const std::string set = "/object/one/floor/count";
+  const std::size_t last = DamagedTrace::kSteps - 1;
+  const double count = trace.numbers(set).at(last);
+  trace.refuses(set, last, count + 1.0, set + " does not fit the rows that are there");
+  trace.refuses(set, last, -1.0, set + " does not fit the rows that are there");
+}
+
+TEST_CASE("a trace whose dt is none is refused") {
+  const DamagedTrace trace;
+  for (const double dt : {kNan, 0.0, 1e-10, 1e300}) {
+    set_attribute(trace.whole, "/", "dt", dt);
+    CHECK_THROWS_WITH(trace.read(trace.whole), Contains("has a dt of "));
+    CHECK_THROWS_WITH(read_trace_header(trace.whole), Contains("has a dt of "));
+  }
+}

@@ -12,6 +12,7 @@
 #include "replay/frame_steps.hpp"
 #include "replay/interruption.hpp"
 #include "replay/made_again/deviation.hpp"
+#include "replay/made_again/finite_step.hpp"
 #include "replay/made_again/from_forces.hpp"
 #include "replay/made_again/from_tips.hpp"
 #include "replay/output/csv_output.hpp"
@@ -98,10 +99,11 @@ Outputs make_outputs(const ReplayOptions& options, const TracedScene& scene) {
 }
 
 void put_frame(const MadeAgain& made, const StepRecord& record, std::vector<Points>& surfaces,
-               Outputs& outputs) {
+               Outputs& outputs, const std::string& trace) {
   bool looked_at = false;
   for (const auto& output : outputs) looked_at = looked_at || output->needs_surfaces();
   for (std::size_t i = 0; i < surfaces.size() && looked_at; ++i) made.displacement(i, surfaces[i]);
+  require_finite(surfaces, trace);
   for (const auto& output : outputs) output->put({record, surfaces});
 }
 
@@ -159,8 +161,9 @@ int replay(const ReplayOptions& options) {
     recording.step(k, *recorded);
     scene.choose_engine(recorded->settings);
     made->step(*recorded, *again);
+    require_finite(*again, options.trace.string());
     deviation.add(*recorded, *again);
-    if (frames.has(k)) put_frame(*made, *again, surfaces, outputs);
+    if (frames.has(k)) put_frame(*made, *again, surfaces, outputs, options.trace.string());
     run.done(k + 1);
   }
   for (const auto& output : outputs) output->finish();

@@ -57,8 +57,8 @@ ContactRows::ContactRows(const hdf5::File& file, const RowReader& reader, const 
       arm_shift(reader.read<double>(path + "/arm_shift", 3)) {
   check.numbers(path + "/force", force, 3);
   check.numbers(path + "/proxy", proxy, 3);
-  check.numbers(path + "/offset", offset, 3);
-  check.numbers(path + "/arm_shift", arm_shift, 3);
+  check.numbers(path + "/offset", offset, 3, lab::kPlace);
+  check.numbers(path + "/arm_shift", arm_shift, 3, lab::kPlace);
   for (std::size_t k = 0; k < state.size(); ++k) {
     if (state[k] == 0) continue;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -166,7 +166,7 @@ LateRows read_late(const hdf5::File& file, const SimulationConfig& config) {
   rows.angular_momentum = reader.read<double>("/body_angular_momentum", 3);
   const TraceCheck check(file.name(), rows.force_step);
   check.numbers("/late/force", force, 3);
-  check.numbers("/late/arm", arm, 3);
+  check.numbers("/late/arm", arm, 3, lab::kPlace);
   check.numbers("/late/body_position", rows.position, 3);
   check.orientations("/late/body_orientation", rows.orientation);
   check.numbers("/late/body_velocity", rows.velocity, 3);
@@ -197,7 +197,7 @@ BridgedRows read_bridged(const hdf5::File& file, const SimulationConfig& config)
   const auto arm = reader.read<double>("/arm", 3);
   const TraceCheck check(file.name(), rows.force_step);
   check.numbers("/bridged/force", force, 3);
-  check.numbers("/bridged/arm", arm, 3);
+  check.numbers("/bridged/arm", arm, 3, lab::kPlace);
   for (std::size_t e = 0; e < count; ++e) {
     const std::int32_t stylus = rows.stylus[e];
     if (stylus < 0 || stylus >= static_cast<std::int32_t>(config.styluses.size()) ||

@@ -35,7 +35,8 @@ void check_blocks(const hdf5::File& file, const UpperBlocks& upper) {
   constexpr double kRounding = 1e-3;
   Eigen::Matrix3Xd own = Eigen::Matrix3Xd::Zero(3, upper.rows());
   upper.for_each([&](int i, int j, const auto& block) {
-    if (!(block.cwiseAbs().maxCoeff() <= static_cast<float>(lab::kCompliance.highest))) {
+    if (!block.allFinite() ||
+        block.cwiseAbs().maxCoeff() > static_cast<float>(lab::kCompliance.highest)) {
       damaged(file,
               "has numbers that are not finite or beyond " + number_text(lab::kCompliance.highest));
     }

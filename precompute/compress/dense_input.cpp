@@ -33,7 +33,8 @@ RowMatrix<float> DenseInput::column(int b) const {
       {1, static_cast<hsize_t>(steps()), static_cast<hsize_t>(degrees_of_freedom())},
       values.data());
   if (!scales_.empty()) values *= static_cast<float>(scales_[static_cast<std::size_t>(b)]);
-  if (!(values.cwiseAbs().maxCoeff() <= static_cast<float>(lab::kCompliance.highest))) {
+  if (!values.allFinite() ||
+      values.cwiseAbs().maxCoeff() > static_cast<float>(lab::kCompliance.highest)) {
     throw Error(name(), "/response/dense/R has numbers that are not finite or out of range",
                 "make the model again with irdm-precompute");
   }

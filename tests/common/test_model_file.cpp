@@ -286,6 +286,10 @@ TEST_CASE("model file that is missing, truncated, foreign or damaged is refused 
       CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal), Contains(message));
     };
     refused([](auto& g) { g.blocks[0] = std::numeric_limits<float>::quiet_NaN(); }, "not finite");
+    // Not the first number: where comparisons decide, it may hide behind another.
+    refused([](auto& g) { g.blocks[9 + 5] = std::numeric_limits<float>::quiet_NaN(); },
+            "not finite");
+    refused([](auto& g) { g.blocks[9 + 5] = 100.0F; }, "more than to themselves");
     refused([](auto& g) { g.blocks[1] += 1.0F; }, "own compliance is not symmetric");
     refused([](auto& g) { g.blocks[0] = -1.0F; }, "own compliance is not symmetric or negative");
     refused([](auto& g) { g.nodes[1] = 4; }, "columns that are none");

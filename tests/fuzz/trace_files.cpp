@@ -1,5 +1,6 @@
 // Traces of two objects and two styluses, with edits of the fuzzer's choice.
 #include "common/error.hpp"
+#include "replay/made_again/finite_step.hpp"
 #include "replay/made_again/from_forces.hpp"
 #include "replay/made_again/from_tips.hpp"
 #include "server/record/recording.hpp"
@@ -37,14 +38,19 @@ std::filesystem::path valid_trace() {
   return path;
 }
 
-/// What comes out means nothing: it has to come out.
+/// What comes out need not be what was recorded; it is finite, or irdm-replay refuses the trace.
 void make_again(replay::MadeAgain& made, const Recording& recording) {
   constexpr std::size_t kMost = 60;
   StepRecord recorded;
   StepRecord again;
+  std::vector<Points> displacements(scene().objects.size());
   for (std::size_t k = 0; k < std::min(recording.steps(), kMost); ++k) {
     recording.step(k, recorded);
+    expect(replay::is_finite(recorded), "steps that are read are finite");
     made.step(recorded, again);
+    replay::require_finite(again, "it.h5");
+    for (std::size_t i = 0; i < displacements.size(); ++i) made.displacement(i, displacements[i]);
+    replay::require_finite(displacements, "it.h5");
   }
 }
 

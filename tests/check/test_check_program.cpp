@@ -116,7 +116,7 @@ TEST_CASE("check fails modes that cannot be, and goes on with the rest") {
   const Run result = run({path.string()});
   CHECK(result.status == 1);
   CHECK_THAT(result.err, Contains("fails: modes"));
-  CHECK_THAT(result.out, Contains("checksum") && Contains("decay rates that are not negative"));
+  CHECK_THAT(result.out, Contains("checksum") && Contains("decay_rate has a number that is not"));
 }
 
 TEST_CASE("check refuses what is no model file and what is wrong usage") {

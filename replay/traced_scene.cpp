@@ -71,7 +71,7 @@ std::filesystem::path find_model(const std::filesystem::path& trace, const Trace
   }
   if (other.empty()) {
     throw Error(trace.string(),
-                "was recorded with " + in_quotes(object.model_file) + ", which is not there",
+                "was recorded with " + shortened(object.model_file) + ", which is not there",
                 "give it with --model");
   }
   throw Error(other, "is not the model that " + trace.string() + " was recorded with",

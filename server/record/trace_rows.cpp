@@ -1,6 +1,7 @@
 #include "server/record/trace_rows.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "common/error.hpp"
 #include "server/step/restraints.hpp"
@@ -28,6 +29,19 @@ void check_late(const LateForce& late, const SimulationConfig& config, const std
   if (!good) {
     throw Error(file, "/late has a force on something that the model or the scene does not have",
                 "use the scene and the model that it was recorded with");
+  }
+}
+
+// Static and kinetic; infinite: it never slips, which no scene says but a program may.
+void check_friction(const std::string& set, const std::vector<double>& friction,
+                    const TraceCheck& check) {
+  for (std::size_t i = 0; i < friction.size(); ++i) {
+    if (friction[i] != std::numeric_limits<double>::infinity()) {
+      check.number(set, i / 2, friction[i], lab::kFriction);
+    }
+    if (i % 2 == 1 && friction[i] > friction[i - 1]) {
+      check.refuse(set, i / 2, "is more while it slides than while it sticks");
+    }
   }
 }
 
@@ -124,7 +138,7 @@ SettingsRows read_settings(const hdf5::File& file, const SimulationConfig& confi
     const auto material = file.read<double>(group + "/material_damping", {count});
     const auto dense = file.read<std::uint8_t>(group + "/dense", {count});
     const auto loading = file.read<std::uint8_t>(group + "/inertial_loading", {count});
-    check.numbers(group + "/friction", friction, 2, lab::kFriction);
+    check_friction(group + "/friction", friction, check);
     check.numbers(group + "/damping", damping, 2, lab::kStiffness);  // restraints say more
     check.numbers(group + "/tether", tether, 2, lab::kStiffness);
     check.numbers(group + "/material_damping", material, 1, lab::kMaterialDamping);
@@ -135,9 +149,6 @@ SettingsRows read_settings(const hdf5::File& file, const SimulationConfig& confi
                                     material[e],
                                     engine_of(dense[e]),
                                     loading[e] != 0};
-      if (friction[2 * e + 1] > friction[2 * e]) {
-        check.refuse(group + "/friction", e, "is more while it slides than while it sticks");
-      }
     }
   }
   check_restraints(rows, check, config);

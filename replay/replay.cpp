@@ -14,6 +14,7 @@
 #include "replay/made_again/deviation.hpp"
 #include "replay/made_again/from_forces.hpp"
 #include "replay/made_again/from_tips.hpp"
+#include "replay/made_again/told_late.hpp"
 #include "replay/output/csv_output.hpp"
 #include "replay/output/picture_output.hpp"
 #include "replay/output/run_output.hpp"
@@ -56,11 +57,11 @@ std::optional<std::filesystem::path> journal_path(const ReplayOptions& options) 
   return std::nullopt;
 }
 
-std::unique_ptr<MadeAgain> make_again(const TracedScene& scene, const Recording& recording,
+std::unique_ptr<MadeAgain> make_again(const TracedScene& scene, const std::vector<ToldLate>& late,
                                       const ReplayOptions& options, StepJournal* journal) {
   if (options.reference) {
     return fem_reference(scene, *options.reference, options.substep.value_or(kReferenceSubstep),
-                         options.from_tips, told_late(recording), journal);
+                         options.from_tips, late, journal);
   }
   if (options.from_tips) return std::make_unique<FromTips>(scene.config, options.solve_bridged);
   return std::make_unique<FromForces>(scene.config);
@@ -150,7 +151,9 @@ int replay(const ReplayOptions& options) {
   Outputs outputs = make_outputs(options, scene);
   std::optional<StepJournal> journal;
   if (path) journal.emplace(*path, reference_key(scene, options));
-  const auto made = make_again(scene, recording, options, journal ? &*journal : nullptr);
+  const std::vector<ToldLate> late =
+      options.solve_bridged ? std::vector<ToldLate>() : told_late(recording);
+  const auto made = make_again(scene, late, options, journal ? &*journal : nullptr);
   std::vector<Points> surfaces(scene.config.objects.size());
   Deviation deviation;
   const auto recorded = std::make_unique<StepRecord>();
@@ -160,6 +163,7 @@ int replay(const ReplayOptions& options) {
     scene.choose_engine(recorded->settings);
     made->step(*recorded, *again);
     deviation.add(*recorded, *again);
+    add_told_late(late, k, options.reference && options.from_tips, *again);
     if (frames.has(k)) put_frame(*made, *again, surfaces, outputs);
     run.done(k + 1);
   }

@@ -15,6 +15,7 @@
 #include "replay/made_again/finite_step.hpp"
 #include "replay/made_again/from_forces.hpp"
 #include "replay/made_again/from_tips.hpp"
+#include "replay/made_again/told_late.hpp"
 #include "replay/output/csv_output.hpp"
 #include "replay/output/picture_output.hpp"
 #include "replay/output/run_output.hpp"
@@ -57,11 +58,11 @@ std::optional<std::filesystem::path> journal_path(const ReplayOptions& options) 
   return std::nullopt;
 }
 
-std::unique_ptr<MadeAgain> make_again(const TracedScene& scene, const Recording& recording,
+std::unique_ptr<MadeAgain> make_again(const TracedScene& scene, const std::vector<ToldLate>& late,
                                       const ReplayOptions& options, StepJournal* journal) {
   if (options.reference) {
     return fem_reference(scene, *options.reference, options.substep.value_or(kReferenceSubstep),
-                         options.from_tips, told_late(recording), journal);
+                         options.from_tips, late, journal);
   }
   if (options.from_tips) return std::make_unique<FromTips>(scene.config, options.solve_bridged);
   return std::make_unique<FromForces>(scene.config);
@@ -152,7 +153,9 @@ int replay(const ReplayOptions& options) {
   Outputs outputs = make_outputs(options, scene);
   std::optional<StepJournal> journal;
   if (path) journal.emplace(*path, reference_key(scene, options));
-  const auto made = make_again(scene, recording, options, journal ? &*journal : nullptr);
+  const std::vector<ToldLate> late =
+      options.solve_bridged ? std::vector<ToldLate>() : told_late(recording);
+  const auto made = make_again(scene, late, options, journal ? &*journal : nullptr);
   std::vector<Points> surfaces(scene.config.objects.size());
   Deviation deviation;
   const auto recorded = std::make_unique<StepRecord>();
@@ -163,6 +166,7 @@ int replay(const ReplayOptions& options) {
     made->step(*recorded, *again);
     require_finite(*again, options.trace.string());
     deviation.add(*recorded, *again);
+    add_told_late(late, k, options.reference && options.from_tips, *again);
     if (frames.has(k)) put_frame(*made, *again, surfaces, outputs, options.trace.string());
     run.done(k + 1);
   }

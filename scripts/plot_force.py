@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Draws the force on a stylus over time from a trace file, like the paper's Figure 8.
+"""Draws the force on a stylus over time from a trace file, like the paper's Figure 8: as it acted in
+the end, with what a bridge told late (a trace of before `applied_force`: as it was known in the step).
 
 usage: plot_force.py TRACE.h5 PICTURE.png [STYLUS]
 """
@@ -20,7 +21,8 @@ def main():
     stylus = sys.argv[3] if len(sys.argv) == 4 else "0"
     with h5py.File(sys.argv[1]) as trace:
         time = trace["/step/time"][:]
-        force = trace[f"/stylus/{stylus}/force"][:]
+        sets = trace[f"/stylus/{stylus}"]
+        force = sets["applied_force" if "applied_force" in sets else "force"][:]
         contact = trace[f"/stylus/{stylus}/contact"][:]
     if len(time) == 0:
         sys.exit(f"{sys.argv[1]}: the trace has no steps; nothing was recorded")

@@ -11,14 +11,11 @@
 #include "common/model/half_column.hpp"
 #include "common/model/model_units.hpp"
 #include "common/model/residual_file.hpp"
+#include "common/process/part_name.hpp"
 #include "common/response/spin_products.hpp"
 
 namespace irdm {
 namespace {
-
-std::filesystem::path temporary_name(const std::filesystem::path& path) {
-  return path.string() + ".part-" + std::to_string(::getpid());
-}
 
 // Steps of a column in a chunk: chunks of at most about 1 MB and about equal size.
 hsize_t chunk_steps(hsize_t steps, hsize_t step_bytes) {
@@ -81,7 +78,7 @@ void write_description(hdf5::File& file, const Model& model) {
 }
 
 ModelFileWriter::ModelFileWriter(const std::filesystem::path& path)
-    : path_(path), temporary_(temporary_name(path)) {
+    : path_(path), temporary_(fresh_part_name(path)) {
   file_ = hdf5::File::create(temporary_);
 }
 

@@ -1,7 +1,10 @@
 #include "precompute/check/wave_speed.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "precompute/check/rigid_answer.hpp"
@@ -13,6 +16,7 @@ namespace {
 constexpr double kArrivalShare = 0.05;  // of the first peak
 constexpr double kPeakShare = 0.3;      // of the largest displacement: smaller ones are precursors
 constexpr double kFlatSlope = 0.2;      // distance from the tangent plane per distance
+constexpr double kEquallyFar = 1e-3;    // share of the distance
 
 struct Passage {
   double distance;  // [m]
@@ -53,27 +57,55 @@ double main_time(const Eigen::VectorXd& values, double dt) {
   return peak_time(values, s, dt);
 }
 
-// Distance per time of the line time = a + distance / speed.
-double fitted_speed(const std::vector<Passage>& passages, double Passage::*time) {
-  double mean_distance = 0.0;
-  double mean_time = 0.0;
+Passage mean_of(std::span<const Passage> passages) {
+  Passage sum{0.0, 0.0, 0.0, 0.0};
   for (const Passage& p : passages) {
-    mean_distance += p.distance;
-    mean_time += p.*time;
+    sum.distance += p.distance;
+    sum.arrival += p.arrival;
+    sum.peak += p.peak;
+    sum.main += p.main;
   }
   const auto count = static_cast<double>(passages.size());
-  mean_distance /= count;
-  mean_time /= count;
+  return {sum.distance / count, sum.arrival / count, sum.peak / count, sum.main / count};
+}
+
+// Nodes that are equally far count as one: where they are so by symmetry, they say the same.
+std::vector<Passage> by_distance(std::vector<Passage> passages) {
+  std::sort(passages.begin(), passages.end(),
+            [](const Passage& a, const Passage& b) { return a.distance < b.distance; });
+  std::vector<Passage> means;
+  for (std::size_t begin = 0, end = 0; begin < passages.size(); begin = end) {
+    while (end < passages.size() &&
+           passages[end].distance <= (1.0 + kEquallyFar) * passages[begin].distance) {
+      ++end;
+    }
+    means.push_back(mean_of(std::span(passages).subspan(begin, end - begin)));
+  }
+  return means;
+}
+
+// Of three or more.
+FittedPassage fit(const std::vector<Passage>& passages, double Passage::*time) {
+  const Passage mean = mean_of(passages);
   double covariance = 0.0;
   double variance = 0.0;
   for (const Passage& p : passages) {
-    covariance += (p.distance - mean_distance) * (p.*time - mean_time);
-    variance += (p.distance - mean_distance) * (p.distance - mean_distance);
+    covariance += (p.distance - mean.distance) * (p.*time - mean.*time);
+    variance += (p.distance - mean.distance) * (p.distance - mean.distance);
   }
-  return covariance > 0.0 ? variance / covariance : std::numeric_limits<double>::infinity();
+  const double slope = covariance / variance;
+  double off = 0.0;
+  for (const Passage& p : passages) {
+    off += std::pow(p.*time - mean.*time - slope * (p.distance - mean.distance), 2);
+  }
+  return {slope, std::sqrt(off / static_cast<double>(passages.size() - 2) / variance)};
 }
 
 }  // namespace
+
+double FittedPassage::speed() const {
+  return slowness > 0.0 ? 1.0 / slowness : std::numeric_limits<double>::infinity();
+}
 
 WaveSpeeds theoretical_speeds(const Material& material) {
   const Lame lame = lame_parameters(material);
@@ -135,10 +167,12 @@ MeasuredWave measure_wave(const Model& model, int b, const RowMatrix<double>& co
                         peak_time(moved, peak, dt), main_time(along, dt)});
   }
   wave.passed = static_cast<int>(passages.size());
-  if (wave.passed < 3) return wave;
-  wave.arrival = fitted_speed(passages, &Passage::arrival);
-  wave.main = fitted_speed(passages, &Passage::main);
-  wave.peak = fitted_speed(passages, &Passage::peak);
+  passages = by_distance(std::move(passages));
+  wave.distances = static_cast<int>(passages.size());
+  if (wave.distances < 3) return wave;
+  wave.arrival = fit(passages, &Passage::arrival);
+  wave.main = fit(passages, &Passage::main);
+  wave.peak = fit(passages, &Passage::peak);
   return wave;
 }
 

@@ -16,19 +16,27 @@ WaveSpeeds theoretical_speeds(const Material& material);
 /// that points most directly to it.
 int wave_source(const Model& model);
 
+/// Time over distance as a straight line.
+struct FittedPassage {
+  double slowness = 0.0;  ///< its slope [s/m]
+  double error = 0.0;     ///< standard error of the slope [s/m]
+  double speed() const;   ///< [m/s]; infinite when everywhere at once
+};
+
 struct MeasuredWave {
-  double arrival = 0.0;  ///< of 5 % of the first peak [m/s]; infinite when everywhere at once
-  double peak = 0.0;     ///< of the first peak [m/s]
-  double main = 0.0;     ///< of the largest displacement in the direction of the force [m/s]
-  int nodes = 0;         ///< watched: on the source's side of the body and near its tangent plane
-  int passed = 0;        ///< of these, how many saw a peak
+  FittedPassage arrival;  ///< of 5 % of the first peak
+  FittedPassage peak;     ///< of the first peak
+  FittedPassage main;     ///< of the largest displacement in the direction of the force
+  int nodes = 0;          ///< watched: on the source's side of the body and near its tangent plane
+  int passed = 0;         ///< of these, how many saw a peak
+  int distances = 0;      ///< of these, how many different ones from the source
 };
 
 /// Speeds along the surface: the nodes' distances over the times at which their total displacement
-/// (elastic and rigid: the elastic part alone moves everywhere at once) first reaches 5 % of its
-/// first peak, that peak, and the largest displacement along the force, by a straight line in the
-/// least-squares sense. docs/wave-speed.md says what they mean. Nothing to measure (passed < 3):
-/// zero.
+/// (nodes that are equally far count as one; elastic and rigid: the elastic part alone moves
+/// everywhere at once) first reaches 5 % of its first peak, that peak, and the largest displacement
+/// along the force, by a straight line in the least-squares sense. docs/wave-speed.md says what
+/// they mean. Nothing to measure (distances < 3): zero.
 /// @param b degree of freedom of the tap
 /// @param column R[s](:, b), (steps, 3n), sampled every `dt` [s]
 MeasuredWave measure_wave(const Model& model, int b, const RowMatrix<double>& column, double dt);

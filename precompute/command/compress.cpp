@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "common/error.hpp"
+#include "common/process/part_name.hpp"
 #include "precompute/blas_kernel.hpp"
 #include "precompute/command/command.hpp"
 #include "precompute/compress/compress_model.hpp"
@@ -40,7 +41,7 @@ int compress(const CompressOptions& options) {
   if (std::filesystem::equivalent(options.input, options.output, ignored)) {
     throw Error(options.output, "is the input itself", "give the output another name");
   }
-  const std::filesystem::path temporary = options.output + ".part-" + std::to_string(::getpid());
+  const std::filesystem::path temporary = fresh_part_name(options.output);
   const LastAction cleanup({.remove = temporary});
   const CompressionSummary summary =
       compress_model(options.input, options.output, temporary, options.settings, console);

@@ -4,6 +4,7 @@
 #include <iostream>
 #include <memory>
 
+#include "common/process/part_name.hpp"
 #include "precompute/columns/assemble.hpp"
 #include "precompute/command/command.hpp"
 #include "precompute/process/last_action.hpp"
@@ -19,7 +20,7 @@ struct MergeOptions {
 int merge(const MergeOptions& options) {
   const Console console{std::cout, ::isatty(STDOUT_FILENO) != 0};
   const std::vector<std::filesystem::path> parts(options.parts.begin(), options.parts.end());
-  const std::filesystem::path temporary = options.output + ".part-" + std::to_string(::getpid());
+  const std::filesystem::path temporary = fresh_part_name(options.output);
   const LastAction cleanup({.remove = temporary});
   const double left = assemble(parts, options.output, temporary, console);
   char text[64];

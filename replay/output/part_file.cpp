@@ -1,13 +1,12 @@
 #include "replay/output/part_file.hpp"
 
-#include <unistd.h>
-
 #include "common/error.hpp"
+#include "common/process/part_name.hpp"
 
 namespace irdm::replay {
 
 PartFile::PartFile(std::filesystem::path path)
-    : path_(std::move(path)), part_(path_.string() + ".part-" + std::to_string(::getpid())) {
+    : path_(std::move(path)), part_(fresh_part_name(path_)) {
   if (std::filesystem::exists(path_)) {
     throw Error(path_.string(), "exists already", "give another name or remove it");
   }

@@ -6,6 +6,7 @@
 #include "precompute/dynamics/implicit_midpoint.hpp"
 #include "precompute/dynamics/rigid_extraction.hpp"
 #include "replay/made_again/forced_body.hpp"
+#include "replay/made_again/told_late.hpp"
 #include "replay/reference/broyden_solver.hpp"
 #include "replay/reference/step_journal.hpp"
 #include "server/step/recorded_forces.hpp"
@@ -15,14 +16,6 @@ namespace irdm::replay {
 
 /// How many equal sub-steps, none above `longest` [s], a step of dt [s] is cut into.
 int fem_parts(double dt, double longest);
-
-/// A force that a bridge told of after its step.
-struct ToldLate {
-  std::size_t step = 0;  ///< that it belongs to, from the start of the trace
-  LateForce late;
-  Quaternion orientation =
-      Quaternion::Identity();  ///< of the recorded body half-way through that step
-};
 
 /// By finite elements, without modes, R or rigid body: the whole mesh, of large rotations, stepped
 /// by ImplicitMidpoint. Recorded forces act in W on the points of the surface that they were

@@ -45,23 +45,4 @@ std::unique_ptr<MadeAgain> fem_reference(const TracedScene& scene,
   return std::make_unique<FromForces>(scene.config, std::move(bodies));
 }
 
-std::vector<ToldLate> told_late(const Recording& recording) {
-  std::vector<ToldLate> told;
-  std::size_t begin = 0;  // of what has happened since the last reset
-  const auto record = std::make_unique<StepRecord>();
-  const auto own = std::make_unique<StepRecord>();
-  for (std::size_t k = 0; k < recording.steps(); ++k) {
-    recording.step(k, *record);
-    if (record->reset) begin = k;
-    for (const LateForce& late : record->late.view()) {
-      const auto ago = static_cast<std::size_t>(late.age) + 1;
-      if (k < begin + ago) continue;
-      recording.step(k - ago, *own);
-      const ObjectRecord& object = own->object[static_cast<std::size_t>(late.object)];
-      told.push_back({k - ago, late, object.halfway});
-    }
-  }
-  return told;
-}
-
 }  // namespace irdm::replay

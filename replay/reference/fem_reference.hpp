@@ -6,7 +6,6 @@
 #include "replay/made_again/made_again.hpp"
 #include "replay/reference/fem_body.hpp"
 #include "replay/traced_scene.hpp"
-#include "server/record/recording.hpp"
 
 namespace irdm::replay {
 
@@ -27,9 +26,5 @@ std::unique_ptr<MadeAgain> fem_reference(const TracedScene& scene,
                                          bool follow_tips = false,
                                          const std::vector<ToldLate>& told_late = {},
                                          StepJournal* journal = nullptr);
-
-/// What bridges told too late, step by step of the trace. What belongs to a time before it, or
-/// before a reset, is left out, as in the server.
-std::vector<ToldLate> told_late(const Recording& recording);
 
 }  // namespace irdm::replay

@@ -185,7 +185,7 @@ void Session::take(const wire::AppliedForcesMessage& message) {
 }
 
 void Session::violated(const ProtocolError& error) {
-  if (error.fault() == ProtocolFault::kWrongVersion) {
+  if (error.fault() == ProtocolFault::kWrongVersion && !welcomed_) {
     return refuse(wire::RefuseReason::kVersion, error.what());
   }
   connection_->tell_violation(error);

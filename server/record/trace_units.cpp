@@ -6,7 +6,7 @@
 namespace irdm::trace {
 namespace {
 
-constexpr std::array<std::pair<const char*, const char*>, 19> kUnits{{
+constexpr std::array<std::pair<const char*, const char*>, 20> kUnits{{
     {"time", "s"},
     {"body_position", "m"},
     {"body_orientation", "1"},
@@ -17,6 +17,7 @@ constexpr std::array<std::pair<const char*, const char*>, 19> kUnits{{
     {"tip", "m"},
     {"proxy", "m"},
     {"force", "N"},
+    {"applied_force", "N"},
     {"contact_weights", "1"},
     {"arm_shift", "m"},
     {"offset", "m"},

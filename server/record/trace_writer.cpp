@@ -1,8 +1,10 @@
 #include "server/record/trace_writer.hpp"
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
+#include "common/contact/contact_model.hpp"
 #include "common/error.hpp"
 #include "server/record/trace_paths.hpp"
 #include "server/record/trace_units.hpp"
@@ -79,7 +81,7 @@ void TraceWriter::create_datasets() {
   }
   for (std::size_t s = 0; s < static_cast<std::size_t>(stylus_count_); ++s) {
     const std::string path = stylus_path(s);
-    for (const char* name : {"/tip", "/proxy", "/force"}) {
+    for (const char* name : {"/tip", "/proxy", "/force", "/applied_force"}) {
       create<double>(path + name, {3});
     }
     create_contact(path);
@@ -164,6 +166,30 @@ void TraceWriter::append_late(std::span<const StepRecord> records) {
       file_.append<double>("/late/body_velocity", 1, body.velocity.data());
       file_.append<double>("/late/body_angular_momentum", 1, body.angular_momentum.data());
     }
+  }
+}
+
+void TraceWriter::correct_applied(std::span<const StepRecord> records) {
+  std::uint64_t row = rows_;
+  for (const StepRecord& record : records) {
+    for (const LateForce& late : record.late.view()) {
+      const auto own = std::find_if(recent_.begin(), recent_.end(), [&](const RecentStep& step) {
+        return step.force_step + 1 + static_cast<std::uint64_t>(late.age) == record.force_step;
+      });
+      if (own == recent_.end()) continue;  // that step was lost
+      const auto s = static_cast<std::size_t>(late.stylus);
+      own->applied[s] -= own->halfway[static_cast<std::size_t>(late.object)] * late.force;
+      file_.write_slab<double>(stylus_path(s) + "/applied_force", {own->row, 0}, {1, 3},
+                               own->applied[s].data());
+    }
+    RecentStep& step = recent_.emplace_back();
+    step.force_step = record.force_step;
+    step.row = row++;
+    for (std::size_t i = 0; i < objects_.size(); ++i) step.halfway[i] = record.object[i].halfway;
+    for (std::size_t s = 0; s < static_cast<std::size_t>(stylus_count_); ++s) {
+      step.applied[s] = record.stylus[s].force;
+    }
+    if (recent_.size() > static_cast<std::size_t>(kMaxHorizon)) recent_.pop_front();
   }
 }
 
@@ -263,6 +289,7 @@ void TraceWriter::append(std::span<const StepRecord> records) {
   for (std::size_t s = 0; s < static_cast<std::size_t>(stylus_count_); ++s) {
     append_stylus(records, s);
   }
+  correct_applied(records);
   rows_ += records.size();
 }
 
@@ -329,6 +356,7 @@ void TraceWriter::append_stylus(std::span<const StepRecord> records, std::size_t
   vectors("/tip", &StylusRecord::tip);
   vectors("/proxy", &StylusRecord::proxy);
   vectors("/force", &StylusRecord::force);
+  vectors("/applied_force", &StylusRecord::force);
   append_contact(records, path, [s](const StepRecord& r) -> const ContactRecord& {
     static const ContactRecord kNone;
     const int object = r.stylus[s].object;

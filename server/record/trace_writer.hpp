@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <deque>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -55,6 +57,8 @@ class TraceWriter {
   void create_settings();
   void create_late();
   void append_late(std::span<const StepRecord> records);
+  /// Enters what came late in the rows that it belongs to.
+  void correct_applied(std::span<const StepRecord> records);
   void create_bridged();
   void append_bridged(std::span<const StepRecord> records);
   /// A set that grows, with its unit.
@@ -70,11 +74,20 @@ class TraceWriter {
   void append_rows(const std::string& dataset, std::size_t width,
                    std::span<const StepRecord> records, const Fill& fill);
 
+  /// One of the last steps, whose applied forces may still change.
+  struct RecentStep {
+    std::uint64_t force_step = 0;
+    std::uint64_t row = 0;
+    std::array<Quaternion, kMaxObjects> halfway;
+    std::array<Vector3, kMaxStyluses> applied;  ///< [N], W
+  };
+
   hdf5::File file_;
   std::vector<TraceObject> objects_;
   int stylus_count_;
   bool floor_;
-  std::uint64_t rows_ = 0;                        ///< appended
+  std::uint64_t rows_ = 0;  ///< appended
+  std::deque<RecentStep> recent_;
   std::optional<std::uint32_t> settings_change_;  ///< that was written last
 };
 

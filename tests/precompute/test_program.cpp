@@ -1,3 +1,5 @@
+#include <unistd.h>
+
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <csignal>
@@ -115,6 +117,23 @@ TEST_CASE("program writes a model whose dense columns are the closed form of its
     }
     CHECK((found - exact).cwiseAbs().maxCoeff() < 1e-12 * exact.cwiseAbs().maxCoeff());
   }
+}
+
+TEST_CASE("program removes what killed runs have left of its output, and leaves what is written") {
+  Run run;
+  run.write("c.toml", kBox + kMaterial);
+  irdm::test::ChildProcess killed({"/bin/true"});
+  const std::string part = "made/model.h5.part-";
+  const std::string gone = part + std::to_string(killed.pid());
+  const std::string ours = part + std::to_string(::getpid());
+  killed.wait();
+  run.write(gone, "half of a model");
+  run.write(ours, "of a process that lives");
+  run.start("c.toml -o made/model.h5");
+  CHECK(run.status == 0);
+  CHECK(std::filesystem::exists(run.model()));
+  CHECK_FALSE(std::filesystem::exists(run.path() / gone));
+  CHECK(std::filesystem::exists(run.path() / ours));
 }
 
 TEST_CASE("the body in a model file is what its nodes and masses make, about the origin") {

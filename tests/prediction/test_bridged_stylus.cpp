@@ -178,6 +178,25 @@ TEST_CASE("bridged stylus: what rests on a model from before a reset is for anot
   CHECK(served.moved(0).y() < -1e-4);
 }
 
+// A message repeats the steps before its newest; they may rest on a model from before the reset,
+// and be for steps that are still to come.
+TEST_CASE("bridged stylus: of the first message after a reset the newest force alone counts") {
+  Served served(1);
+  for (int k = 0; k < 5; ++k) served.step(kAbove, Vector3::Zero());
+  served.step(kAbove, Vector3::Zero(), false, true);  // put back before this step
+  served.applied.step = served.simulation.next_step() + 3;
+  served.applied.base = served.simulation.next_step() - 1;
+  served.applied.count = 4;
+  served.applied.past.fill({kPush, kAbove, kAbove});
+  served.history.take(served.applied);
+  for (int k = 0; k < 3; ++k) {
+    served.step(kAbove, Vector3::Zero(), false);
+    CHECK(served.moved(0).isZero(0.0));
+  }
+  served.step(kAbove, Vector3::Zero(), false);
+  CHECK(served.moved(0).y() < -1e-4);
+}
+
 TEST_CASE("bridged stylus: a force is bounded, and one that is never told of is lost") {
   Served served(1);
   for (int k = 0; k < 5; ++k) served.step(kAbove, Vector3::Zero());

@@ -79,6 +79,7 @@ TEST_CASE("contact model: each thing that can be wrong with one is found") {
       {Fault::kAsymmetric, [](ContactModel& m) { m.response[7](0, 1) += 1e-3; }},
       {Fault::kStiffness, [](ContactModel& m) { m.response[0] *= -1.0; }},
       {Fault::kStiffness, [](ContactModel& m) { m.series.diagonal().array() += 2.0; }},
+      {Fault::kStiffness, [](ContactModel& m) { m.series(0, 0) += 2.0; }},  // in one direction
       {Fault::kStiffness, [](ContactModel& m) { m.series *= -1.0; }},
       {Fault::kGrowing, [](ContactModel& m) { m.response[1] = 4.0 * m.response[0]; }},
   };

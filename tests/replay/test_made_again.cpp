@@ -4,6 +4,7 @@
 #include "replay/made_again/deviation.hpp"
 #include "replay/made_again/from_forces.hpp"
 #include "replay/made_again/from_tips.hpp"
+#include "replay/made_again/told_late.hpp"
 #include "server/step/bridged_stylus.hpp"
 #include "tests/replay/kept_run.hpp"
 #include "tests/server/two_cubes.hpp"
@@ -219,6 +220,39 @@ TEST_CASE("a run in which a bridge solved contacts is made again") {
   REQUIRE(bridged > 100);
   REQUIRE(peak > 0.1);
   check_both(run);
+}
+
+TEST_CASE("what a bridge told acted in the end, whenever it came") {
+  const KeptRun run = bridged_fall();
+  const std::vector<ToldLate> told = told_late(run.recording());
+  int came_late = 0;
+  double largest = 0.0;
+  for (std::size_t k = 10; k < 95; ++k) {
+    StepRecord record = run.records[k];
+    const Vector3 expected = -told_force(static_cast<int>(k));
+    came_late += (record.stylus[0].force - expected).norm() > 0.01 ? 1 : 0;
+    add_told_late(told, k, false, record);
+    largest = std::max(largest, (record.stylus[0].force - expected).norm());
+  }
+  CHECK(came_late > 20);
+  INFO("largest difference " << largest << " N");
+  CHECK(largest < 1e-3);  // the object was believed to stand otherwise when it came
+}
+
+TEST_CASE("forces of held points that were found anew have what was told late") {
+  StepRecord record;
+  record.object[0].contact[0].state = ContactState::kHeld;
+  record.stylus[0] = {.present = true, .buttons = kGrabButton, .force = Vector3(1, 0, 0)};
+  std::vector<ToldLate> told(1);
+  told[0].step = 4;
+  told[0].late.force = Vector3(0, 2, 0);
+  add_told_late(told, 4, true, record);
+  CHECK(record.stylus[0].force == Vector3(1, 0, 0));
+  record.stylus[0].buttons = 0;  // it is given up: what was recorded acts
+  add_told_late(told, 4, true, record);
+  CHECK(record.stylus[0].force == Vector3(1, -2, 0));
+  add_told_late(told, 5, false, record);
+  CHECK(record.stylus[0].force == Vector3(1, -2, 0));
 }
 
 TEST_CASE(

@@ -78,6 +78,7 @@ TEST_CASE("a trace has every set of the contract, in its shape and type, for eac
     check(stylus + "tip", 3, kF64);
     check(stylus + "proxy", 3, kF64);
     check(stylus + "force", 3, kF64);
+    check(stylus + "applied_force", 3, kF64);
     check(stylus + "contact", 1, kU8);
     check(stylus + "contact_nodes", 3, kI32);
     check(stylus + "contact_weights", 3, kF64);

@@ -61,6 +61,35 @@ TEST_CASE("server answers a header of another version with a refusal") {
   CHECK(peer.ends());
 }
 
+TEST_CASE("server sends a header of another version away once a version was agreed on") {
+  check_violation([](RawPeer& peer) {
+    std::vector<std::uint8_t> bytes = frame_bytes(SampleMessage{}, peer.session);
+    bytes[4] = 2;
+    peer.send(bytes);
+  });
+}
+
+TEST_CASE("the header of the welcome carries the session's number") {
+  RunningServer running;
+  RawPeer peer = running.connect();
+  peer.send(Hello{.name = "test"});
+  const auto frame = peer.receive();
+  REQUIRE(frame);
+  CHECK(frame->header.session == std::get<wire::Welcome>(frame->message).session);
+}
+
+TEST_CASE("server hangs up without a word on a peer that does so") {
+  RunningServer running;
+  RawPeer peer = running.join();
+  peer.send(SampleMessage{});
+  CHECK(running.next_input().present);
+  peer.end_sending();
+  CHECK_FALSE(running.next_input().present);
+  CHECK_FALSE(peer.receive());
+  CHECK(peer.ends());
+  CHECK(running.server.stats().protocol_errors == 0);
+}
+
 TEST_CASE("server sends an oversized length away without waiting for it") {
   check_violation([](RawPeer& peer) {
     std::vector<std::uint8_t> bytes = frame_bytes(SampleMessage{}, peer.session);

@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 #include <limits>
 #include <random>
+#include <vector>
 
 #include "common/contact/contact_problem.hpp"
 #include "common/contact/single_contact.hpp"
@@ -205,6 +206,48 @@ TEST_CASE("many contacts together meet Coulomb's law, and no friction force give
       }
     }
   }
+}
+
+// Between kinetic and static friction: what does not slip yet has not to slide first.
+TEST_CASE("contacts that stick only by static friction are solved directly") {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    ContactProblem problem = random_problem(4, seed);
+    std::vector<Vector3> forces;
+    for (int a = 0; a < problem.count(); ++a) {
+      ContactUnknown& contact = problem.contact(a);
+      contact.law = ContactLaw::kTouching;
+      contact.friction = {0.5, 0.4};
+      contact.force = 0.45 * contact.normal.unitOrthogonal() - contact.normal;
+      forces.push_back(contact.force);
+    }
+    for (int a = 0; a < problem.count(); ++a) problem.contact(a).gap = moved(problem, a);
+    for (int a = 0; a < problem.count(); ++a) problem.contact(a).force.setZero();
+    const ContactSolution solution = solve(problem);
+    CHECK(solution.sweeps == 0);
+    for (int a = 0; a < problem.count(); ++a) {
+      CHECK(problem.contact(a).mode == ContactMode::kSticking);
+      CHECK((problem.contact(a).force - forces[static_cast<std::size_t>(a)]).norm() < 1e-10);
+    }
+  }
+}
+
+// Held contacts answer each change of another at once: what is left for the sweeps is the ridge.
+TEST_CASE("one contact that slips beside held ones is solved within three sweeps") {
+  int slipping = 0;
+  for (unsigned seed = 0; seed < 100; ++seed) {
+    ContactProblem problem = random_problem(3, seed);
+    problem.contact(2).law = ContactLaw::kTouching;
+    problem.contact(2).friction = {0.2, 0.2};
+    const ContactSolution solution = solve(problem);
+    if (problem.contact(2).mode != ContactMode::kSlipping) continue;
+    ++slipping;
+    CHECK(solution.sweeps <= 3);
+    CHECK(violation(problem, 2) < 1e-12);
+    for (int a = 0; a < 2; ++a) {
+      CHECK((moved(problem, a) - problem.contact(a).gap).norm() < 1e-12);
+    }
+  }
+  CHECK(slipping > 10);
 }
 
 TEST_CASE("the iteration starts from the forces that it is given") {

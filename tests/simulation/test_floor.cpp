@@ -223,6 +223,29 @@ TEST_CASE("floor: a node that hangs far below where it is at rest does not go th
   CHECK(most_below_rest > 0.01);
 }
 
+TEST_CASE("floor: the proxy is where the floor, too, presses the touched point") {
+  Simulation simulation(standing(1e6, {0.5, 0.4}));
+  const ModelMesh& mesh = simulation.object().model().mesh;
+  StepRecord record;
+  Points u;
+  int touching = 0;
+  for (int k = 0; k < 200; ++k) {
+    const StylusCommand command = at_tip({0.01, kHalfEdge + 5e-4 - 1e-5 * k, 0.01});
+    simulation.step({&command, 1}, record);
+    const ObjectRecord& object = record.object[0];
+    const ContactRecord& contact = object.contact[0];
+    if (contact.state == ContactState::kFree || object.floor_count == 0) continue;
+    ++touching;
+    simulation.object().engine().displacement(u);
+    const Vector3 place = interpolate(contact.point, [&](int i) -> Vector3 {
+      return mesh.rest_position(i) + u.row(i).transpose();
+    });
+    // But for the floor's forces, which act rounded to single precision.
+    CHECK((contact.proxy - object.position - object.orientation * place).norm() < 1e-10);
+  }
+  CHECK(touching > 50);
+}
+
 TEST_CASE("floor: reset puts everything back") {
   Simulation simulation(standing(2000.0, {0.5, 0.5}));
   StepRecord first, second;

@@ -5,6 +5,7 @@
 #include <functional>
 #include <numbers>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "server/deformation/deformation.hpp"
@@ -171,6 +172,43 @@ TEST_CASE("step: momentum and angular momentum change exactly by the impulses of
     CHECK(worst < 1e-10 * impulses);
     CHECK(worst_angular < 1e-10 * angular_impulses);
   }
+}
+
+// A force that is held over the step acts where the point is meanwhile, not where it ends.
+TEST_CASE("step: the lever arm of a held point is that of its mean place over the step") {
+  const auto model = fem_cube({});
+  Simulation simulation(one(model));
+  const auto engine = make_engine(model);
+  const RestSurface surface(model->mesh);
+  RecordedForces forces(surface, {0.0});
+  Points before;
+  Points after;
+  StepRecord record;
+  bool held = false;
+  int steps = 0;
+  double largest = 0.0;
+  for (int k = 0; k < 500; ++k) {
+    const StylusCommand command = swing((k + 1) * simulation.dt());
+    simulation.step({&command, 1}, record);
+    const ContactRecord& contact = record.object[0].contact[0];
+    Points free(model->mesh.surface_node_count(), 3);
+    for (int i = 0; i < model->mesh.surface_node_count(); ++i) {
+      free.row(i) = engine->free_displacement(i);
+    }
+    engine->displacement(before);
+    engine->advance(forces.of(record.object[0]));
+    engine->displacement(after);
+    const bool was_held = std::exchange(held, contact.state == ContactState::kHeld);
+    if (!held) continue;
+    const Points shift = 0.5 * ((was_held ? before : free) + after) - free;
+    const Vector3 expected =
+        interpolate(contact.point, [&](int i) -> Vector3 { return shift.row(i).transpose(); });
+    CHECK((contact.arm_shift - expected).norm() < 1e-14);
+    largest = std::max(largest, expected.norm());
+    ++steps;
+  }
+  CHECK(steps > 400);
+  CHECK(largest > 1e-5);
 }
 
 TEST_CASE("step: a tap touches, pushes only, lets go, and leaves the cube moving and ringing") {

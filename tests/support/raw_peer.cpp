@@ -48,6 +48,10 @@ void RawPeer::close() {
   if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));
 }
 
+void RawPeer::end_sending() {
+  ::shutdown(descriptor_, SHUT_WR);
+}
+
 void RawPeer::cut() {
   const linger none{1, 0};
   ::setsockopt(descriptor_, SOL_SOCKET, SO_LINGER, &none, sizeof none);

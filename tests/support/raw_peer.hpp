@@ -41,6 +41,8 @@ class RawPeer {
   bool ends();
   /// Hang up, without a word.
   void close();
+  /// Says nothing more, but goes on listening.
+  void end_sending();
   /// Hang up so that nothing of the connection is left: the other side sees a reset.
   void cut();
   /// Its end of the connection, as ADDRESS:PORT.

@@ -185,7 +185,9 @@ TEST_CASE("irdm-replay makes a run in real time again, and its table has the tra
     REQUIRE(table.vector("cube_orientation", "", k) == trace.orientation(k).vec());
     REQUIRE(table.vector("cube_angular_velocity", "_rad_s", k) ==
             trace.vector("/step/body_angular_velocity", k));
-    REQUIRE(table.vector("stylus0_force", "_N", k) == trace.vector("/stylus/0/force", k));
+    // Forces that came late are there in their own step.
+    REQUIRE((table.vector("stylus0_force", "_N", k) - trace.vector("/stylus/0/applied_force", k))
+                .norm() < 1e-12);
     REQUIRE(table.vector("stylus0_tip", "_m", k) == trace.vector("/stylus/0/tip", k));
     REQUIRE(table.at("stylus0_contact", k) == trace.contact[k]);
   }

@@ -44,8 +44,8 @@ Trace read_trace(const std::filesystem::path& path, int styluses) {
     trace.numbers[set] = read_rows(set, 3, double{});
   }
   for (int s = 0; s < styluses; ++s) {
-    for (const char* name :
-         {"/tip", "/proxy", "/force", "/contact_weights", "/offset", "/arm_shift"}) {
+    for (const char* name : {"/tip", "/proxy", "/force", "/applied_force", "/contact_weights",
+                             "/offset", "/arm_shift"}) {
       const std::string set = "/stylus/" + std::to_string(s) + name;
       trace.numbers[set] = read_rows(set, 3, double{});
     }

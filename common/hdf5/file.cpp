@@ -63,7 +63,8 @@ Handle make_link_properties() {
   return properties;
 }
 
-// The first that every file asks HDF5 for. Without locks: whoever looks whether a file is there
+// The first that every file asks HDF5 for: its constants (H5F_ACC_RDONLY and others) start the
+// library where they stand. Without locks: whoever looks whether a file is there
 // would have one for a moment, and the making or the beginning of SWMR in that moment would fail.
 // We write new files only, so that no two of us write to one.
 Handle make_access_properties() {
@@ -156,8 +157,9 @@ File File::open(const std::filesystem::path& path) {
   if (!std::filesystem::exists(path)) {
     throw Error(path.string(), "no such file", "check the path");
   }
+  const Handle properties = make_access_properties();
   const unsigned access = H5F_ACC_RDONLY | (has_swmr_writer(path) ? H5F_ACC_SWMR_READ : 0u);
-  Handle file(H5Fopen(path.c_str(), access, make_access_properties().get()), H5Fclose);
+  Handle file(H5Fopen(path.c_str(), access, properties.get()), H5Fclose);
   if (file.get() < 0) {
     throw Error(path.string(), "is not a complete HDF5 file",
                 "it is truncated, of another kind or not readable; make it again");

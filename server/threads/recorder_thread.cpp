@@ -39,11 +39,7 @@ void RecorderThread::run() {
   hdf5::prepare_library();
   bool stopped = false;
   try {
-    while (!(stopped = stop_.wait(kFlushPeriodMs))) {
-      drain();
-      const std::lock_guard lock(hdf5::library_mutex());
-      writer_->flush();
-    }
+    while (!(stopped = stop_.wait(kFlushPeriodMs))) drain();
     drain();
     const std::lock_guard lock(hdf5::library_mutex());
     writer_->close();
@@ -83,6 +79,8 @@ void RecorderThread::drain() {
     }
     const std::lock_guard lock(hdf5::library_mutex());
     writer_->append(batch_);
+    // Batch by batch: what was appended counts, whatever the disk does with the next one.
+    writer_->flush();
     rows_.fetch_add(batch_.size(), std::memory_order_relaxed);
   } while (batch_.size() == kBatch);
 }

@@ -242,3 +242,14 @@ TEST_CASE("a disk that gets full while a server records: it says so, and ends in
                                        Contains("check free space"));
   CHECK(committed_so_far(path) > 0);
 }
+
+TEST_CASE("a disk without room for a trace: one error, and no trace") {
+  const Stage stage;
+  const FinishedProgram ended = run_to_end(
+      on_full_disk(15'000, {IRDM_SERVER, stage.path("scene.toml").string(), "--no-viewer",
+                            "--record", stage.path("trace.h5").string()}));
+  CHECK(ended.status == 1);
+  CHECK(std::count(ended.err.begin(), ended.err.end(), '\n') == 1);
+  CHECK_THAT(ended.err, Contains("irdm-server: error: ") && Contains("check free space"));
+  CHECK_FALSE(std::filesystem::exists(stage.path("trace.h5")));
+}

@@ -98,7 +98,7 @@ class StylusScript::Parser {
     Row row;
     row.time = values[0];
     if (!script_.rows_.empty() && row.time <= script_.rows_.back().time) {
-      fail("time " + in_quotes(fields[0]) + " does not come after the row before",
+      fail("time " + shortened(fields[0]) + " does not come after the row before",
            "sort the rows by time");
     }
     row.pose.tip = Vector3(values[1], values[2], values[3]);

@@ -34,7 +34,7 @@ std::vector<int> nodes_inside(const TetMesh& mesh, const Shape& shape) {
   return nodes;
 }
 
-constexpr std::size_t kMostGroups = 10;  // in a message
+constexpr std::size_t kMostGroups = 40;  // in a message
 
 std::string group_list(const TetMesh& mesh) {
   std::string list;

@@ -73,7 +73,7 @@ TEST_CASE("the same on a file system that keeps no room free on request") {
 // HDF5 then splits the index of every set in place: a disk that is full in the middle of that would
 // cost all of its rows.
 TEST_CASE("a recording whose index is being split when the disk gets full keeps its rows") {
-  const rlim_t limit = GENERATE(9'850'000, 9'900'000, 9'950'000, 10'000'000);
+  const rlim_t limit = GENERATE(10'640'000, 10'690'000, 10'740'000, 10'790'000);
   constexpr std::size_t kBatches = 66;  // the 65th is the first for which the index is too small
   CAPTURE(limit);
   const TemporaryFolder folder;

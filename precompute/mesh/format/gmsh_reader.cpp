@@ -88,7 +88,7 @@ class GmshReader {
     }
     version_ = std::string(in_.word());
     if (version_ != "2.2" && version_ != "4.1") {
-      in_.fail("MSH version " + in_quotes(version_) + " is not read",
+      in_.fail("MSH version " + shortened(version_) + " is not read",
                "save as version 4.1 or 2.2 (gmsh -format msh41)");
     }
     if (in_.integer() != 0) in_.fail("binary MSH files are not read", "save it as ASCII");

@@ -89,7 +89,7 @@ class VtuReader {
     const std::string compressor = attribute(*root, "compressor");
     coding_.compressed = !compressor.empty();
     if (coding_.compressed && compressor != "vtkZLibDataCompressor") {
-      fail("is compressed by " + in_quotes(compressor), "save it with the compressor ZLib or none");
+      fail("is compressed by " + shortened(compressor), "save it with the compressor ZLib or none");
     }
   }
 

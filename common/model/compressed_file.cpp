@@ -12,7 +12,7 @@ namespace irdm {
 namespace {
 
 constexpr int kMostEarlySteps = 1024;
-constexpr double kAsymmetry = 0.1;     // of a node's own response, as a share of its largest
+constexpr double kOwnAsymmetry = 0.1;  // of a node's own response, as a share of its largest
 constexpr float kLongestShape = 2.0F;  // rightly 1
 
 void require(const hdf5::File& file, bool holds, const std::string& what) {
@@ -72,9 +72,10 @@ void check_own_responses(const hdf5::File& file, const CompressedResponse& respo
       }
     }
     require(file, sum.diagonal().minCoeff() >= 0.0, "gives way against a force");
-    require(file,
-            (sum - sum.transpose()).cwiseAbs().maxCoeff() <= kAsymmetry * sum.diagonal().maxCoeff(),
-            "has a node whose own response is not symmetric");
+    require(
+        file,
+        (sum - sum.transpose()).cwiseAbs().maxCoeff() <= kOwnAsymmetry * sum.diagonal().maxCoeff(),
+        "has a node whose own response is not symmetric");
   }
 }
 

@@ -10,7 +10,7 @@ constexpr int kDegreesOfFreedom = 16;
 constexpr int kSteps = 32;
 /// Of R(a, b) less R(b, a), as a share of the largest R(b, b): what stepping in time and 16 bits
 /// leave is far below.
-constexpr double kAsymmetry = 0.02;
+constexpr double kDenseAsymmetry = 0.02;
 
 // Evenly spread over [0, count).
 std::vector<int> spread(int count, int most) {
@@ -66,7 +66,7 @@ std::optional<std::string> DenseSamples::fault(double error) const {
     return "gives way against the force on degree of freedom " + std::to_string(b);
   }
   // Each of the two may be off.
-  if (!((columns_ - rows_).cwiseAbs().maxCoeff() <= (2.0 * error + kAsymmetry) * largest)) {
+  if (!((columns_ - rows_).cwiseAbs().maxCoeff() <= (2.0 * error + kDenseAsymmetry) * largest)) {
     return "is not symmetric: a on b is not what b is on a";
   }
   return {};

@@ -12,7 +12,7 @@
 namespace irdm::fuzz {
 namespace {
 
-constexpr int kSteps = 20;
+constexpr int kPressedSteps = 20;
 
 // Of its first triangle.
 struct Place {
@@ -49,7 +49,7 @@ void press(Model model) {
   Simulation simulation(scene_of(std::move(model)));
   StepRecord record;
   Points displacement;
-  for (int k = 0; k < kSteps; ++k) {
+  for (int k = 0; k < kPressedSteps; ++k) {
     const double depth = 0.02 * place.size * (k - 3);
     const std::array commands{
         StylusCommand{true, 0, place.middle - depth * place.normal, std::nullopt}};

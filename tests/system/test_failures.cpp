@@ -229,12 +229,12 @@ TEST_CASE("garbage to the server disturbs neither it nor the bridge that plays")
 TEST_CASE("a disk that gets full while a server records: it says so, and ends in order") {
   const Stage stage;
   const std::filesystem::path path = stage.path("trace.h5");
-  ChildProcess process(
-      on_full_disk(320'000, {IRDM_SERVER, stage.path("scene.toml").string(), "--no-viewer",
-                             "--lockstep", "--record", path.string()}));
+  ChildProcess process(told_of_full_disk({IRDM_SERVER, stage.path("scene.toml").string(),
+                                          "--no-viewer", "--lockstep", "--record", path.string()}));
   const std::string line = process.line_with("listening on ");
   Server server{std::move(process),
                 static_cast<std::uint16_t>(std::stoi(line.substr(line.rfind(':') + 1)))};
+  limit_file_size(server.process.pid(), 320'000);
   ChildProcess bridge = stage.start_bridge(server);
   CHECK(bridge.wait() == 0);
   CHECK(server.process.wait() == 1);
@@ -243,6 +243,7 @@ TEST_CASE("a disk that gets full while a server records: it says so, and ends in
   CHECK(committed_so_far(path) > 0);
 }
 
+#ifndef IRDM_SANITIZED  // ThreadSanitizer has a file of its own, which has no room either
 TEST_CASE("a disk without room for a trace: one error, and no trace") {
   const Stage stage;
   const FinishedProgram ended = run_to_end(
@@ -253,3 +254,4 @@ TEST_CASE("a disk without room for a trace: one error, and no trace") {
   CHECK_THAT(ended.err, Contains("irdm-server: error: ") && Contains("check free space"));
   CHECK_FALSE(std::filesystem::exists(stage.path("trace.h5")));
 }
+#endif

@@ -9,26 +9,31 @@
 namespace irdm {
 namespace {
 
-// Edges are rounded off at least over this many edges of the mesh.
-constexpr double kLeastEdges = 1.0;
+// Radius of the disc, over that of the tip: then a fingertip that slides round an edge at 20 cm/s
+// changes its force by less than 5 % of the peak in a step of 2 ms.
+constexpr double kPerTip = 1.15;
+// The same, at least, over the mean edge of the mesh.
+constexpr double kPerEdge = 0.8;
 // The first ray is turned by this share of the angle between two, so that none runs along the edges
 // of a regular mesh.
 constexpr double kTurned = 0.3;
 // Bounds the legs of a ray.
 constexpr int kMaxLegs = 64;
 
-// The share of the weights 1 - s^2 within s of the middle, and their first moment.
+// The share of the weights s^4 (1 - s^2)^2 within s of the middle, and their first moment.
 double share(double s) noexcept {
-  return s * s * (2.0 - s * s);
+  const double q = s * s;
+  return q * q * q * (10.0 + q * (-15.0 + 6.0 * q));
 }
 double moment(double s) noexcept {
-  return s * s * s * (4.0 / 3.0 - 0.8 * s * s);
+  const double q = s * s;
+  return 60.0 * s * q * q * q * (1.0 / 7.0 + q * (-2.0 / 9.0 + q / 11.0));
 }
 
 }  // namespace
 
 RoundedSurface::RoundedSurface(const RestSurface& surface, double tip_radius)
-    : surface_(surface), radius_(std::max(tip_radius, kLeastEdges * surface.mean_edge())) {
+    : surface_(surface), radius_(std::max(kPerTip * tip_radius, kPerEdge * surface.mean_edge())) {
   for (std::size_t i = 0; i < rays_.size(); ++i) {
     const double angle = 2.0 * std::numbers::pi * (static_cast<double>(i) + kTurned) / kRays;
     rays_[i] = {std::cos(angle), std::sin(angle)};

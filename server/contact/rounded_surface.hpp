@@ -8,13 +8,15 @@ namespace irdm {
 
 /// The surface at rest as a tip feels it that slides on it: with its edges and corners rounded off.
 /// The place that belongs to a point of the surface is the mean over a disc laid round it along the
-/// surface, with the weights 1 - s^2, s the distance from the point over the radius; on a flat part
-/// it is the point itself. The normal is that of the surface that these places form, so that a
-/// force along it does no work in a slip: no energy comes from nowhere. Real-time safe after
-/// construction, read only.
+/// surface, with the weights s^4 (1 - s^2)^2, s the distance from the point over the radius; on a
+/// flat part it is the point itself. These weights, most of which lie in a soft ring, lead a point
+/// round an edge on a curve of nearly even curvature that sets in smoothly: at speed, both a sharp
+/// bend and a sudden one change the force from one step to the next. The normal is that of the
+/// surface that these places form, so that a force along it does no work in a slip: no energy comes
+/// from nowhere. Real-time safe after construction, read only.
 class RoundedSurface {
  public:
-  /// @param tip_radius of the fingertip [m]; the disc's, but for short ones
+  /// @param tip_radius of the fingertip [m]; where it is small, edges of the mesh set the disc's
   /// @param surface must outlive this object
   RoundedSurface(const RestSurface& surface, double tip_radius);
 

@@ -70,6 +70,7 @@ ForceDemand ServoLoop::demand(std::int64_t now_ns, const ServoInput& input) noex
           .sample_time_ns = std::min(wanted.content_ns, now_ns),
           .horizon_ns = wanted.horizon_ns,
           .solved_here = true,
+          .solved_ns = wanted.solved_ns,
           .contact = wanted.contact,
           .force = wanted.force,
           .normal = wanted.normal};

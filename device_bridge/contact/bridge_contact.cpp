@@ -46,6 +46,7 @@ void BridgeContact::solve(std::uint64_t k, std::int64_t now_ns, const Vector3& t
   wanted_ = {.any = true,
              .content_ns = std::max(wanted_.content_ns, pacer_.end_of(newest_model_, now_ns)),
              .horizon_ns = horizon_ns_,
+             .solved_ns = now_ns,
              .contact = answer.state,
              .force = -answer.force,
              .normal = answer.normal};

@@ -20,6 +20,7 @@ class BridgeContact {
     bool standing = false;        ///< the run stands still: what was felt is to fade
     std::int64_t content_ns = 0;  ///< end of the last step that the server knew everything of
     std::int64_t horizon_ns = 0;  ///< how long after that it is good
+    std::int64_t solved_ns = 0;   ///< when it was solved, with the tip of then
     ContactState contact = ContactState::kFree;
     Vector3 force = Vector3::Zero();   ///< on the stylus [N], W
     Vector3 normal = Vector3::Zero();  ///< outward, of the surface; unit, W; zero: not known

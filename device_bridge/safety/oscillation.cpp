@@ -9,7 +9,10 @@ void Oscillation::observe(double work, double elapsed, double age, bool pushed) 
   time_ += elapsed;
   ages_ += age * elapsed;
   gain_ = std::min(1.0, gain_ * (1.0 + elapsed / limits_.recovery));
+  if (balance_ < 0.0) balance_ *= std::max(0.0, 1.0 - elapsed / limits_.recovery);
   if (!std::isfinite(work)) return;
+  balance_ = std::min(limits_.most, balance_ + work);
+  if (age > 0.0 && balance_ <= -limits_.owed) cut();
   energy_ += work;
   high_ = std::max(high_, energy_);
   extreme_ = rising_ ? std::max(extreme_, energy_) : std::min(extreme_, energy_);
@@ -18,6 +21,10 @@ void Oscillation::observe(double work, double elapsed, double age, bool pushed) 
   rising_ = !rising_;
   if (rising_) pass_low();
   extreme_ = energy_;
+}
+
+void Oscillation::grant(double energy) noexcept {
+  balance_ = std::min(limits_.most, balance_ + energy);
 }
 
 // From rising to falling, or the other way round; what was given until touch was lost is a low.
@@ -51,6 +58,7 @@ bool Oscillation::active(double low) const noexcept {
 // What comes after it is counted anew.
 void Oscillation::cut() noexcept {
   gain_ = std::max(limits_.least, limits_.cut * gain_);
+  balance_ = std::max(0.0, balance_);
   debt_ = 0.0;
   energy_ = 0.0;
   high_ = 0.0;

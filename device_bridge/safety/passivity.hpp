@@ -8,13 +8,16 @@ struct PassivityLimits {
   double damping = 6.0;  ///< at most [N s/m]
   double most = 0.2;     ///< energy that is remembered as taken in, at most [J]
   double least = -0.05;  ///< the same, given out in excess [J]
+  double credit = 1e-3;  ///< energy that a force of now may give in excess [J]
 };
 
 /// Time-domain passivity at the device's port. The observer adds up what the device takes from the
 /// hand, E = -sum f . dx with the forces really shown; a device that only gives back what it took
 /// keeps E >= 0. Where the coming tick would take E below zero, the controller asks for the damping
 /// that makes up for it, within its bound. What an object took in and lost to its own damping is
-/// forgotten above `most`, else the observer would be blind after a while. Pure, real-time safe.
+/// forgotten above `most`, else the observer would be blind after a while. Bounded damping does not
+/// hold a force that the device shows in part only, or later than the object gets it; what such a
+/// force would give beyond a little is withheld. Pure, real-time safe.
 class Passivity {
  public:
   explicit Passivity(const PassivityLimits& limits) : limits_(limits) {}
@@ -28,11 +31,21 @@ class Passivity {
   /// @param tick how long it will be shown [s]
   double damping(const Vector3& force, const Vector3& velocity, double tick) const noexcept;
 
+  /// The world gave this of its own, by another hand or a weight, and the device may [J], >= 0.
+  void grant(double energy) noexcept;
+
+  /// What may be shown of a force that answers the tip as it is now [N], D: no more along the way
+  /// of the coming tick than gives half of what is left above -credit. That way goes on from the
+  /// last two by its velocity and its acceleration.
+  Vector3 withheld(const Vector3& force) const noexcept;
+
   double energy() const noexcept { return energy_; }  ///< [J], least to most
 
  private:
   PassivityLimits limits_;
   double energy_ = 0.0;
+  Vector3 last_ = Vector3::Zero();    ///< displacement in the last tick [m]
+  Vector3 before_ = Vector3::Zero();  ///< and in the one before [m]
 };
 
 }  // namespace irdm

@@ -59,7 +59,7 @@ void SafetyFilter::fail() noexcept {
 Vector3 SafetyFilter::step(std::int64_t now_ns, const DeviceReading& reading,
                            const ForceDemand& demand) noexcept {
   const ReadingVerdict verdict = check(now_ns, reading);
-  observe();
+  observe(now_ns);
   thermal_.heat(sent_.norm(), reading_.elapsed(), reading.motor_warmth);
   accept(now_ns, demand);
   age_ = age(now_ns);
@@ -85,10 +85,11 @@ ReadingVerdict SafetyFilter::check(std::int64_t now_ns, const DeviceReading& rea
 }
 
 // What the hand did against the force that was really sent.
-void SafetyFilter::observe() noexcept {
+void SafetyFilter::observe(std::int64_t now_ns) noexcept {
   passivity_.observe(reading_.displacement(), sent_);
   oscillation_.observe(-sent_.dot(reading_.displacement()), reading_.elapsed(), age_,
                        !sent_.isZero(0.0));
+  world_.observe(now_ns, reading_.tip());
 }
 
 // The newest demand. One that is not used changes nothing: the one before stays, and grows old.
@@ -107,8 +108,17 @@ void SafetyFilter::accept(std::int64_t now_ns, const ForceDemand& demand) noexce
     return;
   }
   held_ = demand;
+  grant(demand);
   if (beyond_horizon(now_ns, demand) <= 0) in_time_ = demand;
   lost_since_ns_.reset();
+}
+
+// What the world gave of its own the device may give.
+void SafetyFilter::grant(const ForceDemand& demand) noexcept {
+  const std::int64_t time_ns = demand.solved_here ? demand.solved_ns : demand.sample_time_ns;
+  const double energy = world_.answer(time_ns, demand.force);
+  passivity_.grant(energy);
+  oscillation_.grant(energy);
 }
 
 // For how long a demand has not been good any more [ns].
@@ -165,7 +175,8 @@ Vector3 SafetyFilter::damped(const Vector3& force, double share) const noexcept 
   if (arming_.state() == FilterState::kFading && guards_.on(Guard::kFadeDamping)) {
     damping = std::max(damping, limits_.fade_damping);
   }
-  return force - share * damping * velocity;
+  const Vector3 damped = force - share * damping * velocity;
+  return held_.solved_here && guards_.on(Guard::kPassivity) ? passivity_.withheld(damped) : damped;
 }
 
 Vector3 SafetyFilter::limited(const Vector3& force) const noexcept {

@@ -13,6 +13,7 @@
 #include "device_bridge/safety/rate_limit.hpp"
 #include "device_bridge/safety/reading_check.hpp"
 #include "device_bridge/safety/thermal_derating.hpp"
+#include "device_bridge/safety/world_work.hpp"
 
 namespace irdm {
 
@@ -46,7 +47,8 @@ struct ForceDemand {
   bool any = false;                          ///< the rest means something
   std::int64_t sample_time_ns = 0;           ///< of the newest stylus sample that it contains
   std::int64_t horizon_ns = kHoldHorizonNs;  ///< how long after that it is good
-  bool solved_here = false;                  ///< from the tip as it is now, not from that sample's
+  bool solved_here = false;                  ///< from a tip of its own, not from that sample's
+  std::int64_t solved_ns = 0;                ///< when that tip was read; if solved_here
   ContactState contact = ContactState::kFree;
   Vector3 force = Vector3::Zero();   ///< on the stylus [N], D
   Vector3 normal = Vector3::Zero();  ///< outward, of the surface; unit, D; zero: not known
@@ -94,11 +96,12 @@ class SafetyFilter {
  private:
   ReadingVerdict check(std::int64_t now_ns, const DeviceReading& reading) noexcept;
   void accept(std::int64_t now_ns, const ForceDemand& demand) noexcept;
+  void grant(const ForceDemand& demand) noexcept;
   double age(std::int64_t now_ns) const noexcept;
   std::int64_t beyond_horizon(std::int64_t now_ns, const ForceDemand& demand) const noexcept;
   double fresh(std::int64_t now_ns) const noexcept;
   void watch_link(double fresh) noexcept;
-  void observe() noexcept;
+  void observe(std::int64_t now_ns) noexcept;
   Vector3 wanted() const noexcept;
   Vector3 damped(const Vector3& force, double share) const noexcept;
   Vector3 limited(const Vector3& force) const noexcept;
@@ -112,6 +115,7 @@ class SafetyFilter {
   bool waits_ = false;  ///< told to arm, and the link is not good enough yet
   Passivity passivity_;
   Oscillation oscillation_;
+  WorldWork world_;
   ThermalDerating thermal_;
   ForceDemand held_;     ///< the newest that was accepted
   ForceDemand in_time_;  ///< the newest of these that was within its horizon when it came

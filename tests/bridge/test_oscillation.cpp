@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -20,6 +21,22 @@ Oscillation watched(double seconds, const Way& way, const Force& force, double a
   for (double t = 0.0; t < seconds; t += kTick) {
     const double pushes = force(t + 0.5 * kTick);
     oscillation.observe(-pushes * (way(t + kTick) - way(t)), kTick, age, pushes != 0.0);
+  }
+  return oscillation;
+}
+
+// The same, but what the force gives the world has given, to the tip of before.
+template <class Way, class Force>
+Oscillation granted(double seconds, const Way& way, const Force& force, double age = kLate) {
+  Oscillation oscillation{OscillationLimits{}};
+  double taken = 0.0;
+  for (double t = 0.0; t < seconds; t += kTick) {
+    const double pushes = force(t + 0.5 * kTick);
+    const double work = -pushes * (way(t + kTick) - way(t));
+    taken += work;
+    oscillation.grant(std::max(0.0, -taken));
+    taken = std::max(0.0, taken);
+    oscillation.observe(work, kTick, age, pushes != 0.0);
   }
   return oscillation;
 }
@@ -52,12 +69,13 @@ TEST_CASE("oscillation: a force that lags behind its own motion is cut, one that
 TEST_CASE("oscillation: a force that is fresh is let alone in slow cycles, by its age's mean") {
   const auto way = [](double t) { return 3e-3 * sine(t, 6.0); };  // two cycles of energy in each
   const auto late = [&](double t) { return -300.0 * way(t - 0.01); };
-  CHECK(watched(3.0, way, late, 4.9e-3).gain() == 1.0);
-  CHECK(watched(3.0, way, late, 5.1e-3).gain() < 0.6);
+  CHECK(granted(3.0, way, late, 4.9e-3).gain() == 1.0);
+  CHECK(granted(3.0, way, late, 5.1e-3).gain() < 0.6);
   for (const double other : {7e-3, 9e-3}) {
     Oscillation oscillation{OscillationLimits{}};
     for (int i = 0; i < 3000; ++i) {
       const double t = i * kTick;
+      oscillation.grant(std::max(0.0, late(t) * (way(t + kTick) - way(t))));
       oscillation.observe(-late(t) * (way(t + kTick) - way(t)), kTick, i % 2 == 0 ? 2e-3 : other,
                           true);
     }
@@ -90,18 +108,40 @@ TEST_CASE("oscillation: a hand that bounces, and is only ever pushed away, is cu
 
 TEST_CASE("oscillation: neither a push by another hand nor a weight that is let down is cut") {
   const auto constant = [](double) { return 1.0; };
-  CHECK(watched(
+  CHECK(granted(
             2.0, [](double t) { return 0.1 * t; }, constant)
             .gain() == 1.0);
   // With the tremor of a hand, 0.1 mm at 10 Hz.
-  CHECK(watched(
+  CHECK(granted(
             2.0, [](double t) { return 0.05 * t + 1e-4 * sine(t, 10.0); }, constant)
             .gain() == 1.0);
   // To and fro, slowly, pushed one way only.
   const auto push = [](double t) { return sine(t - 1e-9, 0.7) > 0.0 ? 0.5 : 0.0; };
-  CHECK(watched(
+  CHECK(granted(
             6.0, [](double t) { return -0.02 * std::cos(2 * M_PI * 0.7 * t); }, push)
             .gain() == 1.0);
+}
+
+TEST_CASE("oscillation: energy that nobody gave is cut, in whatever course it comes") {
+  const double owed = OscillationLimits{}.owed;
+  const auto constant = [](double) { return 1.0; };
+  const auto steady = [](double t) { return 0.01 * t; };  // without any low
+  CHECK(watched(owed / 0.01 - 0.01, steady, constant).gain() == 1.0);
+  CHECK(watched(owed / 0.01 + 0.02, steady, constant).gain() < 0.51);
+  CHECK(watched(2.0 * owed / 0.01 + 0.06, steady, constant).gain() < 0.26);
+  // In cycles that are too slow for a fresh force.
+  const auto way = [](double t) { return 3e-3 * sine(t, 6.0); };
+  const auto late = [&](double t) { return -300.0 * way(t - 4e-3); };
+  const double given = M_PI * 300.0 * 9e-6 * std::sin(2.0 * M_PI * 6.0 * 4e-3);  // a cycle
+  CHECK(watched((owed / given - 1.0) / 6.0, way, late, 4e-3).gain() == 1.0);
+  CHECK(watched((owed / given + 2.0) / 6.0, way, late, 4e-3).gain() < 0.6);
+  // A force of now is the world's own.
+  CHECK(watched(2.0, steady, constant, 0.0).gain() == 1.0);
+  // What the hand did before counts, and little that is given is forgotten with time.
+  const auto there_and_back = [](double t) { return t < 0.5 ? -0.01 * t : -0.01 * (1.0 - t); };
+  CHECK(watched(1.0 + owed / 0.01 - 0.02, there_and_back, constant).gain() == 1.0);
+  const auto slow = [=](double t) { return 0.9 * owed / OscillationLimits{}.recovery * t; };
+  CHECK(watched(100.0, slow, constant).gain() == 1.0);
 }
 
 TEST_CASE("oscillation: the noise of a sensor is no oscillation") {

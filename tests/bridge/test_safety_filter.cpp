@@ -162,3 +162,51 @@ TEST_CASE("rate limit: a force turns slowly, falls fast, and goes through zero a
   CHECK(limit_rate(x, 2 * x, limits, -1.0) == x);
   CHECK(limit_rate(x, x, limits, 0.0) == x);
 }
+
+TEST_CASE("safety filter: a force of now gives next to nothing that nobody put in") {
+  // Pressed in by 1 cm, where the device shows 3.3 N of 9, and back out over 4 cm by 1.5 N: 27 mJ
+  // more than the device took.
+  const auto lowest = [](Guards guards) {
+    FilterRig rig(guards);
+    rig.engage(Vector3::Zero());
+    rig.demand.solved_here = true;
+    double energy = 0.0;
+    double least = 0.0;
+    for (int i = 0; i < 1000; ++i) {
+      rig.tip.y() += i < 200 ? -5e-5 : 5e-5;
+      energy -= rig.shown.y() * (i < 200 ? -5e-5 : 5e-5);
+      least = std::min(least, energy);
+      rig.demand_now((i < 200 ? 9.0 : 1.5) * kOneUp);
+      rig.demand.solved_ns = rig.demand.sample_time_ns;
+      rig.tick();
+    }
+    return least;
+  };
+  CHECK(lowest({}) > -1.001 * PassivityLimits{}.credit);
+  CHECK(lowest(Guards{}.without(Guard::kPassivity)) < -20e-3);
+}
+
+TEST_CASE("safety filter: a force of now by which another hand pushes is shown in full") {
+  FilterRig rig;
+  rig.engage(Vector3::Zero());
+  rig.demand.solved_here = true;
+  for (int i = 0; i < 3000; ++i) {
+    rig.tip.y() += 1e-4;
+    rig.demand_now(kOneUp);
+    rig.demand.solved_ns = rig.demand.sample_time_ns;
+    rig.tick();
+    if (i > 100) REQUIRE(rig.shown.y() == Approx(1.0));
+  }
+}
+
+TEST_CASE("safety filter: a late force by which another hand pushes is not lowered") {
+  FilterRig rig;
+  rig.engage(Vector3::Zero());
+  for (int i = 0; i < 3000; ++i) {
+    rig.tip.y() += 1e-4;
+    rig.demand_now(kOneUp);
+    rig.demand.sample_time_ns -= 10 * kMs;
+    rig.tick();
+  }
+  CHECK(rig.filter.gain() == 1.0);
+}

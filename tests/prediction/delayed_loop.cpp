@@ -167,6 +167,7 @@ class Loop {
                     .sample_time_ns = wanted.content_ns,
                     .horizon_ns = wanted.horizon_ns,
                     .solved_here = true,
+                    .solved_ns = wanted.solved_ns,
                     .contact = wanted.contact,
                     .force = wanted.force,
                     .normal = wanted.normal};

@@ -72,11 +72,11 @@ std::string press_and_swing() {
   return script + row(1.82, 0.01, -0.03, 0.02, 0) + row(2.1, 0.01, 0.1, 0.02, 0);
 }
 
-std::string hold_and_circle() {
+std::string hold_and_circle(int minutes) {
   std::string script = "time,x,y,z,button\n";
   script += row(0.0, 0.0, 0.07, 0.0, 0) + row(0.05, 0.0, 0.07, 0.0, 0);
   script += row(0.25, 0.0, kCircleHeight, 0.0, 1);
-  for (int k = 1; k <= 6000; ++k) {
+  for (int k = 1; k <= 6000 * minutes; ++k) {
     const double time = 0.01 * k;
     const double phase = 2.0 * kPi * kCircleRate * time;
     script += row(0.25 + time, kCircleRadius * (1.0 - std::cos(phase)), kCircleHeight,

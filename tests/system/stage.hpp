@@ -66,8 +66,8 @@ std::string scene_text(const std::string& more = "", const std::string& engine =
 std::string press_and_swing();
 inline constexpr double kPressAndSwing = 2.1;  ///< [s]
 /// Takes hold of the cube's top and moves it in a circle of kCircleRadius about the vertical line
-/// through (kCircleRadius, 0, 0), at kCircleHeight, for a minute.
-std::string hold_and_circle();
+/// through (kCircleRadius, 0, 0), at kCircleHeight.
+std::string hold_and_circle(int minutes = 1);
 inline constexpr double kCircleRadius = 0.03;   ///< [m]
 inline constexpr double kCircleHeight = 0.055;  ///< [m]
 inline constexpr double kCircleRate = 2.0;      ///< [Hz]

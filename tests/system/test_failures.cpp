@@ -185,10 +185,10 @@ TEST_CASE("a bridge that is refused for its version says both and ends with stat
 
 TEST_CASE("garbage to the server disturbs neither it nor the bridge that plays") {
   const Stage stage;
-  if (!kKeepsPace) stage.hold_forces();
-  stage.write("script.csv", hold_and_circle());
+  stage.write("script.csv", hold_and_circle(10));
   const std::filesystem::path path = stage.path("trace.h5");
-  Server server = stage.start_server({"--record", path.string()});
+  // In lockstep, since on a busy machine a contact may end for want of samples.
+  Server server = stage.start_server({"--lockstep", "--record", path.string()});
   ChildProcess bridge = stage.start_bridge(server);
   REQUIRE(eventually([&] { return rows_so_far(path, "contact", kHeld) > 50; }));
 
@@ -214,8 +214,7 @@ TEST_CASE("garbage to the server disturbs neither it nor the bridge that plays")
 
   bridge.signal(SIGINT);
   CHECK(bridge.wait() == 0);
-  server.process.signal(SIGINT);
-  CHECK(server.process.wait() == 0);
+  CHECK(server.process.wait() == 0);  // the run is over when its bridge leaves
   check_one_session(bridge.out());
   CHECK(number_after(server.process.out(), "sessions: ") ==
         number_after(bridge.out(), "sessions "));

@@ -41,7 +41,8 @@ inline std::vector<std::string> told_of_full_disk(const std::vector<std::string>
 /// ThreadSanitizer may die of that: at its start it makes a file of 512 KiB, for its own use.
 inline std::vector<std::string> on_full_disk(rlim_t bytes,
                                              const std::vector<std::string>& command) {
-  std::vector<std::string> words{"prlimit", "--fsize=" + std::to_string(bytes)};
+  std::vector<std::string> words{"/bin/sh", "-c", "prlimit --pid $$ --fsize=\"$0\"; exec \"$@\"",
+                                 std::to_string(bytes)};
   const std::vector<std::string> told = told_of_full_disk(command);
   words.insert(words.end(), told.begin(), told.end());
   return words;

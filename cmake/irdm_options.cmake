@@ -33,6 +33,9 @@ if(IRDM_SANITIZE)
     endif()
   endif()
   target_compile_definitions(irdm_options INTERFACE IRDM_SANITIZED)
+  if(IRDM_SANITIZE MATCHES "thread")
+    target_compile_definitions(irdm_options INTERFACE IRDM_THREAD_SANITIZED)
+  endif()
 endif()
 
 # Headers that most files of a target need, read once: saves half of the time to compile. Not in the other builds:

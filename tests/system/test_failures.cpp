@@ -242,7 +242,7 @@ TEST_CASE("a disk that gets full while a server records: it says so, and ends in
   CHECK(committed_so_far(path) > 0);
 }
 
-#ifndef IRDM_SANITIZED  // ThreadSanitizer has a file of its own, which has no room either
+#ifndef IRDM_THREAD_SANITIZED  // ThreadSanitizer has a file of its own, which has no room either
 TEST_CASE("a disk without room for a trace: one error, and no trace") {
   const Stage stage;
   const FinishedProgram ended = run_to_end(

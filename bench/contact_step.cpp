@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "bench/statistics.hpp"
-#include "server/step/simulation.hpp"
+#include "simulation/step/simulation.hpp"
 #include "tests/support/fem_cube.hpp"
 
 using namespace irdm;

@@ -14,7 +14,7 @@
 #include "bench/sparse_resident.hpp"
 #include "bench/statistics.hpp"
 #include "common/program/passive_openmp.hpp"
-#include "server/engine/response_engine.hpp"
+#include "simulation/engine/response_engine.hpp"
 #include "tests/support/synthetic_model.hpp"
 
 using namespace irdm;

@@ -8,7 +8,7 @@
 
 #include "bench/statistics.hpp"
 #include "common/contact/contact_model.hpp"
-#include "server/step/simulation.hpp"
+#include "simulation/step/simulation.hpp"
 #include "tests/support/synthetic_model.hpp"
 
 using namespace irdm;

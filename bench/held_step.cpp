@@ -7,9 +7,9 @@
 
 #include "bench/statistics.hpp"
 #include "common/contact/contact_problem.hpp"
-#include "server/collision/rest_surface.hpp"
-#include "server/engine/response_engine.hpp"
-#include "server/step/simulation.hpp"
+#include "simulation/collision/rest_surface.hpp"
+#include "simulation/engine/response_engine.hpp"
+#include "simulation/step/simulation.hpp"
 
 namespace irdm::bench {
 namespace {

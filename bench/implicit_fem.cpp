@@ -21,7 +21,7 @@
 #include "precompute/fem/assembly.hpp"
 #include "precompute/mesh/box_mesh.hpp"
 #include "precompute/mesh/tetgen_program.hpp"
-#include "server/engine/response_engine.hpp"
+#include "simulation/engine/response_engine.hpp"
 #include "tests/support/synthetic_model.hpp"
 
 using namespace irdm;

@@ -8,8 +8,8 @@
 
 #include "bench/statistics.hpp"
 #include "common/model/model_file.hpp"
-#include "server/engine/response_engine.hpp"
-#include "server/step/simulation.hpp"
+#include "simulation/engine/response_engine.hpp"
+#include "simulation/step/simulation.hpp"
 
 using namespace irdm;
 

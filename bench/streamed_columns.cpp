@@ -17,8 +17,8 @@
 #include "common/model/model_file.hpp"
 #include "common/realtime/clock.hpp"
 #include "common/realtime/histogram.hpp"
-#include "server/columns/scene_columns.hpp"
-#include "server/step/simulation.hpp"
+#include "scene/columns/scene_columns.hpp"
+#include "simulation/step/simulation.hpp"
 
 using namespace irdm;
 

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "bench/statistics.hpp"
-#include "server/viewer/message.hpp"
 #include "tests/support/child_process.hpp"
 #include "tests/viewer/web_peer.hpp"
+#include "viewer/message.hpp"
 
 using namespace irdm;
 

@@ -12,24 +12,19 @@ install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONE
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT runtime)
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)
 
-# irdm::common, irdm::simulation and irdm::files.
-set(embedded irdm_common irdm_simulation irdm_server_files)
-set_target_properties(irdm_common PROPERTIES EXPORT_NAME common)
-set_target_properties(irdm_simulation PROPERTIES EXPORT_NAME simulation)
-set_target_properties(irdm_server_files PROPERTIES EXPORT_NAME files)
-set_target_properties(irdm_options PROPERTIES EXPORT_NAME options)
-install(TARGETS ${embedded} irdm_options EXPORT irdm_targets
-  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
-install(EXPORT irdm_targets NAMESPACE irdm:: FILE irdm-targets.cmake
-  DESTINATION ${package} COMPONENT development)
-
-foreach(folder common server/collision server/columns server/config server/contact server/deformation
-    server/engine server/record server/step)
-  get_filename_component(parent ${folder} DIRECTORY)
-  install(DIRECTORY ${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/irdm/${parent}
+# irdm::common, irdm::simulation, irdm::scene and irdm::trace.
+set(embedded common simulation scene trace)
+foreach(folder ${embedded})
+  set_target_properties(irdm_${folder} PROPERTIES EXPORT_NAME ${folder})
+  install(TARGETS irdm_${folder} EXPORT irdm_targets
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
+  install(DIRECTORY ${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/irdm
     COMPONENT development FILES_MATCHING PATTERN "*.hpp")
 endforeach()
-install(FILES server/scene_simulation.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/irdm/server COMPONENT development)
+set_target_properties(irdm_options PROPERTIES EXPORT_NAME options)
+install(TARGETS irdm_options EXPORT irdm_targets COMPONENT development)
+install(EXPORT irdm_targets NAMESPACE irdm:: FILE irdm-targets.cmake
+  DESTINATION ${package} COMPONENT development)
 
 configure_package_config_file(cmake/irdm-config.cmake.in ${PROJECT_BINARY_DIR}/irdm-config.cmake
   INSTALL_DESTINATION ${package})

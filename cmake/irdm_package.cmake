@@ -12,7 +12,7 @@ foreach(program ${programs})  # bash looks for a file of the program's name
 endforeach()
 
 # All that is packaged, without tests and benchmarks.
-add_custom_target(irdm_packaged DEPENDS irdm-bridge irdm-precompute irdm-replay irdm-server irdm_server_files)
+add_custom_target(irdm_packaged DEPENDS irdm-bridge irdm-precompute irdm-replay irdm-server irdm_scene irdm_trace)
 
 find_program(IRDM_HELP2MAN help2man)
 if(IRDM_HELP2MAN AND NOT IRDM_SANITIZE)

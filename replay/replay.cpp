@@ -22,7 +22,7 @@
 #include "replay/output/vtk_output.hpp"
 #include "replay/reference/fem_reference.hpp"
 #include "replay/traced_scene.hpp"
-#include "server/record/recording.hpp"
+#include "trace/recording.hpp"
 
 namespace irdm::replay {
 namespace {

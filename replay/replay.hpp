@@ -8,7 +8,7 @@
 #include "precompute/dynamics/soft_body.hpp"
 #include "replay/frame_steps.hpp"
 #include "replay/pictures/picture_look.hpp"
-#include "server/engine/response_engine.hpp"
+#include "simulation/engine/response_engine.hpp"
 
 namespace irdm::replay {
 

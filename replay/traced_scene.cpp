@@ -8,10 +8,10 @@
 #include "common/error.hpp"
 #include "common/quoted.hpp"
 #include "replay/replay.hpp"
-#include "server/config/scene.hpp"
-#include "server/record/recording.hpp"
-#include "server/record/trace_header.hpp"
-#include "server/scene_simulation.hpp"
+#include "scene/scene.hpp"
+#include "scene/scene_simulation.hpp"
+#include "trace/recording.hpp"
+#include "trace/trace_header.hpp"
 
 namespace irdm {
 

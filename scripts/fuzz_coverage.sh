@@ -13,11 +13,11 @@ decoders=(
   common/contact/contact_model.cpp common/config/toml_reader.cpp common/blackbox/read_black_box.cpp
   common/model/model_file.cpp common/model/dense_file.cpp common/model/residual_file.cpp
   common/model/compressed_file.cpp
-  server/network/session.cpp server/config/scene.cpp server/record/trace_header.cpp server/record/trace_rows.cpp server/record/trace_sets.hpp
-  server/record/recording.cpp
-  server/viewer/message_parts.cpp server/viewer/client_message.cpp server/viewer/scene_message.cpp
-  server/viewer/health_message.cpp server/viewer/state_message.cpp server/viewer/frame_message.cpp
-  server/viewer/request_rules.cpp server/viewer/connection.cpp
+  server/network/session.cpp scene/scene.cpp trace/trace_header.cpp trace/trace_rows.cpp trace/trace_sets.hpp
+  trace/recording.cpp
+  viewer/message_parts.cpp viewer/client_message.cpp viewer/scene_message.cpp
+  viewer/health_message.cpp viewer/state_message.cpp viewer/frame_message.cpp
+  viewer/request_rules.cpp viewer/connection.cpp
   device_bridge/link/server_session.cpp device_bridge/link/force_intake.cpp
   device_bridge/bridge_config.cpp device_bridge/stylus_script.cpp
   device_bridge/link/server_datagrams.cpp

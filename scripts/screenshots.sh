@@ -19,7 +19,7 @@ done
 pictures=$(mktemp -d)
 trap 'rm -rf "$pictures"' EXIT
 IRDM_SERVER=$bin/irdm-server IRDM_BRIDGE=$bin/irdm-bridge CHROMIUM=$(command -v chromium) \
-  node server/viewer/page/browser/screenshots.mjs configs "$models" "$pictures"
+  node viewer/page/browser/screenshots.mjs configs "$models" "$pictures"
 # Seven bits a colour look the same and take a third less room.
 /usr/bin/python3 - "$pictures" docs/images $kilobytes <<'END'
 import pathlib, sys

@@ -28,7 +28,7 @@ install_packages() {
 }
 
 install_page_packages() {
-  cd ../server/viewer/page
+  cd ../viewer/page
   if [ node_modules/.package-lock.json -nt package-lock.json ]; then
     echo "setup: the page's npm packages are installed"
     return

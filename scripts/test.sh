@@ -44,6 +44,8 @@ run_tests() {
 scripts/setup.sh
 echo "format: checking"
 scripts/format.sh --check
+echo "includes: checking"
+scripts/check_includes.py
 if [ $quick = yes ]; then
   scripts/build.sh ci
 else

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "server/columns/scene_columns.hpp"
+#include "scene/columns/scene_columns.hpp"
 #include "server/run_server.hpp"
 #include "server/threads/deformation_thread.hpp"
 #include "server/threads/force_thread.hpp"

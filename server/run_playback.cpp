@@ -9,11 +9,11 @@
 #include "common/error.hpp"
 #include "common/program/stop_signal.hpp"
 #include "common/realtime/wakeup.hpp"
-#include "server/record/recording.hpp"
-#include "server/record/trace_header.hpp"
-#include "server/scene_simulation.hpp"
+#include "scene/scene_simulation.hpp"
 #include "server/viewed_run/recorded_run.hpp"
-#include "server/viewed_run/viewer_scene.hpp"
+#include "trace/recording.hpp"
+#include "trace/trace_header.hpp"
+#include "viewer/viewer_scene.hpp"
 
 namespace irdm {
 namespace {

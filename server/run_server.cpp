@@ -14,18 +14,18 @@
 #include "common/program/stop_signal.hpp"
 #include "common/quoted.hpp"
 #include "common/realtime/memory_lock.hpp"
+#include "scene/scene.hpp"
+#include "scene/scene_simulation.hpp"
 #include "server/blackbox/step_log.hpp"
-#include "server/config/scene.hpp"
 #include "server/report.hpp"
-#include "server/scene_simulation.hpp"
-#include "server/step/gravity_load.hpp"
 #include "server/threads/deformation_thread.hpp"
 #include "server/threads/force_thread.hpp"
 #include "server/threads/recorder_thread.hpp"
 #include "server/threads/status_thread.hpp"
 #include "server/threads/step_clock.hpp"
 #include "server/viewed_run/live_run.hpp"
-#include "server/viewed_run/viewer_scene.hpp"
+#include "simulation/step/gravity_load.hpp"
+#include "viewer/viewer_scene.hpp"
 
 namespace irdm {
 namespace {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "common/model/model_file.hpp"
-#include "server/step/simulation.hpp"
+#include "simulation/step/simulation.hpp"
 
 namespace {
 

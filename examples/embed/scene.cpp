@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "common/checksum.hpp"
-#include "server/config/scene.hpp"
-#include "server/record/trace_writer.hpp"
-#include "server/scene_simulation.hpp"
-#include "server/step/simulation.hpp"
+#include "scene/scene.hpp"
+#include "scene/scene_simulation.hpp"
+#include "simulation/step/simulation.hpp"
+#include "trace/trace_writer.hpp"
 
 namespace {
 

@@ -4,8 +4,8 @@
 
 #include "common/error.hpp"
 #include "replay/output/run_paths.hpp"
-#include "server/step/settings.hpp"
-#include "server/step/step_record.hpp"
+#include "simulation/step/settings.hpp"
+#include "simulation/step/step_record.hpp"
 
 namespace irdm::replay {
 namespace {

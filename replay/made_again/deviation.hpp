@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <string>
 
-#include "server/step/step_record.hpp"
+#include "simulation/step/step_record.hpp"
 
 namespace irdm::replay {
 

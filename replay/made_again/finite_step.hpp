@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "server/step/step_record.hpp"
+#include "simulation/step/step_record.hpp"
 
 namespace irdm::replay {
 

@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "server/step/step_record.hpp"
+#include "simulation/step/step_record.hpp"
 
 namespace irdm::replay {
 

@@ -1,7 +1,7 @@
 #include "replay/made_again/forced_object.hpp"
 
-#include "server/step/gravity_load.hpp"
-#include "server/step/inertial_loading.hpp"
+#include "simulation/step/gravity_load.hpp"
+#include "simulation/step/inertial_loading.hpp"
 
 namespace irdm::replay {
 namespace {

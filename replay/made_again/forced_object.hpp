@@ -5,8 +5,8 @@
 
 #include "common/motion/rigid_past.hpp"
 #include "replay/made_again/forced_body.hpp"
-#include "server/step/recorded_forces.hpp"
-#include "server/step/simulation_config.hpp"
+#include "simulation/step/recorded_forces.hpp"
+#include "simulation/step/simulation_config.hpp"
 
 namespace irdm::replay {
 

@@ -5,7 +5,7 @@
 
 #include "replay/made_again/forced_body.hpp"
 #include "replay/made_again/made_again.hpp"
-#include "server/step/simulation_config.hpp"
+#include "simulation/step/simulation_config.hpp"
 
 namespace irdm::replay {
 

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "replay/made_again/made_again.hpp"
-#include "server/step/simulation.hpp"
+#include "simulation/step/simulation.hpp"
 
 namespace irdm::replay {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "server/step/step_record.hpp"
+#include "simulation/step/step_record.hpp"
 
 namespace irdm::replay {
 

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "server/record/recording.hpp"
+#include "trace/recording.hpp"
 
 namespace irdm::replay {
 

@@ -10,8 +10,8 @@
 #include "common/process/temporary_folder.hpp"
 #include "replay/output/new_folder.hpp"
 #include "replay/output/part_file.hpp"
-#include "server/step/settings.hpp"
-#include "server/viewed_run/viewer_scene.hpp"
+#include "simulation/step/settings.hpp"
+#include "viewer/viewer_scene.hpp"
 
 namespace irdm::replay {
 namespace {

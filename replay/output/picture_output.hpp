@@ -8,7 +8,7 @@
 #include "replay/pictures/drawn_page.hpp"
 #include "replay/pictures/drawn_run.hpp"
 #include "replay/traced_scene.hpp"
-#include "server/viewer/viewer_server.hpp"
+#include "viewer/viewer_server.hpp"
 
 namespace irdm::replay {
 

@@ -6,7 +6,7 @@
 
 #include "replay/output/frame_output.hpp"
 #include "replay/traced_scene.hpp"
-#include "server/step/recorded_forces.hpp"
+#include "simulation/step/recorded_forces.hpp"
 
 namespace irdm::replay {
 

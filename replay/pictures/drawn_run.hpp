@@ -1,6 +1,6 @@
 #pragma once
 
-#include "server/viewer/viewed_run.hpp"
+#include "viewer/viewed_run.hpp"
 
 namespace irdm::replay {
 

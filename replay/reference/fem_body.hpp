@@ -9,8 +9,8 @@
 #include "replay/made_again/told_late.hpp"
 #include "replay/reference/broyden_solver.hpp"
 #include "replay/reference/step_journal.hpp"
-#include "server/step/recorded_forces.hpp"
-#include "server/step/simulation_config.hpp"
+#include "simulation/step/recorded_forces.hpp"
+#include "simulation/step/simulation_config.hpp"
 
 namespace irdm::replay {
 

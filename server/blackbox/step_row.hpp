@@ -5,7 +5,7 @@
 
 #include "common/geometry.hpp"
 #include "common/stylus.hpp"
-#include "server/step/step_record.hpp"
+#include "simulation/step/step_record.hpp"
 
 namespace irdm {
 

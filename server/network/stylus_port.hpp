@@ -3,7 +3,7 @@
 #include "common/realtime/mailbox.hpp"
 #include "common/stylus.hpp"
 #include "common/wire/message.hpp"
-#include "server/step/applied_history.hpp"
+#include "simulation/step/applied_history.hpp"
 
 namespace irdm {
 

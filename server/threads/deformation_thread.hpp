@@ -8,8 +8,8 @@
 #include "common/realtime/histogram.hpp"
 #include "common/realtime/mailbox.hpp"
 #include "common/realtime/wakeup.hpp"
-#include "server/deformation/deformation.hpp"
 #include "server/threads/step_sink.hpp"
+#include "simulation/deformation/deformation.hpp"
 
 namespace irdm {
 

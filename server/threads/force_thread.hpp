@@ -12,12 +12,12 @@
 #include "common/realtime/wakeup.hpp"
 #include "server/blackbox/step_log.hpp"
 #include "server/network/network_server.hpp"
-#include "server/step/bridged_stylus.hpp"
-#include "server/step/simulation.hpp"
 #include "server/threads/run_control.hpp"
 #include "server/threads/step_clock.hpp"
 #include "server/threads/step_sink.hpp"
 #include "server/threads/viewer_stylus.hpp"
+#include "simulation/step/bridged_stylus.hpp"
+#include "simulation/step/simulation.hpp"
 
 namespace irdm {
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "common/realtime/wakeup.hpp"
-#include "server/record/trace_writer.hpp"
 #include "server/threads/step_sink.hpp"
+#include "trace/trace_writer.hpp"
 
 namespace irdm {
 

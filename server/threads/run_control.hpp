@@ -5,7 +5,7 @@
 
 #include "common/realtime/mailbox.hpp"
 #include "server/network/stylus_port.hpp"
-#include "server/step/settings.hpp"
+#include "simulation/step/settings.hpp"
 
 namespace irdm {
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 
 #include "common/realtime/bounded_queue.hpp"
-#include "server/step/step_record.hpp"
+#include "simulation/step/step_record.hpp"
 
 namespace irdm {
 

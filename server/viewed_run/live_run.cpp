@@ -2,7 +2,7 @@
 
 #include "common/error.hpp"
 #include "common/realtime/clock.hpp"
-#include "server/viewed_run/viewer_scene.hpp"
+#include "viewer/viewer_scene.hpp"
 
 namespace irdm {
 namespace {

@@ -2,13 +2,13 @@
 
 #include <string>
 
-#include "server/config/scene.hpp"
+#include "scene/scene.hpp"
 #include "server/network/network_server.hpp"
 #include "server/threads/deformation_thread.hpp"
 #include "server/threads/force_thread.hpp"
 #include "server/viewed_run/playback.hpp"
 #include "server/viewed_run/recordings.hpp"
-#include "server/viewer/viewed_run.hpp"
+#include "viewer/viewed_run.hpp"
 
 namespace irdm {
 

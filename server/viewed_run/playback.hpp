@@ -3,7 +3,7 @@
 #include <string>
 
 #include "server/viewed_run/player.hpp"
-#include "server/viewer/message.hpp"
+#include "viewer/message.hpp"
 
 namespace irdm {
 

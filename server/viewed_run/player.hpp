@@ -12,8 +12,8 @@
 #include "common/realtime/bounded_queue.hpp"
 #include "common/realtime/mailbox.hpp"
 #include "common/realtime/wakeup.hpp"
-#include "server/deformation/deformation.hpp"
-#include "server/record/recording.hpp"
+#include "simulation/deformation/deformation.hpp"
+#include "trace/recording.hpp"
 
 namespace irdm {
 

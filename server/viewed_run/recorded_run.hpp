@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "server/viewed_run/playback.hpp"
-#include "server/viewer/viewed_run.hpp"
+#include "viewer/viewed_run.hpp"
 
 namespace irdm {
 

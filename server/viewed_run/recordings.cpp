@@ -3,7 +3,7 @@
 #include <ctime>
 
 #include "common/error.hpp"
-#include "server/viewer/message.hpp"
+#include "viewer/message.hpp"
 
 namespace irdm {
 namespace {

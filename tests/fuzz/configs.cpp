@@ -7,7 +7,7 @@
 #include "common/error.hpp"
 #include "device_bridge/bridge_config.hpp"
 #include "precompute/config.hpp"
-#include "server/config/scene.hpp"
+#include "scene/scene.hpp"
 #include "tests/fuzz/harness.hpp"
 #include "tests/fuzz/scratch_file.hpp"
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "replay/made_again/finite_step.hpp"
-#include "server/step/simulation.hpp"
+#include "simulation/step/simulation.hpp"
 #include "tests/fuzz/harness.hpp"
 
 namespace irdm::fuzz {

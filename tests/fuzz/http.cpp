@@ -6,11 +6,11 @@
 #include <string>
 #include <utility>
 
-#include "server/viewer/request_rules.hpp"
-#include "server/viewer/viewer_server.hpp"
 #include "tests/fuzz/harness.hpp"
 #include "tests/viewer/example_run.hpp"
 #include "tests/viewer/web_peer.hpp"
+#include "viewer/request_rules.hpp"
+#include "viewer/viewer_server.hpp"
 
 namespace irdm::fuzz {
 

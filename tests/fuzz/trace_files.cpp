@@ -3,12 +3,12 @@
 #include "replay/made_again/finite_step.hpp"
 #include "replay/made_again/from_forces.hpp"
 #include "replay/made_again/from_tips.hpp"
-#include "server/record/recording.hpp"
-#include "server/record/trace_header.hpp"
 #include "tests/fuzz/edited_file.hpp"
 #include "tests/fuzz/harness.hpp"
 #include "tests/fuzz/scratch_file.hpp"
 #include "tests/server/two_cubes.hpp"
+#include "trace/recording.hpp"
+#include "trace/trace_header.hpp"
 
 namespace irdm::fuzz {
 namespace {

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <vector>
 
-#include "server/viewer/message.hpp"
 #include "tests/fuzz/harness.hpp"
+#include "viewer/message.hpp"
 
 namespace irdm::fuzz {
 

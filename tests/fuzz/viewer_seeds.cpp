@@ -1,6 +1,6 @@
-#include "server/viewer/message.hpp"
 #include "tests/fuzz/seed_folder.hpp"
 #include "tests/viewer/frames.hpp"
+#include "viewer/message.hpp"
 
 namespace irdm::fuzz {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "device_bridge/contact/bridge_contact.hpp"
 #include "device_bridge/safety/safety_filter.hpp"
-#include "server/step/bridged_stylus.hpp"
+#include "simulation/step/bridged_stylus.hpp"
 
 namespace irdm::test {
 namespace {

@@ -7,7 +7,7 @@
 #include "device_bridge/safety/guards.hpp"
 #include "device_bridge/safety/safety_filter.hpp"
 #include "device_bridge/virtual_hand.hpp"
-#include "server/step/simulation.hpp"
+#include "simulation/step/simulation.hpp"
 
 namespace irdm::test {
 

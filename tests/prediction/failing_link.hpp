@@ -11,8 +11,8 @@
 #include "common/wire/frame.hpp"
 #include "device_bridge/link/force_intake.hpp"
 #include "device_bridge/servo_loop.hpp"
-#include "server/step/bridged_stylus.hpp"
-#include "server/step/simulation.hpp"
+#include "simulation/step/bridged_stylus.hpp"
+#include "simulation/step/simulation.hpp"
 
 namespace irdm::test {
 

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "server/step/bridged_stylus.hpp"
+#include "simulation/step/bridged_stylus.hpp"
 #include "tests/support/fem_cube.hpp"
 
 // What the server makes of the forces of a bridge that solves the contact, when the bridge, the

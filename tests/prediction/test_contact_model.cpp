@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "device_bridge/contact/contact_predictor.hpp"
-#include "server/step/simulation.hpp"
+#include "simulation/step/simulation.hpp"
 #include "tests/support/allocation_guard.hpp"
 #include "tests/support/fem_cube.hpp"
 #include "tests/support/left_out.hpp"

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "server/engine/response_engine.hpp"
+#include "simulation/engine/response_engine.hpp"
 #include "tests/support/fem_cube.hpp"
 
 // What the engines say of coming steps, and what they make of forces that come late, against plain

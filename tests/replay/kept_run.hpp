@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "server/record/recording.hpp"
-#include "server/record/trace_writer.hpp"
-#include "server/step/simulation.hpp"
+#include "simulation/step/simulation.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "trace/recording.hpp"
+#include "trace/trace_writer.hpp"
 
 namespace irdm::test {
 

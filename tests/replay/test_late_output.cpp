@@ -6,10 +6,10 @@
 #include "replay/compare/run_reader.hpp"
 #include "replay/replay.hpp"
 #include "replay/traced_scene.hpp"
-#include "server/record/trace_writer.hpp"
-#include "server/step/simulation.hpp"
+#include "simulation/step/simulation.hpp"
 #include "tests/support/synthetic_model.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "trace/trace_writer.hpp"
 
 using namespace irdm;
 using namespace irdm::replay;

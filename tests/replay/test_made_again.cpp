@@ -5,7 +5,7 @@
 #include "replay/made_again/from_forces.hpp"
 #include "replay/made_again/from_tips.hpp"
 #include "replay/made_again/told_late.hpp"
-#include "server/step/bridged_stylus.hpp"
+#include "simulation/step/bridged_stylus.hpp"
 #include "tests/replay/kept_run.hpp"
 #include "tests/server/two_cubes.hpp"
 #include "tests/support/fem_cube.hpp"

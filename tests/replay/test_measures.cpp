@@ -10,7 +10,7 @@
 #include "replay/measures/onsets.hpp"
 #include "replay/measures/ringing.hpp"
 #include "replay/measures/vibration.hpp"
-#include "server/engine/response_engine.hpp"
+#include "simulation/engine/response_engine.hpp"
 #include "tests/support/synthetic_model.hpp"
 
 using namespace irdm;

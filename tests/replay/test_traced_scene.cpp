@@ -6,9 +6,9 @@
 #include "common/error.hpp"
 #include "common/model/model_file.hpp"
 #include "replay/traced_scene.hpp"
-#include "server/record/trace_writer.hpp"
 #include "tests/support/synthetic_model.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "trace/trace_writer.hpp"
 
 using Catch::Matchers::Contains;
 using namespace irdm;

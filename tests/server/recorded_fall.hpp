@@ -2,10 +2,10 @@
 
 #include <filesystem>
 
-#include "server/deformation/deformation.hpp"
-#include "server/record/trace_writer.hpp"
-#include "server/step/simulation.hpp"
+#include "simulation/deformation/deformation.hpp"
+#include "simulation/step/simulation.hpp"
 #include "tests/server/two_cubes.hpp"
+#include "trace/trace_writer.hpp"
 
 namespace irdm::test {
 

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "server/record/trace_writer.hpp"
+#include "trace/trace_writer.hpp"
 
 namespace irdm::test {
 

@@ -7,8 +7,8 @@
 #include <thread>
 
 #include "common/model/model_file.hpp"
-#include "server/columns/scene_columns.hpp"
-#include "server/engine/response_engine.hpp"
+#include "scene/columns/scene_columns.hpp"
+#include "simulation/engine/response_engine.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/left_out.hpp"
 #include "tests/support/real_time_guard.hpp"

@@ -3,12 +3,12 @@
 #include <limits>
 
 #include "common/error.hpp"
-#include "server/record/recording.hpp"
-#include "server/record/trace_header.hpp"
-#include "server/record/trace_writer.hpp"
 #include "tests/server/two_cubes.hpp"
 #include "tests/support/edited_numbers.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "trace/recording.hpp"
+#include "trace/trace_header.hpp"
+#include "trace/trace_writer.hpp"
 
 using Catch::Matchers::Contains;
 using namespace irdm;

@@ -8,12 +8,12 @@
 #include <thread>
 
 #include "common/error.hpp"
-#include "server/record/trace_writer.hpp"
 #include "tests/server/committed_rows.hpp"
 #include "tests/server/records.hpp"
 #include "tests/support/committed_so_far.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "trace/trace_writer.hpp"
 
 using namespace irdm;
 using namespace irdm::test;

@@ -2,10 +2,10 @@
 #include <catch2/catch.hpp>
 #include <vector>
 
-#include "server/record/recording.hpp"
-#include "server/record/trace_writer.hpp"
 #include "tests/server/two_cubes.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "trace/recording.hpp"
+#include "trace/trace_writer.hpp"
 
 using namespace irdm;
 using namespace irdm::test;

@@ -1,8 +1,8 @@
 #include <catch2/catch.hpp>
 
 #include "common/error.hpp"
-#include "server/config/scene.hpp"
-#include "server/scene_simulation.hpp"
+#include "scene/scene.hpp"
+#include "scene/scene_simulation.hpp"
 #include "tests/support/streamed_model.hpp"
 #include "tests/support/synthetic_model.hpp"
 #include "tests/support/temporary_folder.hpp"

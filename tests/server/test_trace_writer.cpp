@@ -2,9 +2,9 @@
 #include <catch2/catch.hpp>
 
 #include "common/error.hpp"
-#include "server/record/trace_writer.hpp"
 #include "tests/server/records.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "trace/trace_writer.hpp"
 
 using Catch::Matchers::Contains;
 using namespace irdm;

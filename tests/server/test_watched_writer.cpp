@@ -4,10 +4,10 @@
 #include <catch2/catch.hpp>
 
 #include "common/error.hpp"
-#include "server/record/trace_writer.hpp"
 #include "tests/server/records.hpp"
 #include "tests/support/committed_so_far.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "trace/trace_writer.hpp"
 
 using namespace irdm;
 using namespace irdm::test;

@@ -5,7 +5,7 @@
 #include <memory>
 #include <utility>
 
-#include "server/step/simulation.hpp"
+#include "simulation/step/simulation.hpp"
 #include "tests/support/synthetic_model.hpp"
 
 namespace irdm::test {

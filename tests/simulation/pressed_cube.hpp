@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "server/step/simulation.hpp"
+#include "simulation/step/simulation.hpp"
 #include "tests/support/fem_cube.hpp"
 
 namespace irdm::test {

@@ -6,7 +6,7 @@
 
 #include "common/model/half_column.hpp"
 #include "common/response/oscillator.hpp"
-#include "server/engine/response_engine.hpp"
+#include "simulation/engine/response_engine.hpp"
 #include "tests/support/shared_model.hpp"
 #include "tests/support/synthetic_model.hpp"
 

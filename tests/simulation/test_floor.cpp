@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "server/deformation/deformation.hpp"
-#include "server/step/simulation.hpp"
+#include "simulation/deformation/deformation.hpp"
+#include "simulation/step/simulation.hpp"
 #include "tests/simulation/pressed_cube.hpp"
 #include "tests/support/fem_cube.hpp"
 

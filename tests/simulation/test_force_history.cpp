@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "server/engine/force_history.hpp"
+#include "simulation/engine/force_history.hpp"
 
 using namespace irdm;
 

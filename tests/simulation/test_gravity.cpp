@@ -5,10 +5,10 @@
 #include <iostream>
 
 #include "common/response/oscillator.hpp"
-#include "server/contact/pressure_mask.hpp"
-#include "server/deformation/deformation.hpp"
-#include "server/step/gravity_load.hpp"
-#include "server/step/simulation.hpp"
+#include "simulation/contact/pressure_mask.hpp"
+#include "simulation/deformation/deformation.hpp"
+#include "simulation/step/gravity_load.hpp"
+#include "simulation/step/simulation.hpp"
 #include "tests/simulation/pressed_cube.hpp"
 #include "tests/support/allocation_guard.hpp"
 #include "tests/support/fixed_box.hpp"

@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <random>
 
-#include "server/engine/force_stretches.hpp"
-#include "server/engine/kernels.hpp"
-#include "server/engine/strong_modes.hpp"
-#include "server/engine/wide_kernels.hpp"
+#include "simulation/engine/force_stretches.hpp"
+#include "simulation/engine/kernels.hpp"
+#include "simulation/engine/strong_modes.hpp"
+#include "simulation/engine/wide_kernels.hpp"
 
 using namespace irdm;
 

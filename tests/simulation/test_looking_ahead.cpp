@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "server/step/simulation.hpp"
+#include "simulation/step/simulation.hpp"
 #include "tests/support/fem_cube.hpp"
 
 // A live run looks ahead for its bridges and finds where late forces acted. One that is made again

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "server/step/simulation.hpp"
+#include "simulation/step/simulation.hpp"
 #include "tests/simulation/pressed_cube.hpp"
 #include "tests/support/fem_cube.hpp"
 

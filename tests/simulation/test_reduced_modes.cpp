@@ -7,7 +7,7 @@
 #include <cmath>
 #include <iostream>
 
-#include "server/engine/response_engine.hpp"
+#include "simulation/engine/response_engine.hpp"
 #include "tests/simulation/pressed_cube.hpp"
 #include "tests/support/allocation_guard.hpp"
 #include "tests/support/left_out.hpp"

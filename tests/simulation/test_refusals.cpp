@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "common/error.hpp"
-#include "server/step/simulation.hpp"
+#include "simulation/step/simulation.hpp"
 #include "tests/support/synthetic_model.hpp"
 
 using Catch::Matchers::Contains;

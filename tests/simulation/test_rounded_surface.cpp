@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "server/contact/rounded_surface.hpp"
+#include "simulation/contact/rounded_surface.hpp"
 #include "tests/simulation/pressed_cube.hpp"
 
 using namespace irdm;

@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "server/engine/running_convolution.hpp"
+#include "simulation/engine/running_convolution.hpp"
 #include "tests/simulation/random_numbers.hpp"
 #include "tests/support/allocation_guard.hpp"
 #include "tests/support/left_out.hpp"

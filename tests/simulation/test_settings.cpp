@@ -2,9 +2,9 @@
 #include <catch2/catch.hpp>
 
 #include "common/error.hpp"
-#include "server/deformation/deformation.hpp"
-#include "server/engine/static_compliance.hpp"
-#include "server/step/simulation.hpp"
+#include "simulation/deformation/deformation.hpp"
+#include "simulation/engine/static_compliance.hpp"
+#include "simulation/step/simulation.hpp"
 #include "tests/support/shared_model.hpp"
 #include "tests/support/synthetic_model.hpp"
 

@@ -1,4 +1,4 @@
-#include "server/step/simulation.hpp"
+#include "simulation/step/simulation.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "server/deformation/deformation.hpp"
-#include "server/step/recorded_forces.hpp"
+#include "simulation/deformation/deformation.hpp"
+#include "simulation/step/recorded_forces.hpp"
 #include "tests/simulation/pressed_cube.hpp"
 #include "tests/support/fem_cube.hpp"
 

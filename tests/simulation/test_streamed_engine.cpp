@@ -6,8 +6,8 @@
 
 #include "common/model/model_file.hpp"
 #include "common/response/settling.hpp"
-#include "server/engine/response_engine.hpp"
-#include "server/engine/streamed_engine.hpp"
+#include "simulation/engine/response_engine.hpp"
+#include "simulation/engine/streamed_engine.hpp"
 #include "tests/simulation/pressed_cube.hpp"
 #include "tests/simulation/random_numbers.hpp"
 #include "tests/support/allocation_guard.hpp"

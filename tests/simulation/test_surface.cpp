@@ -4,8 +4,8 @@
 #include <numbers>
 #include <random>
 
-#include "server/collision/deformed_surface.hpp"
-#include "server/step/god_object.hpp"
+#include "simulation/collision/deformed_surface.hpp"
+#include "simulation/step/god_object.hpp"
 #include "tests/support/synthetic_model.hpp"
 
 using namespace irdm;

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "server/step/simulation.hpp"
+#include "simulation/step/simulation.hpp"
 
 namespace irdm::test {
 

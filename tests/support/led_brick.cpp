@@ -8,7 +8,7 @@
 
 #include "common/model/model_file.hpp"
 #include "precompute/precompute.hpp"
-#include "server/step/simulation.hpp"
+#include "simulation/step/simulation.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace irdm::test {

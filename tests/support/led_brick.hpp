@@ -5,8 +5,8 @@
 
 #include "common/geometry.hpp"
 #include "common/model/model.hpp"
-#include "server/step/simulation_config.hpp"
-#include "server/step/step_record.hpp"
+#include "simulation/step/simulation_config.hpp"
+#include "simulation/step/step_record.hpp"
 
 namespace irdm::test {
 

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "common/model/model.hpp"
-#include "server/contact/contact_patch.hpp"
+#include "simulation/contact/contact_patch.hpp"
 
 namespace irdm::test {
 

@@ -7,7 +7,7 @@
 
 #include "common/hdf5/file.hpp"
 #include "common/model/model_file.hpp"
-#include "server/config/scene.hpp"
+#include "scene/scene.hpp"
 #include "tests/system/stage.hpp"
 
 using namespace irdm;

@@ -6,9 +6,9 @@
 #include "common/checksum.hpp"
 #include "common/hdf5/file.hpp"
 #include "common/model/model_file.hpp"
-#include "server/config/scene.hpp"
-#include "server/engine/response_engine.hpp"
-#include "server/step/simulation.hpp"
+#include "scene/scene.hpp"
+#include "simulation/engine/response_engine.hpp"
+#include "simulation/step/simulation.hpp"
 #include "tests/system/stage.hpp"
 #include "tests/system/trace.hpp"
 

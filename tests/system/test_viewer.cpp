@@ -5,11 +5,11 @@
 #include <cstring>
 
 #include "common/hdf5/file.hpp"
-#include "server/viewer/message.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/system/stage.hpp"
 #include "tests/system/trace.hpp"
 #include "tests/viewer/web_peer.hpp"
+#include "viewer/message.hpp"
 
 using Catch::Matchers::Contains;
 using namespace irdm;

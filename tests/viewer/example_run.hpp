@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "server/viewer/viewed_run.hpp"
 #include "tests/viewer/frames.hpp"
+#include "viewer/viewed_run.hpp"
 
 namespace irdm::test {
 

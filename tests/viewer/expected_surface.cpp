@@ -6,9 +6,9 @@
 #include <iostream>
 
 #include "common/model/model_file.hpp"
-#include "server/config/scene.hpp"
-#include "server/deformation/deformation.hpp"
-#include "server/step/simulation.hpp"
+#include "scene/scene.hpp"
+#include "simulation/deformation/deformation.hpp"
+#include "simulation/step/simulation.hpp"
 #include "tests/system/trace.hpp"
 
 using namespace irdm;

@@ -2,8 +2,8 @@
 
 #include <random>
 
-#include "server/viewer/message.hpp"
 #include "tests/support/synthetic_model.hpp"
+#include "viewer/message.hpp"
 
 namespace irdm::test {
 

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "server/viewer/request_rules.hpp"
+#include "viewer/request_rules.hpp"
 
 using namespace irdm::viewer;
 

@@ -2,10 +2,10 @@
 // is being written, and one of each kind that waits.
 #include <catch2/catch.hpp>
 
-#include "server/viewer/viewer_server.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/viewer/example_run.hpp"
 #include "tests/viewer/web_peer.hpp"
+#include "viewer/viewer_server.hpp"
 
 using namespace irdm;
 using namespace irdm::test;

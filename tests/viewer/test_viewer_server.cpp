@@ -7,12 +7,12 @@
 #include <fstream>
 
 #include "common/error.hpp"
-#include "server/viewer/viewer_server.hpp"
 #include "tests/support/captured_log.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/viewer/example_run.hpp"
 #include "tests/viewer/web_peer.hpp"
+#include "viewer/viewer_server.hpp"
 
 using Catch::Matchers::Contains;
 using Catch::Matchers::StartsWith;

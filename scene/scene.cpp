@@ -1,0 +1,265 @@
+#include "scene/scene.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "common/blackbox/read_black_box.hpp"
+#include "common/config/lab_ranges.hpp"
+#include "common/error.hpp"
+#include "common/quoted.hpp"
+
+namespace irdm {
+namespace {
+
+Vector3 read_vector(TomlTable& table, const std::string& key, const Range& range) {
+  return Vector3(table.numbers(key, 3, range, {0.0, 0.0, 0.0}).data());
+}
+
+ServerConfig read_server(TomlTable table, int styluses) {
+  ServerConfig config;
+  config.styluses = styluses;
+  config.address = table.text("address", config.address);
+  config.port = table.integer("port", 0, 65535, config.port);
+  config.styluses = table.integer("styluses", 1, kMaxStyluses, config.styluses);
+  config.deformation_rate =
+      table.number("deformation_rate", between(1.0, 1000.0), config.deformation_rate);
+  config.status_period = table.number("status_period", between(0.0, 3600.0), config.status_period);
+  if (table.has("key_file")) config.key_file = table.path("key_file");
+  config.udp = table.boolean("udp", config.udp);
+  config.deformation_threads =
+      table.integer("deformation_threads", 0, 64, config.deformation_threads);
+  config.realtime =
+      scheduling_from_word(table.choice("realtime", {"require", "prefer", "ignore"}, "prefer"));
+  config.black_box = read_black_box(table);
+  table.finish();
+  return config;
+}
+
+std::string read_token(TomlTable& table, const std::string& key) {
+  constexpr std::size_t kShortest = 16;
+  constexpr std::size_t kLongest = 128;
+  const std::string token = table.text(key, "");
+  const bool printable = std::all_of(token.begin(), token.end(),
+                                     [](char letter) { return letter > 0x20 && letter < 0x7F; });
+  const std::size_t length = token.size();
+  if (!printable || (length > 0 && length < kShortest) || length > kLongest) {
+    table.fail(key, "is not 16 to 128 printable ASCII characters without blanks",
+               "give such a one, for instance from: openssl rand -hex 16");
+  }
+  return token;
+}
+
+void read_viewer_stylus(TomlTable table, double radius, ViewerConfig& config) {
+  SimulationStylus& stylus = config.stylus;
+  stylus.radius = table.number("radius", lab::kTipLength, radius);
+  stylus.coupling_stiffness =
+      table.number("coupling_stiffness", between(1.0, 1e5), stylus.coupling_stiffness);
+  stylus.reach = table.number("reach", lab::kTipLength, stylus.reach);
+  config.max_force = table.number("max_force", between(0.1, 100.0), config.max_force);
+  table.finish();
+}
+
+// Needs the styluses of the scene.
+ViewerConfig read_viewer(TomlTable table, const std::vector<SimulationStylus>& styluses) {
+  ViewerConfig config;
+  config.enabled = table.boolean("enabled", config.enabled);
+  config.address = table.text("address", config.address);
+  config.port = table.integer("port", 0, 65535, config.port);
+  config.token = read_token(table, "token");
+  config.onlooker_token = read_token(table, "onlooker_token");
+  if (!config.onlooker_token.empty() && config.token.empty()) {
+    table.fail("onlooker_token", "is set without a token", "set viewer.token too");
+  }
+  if (!config.onlooker_token.empty() && config.onlooker_token == config.token) {
+    table.fail("onlooker_token", "is the token itself", "give another one");
+  }
+  if (table.has("recordings")) config.recordings = table.path("recordings");
+  config.mouse = table.boolean("mouse", config.mouse);
+  read_viewer_stylus(table.table("stylus"), styluses.front().radius, config);
+  table.finish();
+  return config;
+}
+
+WorldConfig read_world(TomlTable table) {
+  WorldConfig config;
+  config.gravity = read_vector(table, "gravity", lab::kGravity);
+  table.finish();
+  return config;
+}
+
+ContactConfig read_contact(TomlTable table) {
+  ContactConfig config;
+  config.coupling_stiffness =
+      table.number("coupling_stiffness", lab::kStiffness, config.coupling_stiffness);
+  config.release_time = table.number("release_time", between(1e-3, 1.0), config.release_time);
+  table.finish();
+  return config;
+}
+
+Quaternion read_orientation(TomlTable& table) {
+  const auto wxyz = table.numbers("orientation", 4, lab::kComponent, {1.0, 0.0, 0.0, 0.0});
+  const Quaternion orientation(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
+  constexpr double kSmallest = 1e-6;
+  if (orientation.norm() < kSmallest) {
+    table.fail("orientation", "has no length",
+               "give a quaternion w, x, y, z, for instance [1, 0, 0, 0]");
+  }
+  return orientation.normalized();
+}
+
+Friction read_friction(TomlTable table, const Friction& fallback) {
+  Friction friction;
+  friction.static_ = table.number("static", lab::kFriction, fallback.static_);
+  friction.kinetic =
+      table.number("kinetic", lab::kFriction, std::min(fallback.kinetic, friction.static_));
+  if (friction.kinetic > friction.static_) {
+    table.fail("kinetic", "is larger than static", "lower it or raise static");
+  }
+  table.finish();
+  return friction;
+}
+
+RigidDamping read_damping(TomlTable table) {
+  RigidDamping damping;
+  damping.linear = table.number("linear", lab::kDamping, damping.linear);
+  damping.angular = table.number("angular", lab::kDamping, damping.angular);
+  table.finish();
+  return damping;
+}
+
+Tether read_tether(TomlTable table) {
+  Tether tether;
+  tether.stiffness = table.number("stiffness", lab::kStiffness, tether.stiffness);
+  tether.angular_stiffness =
+      table.number("angular_stiffness", lab::kStiffness, tether.angular_stiffness);
+  table.finish();
+  return tether;
+}
+
+std::optional<FloorConfig> read_floor(TomlTable& file) {
+  if (!file.has("floor")) return std::nullopt;
+  TomlTable table = file.table("floor");
+  FloorConfig floor;
+  floor.height = table.number("height", lab::kPlace, floor.height);
+  const auto normal = table.numbers("normal", 3, lab::kComponent, {0.0, 1.0, 0.0});
+  floor.normal = Vector3(normal.data());
+  if (floor.normal.norm() < 1e-6) {
+    table.fail("normal", "has no length", "give the direction that is up, for instance [0, 1, 0]");
+  }
+  floor.normal.normalize();
+  floor.friction = read_friction(table.table("friction"), floor.friction);
+  table.finish();
+  return floor;
+}
+
+SimulationStylus read_stylus(TomlTable table, const ContactConfig& contact) {
+  SimulationStylus stylus;
+  stylus.radius = table.number("radius", lab::kTipLength, stylus.radius);
+  stylus.coupling_stiffness =
+      table.number("coupling_stiffness", lab::kStiffness, contact.coupling_stiffness);
+  stylus.reach = table.number("reach", lab::kTipLength, stylus.reach);
+  table.finish();
+  return stylus;
+}
+
+// A name becomes the name of a group in the trace file.
+std::string read_name(TomlTable& table, const std::string& fallback) {
+  const std::string name = table.text("name", fallback);
+  const bool printable = std::none_of(name.begin(), name.end(), [](unsigned char letter) {
+    return letter < 0x20 || letter == 0x7F || letter == '/';
+  });
+  if (name.size() > lab::kLongestName) {
+    table.fail("name", "has " + std::to_string(name.size()) + " bytes",
+               "give at most " + std::to_string(lab::kLongestName));
+  }
+  if (name.empty() || name == "." || !printable) {
+    table.fail("name", "cannot name a group of the trace file",
+               "use one or more letters, without '/' and control characters, and not \".\" alone");
+  }
+  return name;
+}
+
+EngineKind read_engine(TomlTable& table) {
+  const std::string word = table.choice("engine", {"modal", "dense", "compressed"}, "modal");
+  if (word == "dense") return EngineKind::kDense;
+  return word == "compressed" ? EngineKind::kCompressed : EngineKind::kModal;
+}
+
+ObjectConfig read_object(TomlTable table) {
+  ObjectConfig config;
+  config.name = read_name(table, config.name);
+  config.model = table.path("model");
+  config.engine = read_engine(table);
+  config.position = read_vector(table, "position", lab::kPlace);
+  config.orientation = read_orientation(table);
+  config.velocity = read_vector(table, "velocity", lab::kVelocity);
+  config.angular_velocity = read_vector(table, "angular_velocity", lab::kAngularVelocity);
+  config.friction = read_friction(table.table("friction"), config.friction);
+  config.damping = read_damping(table.table("damping"));
+  config.tether = read_tether(table.table("tether"));
+  config.inertial_loading = table.boolean("inertial_loading", config.inertial_loading);
+  config.switchable = table.boolean("switchable", config.switchable);
+  if (table.has("memory_budget")) {
+    config.memory_budget = table.number("memory_budget", between(1.0, 1e8), 0.0);
+    if (config.engine != EngineKind::kDense && !config.switchable) {
+      table.fail("memory_budget", "is for the engine \"dense\"",
+                 "leave it out, or set engine = \"dense\"");
+    }
+  }
+  if (config.switchable && config.engine == EngineKind::kCompressed) {
+    table.fail("switchable", "is for the engines \"modal\" and \"dense\"",
+               "leave it out, or choose another engine");
+  }
+  table.finish();
+  return config;
+}
+
+}  // namespace
+
+SceneConfig read_scene(TomlTable file) {
+  SceneConfig scene;
+  scene.world = read_world(file.table("world"));
+  scene.contact = read_contact(file.table("contact"));
+  scene.floor = read_floor(file);
+  for (TomlTable& stylus : file.tables("stylus")) {
+    scene.styluses.push_back(read_stylus(stylus, scene.contact));
+  }
+  const int described = static_cast<int>(scene.styluses.size());
+  if (described > kMaxStyluses) {
+    file.fail("stylus", "appears too often", "use at most " + std::to_string(kMaxStyluses));
+  }
+  scene.server = read_server(file.table("server"), std::max(1, described));
+  if (scene.server.styluses < described) {
+    file.fail("server", "has fewer styluses than there are [[stylus]] tables",
+              "raise server.styluses or leave it out");
+  }
+  scene.styluses.resize(static_cast<std::size_t>(scene.server.styluses),
+                        {0.0, scene.contact.coupling_stiffness, 0.0});
+  scene.viewer = read_viewer(file.table("viewer"), scene.styluses);
+  std::set<std::string> names;
+  for (TomlTable& object : file.tables("object")) {
+    scene.objects.push_back(read_object(object));
+    if (!names.insert(scene.objects.back().name).second) {
+      file.fail("object", "appears twice with the name " + in_quotes(scene.objects.back().name),
+                "give each object a name of its own");
+    }
+  }
+  if (scene.objects.empty()) file.fail("object", "is missing", "add [[object]] with a model");
+  if (scene.objects.size() > kMaxObjects) {
+    file.fail("object", "appears too often", "use at most " + std::to_string(kMaxObjects));
+  }
+  file.finish();
+  return scene;
+}
+
+std::string read_text(const std::filesystem::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) throw Error(path.string(), "cannot be read", "check the path and its permissions");
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+}  // namespace irdm

@@ -1,0 +1,158 @@
+#include "simulation/collision/deformed_surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace irdm {
+namespace {
+// Enough to cross a dozen triangles from a good start, and a bound on the cost of a bad one.
+constexpr int kMaxSlides = 16;
+// Triangles along the way of a tip in one step that are looked at.
+constexpr std::size_t kMaxCandidates = 64;
+}  // namespace
+
+DeformedSurface::DeformedSurface(const RestSurface& rest)
+    : rest_(rest),
+      known_in_(static_cast<std::size_t>(rest.node_count()), 0),
+      positions_(static_cast<std::size_t>(rest.node_count()), Vector3::Zero()) {
+  seen_.reserve(positions_.size());
+  for (int i = 0; i < rest.node_count(); ++i) rest_box_.extend(rest.node(i));
+}
+
+void DeformedSurface::begin_step(const ResponseEngine& engine) noexcept {
+  engine_ = &engine;
+  ++step_;
+  seen_.clear();
+}
+
+const Vector3& DeformedSurface::node(int i) noexcept {
+  const auto index = static_cast<std::size_t>(i);
+  if (known_in_[index] != step_) {
+    positions_[index] = rest_.node(i) + engine_->free_displacement(i);
+    known_in_[index] = step_;
+    seen_.push_back(i);
+  }
+  return positions_[index];
+}
+
+TriangleCorners DeformedSurface::corners(int triangle) noexcept {
+  const std::array<int, 3>& nodes = rest_.topology().corners(triangle);
+  return {node(nodes[0]), node(nodes[1]), node(nodes[2])};
+}
+
+Vector3 DeformedSurface::normal(int triangle) noexcept {
+  return area_normal(corners(triangle)).normalized();
+}
+
+SurfaceHit DeformedSurface::hit_on(int triangle, const Vector3& p) noexcept {
+  const TriangleCorners deformed = corners(triangle);
+  SurfaceHit hit;
+  hit.triangle = triangle;
+  hit.point = {rest_.topology().corners(triangle), closest_point(deformed, p)};
+  hit.position = at(deformed, hit.point.weights);
+  hit.signed_distance = (p - hit.position).norm();
+  return hit;
+}
+
+template <typename Visit>
+void DeformedSurface::visit_neighbours(int triangle, const Visit& visit) noexcept {
+  for (const int corner : rest_.topology().corners(triangle)) {
+    for (const int neighbour : rest_.topology().triangles_around(corner)) {
+      if (neighbour != triangle) visit(neighbour);
+    }
+  }
+}
+
+SurfaceHit DeformedSurface::descend(SurfaceHit best, const Vector3& p) noexcept {
+  for (int move = 0; move < kMaxSlides; ++move) {
+    const int here = best.triangle;
+    visit_neighbours(here, [&](int neighbour) {
+      const SurfaceHit hit = hit_on(neighbour, p);
+      if (hit.signed_distance < best.signed_distance) best = hit;
+    });
+    if (best.triangle == here) break;
+  }
+  return best;
+}
+
+// Normal of the feature (face, edge or corner) that the nearest point lies on. Weighting the faces
+// round a corner by their angle makes its sign the right one for inside and outside.
+Vector3 DeformedSurface::pseudonormal(const SurfaceHit& hit) noexcept {
+  std::array<int, 3> on{};  // nodes of the feature: 1 corner, 2 edge, 3 face
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (hit.point.weights[i] > 0) on[count++] = hit.point.nodes[i];
+  }
+  if (count == 3) return normal(hit.triangle);
+  Vector3 sum = Vector3::Zero();
+  for (const int triangle : rest_.topology().triangles_around(on[0])) {
+    const std::array<int, 3>& nodes = rest_.topology().corners(triangle);
+    const TriangleCorners deformed = corners(triangle);
+    const Vector3 unit = area_normal(deformed).normalized();
+    if (count == 2) {
+      if (std::find(nodes.begin(), nodes.end(), on[1]) != nodes.end()) sum += unit;
+      continue;
+    }
+    const auto corner =
+        static_cast<std::size_t>(std::find(nodes.begin(), nodes.end(), on[0]) - nodes.begin());
+    const Vector3 a = deformed[(corner + 1) % 3] - deformed[corner];
+    const Vector3 b = deformed[(corner + 2) % 3] - deformed[corner];
+    sum += std::atan2(a.cross(b).norm(), a.dot(b)) * unit;
+  }
+  return sum;
+}
+
+// A little more, so that no rounding makes it less.
+double DeformedSurface::bound() noexcept {
+  if (bound_known_in_ != step_) bound_ = (1.0 + 1e-9) * engine_->free_displacement_bound();
+  bound_known_in_ = step_;
+  return bound_;
+}
+
+bool DeformedSurface::is_far_from(const Vector3& from, const Vector3& to) noexcept {
+  Eigen::AlignedBox3d way(from);
+  way.extend(to);
+  if (way.intersects(rest_box_)) return false;
+  const Vector3 margin = Vector3::Constant(bound());
+  return !way.intersects(Eigen::AlignedBox3d(rest_box_.min() - margin, rest_box_.max() + margin));
+}
+
+SurfaceHit DeformedSurface::closest(const Vector3& p) noexcept {
+  SurfaceHit best = hit_on(rest_.tree().closest_triangle(p), p);
+  // Where the surface is displaced by u, the rest surface below p - u is the better place to start.
+  const Vector3 u =
+      interpolate(best.point, [&](int i) -> Vector3 { return node(i) - rest_.node(i); });
+  const SurfaceHit shifted = hit_on(rest_.tree().closest_triangle(p - u), p);
+  if (shifted.signed_distance < best.signed_distance) best = shifted;
+  best = descend(best, p);
+  if (pseudonormal(best).dot(p - best.position) < 0) best.signed_distance = -best.signed_distance;
+  return best;
+}
+
+std::optional<SurfaceHit> DeformedSurface::first_crossing(const Vector3& from, const Vector3& to,
+                                                          const SurfaceHit& near) noexcept {
+  std::optional<SurfaceHit> found;
+  double earliest = 2.0;
+  const auto consider = [&](int candidate) {
+    const TriangleCorners deformed = corners(candidate);
+    const std::optional<Crossing> here = crossing(deformed, from, to);
+    if (!here || here->fraction >= earliest) return;
+    earliest = here->fraction;
+    const SurfacePoint point{rest_.topology().corners(candidate), here->weights};
+    found = SurfaceHit{candidate, point, at(deformed, here->weights), 0.0};
+  };
+  consider(near.triangle);
+  visit_neighbours(near.triangle, consider);
+  // The tree knows the rest shape: the way is moved to where it would be there.
+  const Vector3 u =
+      interpolate(near.point, [&](int i) -> Vector3 { return node(i) - rest_.node(i); });
+  Eigen::AlignedBox3d way(from - u);
+  way.extend(to - u);
+  const Vector3 margin = Vector3::Constant(0.25 * u.norm());
+  std::array<int, kMaxCandidates> candidates{};
+  const int count = rest_.tree().overlapping({way.min() - margin, way.max() + margin}, candidates);
+  for (int i = 0; i < count; ++i) consider(candidates[static_cast<std::size_t>(i)]);
+  return found;
+}
+
+}  // namespace irdm

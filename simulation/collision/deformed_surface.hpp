@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "common/model/model.hpp"
+#include "simulation/collision/rest_surface.hpp"
+#include "simulation/engine/response_engine.hpp"
+
+namespace irdm {
+
+/// The point of the deformed surface nearest to a query point.
+struct SurfaceHit {
+  int triangle = 0;
+  SurfacePoint point;
+  Vector3 position = Vector3::Zero();  ///< [m], B
+  /// From the surface to the query point, positive outside, negative inside [m].
+  double signed_distance = 0.0;
+};
+
+/// The surface as it would be at the end of the coming step if no force acted during it, in B. Only
+/// the nodes that a query looks at are computed, each once a step, so that what a query costs does
+/// not depend on the size of the object. Real-time safe after construction; one thread.
+///
+/// The rest surface's tree, asked at the query point less the displacement found there, gives a
+/// triangle to start from; from it the search goes to whichever neighbour is nearer until none is.
+class DeformedSurface {
+ public:
+  /// @param rest must outlive this object
+  explicit DeformedSurface(const RestSurface& rest);
+
+  /// Starts a step: forgets the nodes of the last one. @param engine must outlive the step
+  void begin_step(const ResponseEngine& engine) noexcept;
+
+  /// r_i = X_i + h_i of a surface node [m], B.
+  const Vector3& node(int i) noexcept;
+
+  /// Nodes that were looked at in this step.
+  std::span<const int> seen() const noexcept { return seen_; }
+
+  /// Whether the way from `from` to `to` stays outside of all that the surface can fill, which is
+  /// known without looking at any node. False: it may not.
+  bool is_far_from(const Vector3& from, const Vector3& to) noexcept;
+
+  /// The point nearest to p.
+  SurfaceHit closest(const Vector3& p) noexcept;
+
+  /// Where the way from `from` to `to` first crosses the surface from outside, the triangles around
+  /// `near` and those along the way being looked at: a thin part is not passed through.
+  std::optional<SurfaceHit> first_crossing(const Vector3& from, const Vector3& to,
+                                           const SurfaceHit& near) noexcept;
+
+  /// Outward unit normal of a deformed triangle.
+  Vector3 normal(int triangle) noexcept;
+
+ private:
+  TriangleCorners corners(int triangle) noexcept;
+  SurfaceHit hit_on(int triangle, const Vector3& p) noexcept;
+  SurfaceHit descend(SurfaceHit best, const Vector3& p) noexcept;
+  Vector3 pseudonormal(const SurfaceHit& hit) noexcept;
+  template <typename Visit>
+  void visit_neighbours(int triangle, const Visit& visit) noexcept;
+
+  double bound() noexcept;
+
+  const RestSurface& rest_;
+  Eigen::AlignedBox3d rest_box_;
+  const ResponseEngine* engine_ = nullptr;
+  std::uint64_t step_ = 0;
+  std::vector<std::uint64_t> known_in_;  ///< step in which positions_ of a node was computed
+  std::vector<Vector3> positions_;
+  std::vector<int> seen_;
+  std::uint64_t bound_known_in_ = 0;  ///< as known_in_
+  double bound_ = 0.0;                ///< of each component of a displacement [m]
+};
+
+}  // namespace irdm

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "simulation/collision/surface_topology.hpp"
+#include "simulation/collision/surface_tree.hpp"
+#include "simulation/collision/triangle.hpp"
+
+namespace irdm {
+
+/// A point of the surface at rest.
+struct SurfaceLocation {
+  int triangle = 0;
+  SurfacePoint point;
+  Vector3 position = Vector3::Zero();  ///< [m], B
+};
+
+/// The object's surface at rest, in B: where on it a contact is, and how it moves along. Built
+/// once, read only; queries are real-time safe, for any number of threads.
+class RestSurface {
+ public:
+  explicit RestSurface(const ModelMesh& mesh);
+
+  const SurfaceTree& tree() const noexcept { return tree_; }
+  const SurfaceTopology& topology() const noexcept { return topology_; }
+  const Vector3& node(int i) const noexcept { return positions_[static_cast<std::size_t>(i)]; }
+  TriangleCorners corners(int triangle) const noexcept;
+
+  /// The point nearest to p.
+  SurfaceLocation closest(const Vector3& p) const noexcept;
+  /// The point nearest to p that is reached from a triangle by going to whichever neighbour is
+  /// nearer until none is: across edges and round corners, but not through the object.
+  SurfaceLocation walk(int triangle, const Vector3& p) const noexcept;
+
+  /// The end of a StraightWalk of a `length` [m].
+  SurfaceLocation straight_on(const SurfaceLocation& from, const Vector3& direction,
+                              double length) const noexcept;
+  /// The triangle that a point belongs to, with its place.
+  SurfaceLocation locate(const SurfacePoint& point) const noexcept;
+
+  /// What a walk over a triangle needs of it.
+  struct Plane {
+    Vector3 normal = Vector3::Zero();  ///< outward, unit, B
+    /// How the weight of each corner grows along the plane: rate . way [1/m].
+    std::array<Vector3, 3> rates;
+    /// The neighbours over the edges that lie opposite to the corners.
+    std::array<int, 3> across{};
+  };
+  const Plane& plane(int triangle) const noexcept {
+    return planes_[static_cast<std::size_t>(triangle)];
+  }
+
+  /// Outward unit normal that varies continuously over the surface: the nodes' normals (of the
+  /// faces round them, weighted with their angles), interpolated.
+  Vector3 smooth_normal(const SurfacePoint& point) const noexcept;
+  int node_count() const noexcept { return static_cast<int>(positions_.size()); }
+  /// Mean length of the triangles' edges [m].
+  double mean_edge() const noexcept { return mean_edge_; }
+  /// Mean square of the same [m^2].
+  double mean_square_edge() const noexcept { return mean_square_edge_; }
+
+ private:
+  SurfaceLocation on(int triangle, const Vector3& p) const noexcept;
+  int neighbour(int triangle, std::size_t corner) const noexcept;
+
+  SurfaceTree tree_;
+  SurfaceTopology topology_;
+  std::vector<Vector3> positions_;
+  std::vector<Vector3> normals_;  ///< of the nodes
+  std::vector<Plane> planes_;     ///< of the triangles
+  double mean_edge_ = 0.0;
+  double mean_square_edge_ = 0.0;
+};
+
+}  // namespace irdm

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <vector>
+
+#include "simulation/collision/rest_surface.hpp"
+#include "simulation/contact/contact_patch.hpp"
+
+namespace irdm {
+
+/// The pressure of a round fingertip on the surface: with s the distance from the middle over the
+/// radius, proportional to 1 - s^2, as under an elastic ball of small stiffness. It is summed at
+/// points on rings round the middle, laid along the surface and round its edges; each passes its
+/// share to its triangle's corners. So the force spreads alike on any mesh whose edges are not
+/// longer than the radius, and moves smoothly with the contact. Radius 0: the point itself.
+/// Real-time safe after construction; one thread.
+class PressureMask {
+ public:
+  /// The largest radius for a surface [m]: beyond it the rings would leave nodes out.
+  static double largest_radius(const RestSurface& surface) noexcept;
+
+  /// @param radius [m], 0..largest_radius(surface)
+  /// @param surface must outlive this object
+  PressureMask(const RestSurface& surface, double radius);
+
+  double radius() const noexcept { return radius_; }
+  /// The nodes under a fingertip whose middle is at a point of the surface.
+  void spread(const SurfacePoint& middle, ContactPatch& patch) noexcept;
+
+ private:
+  struct Sample {
+    double cosine, sine;  ///< of its direction from the middle
+    double distance;      ///< along the surface [m]
+    double weight;        ///< share of the force
+  };
+  void add(const SurfacePoint& sample, double weight, ContactPatch& patch) noexcept;
+  void normalise(ContactPatch& patch) noexcept;
+
+  const RestSurface& surface_;
+  double radius_;
+  std::vector<Sample> samples_;
+  std::vector<int> slot_;  ///< of a node in the patch under construction; -1: not there
+};
+
+}  // namespace irdm

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "simulation/deformation/force_trail.hpp"
+#include "simulation/engine/response_engine.hpp"
+#include "simulation/step/recorded_forces.hpp"
+#include "simulation/step/simulation_config.hpp"
+#include "simulation/step/step_record.hpp"
+
+namespace irdm {
+
+/// One deformed object at the end of a step.
+struct ObjectSurface {
+  Vector3 position = Vector3::Zero();               ///< of the body [m], W
+  Quaternion orientation = Quaternion::Identity();  ///< B to W
+  Points displacement;                              ///< u (n, 3) [m], B
+
+  /// x_i = c + Q (X_i + u_i) [m], W.
+  Vector3 world(const ModelMesh& mesh, int node) const {
+    return position +
+           orientation * (mesh.rest_position(node) + Vector3(displacement.row(node).transpose()));
+  }
+};
+
+/// Where a stylus touches the object that it touches.
+struct StylusContact {
+  Vector3 place = Vector3::Zero();  ///< on the surface at rest [m], B; means nothing when free
+  bool slipping = false;
+};
+
+/// @param mesh of the object that is touched
+StylusContact contact_on(const ModelMesh& mesh, const ContactRecord& contact);
+
+/// All deformed objects at the end of a step, and the styluses among them.
+struct SurfaceFrame {
+  std::uint64_t force_step = 0;
+  double time = 0.0;  ///< [s]
+  std::vector<ObjectSurface> objects;
+  std::vector<StylusRecord> styluses;
+  std::vector<StylusContact> contacts;  ///< of each of them, with the object that it touches
+  ForceTrail trail;                     ///< up to this step
+};
+
+/// A frame of the objects at rest, no stylus present.
+SurfaceFrame rest_frame(const SimulationConfig& config);
+
+/// Follows the force thread's steps with engines of its own. Because an engine's state depends on
+/// nothing but the forces, the spin and gravity, the two always agree, and nobody has to wait for a
+/// snapshot. Pure; one thread.
+class Deformation {
+ public:
+  /// @param tolerance by how much a displacement component may be off, as a share of the object's
+  /// size at rest: what is only looked at needs no more modes than can be seen, >= 0
+  explicit Deformation(const SimulationConfig& config, double tolerance = 0.0);
+
+  /// Takes in the next step. Steps that were lost on the way are taken to have had the forces and
+  /// the spin of the one before them, or none if everything was put back to the start since then;
+  /// how many, is counted.
+  void follow(const StepRecord& record);
+
+  /// Displacements of all nodes after the last step taken in (OpenMP). The frame has the numbers
+  /// and sizes of rest_frame().
+  void compute(SurfaceFrame& frame) const;
+
+  std::uint64_t lost_steps() const noexcept { return lost_steps_; }
+
+ private:
+  struct Follower {
+    SimulationObject object;
+    std::unique_ptr<ResponseEngine> engine;
+    std::unique_ptr<RestSurface> surface;
+    std::unique_ptr<RecordedForces> forces;
+    bool feels_spin;
+    double tolerance = 0.0;  ///< [m]
+    double material_damping = 1.0;
+  };
+  void follow_settings(const StepRecord& record);
+  StylusContact contact(std::size_t s) const;
+  void advance(const StepRecord& record);
+
+  std::vector<Follower> objects_;
+  StepRecord last_;
+  ForceTrail trail_;
+  bool started_ = false;
+  std::uint64_t lost_steps_ = 0;
+};
+
+}  // namespace irdm

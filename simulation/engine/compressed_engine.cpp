@@ -1,0 +1,179 @@
+#include "simulation/engine/compressed_engine.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "common/response/compressed_response.hpp"
+#include "simulation/engine/kernels.hpp"
+
+namespace irdm {
+namespace {
+
+constexpr std::array<std::array<std::size_t, 2>, 6> kCompressedPairs{
+    {{0, 0}, {1, 0}, {1, 1}, {2, 0}, {2, 1}, {2, 2}}};
+
+Matrix3 block(const CompressedResponse& response, int i, int j, std::size_t s) noexcept {
+  Matrix3 R;
+  for (int a = 0; a < 3; ++a) {
+    for (int b = 0; b < 3; ++b) {
+      R(a, b) = early_response(response, i, a, j, b, static_cast<int>(s));
+    }
+  }
+  return R;
+}
+
+Matrix3 block(const CompressedResponse& response, const ContactPatch& a, const ContactPatch& b,
+              std::size_t s) noexcept {
+  Matrix3 sum = Matrix3::Zero();
+  for (std::size_t i = 0; i < static_cast<std::size_t>(a.count); ++i) {
+    for (std::size_t j = 0; j < static_cast<std::size_t>(b.count); ++j) {
+      sum += a.weights[i] * b.weights[j] * block(response, a.nodes[i], b.nodes[j], s);
+    }
+  }
+  return sum;
+}
+
+}  // namespace
+
+CompressedEngine::CompressedEngine(std::shared_ptr<const Model> model)
+    : model_(std::move(model)),
+      response_(&std::get<CompressedResponse>(model_->response)),
+      history_(model_->mesh.surface_node_count(), response_->early_steps),
+      late_(*response_) {
+  contact_shapes_.assign(3 * late_.shape_count(), 0.0);
+  products_.assign(6 * late_.shape_count(), 0.0);
+  held_force_.assign(late_.shape_count(), 0.0);
+}
+
+Vector3 CompressedEngine::early(int node, int shift) const noexcept {
+  Vector3 u = Vector3::Zero();
+  for (const int from : history_.active()) {
+    for (int b = 0; b < 3; ++b) {
+      const ForceHistory::Series series = history_.series(from, b);
+      const int first = series.first_age + shift;
+      const int count = std::min(series.count, response_->early_steps - first);
+      if (count <= 0) continue;
+      for (int a = 0; a < 3; ++a) {
+        u[a] += with_early(*response_, node, a, from, b, [&](const auto* numbers, double scale) {
+          return scale * dot(numbers + first, series.force, static_cast<std::size_t>(count));
+        });
+      }
+    }
+  }
+  return u;
+}
+
+Vector3 CompressedEngine::late(int node, const double* coordinate) const noexcept {
+  Vector3 u;
+  for (int axis = 0; axis < 3; ++axis) {
+    u[axis] = dot(late_.shape_row(3 * node + axis), coordinate, late_.shape_count());
+  }
+  return u;
+}
+
+Vector3 CompressedEngine::free_displacement(int node) const noexcept {
+  return early(node, 1) + late(node, late_.coming());
+}
+
+void CompressedEngine::predict(std::span<const ContactPatch> patches, std::span<Vector3> h,
+                               ContactMatrix& compliance) noexcept {
+  const auto size = static_cast<Eigen::Index>(3 * patches.size());
+  compliance.resize(size, size);
+  for (std::size_t a = 0; a < patches.size(); ++a) {
+    h[a] = mean(patches[a], [&](int node) { return free_displacement(node); });
+    for (std::size_t b = 0; b <= a; ++b) {
+      const auto row = static_cast<Eigen::Index>(3 * a);
+      const auto column = static_cast<Eigen::Index>(3 * b);
+      Matrix3 R = block(*response_, patches[a], patches[b], 0);
+      if (a == b) R = 0.5 * (R + R.transpose()).eval();  // sums of the same in another order
+      compliance.block<3, 3>(row, column) = R;
+      compliance.block<3, 3>(column, row) = R.transpose();
+    }
+  }
+}
+
+void CompressedEngine::mean_shapes(const ContactPatch& patch) noexcept {
+  const std::size_t shapes = late_.shape_count();
+  std::fill(contact_shapes_.begin(), contact_shapes_.end(), 0.0);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(patch.count); ++i) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const float* row = late_.shape_row(3 * patch.nodes[i] + static_cast<int>(axis));
+      accumulate({patch.weights[i], 0.0, 0.0}, row, row, row,
+                 contact_shapes_.data() + axis * shapes, shapes);
+    }
+  }
+}
+
+void CompressedEngine::foresee(const ContactPatch& patch, std::span<const NodalForce> held,
+                               std::span<Vector3> path, std::span<Matrix3> response) noexcept {
+  const std::size_t shapes = late_.shape_count();
+  const auto early_steps = static_cast<std::size_t>(response_->early_steps);
+  mean_shapes(patch);
+  late_.collect(held, held_force_.data());
+  Vector3 by_held = Vector3::Zero();
+  late_.begin_path();
+  for (std::size_t n = 0; n < path.size(); ++n) {
+    if (n > 0) late_.continue_path(held_force_.data());
+    if (n < early_steps) {
+      for (const NodalForce& force : held) {
+        by_held += mean(patch, [&](int node) -> Vector3 {
+          return block(*response_, node, force.node, n) * force.force;
+        });
+      }
+    }
+    path[n] = by_held + mean(patch, [&](int node) { return early(node, static_cast<int>(n) + 1); });
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      path[n][static_cast<Eigen::Index>(axis)] +=
+          dot(contact_shapes_.data() + axis * shapes, late_.path(), shapes);
+    }
+  }
+  for (std::size_t k = 0; k < kCompressedPairs.size(); ++k) {
+    multiply(contact_shapes_.data() + kCompressedPairs[k][0] * shapes,
+             contact_shapes_.data() + kCompressedPairs[k][1] * shapes,
+             products_.data() + k * shapes, shapes);
+  }
+  for (std::size_t n = 0; n < response.size(); ++n) {
+    if (n < early_steps) {
+      response[n] = block(*response_, patch, patch, n);
+    } else {
+      const Sums<6> r = dot_six(late_.after(n), products_.data(), shapes);
+      response[n] << r[0], r[1], r[3], r[1], r[2], r[4], r[3], r[4], r[5];
+    }
+  }
+}
+
+void CompressedEngine::add_past(std::span<const NodalForce> forces, int age) noexcept {
+  if (age >= kMaxHorizon) return;
+  history_.add_past(forces, age);
+  late_.add_past(forces, age);
+}
+
+void CompressedEngine::advance(std::span<const NodalForce> forces) noexcept {
+  history_.push(forces);
+  late_.advance(forces);
+}
+
+void CompressedEngine::displacement(Points& u, double /*tolerance*/) const {
+  const int nodes = model_->mesh.surface_node_count();
+  u.resize(nodes, 3);
+#pragma omp parallel for schedule(static)
+  for (int node = 0; node < nodes; ++node) {
+    u.row(node) = (early(node, 0) + late(node, late_.coordinate())).transpose();
+  }
+}
+
+Eigen::MatrixXd CompressedEngine::instant_compliance() const {
+  const int nodes = model_->mesh.surface_node_count();
+  Eigen::MatrixXd R(3 * nodes, 3 * nodes);
+  for (int i = 0; i < nodes; ++i) {
+    for (int j = 0; j < nodes; ++j) R.block<3, 3>(3 * i, 3 * j) = block(*response_, i, j, 0);
+  }
+  return R;
+}
+
+void CompressedEngine::reset() noexcept {
+  history_.clear();
+  late_.reset();
+}
+
+}  // namespace irdm

@@ -1,0 +1,49 @@
+#pragma once
+
+#include "simulation/engine/force_history.hpp"
+#include "simulation/engine/late_part.hpp"
+#include "simulation/engine/response_engine.hpp"
+
+namespace irdm {
+
+/// The answer from a compressed response, used as it is stored: a convolution with R itself over
+/// the last m steps, and the shapes' poles for all that is older. What is within a step, R[0], is
+/// that of the input. Nothing is cut off at T.
+class CompressedEngine final : public ResponseEngine {
+ public:
+  /// @param model holds a CompressedResponse
+  explicit CompressedEngine(std::shared_ptr<const Model> model);
+
+  bool takes_spin() const noexcept override { return false; }
+  void hold_spin(const Vector3& /*w*/) noexcept override {}
+  EngineKind kind() const noexcept override { return EngineKind::kCompressed; }
+  Vector3 free_displacement(int node) const noexcept override;
+  void predict(std::span<const ContactPatch> patches, std::span<Vector3> h,
+               ContactMatrix& compliance) noexcept override;
+  void foresee(const ContactPatch& patch, std::span<const NodalForce> held, std::span<Vector3> path,
+               std::span<Matrix3> response) noexcept override;
+  void add_past(std::span<const NodalForce> forces, int age) noexcept override;
+  void advance(std::span<const NodalForce> forces) noexcept override;
+  using ResponseEngine::displacement;
+  void displacement(Points& u, double tolerance) const override;
+  Eigen::MatrixXd instant_compliance() const override;
+  void reset() noexcept override;
+
+ private:
+  /// What the last m steps of forces do to a node: shift 0 at the end of the last step, n at that
+  /// of the n-th coming one.
+  Vector3 early(int node, int shift) const noexcept;
+  Vector3 late(int node, const double* coordinate) const noexcept;
+  /// Rows sum_i w_i B_i of the patch's three axes, (3, r).
+  void mean_shapes(const ContactPatch& patch) noexcept;
+
+  std::shared_ptr<const Model> model_;
+  const CompressedResponse* response_;
+  ForceHistory history_;  ///< of m steps
+  LatePart late_;
+  std::vector<double> contact_shapes_;  ///< (3, r)
+  std::vector<double> products_;        ///< (6, r)
+  std::vector<double> held_force_;      ///< (r)
+};
+
+}  // namespace irdm

@@ -1,0 +1,78 @@
+#include "simulation/engine/dense_load.hpp"
+
+#include <array>
+
+namespace irdm {
+namespace {
+
+template <typename Number>
+ResidentColumns<Number> columns_of(
+    const std::variant<std::vector<float>, std::vector<double>>& values, int dof, int steps) {
+  const auto* numbers = std::get_if<std::vector<Number>>(&values);
+  const bool any = numbers != nullptr && !numbers->empty();
+  return {any ? numbers->data() : nullptr, nullptr, any ? static_cast<std::size_t>(dof) : 0,
+          static_cast<std::size_t>(steps)};
+}
+
+}  // namespace
+
+template <typename Number, int kCount>
+DenseLoad<Number, kCount>::DenseLoad(const Values& values, int dof, int steps)
+    : columns_(columns_of<Number>(values, dof, steps)), past_(columns_, kCount / 3) {}
+
+template <typename Number, int kCount>
+void DenseLoad<Number, kCount>::add_foreseen(int node, int n, Vector3& u) const noexcept {
+  if (any()) past_.add_foreseen(node, n, u);
+}
+
+template <typename Number, int kCount>
+void DenseLoad<Number, kCount>::follow(int node) noexcept {
+  if (any()) past_.follow(node);
+}
+
+template <typename Number, int kCount>
+void DenseLoad<Number, kCount>::foresee(int node, int n) noexcept {
+  if (any()) past_.foresee(node, n);
+}
+
+template <typename Number, int kCount>
+void DenseLoad<Number, kCount>::add_held(int node, int n, Vector3& u) const noexcept {
+  const auto step = static_cast<std::size_t>(n - 1);
+  if (!any() || step >= columns_.steps) return;
+  for (int p = 0; p < kCount; ++p) {
+    for (int axis = 0; axis < 3; ++axis) {
+      u[axis] += static_cast<double>(columns_.row(3 * node + axis, p)[step]) * coming_[p];
+    }
+  }
+}
+
+template <typename Number, int kCount>
+void DenseLoad<Number, kCount>::add_coming(int node, Vector3& u) const noexcept {
+  if (!any()) return;
+  past_.add_coming(node, u);
+  add_held(node, 1, u);
+}
+
+template <typename Number, int kCount>
+void DenseLoad<Number, kCount>::advance() noexcept {
+  if (!any()) return;
+  std::array<NodalForce, kCount / 3> numbers;
+  for (int i = 0; i < kCount / 3; ++i) {
+    numbers[static_cast<std::size_t>(i)] = {i, coming_.template segment<3>(3 * i)};
+  }
+  past_.push(coming_.isZero(0.0) ? std::span<const NodalForce>() : numbers);
+  coming_.setZero();
+}
+
+template <typename Number, int kCount>
+void DenseLoad<Number, kCount>::reset() noexcept {
+  past_.clear();
+  coming_.setZero();
+}
+
+template class DenseLoad<float, kSpinProducts>;
+template class DenseLoad<double, kSpinProducts>;
+template class DenseLoad<float, 3>;
+template class DenseLoad<double, 3>;
+
+}  // namespace irdm

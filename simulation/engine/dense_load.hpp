@@ -1,0 +1,64 @@
+#pragma once
+
+#include <type_traits>
+#include <variant>
+#include <vector>
+
+#include "common/response/spin_products.hpp"
+#include "simulation/engine/running_convolution.hpp"
+
+namespace irdm {
+
+/// What a load on the whole body adds to a dense response: its kCount numbers, of every step, act
+/// as if they were forces on nodes, three on each, with a column of its own for each. Real-time
+/// safe but for displacement(); one thread.
+template <typename Number, int kCount>
+class DenseLoad {
+ public:
+  using Values = std::variant<std::vector<float>, std::vector<double>>;
+  using Numbers = Eigen::Matrix<double, kCount, 1>;
+
+  /// @param values in the order of DenseResponse, numbers of this type; empty: the model has none,
+  /// and nothing is ever added
+  DenseLoad(const Values& values, int dof, int steps);
+
+  bool any() const noexcept { return columns_.values != nullptr; }
+  /// Nothing is added: nothing is held, and nothing was within the last T steps.
+  bool at_rest() const noexcept { return past_.history().active().empty() && coming_.isZero(0.0); }
+  /// Held throughout the coming step.
+  void hold(const Numbers& numbers) noexcept {
+    if (any()) coming_ = numbers;
+  }
+  /// Adds what a node does at the end of the coming step, with what is held.
+  void add_coming(int node, Vector3& u) const noexcept;
+  /// The same at the end of the n-th coming step, of the steps until now alone.
+  void add_foreseen(int node, int n, Vector3& u) const noexcept;
+  /// Adds what is held alone does to a node at the end of the n-th coming step.
+  void add_held(int node, int n, Vector3& u) const noexcept;
+  /// As RunningConvolution's.
+  void follow(int node) noexcept;
+  void foresee(int node, int n) noexcept;
+  /// Adds the displacement of all nodes at the end of the last step.
+  void add_all(Points& u) const {
+    if (any()) columns_.add_all(past_.history(), u);
+  }
+  void advance() noexcept;
+  void reset() noexcept;
+
+ private:
+  static_assert(kCount % 3 == 0);
+
+  ResidentColumns<Number> columns_;
+  RunningConvolution<ResidentColumns<Number>> past_;
+  Numbers coming_ = Numbers::Zero();
+};
+
+/// The products of the components of the body's own spin.
+template <typename Number>
+using DenseSpin = DenseLoad<Number, kSpinProducts>;
+
+/// The numbers of responses to such loads beside R of these: never of half precision.
+template <typename Scalar>
+using LoadNumber = std::conditional_t<std::is_same_v<Scalar, Half>, float, Scalar>;
+
+}  // namespace irdm

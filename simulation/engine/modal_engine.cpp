@@ -1,0 +1,398 @@
+#include "simulation/engine/modal_engine.hpp"
+
+#include <algorithm>
+#include <functional>
+
+#include "common/response/oscillator.hpp"
+#include "common/response/spin_products.hpp"
+#include "simulation/engine/kernels.hpp"
+
+namespace irdm {
+namespace {
+
+constexpr std::size_t kBlock = 16;   // rows of Phi that a thread takes at a time
+constexpr std::size_t kSlice = 512;  // modes whose shapes under a contact fill a part of the cache
+
+}  // namespace
+
+template <typename Scalar>
+ModalEngine<Scalar>::ModalEngine(std::shared_ptr<const Model> model)
+    : model_(std::move(model)),
+      residual_(std::get<ModalResponse>(model_->response).residual,
+                model_->mesh.surface_node_count()),
+      gravity_(std::get<ModalResponse>(model_->response)) {
+  const auto& response = std::get<ModalResponse>(model_->response);
+  shapes_ = &std::get<RowMatrix<Scalar>>(response.shapes);
+  const Eigen::VectorXd largest =
+      shapes_->cwiseAbs().colwise().maxCoeff().transpose().template cast<double>();
+  largest_shape_.assign(largest.data(), largest.data() + largest.size());
+  if (response.centrifugal.rows() > 0) centrifugal_ = response.centrifugal.data();
+  modes_ = static_cast<std::size_t>(response.mode_count());
+  for (auto* values : {&a11_, &a12_, &a21_, &a22_, &b1_, &b2_, &coordinate_, &velocity_,
+                       &free_coordinate_, &free_velocity_, &modal_force_}) {
+    values->assign(modes_, 0.0);
+  }
+  contact_shapes_.assign(3 * kMaxContacts * modes_, 0.0);
+  coordinate_after_.assign(kMaxHorizon * modes_, 0.0);
+  velocity_after_.assign(kMaxHorizon * modes_, 0.0);
+  coordinate_from_.assign(kMaxHorizon * 3 * modes_, 0.0);
+  shape_products_.assign(6 * modes_, 0.0);
+  state_products_.assign(9 * modes_, 0.0);
+  set_transitions(1.0);
+}
+
+template <typename Scalar>
+void ModalEngine<Scalar>::set_transitions(double damping) noexcept {
+  const auto& response = *std::get_if<ModalResponse>(&model_->response);
+  for (std::size_t i = 0; i < modes_; ++i) {
+    const auto index = static_cast<Eigen::Index>(i);
+    const HeldForceOscillator step = held_force_oscillator(
+        response.angular_frequency(index), damping * response.decay_rate(index), model_->dt);
+    a11_[i] = step.a11;
+    a12_[i] = step.a12;
+    a21_[i] = step.a21;
+    a22_[i] = step.a22;
+    b1_[i] = step.b1;
+    b2_[i] = step.b2;
+  }
+  tabulate_horizon();
+}
+
+// Step by step from unit forces, coordinates and velocities. Of the latter two only the coordinates
+// that come of them are kept; how fast they move is in what foresee() fills later on.
+template <typename Scalar>
+void ModalEngine<Scalar>::tabulate_horizon() noexcept {
+  const Transitions A{a11_.data(), a12_.data(), a21_.data(), a22_.data()};
+  const auto after = [&](std::size_t n) { return coordinate_after_.data() + n * modes_; };
+  const auto speed_after = [&](std::size_t n) { return velocity_after_.data() + n * modes_; };
+  const auto from = [&](std::size_t n, std::size_t what) {
+    return coordinate_from_.data() + (3 * n + what) * modes_;
+  };
+  double* const speeds = state_products_.data();
+  std::copy_n(b1_.data(), modes_, after(0));
+  std::copy_n(b2_.data(), modes_, speed_after(0));
+  std::copy_n(b1_.data(), modes_, from(0, 2));
+  for (std::size_t what = 0; what < 2; ++what) {
+    std::fill_n(from(0, what), modes_, what == 0 ? 1.0 : 0.0);
+    std::fill_n(speeds + what * modes_, modes_, what == 0 ? 0.0 : 1.0);
+  }
+  for (std::size_t n = 0; n + 1 < kMaxHorizon; ++n) {
+    transit(A, after(n), speed_after(n), after(n + 1), speed_after(n + 1), modes_);
+    for (std::size_t what = 0; what < 2; ++what) {
+      double* const speed = speeds + what * modes_;
+      transit(A, from(n, what), speed, from(n + 1, what), speed, modes_);
+    }
+    std::transform(from(n, 2), from(n, 2) + modes_, after(n + 1), from(n + 1, 2), std::plus{});
+  }
+}
+
+// Where a mode is and how fast it moves stays as it is; only how it goes on changes.
+template <typename Scalar>
+void ModalEngine<Scalar>::scale_damping(double factor) noexcept {
+  set_transitions(factor);
+  go_on();
+}
+
+template <typename Scalar>
+void ModalEngine<Scalar>::move_on() noexcept {
+  transit({a11_.data(), a12_.data(), a21_.data(), a22_.data()}, coordinate_.data(),
+          velocity_.data(), free_coordinate_.data(), free_velocity_.data(), modes_);
+  add_gravity();
+}
+
+// Held in the coming step, as in any.
+template <typename Scalar>
+void ModalEngine<Scalar>::add_gravity() noexcept {
+  if (!gravity_.acts()) return;
+  const double* const force = gravity_.force().data();
+  for (std::size_t i = 0; i < modes_; ++i) {
+    free_coordinate_[i] += b1_[i] * force[i];
+    free_velocity_[i] += b2_[i] * force[i];
+  }
+}
+
+template <typename Scalar>
+void ModalEngine<Scalar>::set_gravity(const Vector3& gravity) noexcept {
+  if (gravity_.set(gravity)) go_on();
+}
+
+// What was changed before the first step was so since ever.
+template <typename Scalar>
+void ModalEngine<Scalar>::go_on() noexcept {
+  if (begun_) {
+    move_on();
+  } else {
+    settle();
+  }
+}
+
+// At rest under gravity, which stays so.
+template <typename Scalar>
+void ModalEngine<Scalar>::settle() noexcept {
+  gravity_.end_step();
+  for (auto* values : {&coordinate_, &velocity_, &free_coordinate_, &free_velocity_}) {
+    std::fill(values->begin(), values->end(), 0.0);
+  }
+  if (!gravity_.acts()) return;
+  gravity_.settle(coordinate_);
+  gravity_.settle(free_coordinate_);
+}
+
+template <typename Scalar>
+void ModalEngine<Scalar>::hold_spin(const Vector3& w) noexcept {
+  if (centrifugal_ == nullptr) return;
+  const SpinProducts q = spin_products(w);
+  for (std::size_t i = 0; i < modes_; ++i) {
+    const double force = Eigen::Map<const SpinProducts>(centrifugal_ + i * kSpinProducts).dot(q);
+    free_coordinate_[i] += b1_[i] * force;
+    free_velocity_[i] += b2_[i] * force;
+  }
+}
+
+template <typename Scalar>
+Vector3 ModalEngine<Scalar>::free_displacement(int node) const noexcept {
+  Vector3 u = Vector3::Zero();
+  add_products({shape_row(3 * node), modes_, 3}, free_coordinate_.data(), modes_, 1.0, u.data());
+  if (gravity_.adds_rest()) u += gravity_.rest(node);
+  return u;
+}
+
+// |sum_i q_i Phi_ai| is at most the sum of |q_i| max_a |Phi_ai|.
+template <typename Scalar>
+double ModalEngine<Scalar>::free_displacement_bound() const noexcept {
+  return dot_magnitudes(free_coordinate_.data(), largest_shape_.data(), modes_) +
+         gravity_.rest_bound();
+}
+
+// Three nodes at a time; where fewer are left, the last ones count with weight 0.
+template <typename Scalar>
+void ModalEngine<Scalar>::mean_shape(const ContactPatch& patch, int axis, const ModeRange& modes,
+                                     double* shape) const noexcept {
+  for (int first = 0; first < patch.count; first += 3) {
+    std::array<double, 3> weights{};
+    std::array<const Scalar*, 3> rows{};
+    for (int i = 0; i < 3; ++i) {
+      const auto from = static_cast<std::size_t>(std::min(first + i, patch.count - 1));
+      weights[static_cast<std::size_t>(i)] = first + i < patch.count ? patch.weights[from] : 0.0;
+      rows[static_cast<std::size_t>(i)] = shape_row(3 * patch.nodes[from] + axis) + modes.first;
+    }
+    if (first == 0) {
+      combine(weights, rows[0], rows[1], rows[2], shape, modes.count);
+    } else {
+      accumulate(weights, rows[0], rows[1], rows[2], shape, modes.count);
+    }
+  }
+}
+
+// R[0] = Phi diag(b1) Phi^T, symmetric. Slice after slice of the modes, so that the mean shapes
+// stay in the first level of the cache.
+template <typename Scalar>
+void ModalEngine<Scalar>::predict(std::span<const ContactPatch> patches, std::span<Vector3> h,
+                                  ContactMatrix& compliance) noexcept {
+  compliance.setZero(static_cast<Eigen::Index>(3 * patches.size()),
+                     static_cast<Eigen::Index>(3 * patches.size()));
+  std::fill(h.begin(), h.begin() + static_cast<std::ptrdiff_t>(patches.size()), Vector3::Zero());
+  for (std::size_t first = 0; first < modes_; first += kSlice) {
+    add_slice(patches, {first, std::min(kSlice, modes_ - first)}, h, compliance);
+  }
+  residual_.add_compliance(patches, compliance);
+  for (std::size_t a = 0; gravity_.adds_rest() && a < patches.size(); ++a) {
+    h[a] += mean(patches[a], [&](int node) { return gravity_.rest(node); });
+  }
+  compliance.template triangularView<Eigen::StrictlyUpper>() = compliance.transpose();
+}
+
+// The lower triangle of the compliance.
+template <typename Scalar>
+void ModalEngine<Scalar>::add_slice(std::span<const ContactPatch> patches, const ModeRange& modes,
+                                    std::span<Vector3> h, ContactMatrix& compliance) noexcept {
+  const auto rows = [&](std::size_t a) { return contact_shapes_.data() + 3 * a * modes.count; };
+  const auto at = [](std::size_t a) { return static_cast<Eigen::Index>(3 * a); };
+  const double* const weights = b1_.data() + modes.first;
+  for (std::size_t a = 0; a < patches.size(); ++a) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      mean_shape(patches[a], static_cast<int>(axis), modes, rows(a) + axis * modes.count);
+    }
+    const Sums<9> own =
+        moments(rows(a), weights, free_coordinate_.data() + modes.first, modes.count);
+    h[a] += Vector3(own[0], own[1], own[2]);
+    std::size_t entry = 3;
+    for (Eigen::Index j = 0; j < 3; ++j) {
+      for (Eigen::Index k = 0; k <= j; ++k) compliance(at(a) + j, at(a) + k) += own[entry++];
+    }
+    for (std::size_t b = 0; b < a; ++b) {
+      const Sums<9> shared = cross_moments(rows(a), rows(b), weights, modes.count);
+      compliance.template block<3, 3>(at(a), at(b)) +=
+          Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(shared.data());
+    }
+  }
+}
+
+// Three nodes at a time; where fewer are left, the last one counts with weight 0.
+template <typename Scalar>
+void ModalEngine<Scalar>::collect_modal_forces(std::span<const NodalForce> forces,
+                                               const ModeRange& modes) noexcept {
+  double* const to = modal_force_.data() + modes.first;
+  std::fill_n(to, modes.count, 0.0);
+  for (std::size_t first = 0; first < forces.size(); first += 3) {
+    std::array<double, 9> weights{};
+    std::array<const Scalar*, 9> rows{};
+    for (std::size_t k = 0; k < 9; ++k) {
+      const std::size_t at = first + k / 3;
+      const NodalForce& nodal = forces[std::min(at, forces.size() - 1)];
+      const auto axis = static_cast<int>(k % 3);
+      if (at < forces.size()) weights[k] = nodal.force[axis];
+      rows[k] = shape_row(3 * nodal.node + axis) + modes.first;
+    }
+    accumulate_nine(weights, rows, to, modes.count);
+  }
+}
+
+// Both are sums over the modes of what the horizon's tables hold, times products that are the same
+// for all of its steps. Gravity goes on like what is held: it is taken out of where the first step
+// ends.
+template <typename Scalar>
+void ModalEngine<Scalar>::foresee(const ContactPatch& patch, std::span<const NodalForce> held,
+                                  std::span<Vector3> path, std::span<Matrix3> response) noexcept {
+  collect_modal_forces(held, {0, modes_});
+  for (std::size_t i = 0; i < 3; ++i) {
+    double* shape = contact_shapes_.data() + i * modes_;
+    mean_shape(patch, static_cast<int>(i), {0, modes_}, shape);
+    double* products = state_products_.data() + 3 * i * modes_;
+    multiply(shape, free_coordinate_.data(), products, modes_);
+    multiply(shape, free_velocity_.data(), products + modes_, modes_);
+    multiply(shape, modal_force_.data(), products + 2 * modes_, modes_);
+    if (gravity_.acts()) hold_gravity(shape, products);
+  }
+  constexpr std::array<std::array<std::size_t, 2>, 6> kPairs{
+      {{0, 0}, {1, 0}, {1, 1}, {2, 0}, {2, 1}, {2, 2}}};
+  for (std::size_t k = 0; k < kPairs.size(); ++k) {
+    multiply(contact_shapes_.data() + kPairs[k][0] * modes_,
+             contact_shapes_.data() + kPairs[k][1] * modes_, shape_products_.data() + k * modes_,
+             modes_);
+  }
+  for (std::size_t n = 0; n < response.size(); ++n) {
+    const Sums<6> r =
+        dot_six(coordinate_after_.data() + n * modes_, shape_products_.data(), modes_);
+    response[n] << r[0], r[1], r[3], r[1], r[2], r[4], r[3], r[4], r[5];
+  }
+  for (std::size_t n = 0; n < path.size(); ++n) {
+    const Sums<3> moved =
+        dot_three(coordinate_from_.data() + 3 * n * modes_, state_products_.data(), 3 * modes_);
+    path[n] = Vector3(moved[0], moved[1], moved[2]);
+  }
+  Vector3 at_once = residual_.displacement(patch, held);
+  if (gravity_.adds_rest()) {
+    at_once += mean(patch, [&](int node) { return gravity_.rest(node); });
+  }
+  for (Vector3& place : path) place += at_once;
+  if (!response.empty()) response[0] += residual_.compliance(patch);
+}
+
+template <typename Scalar>
+void ModalEngine<Scalar>::hold_gravity(const double* shape, double* products) const noexcept {
+  const double* const force = gravity_.force().data();
+  for (std::size_t i = 0; i < modes_; ++i) {
+    const double push = shape[i] * force[i];
+    products[i] -= b1_[i] * push;
+    products[modes_ + i] -= b2_[i] * push;
+    products[2 * modes_ + i] += push;
+  }
+}
+
+template <typename Scalar>
+void ModalEngine<Scalar>::add_past(std::span<const NodalForce> forces, int age) noexcept {
+  if (age < 0 || age >= kMaxHorizon) return;
+  if (age == 0) residual_.hold_more(forces);
+  begun_ = true;
+  collect_modal_forces(forces, {0, modes_});
+  const double* coordinate = coordinate_after_.data() + static_cast<std::size_t>(age) * modes_;
+  const double* velocity = velocity_after_.data() + static_cast<std::size_t>(age) * modes_;
+  for (std::size_t i = 0; i < modes_; ++i) {
+    coordinate_[i] += coordinate[i] * modal_force_[i];
+    velocity_[i] += velocity[i] * modal_force_[i];
+  }
+  move_on();
+}
+
+template <typename Scalar>
+void ModalEngine<Scalar>::advance(std::span<const NodalForce> forces) noexcept {
+  residual_.hold(forces);
+  gravity_.end_step();
+  begun_ = true;
+  coordinate_.swap(free_coordinate_);
+  velocity_.swap(free_velocity_);
+  if (forces.empty()) return move_on();
+  for (std::size_t i = 0; i < modes_; i += kSlice) {
+    const ModeRange slice{i, std::min(kSlice, modes_ - i)};
+    collect_modal_forces(forces, slice);
+    push_and_transit({&a11_[i], &a12_[i], &a21_[i], &a22_[i]}, {&b1_[i], &b2_[i], &modal_force_[i]},
+                     &coordinate_[i], &velocity_[i], &free_coordinate_[i], &free_velocity_[i],
+                     slice.count);
+  }
+  add_gravity();
+}
+
+// Some rows of Phi at a time: the first engine has them read from memory, the others find them in
+// the cache.
+template <typename Scalar>
+void ModalEngine<Scalar>::displacements(std::span<const SurfaceRequest> requests) const {
+  struct Part {
+    const ModalEngine* engine;
+    std::vector<ModeRange> modes;
+    double* u;
+  };
+  std::vector<Part> parts;
+  for (const SurfaceRequest& request : requests) {
+    const auto* engine = static_cast<const ModalEngine*>(request.engine);
+    request.u->setZero(model_->mesh.surface_node_count(), 3);
+    parts.push_back({engine,
+                     strong_modes(engine->coordinate_, engine->largest_shape_, request.tolerance),
+                     request.u->data()});
+  }
+  const auto dof = static_cast<std::size_t>(shapes_->rows());
+  const auto blocks = static_cast<int>((dof + kBlock - 1) / kBlock);
+#pragma omp parallel for schedule(dynamic)
+  for (int block = 0; block < blocks; ++block) {
+    const std::size_t first = static_cast<std::size_t>(block) * kBlock;
+    const std::size_t count = std::min(kBlock, dof - first);
+    for (const Part& part : parts) {
+      for (const ModeRange& range : part.modes) {
+        add_products({shape_row(static_cast<int>(first)) + range.first, modes_, count},
+                     part.engine->coordinate_.data() + range.first, range.count, 1.0,
+                     part.u + first);
+      }
+    }
+  }
+  for (const SurfaceRequest& request : requests) {
+    const auto* engine = static_cast<const ModalEngine*>(request.engine);
+    engine->residual_.add_displacement(*request.u);
+    engine->gravity_.add_rest(*request.u);
+  }
+}
+
+// Phi diag(b1) Phi^T, and what is left out.
+template <typename Scalar>
+Eigen::MatrixXd ModalEngine<Scalar>::instant_compliance() const {
+  const Eigen::Map<const Eigen::VectorXd> weights(b1_.data(), static_cast<Eigen::Index>(modes_));
+  const Eigen::MatrixXd weighted =
+      shapes_->template cast<double>() * weights.cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  const Eigen::Index dof = weighted.rows();
+  Eigen::MatrixXd R = Eigen::MatrixXd::Zero(dof, dof);
+  R.template selfadjointView<Eigen::Lower>().rankUpdate(weighted);
+  R = Eigen::MatrixXd(R.template selfadjointView<Eigen::Lower>());
+  residual_.add_all(R);
+  return R;
+}
+
+template <typename Scalar>
+void ModalEngine<Scalar>::reset() noexcept {
+  residual_.release();
+  begun_ = false;
+  settle();
+}
+
+template class ModalEngine<float>;
+template class ModalEngine<double>;
+
+}  // namespace irdm

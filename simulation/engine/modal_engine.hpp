@@ -1,0 +1,88 @@
+#pragma once
+
+#include "simulation/engine/aligned_numbers.hpp"
+#include "simulation/engine/modal_gravity.hpp"
+#include "simulation/engine/residual_part.hpp"
+#include "simulation/engine/response_engine.hpp"
+#include "simulation/engine/strong_modes.hpp"
+
+namespace irdm {
+
+/// R in modal form: every mode is a damped oscillator whose exact held-force transition is applied
+/// once a step. No history is needed; contacts cost nothing after they end. Modes that the model
+/// leaves out answer without delay, as far as it says how (ResidualPart).
+template <typename Scalar>
+class ModalEngine final : public ResponseEngine {
+ public:
+  /// @param model holds a ModalResponse with shapes of type Scalar
+  explicit ModalEngine(std::shared_ptr<const Model> model);
+
+  bool takes_spin() const noexcept override { return centrifugal_ != nullptr; }
+  bool takes_gravity() const noexcept override { return gravity_.any(); }
+  void set_gravity(const Vector3& gravity) noexcept override;
+  bool takes_damping() const noexcept override { return true; }
+  void scale_damping(double factor) noexcept override;
+  EngineKind kind() const noexcept override { return EngineKind::kModal; }
+  void hold_spin(const Vector3& w) noexcept override;
+  Vector3 free_displacement(int node) const noexcept override;
+  double free_displacement_bound() const noexcept override;
+  void predict(std::span<const ContactPatch> patches, std::span<Vector3> h,
+               ContactMatrix& compliance) noexcept override;
+  void foresee(const ContactPatch& patch, std::span<const NodalForce> held, std::span<Vector3> path,
+               std::span<Matrix3> response) noexcept override;
+  void add_past(std::span<const NodalForce> forces, int age) noexcept override;
+  void advance(std::span<const NodalForce> forces) noexcept override;
+  using ResponseEngine::displacement;
+  void displacement(Points& u, double tolerance) const override {
+    const SurfaceRequest request{this, tolerance, &u};
+    displacements({&request, 1});
+  }
+  void displacements(std::span<const SurfaceRequest> requests) const override;
+  const void* shared_surface() const noexcept override { return shapes_; }
+  Eigen::MatrixXd instant_compliance() const override;
+  void reset() noexcept override;
+
+ private:
+  void set_transitions(double damping) noexcept;
+  void tabulate_horizon() noexcept;
+  void move_on() noexcept;
+  void add_gravity() noexcept;
+  void settle() noexcept;
+  void go_on() noexcept;
+  void mean_shape(const ContactPatch& patch, int axis, const ModeRange& modes,
+                  double* shape) const noexcept;
+  void add_slice(std::span<const ContactPatch> patches, const ModeRange& modes,
+                 std::span<Vector3> h, ContactMatrix& compliance) noexcept;
+  void collect_modal_forces(std::span<const NodalForce> forces, const ModeRange& modes) noexcept;
+  /// Of one row of a contact's shapes, in what foresee() makes of the state: (r) and (3, r).
+  void hold_gravity(const double* shape, double* products) const noexcept;
+  const Scalar* shape_row(int dof) const noexcept {
+    return shapes_->data() + static_cast<std::size_t>(dof) * modes_;
+  }
+
+  std::shared_ptr<const Model> model_;
+  const RowMatrix<Scalar>* shapes_;      ///< Phi (3n, r)
+  const double* centrifugal_ = nullptr;  ///< g (r, 6); null: the model has none
+  std::size_t modes_;                    ///< r
+  AlignedNumbers largest_shape_;         ///< (r) max_a |Phi_ai|
+  // Transition of each mode over one step, one array a coefficient.
+  AlignedNumbers a11_, a12_, a21_, a22_, b1_, b2_;
+  AlignedNumbers coordinate_, velocity_;  ///< at the end of the last step
+  /// At the end of the coming step, no force but those of the held spin and of gravity.
+  AlignedNumbers free_coordinate_, free_velocity_;
+  AlignedNumbers modal_force_;
+  AlignedNumbers contact_shapes_;  ///< (3 kMaxContacts, r): rows sum_i w_i Phi_i
+  /// (kMaxHorizon, r): coordinate and velocity of each mode at the end of the n-th step after the
+  /// one in which a modal force of 1 acted.
+  AlignedNumbers coordinate_after_, velocity_after_;
+  /// (kMaxHorizon, 3, r): the coordinate n steps on from a coordinate of 1, from a velocity of 1
+  /// (both without force), and from a modal force of 1 held for n + 1 steps.
+  AlignedNumbers coordinate_from_;
+  /// What these are multiplied with: (6, r) and (3, 3, r).
+  AlignedNumbers shape_products_, state_products_;
+  ResidualPart residual_;
+  ModalGravity gravity_;
+  bool begun_ = false;  ///< there was a step, or a late force, since the reset
+};
+
+}  // namespace irdm

@@ -1,0 +1,49 @@
+#include "simulation/engine/resident_columns.hpp"
+
+#include <omp.h>
+
+#include <algorithm>
+
+#include "simulation/engine/force_stretches.hpp"
+
+namespace irdm {
+
+std::size_t row_block(std::size_t dof) {
+  const auto pieces = 4 * static_cast<std::size_t>(omp_get_max_threads());
+  return std::clamp<std::size_t>(dof / pieces / 4 * 4, 64, 256);
+}
+
+template <typename Number>
+void ResidentColumns<Number>::convolve(const ForceHistory& history, int node, int shift,
+                                       Vector3& u) const noexcept {
+  for (const int source : history.active()) {
+    for (int b = 3 * source; b < 3 * source + 3; ++b) {
+      add_convolution(*this, history, b, scale(static_cast<std::size_t>(b)), node, shift, u);
+    }
+  }
+}
+
+// Column after column, as R stands in memory: a thread reads its part of each of them from one end
+// to the other. Each degree of freedom gets its sums in the same order, whichever thread adds them.
+template <typename Number>
+void ResidentColumns<Number>::add_all(const ForceHistory& history, Points& u) const {
+  const std::vector<ForceStretch> stretches = force_stretches(history);
+  const std::size_t rows_at_once = row_block(dof);
+  const auto blocks = static_cast<int>((dof + rows_at_once - 1) / rows_at_once);
+#pragma omp parallel for schedule(dynamic)
+  for (int block = 0; block < blocks; ++block) {
+    const std::size_t first = static_cast<std::size_t>(block) * rows_at_once;
+    const std::size_t count = std::min(rows_at_once, dof - first);
+    for (const ForceStretch& push : stretches) {
+      const Number* rows = values + (push.column * dof + first) * steps + push.first_age;
+      add_products({rows, steps, count}, push.force, push.count, scale(push.column),
+                   u.data() + first);
+    }
+  }
+}
+
+template struct ResidentColumns<Half>;
+template struct ResidentColumns<float>;
+template struct ResidentColumns<double>;
+
+}  // namespace irdm

@@ -1,0 +1,115 @@
+#include "simulation/engine/residual_part.hpp"
+
+#include <algorithm>
+
+namespace irdm {
+
+ResidualPart::ResidualPart(const ResidualCompliance& compliance, int surface_nodes)
+    : compliance_(compliance) {
+  if (compliance.empty()) return;
+  field_.assign(index(surface_nodes), Matrix3::Zero());
+  force_.assign(index(surface_nodes), Vector3::Zero());
+  is_loaded_.assign(index(surface_nodes), 0);
+  loaded_.reserve(index(surface_nodes));
+}
+
+void ResidualPart::spread(const ContactPatch& patch) noexcept {
+  for (std::size_t i = 0; i < index(patch.count); ++i) {
+    for (int k = begin_of(patch.nodes[i]); k < end_of(patch.nodes[i]); ++k) {
+      field_[index(column(k))] += patch.weights[i] * block(k).cast<double>();
+    }
+  }
+}
+
+void ResidualPart::clear(const ContactPatch& patch) noexcept {
+  for (std::size_t i = 0; i < index(patch.count); ++i) {
+    for (int k = begin_of(patch.nodes[i]); k < end_of(patch.nodes[i]); ++k) {
+      field_[index(column(k))].setZero();
+    }
+  }
+}
+
+// G is symmetric: the field of contact b at the nodes of a, transposed, is block (b, a).
+void ResidualPart::add_compliance(std::span<const ContactPatch> patches,
+                                  ContactMatrix& compliance) noexcept {
+  if (compliance_.empty()) return;
+  for (std::size_t b = 0; b < patches.size(); ++b) {
+    spread(patches[b]);
+    for (std::size_t a = 0; a <= b; ++a) {
+      Matrix3 sum = Matrix3::Zero();
+      for (std::size_t i = 0; i < index(patches[a].count); ++i) {
+        sum += patches[a].weights[i] * field_[index(patches[a].nodes[i])];
+      }
+      const auto row = static_cast<Eigen::Index>(3 * b);
+      const auto column = static_cast<Eigen::Index>(3 * a);
+      if (a == b) sum = 0.5 * (sum + sum.transpose()).eval();
+      compliance.block<3, 3>(row, column) += sum;
+      if (a != b) compliance.block<3, 3>(column, row) += sum.transpose();
+    }
+    clear(patches[b]);
+  }
+}
+
+Matrix3 ResidualPart::compliance(const ContactPatch& patch) noexcept {
+  Matrix3 sum = Matrix3::Zero();
+  if (compliance_.empty()) return sum;
+  spread(patch);
+  for (std::size_t i = 0; i < index(patch.count); ++i) {
+    sum += patch.weights[i] * field_[index(patch.nodes[i])];
+  }
+  clear(patch);
+  return 0.5 * (sum + sum.transpose());
+}
+
+Vector3 ResidualPart::displacement(const ContactPatch& patch,
+                                   std::span<const NodalForce> forces) noexcept {
+  Vector3 sum = Vector3::Zero();
+  if (compliance_.empty() || forces.empty()) return sum;
+  spread(patch);
+  for (const NodalForce& nodal : forces) {
+    sum += field_[index(nodal.node)] * nodal.force;
+  }
+  clear(patch);
+  return sum;
+}
+
+void ResidualPart::release() noexcept {
+  for (const int node : loaded_) {
+    force_[index(node)].setZero();
+    is_loaded_[index(node)] = 0;
+  }
+  loaded_.clear();
+}
+
+void ResidualPart::hold_more(std::span<const NodalForce> forces) noexcept {
+  if (compliance_.empty()) return;
+  for (const NodalForce& nodal : forces) {
+    if (is_loaded_[index(nodal.node)] == 0) loaded_.push_back(nodal.node);
+    is_loaded_[index(nodal.node)] = 1;
+    force_[index(nodal.node)] += nodal.force;
+  }
+}
+
+void ResidualPart::hold(std::span<const NodalForce> forces) noexcept {
+  release();
+  hold_more(forces);
+}
+
+void ResidualPart::add_displacement(Points& u) const noexcept {
+  for (const int node : loaded_) {
+    for (int k = begin_of(node); k < end_of(node); ++k) {
+      u.row(column(k)) += (block(k).cast<double>().transpose() * force_[index(node)]).transpose();
+    }
+  }
+}
+
+void ResidualPart::add_all(Eigen::MatrixXd& compliance) const {
+  if (compliance_.empty()) return;
+  for (int i = 0; i + 1 < static_cast<int>(compliance_.row_start.size()); ++i) {
+    for (int k = begin_of(i); k < end_of(i); ++k) {
+      compliance.block<3, 3>(3 * i, 3 * column(k)) += block(k).cast<double>();
+    }
+  }
+}
+
+}  // namespace irdm

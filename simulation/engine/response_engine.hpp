@@ -1,0 +1,160 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <span>
+
+#include "common/contact/contact_model.hpp"
+#include "common/geometry.hpp"
+#include "common/model/model.hpp"
+#include "simulation/contact/contact_patch.hpp"
+
+namespace irdm {
+
+/// The numbers stand in traces and viewer messages.
+enum class EngineKind { kModal, kDense, kCompressed };
+
+/// Force on one surface node during one step [N], B.
+struct NodalForce {
+  int node = 0;
+  Vector3 force = Vector3::Zero();
+};
+
+class ResponseEngine;
+
+/// The displacements of one engine's nodes are wanted.
+struct SurfaceRequest {
+  const ResponseEngine* engine = nullptr;
+  double tolerance = 0.0;  ///< as that of ResponseEngine::displacement()
+  Points* u = nullptr;     ///< (n, 3), written [m]
+};
+
+/// The elastic answer of one object to the history of forces on its surface nodes, equation (10):
+/// u[k] = sum_s R[s] f[k-s]. Everything is in B. An engine has one state and belongs to one thread;
+/// several engines may share the same model. All members but the constructor, displacement() and
+/// displacements() are real-time safe, and what they cost does not depend on the number of nodes.
+class ResponseEngine {
+ public:
+  virtual ~ResponseEngine() = default;
+
+  /// Whether the model says what its own spin does to it.
+  virtual bool takes_spin() const noexcept = 0;
+
+  /// The body turns with w [rad/s], B, throughout the coming step: its centrifugal load acts
+  /// besides the forces. Before all else that is asked about the step, at most once a step; without
+  /// it there is no such load. Only where takes_spin().
+  virtual void hold_spin(const Vector3& w) noexcept = 0;
+
+  /// Whether the model says what gravity does to it: that of a fixed body, which gravity cannot
+  /// move as a whole.
+  virtual bool takes_gravity() const noexcept { return false; }
+
+  /// From the coming step on gravity accelerates every part of the body, in magnitude and direction
+  /// [m/s^2], B; before all else that is asked about the step. It swings to where it is at rest
+  /// under that, or is there at once if there was no step since the start or the last reset(). At
+  /// the start there is none. Only where takes_gravity().
+  virtual void set_gravity(const Vector3& /*gravity*/) noexcept {}
+
+  /// Whether the damping of its material can be changed while it runs.
+  virtual bool takes_damping() const noexcept { return false; }
+
+  /// From the coming step on the material's damping is `factor` > 0 times that of the model; before
+  /// all else that is asked about the step. Only where takes_damping().
+  virtual void scale_damping(double /*factor*/) noexcept {}
+
+  /// Which form of the response it answers from, and whether there is another one.
+  virtual EngineKind kind() const noexcept = 0;
+  virtual bool has_both_kinds() const noexcept { return false; }
+
+  /// From the coming step on it answers from this form; before all else that is asked about the
+  /// step. Only where has_both_kinds().
+  virtual void use(EngineKind /*kind*/) noexcept {}
+
+  /// Tips are here, and what they may touch soon is better fetched now; of one engine of a model
+  /// only. @param tips at most kMaxStyluses [m], B
+  virtual void expect(std::span<const Vector3> /*tips*/) noexcept {}
+  /// Nodes that forces began to act on while their columns of R were not there.
+  virtual std::uint64_t missed_columns() const noexcept { return 0; }
+
+  /// Displacement of a node at the end of the coming step if no force acts during it [m].
+  virtual Vector3 free_displacement(int node) const noexcept = 0;
+  /// What no component of any node's is larger than in magnitude [m], where that takes no longer
+  /// than a node or two; otherwise infinite.
+  virtual double free_displacement_bound() const noexcept {
+    return std::numeric_limits<double>::infinity();
+  }
+
+  /// For contacts a = 0..m-1 (m <= kMaxContacts): their mean free displacement h_a at the end of
+  /// the coming step [m], and the compliance between them within it, the blocks sum_ij w_i w_j
+  /// R_ij[0] of the (3m, 3m) matrix [m/N].
+  virtual void predict(std::span<const ContactPatch> patches, std::span<Vector3> h,
+                       ContactMatrix& compliance) noexcept = 0;
+
+  /// For one contact, the next path.size() = response.size() steps (kMaxHorizon at most): where the
+  /// mean displacement goes, path[n-1] at the end of the n-th coming step [m], if these forces are
+  /// held all the time and no others act; and how it answers, response[n] the blocks sum_ij w_i w_j
+  /// R_ij[n] [m/N]. Spin that is held acts in the coming step only.
+  virtual void foresee(const ContactPatch& patch, std::span<const NodalForce> held,
+                       std::span<Vector3> path, std::span<Matrix3> response) noexcept = 0;
+
+  /// These forces were held, besides the others, during the step `age` steps before the last one
+  /// (0: the last one itself). @param age below kMaxHorizon; what is older is left out
+  virtual void add_past(std::span<const NodalForce> forces, int age) noexcept = 0;
+
+  /// These nodes were asked for in the coming step, and may well be in the one after it: what they
+  /// will do may be kept ready. Before advance(); any number of times.
+  virtual void follow(std::span<const int> /*nodes*/) noexcept {}
+
+  /// Ends the coming step with these forces held during it.
+  virtual void advance(std::span<const NodalForce> forces) noexcept = 0;
+
+  /// Displacement of all nodes at the end of the last step, shape (n, 3) [m]. Uses OpenMP; the
+  /// result does not depend on the number of threads. Not for the force thread.
+  /// @param tolerance by how much each component may be off, so that less has to be read [m], >= 0
+  virtual void displacement(Points& u, double tolerance) const = 0;
+  void displacement(Points& u) const { displacement(u, 0.0); }
+
+  /// The same of several engines with one shared_surface(), to the bit: what they share is read
+  /// once for all of them. See displacements().
+  virtual void displacements(std::span<const SurfaceRequest> requests) const {
+    for (const SurfaceRequest& request : requests) {
+      request.engine->displacement(*request.u, request.tolerance);
+    }
+  }
+  /// What displacements() can read once for all engines that have the same; null: nothing.
+  virtual const void* shared_surface() const noexcept { return nullptr; }
+  /// The engine that answers, where there are several in one.
+  virtual const ResponseEngine& answering() const noexcept { return *this; }
+
+  /// R[0], the displacement within the step of all nodes per force on each: (3n, 3n) [m/N]. Takes
+  /// its time; not for the force thread.
+  virtual Eigen::MatrixXd instant_compliance() const = 0;
+
+  /// Forgets all forces: at rest under gravity as it is.
+  virtual void reset() noexcept = 0;
+};
+
+/// Makes an engine on a model that holds the response it needs. Throws Error when it does not.
+std::unique_ptr<ResponseEngine> make_engine(std::shared_ptr<const Model> model);
+/// The same with two forms of one model's response, among which use() chooses; first that of
+/// `model`. @param other null: no choice
+std::unique_ptr<ResponseEngine> make_engine(std::shared_ptr<const Model> model,
+                                            std::shared_ptr<const Model> other);
+
+/// ResponseEngine::displacement() of each, to the bit: where engines share their model's shapes as
+/// one matrix product. The requests come back in another order.
+void displacements(std::span<SurfaceRequest> requests);
+
+/// The point's value of a quantity that is known at nodes: sum_i w_i value(node_i); nodes of no
+/// weight are not asked for.
+template <typename NodeValue>
+Vector3 interpolate(const SurfacePoint& point, const NodeValue& value) {
+  Vector3 sum = Vector3::Zero();
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (point.weights[i] != 0.0) sum += point.weights[i] * value(point.nodes[i]);
+  }
+  return sum;
+}
+
+}  // namespace irdm

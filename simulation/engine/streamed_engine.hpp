@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "simulation/engine/dense_gravity.hpp"
+#include "simulation/engine/dense_load.hpp"
+#include "simulation/engine/held_columns.hpp"
+#include "simulation/engine/response_engine.hpp"
+#include "simulation/engine/running_convolution.hpp"
+
+namespace irdm {
+
+/// The dense engine on a response whose columns come and go (StreamedResponse, HeldColumns). With
+/// all of them there in time it equals DenseEngine to the bit.
+///
+/// Where they are not, forces on the node are answered by the static answer
+/// (common/response/settling.hpp) in place of R: R[0] in their own step, then a settling without
+/// vibration to the same lasting displacement. When the columns come, the node's answer goes over
+/// from the one to the other, both to all of its forces.
+template <typename Scalar>
+class StreamedEngine final : public ResponseEngine {
+ public:
+  /// @param model holds a StreamedResponse of type Scalar, with columns
+  explicit StreamedEngine(std::shared_ptr<const Model> model);
+
+  bool takes_spin() const noexcept override { return spin_.any(); }
+  bool takes_gravity() const noexcept override { return gravity_.any(); }
+  EngineKind kind() const noexcept override { return EngineKind::kDense; }
+  void hold_spin(const Vector3& w) noexcept override { spin_.hold(spin_products(w)); }
+  void set_gravity(const Vector3& gravity) noexcept override { gravity_.set(gravity); }
+  void expect(std::span<const Vector3> tips) noexcept override { response_.columns->expect(tips); }
+  std::uint64_t missed_columns() const noexcept override { return columns_.missed(); }
+  Vector3 free_displacement(int node) const noexcept override;
+  double free_displacement_bound() const noexcept override;
+  void predict(std::span<const ContactPatch> patches, std::span<Vector3> h,
+               ContactMatrix& compliance) noexcept override;
+  void foresee(const ContactPatch& patch, std::span<const NodalForce> held, std::span<Vector3> path,
+               std::span<Matrix3> response) noexcept override;
+  void add_past(std::span<const NodalForce> forces, int age) noexcept override;
+  void follow(std::span<const int> nodes) noexcept override;
+  void advance(std::span<const NodalForce> forces) noexcept override;
+  using ResponseEngine::displacement;
+  void displacement(Points& u, double tolerance) const override;
+  Eigen::MatrixXd instant_compliance() const override;
+  void reset() noexcept override;
+
+ private:
+  /// Part of what forces on degree of freedom b do by the static answer, for all nodes alike.
+  struct Settled {
+    std::size_t column = 0;
+    double newest = 0.0;  ///< of R[0] [N]
+    double past = 0.0;    ///< of what follows it [N]
+  };
+
+  void settle() noexcept;
+  Settled settled(int source, int axis, int shift) const noexcept;
+  void add_lacking(int node, int shift, Vector3& u) const noexcept;
+  void add_columns(Points& u) const;
+
+  double first(int a, int b) const noexcept;
+  double rest(int a, int b) const noexcept;
+  double entry(std::size_t step, int a, int b) const noexcept;
+
+  std::shared_ptr<const Model> model_;
+  const StreamedResponse& response_;
+  const Scalar* first_;  ///< R[0]
+  HeldColumns<Scalar> columns_;
+  RunningConvolution<HeldColumns<Scalar>> past_;
+  DenseSpin<LoadNumber<Scalar>> spin_;
+  DenseGravity<LoadNumber<Scalar>> gravity_;
+  std::vector<Settled> coming_;  ///< settled(node, axis, 1), of nodes with a past that lack a share
+};
+
+}  // namespace irdm

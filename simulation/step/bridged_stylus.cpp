@@ -1,0 +1,104 @@
+#include "simulation/step/bridged_stylus.hpp"
+
+#include <algorithm>
+
+namespace irdm {
+namespace {
+
+// No contact model is good for longer [s].
+constexpr double kLongestHorizon = 0.05;
+
+}  // namespace
+
+const AppliedForce* BridgedStylus::find(const AppliedHistory& history,
+                                        std::uint64_t step) const noexcept {
+  return step >= first_ ? history.find(step) : nullptr;
+}
+
+StylusCommand BridgedStylus::next(const StylusCommand& command, std::uint64_t session,
+                                  const AppliedHistory& history) noexcept {
+  StylusCommand next = command;
+  const std::uint64_t k = simulation_.next_step();
+  if (session != session_) {  // a new hand: what the last one touched is nothing to it
+    session_ = session;
+    forget(AppliedHistory{});
+    next.present = false;
+  }
+  const bool ours = session != 0 && history.session() == session;
+  if (!next.present || !ours) {
+    if (ours) forget(history);
+    tip_ = command.tip;
+    return next;
+  }
+  if (reset_ != simulation_.reset_step() && history.base() < simulation_.reset_step()) {
+    forget(history);  // all of it is for the object as it was before
+    next.bridged = BridgedForce{};
+    return next;
+  }
+  if (reset_ != simulation_.reset_step()) {
+    reset_ = simulation_.reset_step();
+    first_ = history.newest();  // the only one that surely rests on a model from after it
+  }
+  const bool any = history.newest() != kNoStep && history.newest() >= first_;
+  if (any && !bridged_) begin(command, history);
+  newest_ = any ? history.newest() : kNoStep;
+  if (!bridged_) {
+    tip_ = command.tip;
+    return next;
+  }
+  enter_late(history, k);
+  const AppliedForce* const applied = find(history, k);
+  known_ = known_ << 1 | (applied != nullptr || k < first_ ? 1 : 0);
+  if (applied != nullptr) tip_ = applied->tip;
+  next.tip = tip_;
+  next.bridged = BridgedForce{.object = simulation_.foreseen_object(s_)};
+  if (applied != nullptr) {
+    next.bridged->force = bounded_force(applied->force);
+    next.bridged->arm = applied->arm;
+  }
+  return next;
+}
+
+// There is nothing from before that may yet come.
+void BridgedStylus::begin(const StylusCommand& command, const AppliedHistory& history) noexcept {
+  bridged_ = true;
+  known_ = ~std::uint64_t{0};
+  tip_ = command.tip;
+  std::uint64_t told = history.newest();
+  while (told > first_ && history.find(told - 1) != nullptr) --told;
+  first_ = told;
+}
+
+// Bit i of known_ is step k - 1 - i. What finds no place is left out for good; what finds no room
+// waits for the next step.
+void BridgedStylus::enter_late(const AppliedHistory& history, std::uint64_t k) noexcept {
+  constexpr std::uint64_t kOldest = kMaxHorizon - 1;
+  for (std::uint64_t i = 0; i <= kOldest && i < k; ++i) {
+    if ((known_ >> i & 1) != 0) continue;
+    const AppliedForce* const applied = find(history, k - 1 - i);
+    if (applied == nullptr || (simulation_.late_room() == 0 && !applied->force.isZero(0.0))) {
+      if (i == kOldest) ++lost_;
+      continue;
+    }
+    known_ |= std::uint64_t{1} << i;
+    if (applied->force.isZero(0.0)) continue;
+    const AppliedForce late{bounded_force(applied->force), applied->tip, applied->arm};
+    ++(simulation_.enter_late(s_, late, static_cast<int>(i)) ? late_ : lost_);
+  }
+}
+
+void BridgedStylus::foresee(ContactModel& model) noexcept {
+  const auto horizon = static_cast<int>(kLongestHorizon / simulation_.dt() + 1e-6);
+  simulation_.foresee(s_, tip_, std::clamp(horizon, 1, kMaxHorizon), model);
+  model.missing = ~known_ & ((std::uint64_t{1} << kMaxHorizon) - 1);
+  model.newest = newest_;
+  model.standing = false;
+}
+
+void BridgedStylus::forget(const AppliedHistory& history) noexcept {
+  bridged_ = false;
+  known_ = ~std::uint64_t{0};
+  first_ = history.newest() == kNoStep ? 0 : history.newest() + 1;
+}
+
+}  // namespace irdm

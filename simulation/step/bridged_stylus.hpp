@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "simulation/step/applied_history.hpp"
+#include "simulation/step/simulation.hpp"
+
+namespace irdm {
+
+/// One stylus whose bridge may solve its contact: the forces that come from there go into the steps
+/// that they belong to, late ones as well, and what the bridge has to know to go on comes out. From
+/// its first force on the stylus is the bridge's. Pure, real-time safe.
+class BridgedStylus {
+ public:
+  /// @param s its number in the simulation
+  BridgedStylus(Simulation& simulation, std::size_t s) : simulation_(simulation), s_(s) {}
+
+  /// Before each step: enters forces that were late for theirs.
+  /// @param command of the newest sample
+  /// @param session of the stylus' bridge; 0: of none that solves contacts
+  StylusCommand next(const StylusCommand& command, std::uint64_t session,
+                     const AppliedHistory& history) noexcept;
+
+  /// After the step of next(): how the contact goes on.
+  void foresee(ContactModel& model) noexcept;
+
+  /// What was sent so far is not for any step to come.
+  void forget(const AppliedHistory& history) noexcept;
+
+  std::uint64_t late() const noexcept { return late_; }  ///< forces that were entered late
+  /// Forces that came too late for that, or for an object that was not touched.
+  std::uint64_t lost() const noexcept { return lost_; }
+
+ private:
+  void begin(const StylusCommand& command, const AppliedHistory& history) noexcept;
+  void enter_late(const AppliedHistory& history, std::uint64_t k) noexcept;
+  const AppliedForce* find(const AppliedHistory& history, std::uint64_t step) const noexcept;
+
+  Simulation& simulation_;
+  std::size_t s_;
+  std::uint64_t session_ = 0;
+  std::uint64_t reset_ = 0;                  ///< step of the last reset that was heeded
+  std::uint64_t known_ = ~std::uint64_t{0};  ///< bit i: the force of the last step less i is in
+  std::uint64_t first_ = 0;                  ///< forces of steps before it are of no use
+  std::uint64_t newest_ = kNoStep;           ///< step of the newest force at the last step
+  bool bridged_ = false;
+  Vector3 tip_ = Vector3::Zero();  ///< in the last step
+  std::uint64_t late_ = 0;
+  std::uint64_t lost_ = 0;
+};
+
+}  // namespace irdm

@@ -1,0 +1,115 @@
+#include "simulation/step/floor_contacts.hpp"
+
+#include <algorithm>
+
+#include "common/error.hpp"
+
+namespace irdm {
+namespace {
+
+// Nodes as near as this are given to the solver, which leaves them alone unless they come down.
+constexpr double kNearFloor = 1e-4;
+// How far a node may be from where it would be at rest, to be looked at: at least so far [m], and
+// so many times as far as any was seen. What was seen fades by this factor a step: a node rings on.
+constexpr double kLeastMargin = 2e-3;
+constexpr double kMarginFactor = 2.0;
+constexpr double kFading = 0.99;
+
+}  // namespace
+
+FloorContacts::FloorContacts(const FloorConfig& floor, const RestSurface& rest,
+                             const ResponseEngine& engine)
+    : floor_(floor),
+      rest_(rest),
+      feet_(static_cast<std::size_t>(rest.node_count())),
+      nodes_(kMaxFloorContacts),
+      posed_(kMaxFloorContacts) {
+  if (rest.node_count() > kMaxNodes) {
+    throw Error("floor",
+                "an object with " + std::to_string(rest.node_count()) +
+                    " surface nodes is too large for a floor",
+                "use a mesh of at most " + std::to_string(kMaxNodes) + " surface nodes");
+  }
+  compliance_ = engine.instant_compliance();
+}
+
+void FloorContacts::reset() noexcept {
+  std::fill(feet_.begin(), feet_.end(), Foot{});
+  count_ = 0;
+  posed_count_ = 0;
+  displaced_ = 0.0;
+}
+
+int FloorContacts::find(const FreeMotion& motion, DeformedSurface& surface,
+                        double displaced) noexcept {
+  count_ = 0;
+  displaced_ = std::max(kFading * displaced_, displaced);
+  const double margin = kLeastMargin + kMarginFactor * displaced_;
+  const Vector3 up = motion.orientation.conjugate() * floor_.normal;
+  const double offset = height(motion.position);
+  for (int i = 0; i < rest_.node_count() && count_ < kMaxFloorContacts; ++i) {
+    Foot& foot = feet_[static_cast<std::size_t>(i)];
+    if (!foot.down && offset + up.dot(rest_.node(i)) > margin) continue;
+    const Vector3& r = surface.node(i);
+    displaced_ = std::max(displaced_, (r - rest_.node(i)).norm());
+    if (!foot.down && offset + up.dot(r) > kNearFloor) continue;
+    if (!foot.down) {
+      const Vector3 x = motion.to_world(r);
+      foot.anchor = x - height(x) * floor_.normal;
+    }
+    nodes_[static_cast<std::size_t>(count_++)] = i;
+  }
+  if (count_ == 0) posed_count_ = 0;  // the contacts of styluses take the rows
+  return count_;
+}
+
+void FloorContacts::pose(const FreeMotion& motion, DeformedSurface& surface,
+                         ContactProblem& problem) noexcept {
+  const auto m = static_cast<std::size_t>(count_);
+  const bool same =
+      count_ == posed_count_ && std::equal(nodes_.begin(), nodes_.begin() + count_, posed_.begin());
+  for (std::size_t a = 0; a < m; ++a) {
+    const int i = nodes_[a];
+    const Foot& foot = feet_[static_cast<std::size_t>(i)];
+    ContactUnknown& unknown = problem.contact(static_cast<int>(a));
+    unknown.law = ContactLaw::kTouching;
+    unknown.normal = -(motion.orientation.conjugate() * floor_.normal);
+    unknown.friction = floor_.friction;
+    if (foot.slipping) unknown.friction.static_ = unknown.friction.kinetic;
+    unknown.arm = surface.node(i);
+    unknown.gap = motion.to_body(foot.anchor) - unknown.arm;
+    unknown.force = foot.force;
+    if (same) continue;
+    for (std::size_t b = 0; b < m; ++b) {
+      problem.elastic(static_cast<int>(a), static_cast<int>(b)) =
+          compliance_.block<3, 3>(3 * i, 3 * nodes_[b]);
+    }
+  }
+  posed_count_ = count_;
+  std::copy_n(nodes_.begin(), m, posed_.begin());
+}
+
+Matrix3 FloorContacts::between(const ContactPatch& patch, int i) const noexcept {
+  Matrix3 sum = Matrix3::Zero();
+  for (std::size_t k = 0; k < static_cast<std::size_t>(patch.count); ++k) {
+    sum += patch.weights[k] * compliance_.block<3, 3>(3 * patch.nodes[k], 3 * node(i));
+  }
+  return sum;
+}
+
+void FloorContacts::settle(const FreeMotion& motion, const ContactProblem& problem) noexcept {
+  for (int a = 0; a < count_; ++a) {
+    const ContactUnknown& solved = problem.contact(a);
+    Foot& foot = feet_[static_cast<std::size_t>(node(a))];
+    foot.down = solved.mode != ContactMode::kOpen;
+    foot.slipping = solved.mode == ContactMode::kSlipping;
+    foot.force = solved.force;
+    const Vector3 moved = solved.arm + problem.elastic(a, a) * solved.force - rest_.node(node(a));
+    displaced_ = std::max(displaced_, moved.norm());
+    if (!foot.slipping) continue;
+    foot.anchor -= motion.orientation * solved.slip;
+    foot.anchor -= height(foot.anchor) * floor_.normal;
+  }
+}
+
+}  // namespace irdm

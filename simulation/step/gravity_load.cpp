@@ -1,0 +1,16 @@
+#include "simulation/step/gravity_load.hpp"
+
+namespace irdm {
+
+void follow_gravity(ResponseEngine& engine, const SimulationObject& object,
+                    const Vector3& gravity) noexcept {
+  if (object.model->body.support == Support::kFloating || !engine.takes_gravity()) return;
+  engine.set_gravity(object.orientation.normalized().conjugate() * gravity);
+}
+
+bool takes_gravity(const SimulationObject& object) {
+  return object.model->body.support == Support::kFloating ||
+         (has_gravity(*object.model) && (!object.other_model || has_gravity(*object.other_model)));
+}
+
+}  // namespace irdm

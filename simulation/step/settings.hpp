@@ -1,0 +1,55 @@
+#pragma once
+
+#include <array>
+
+#include "simulation/step/simulation_config.hpp"
+
+namespace irdm {
+
+inline constexpr int kMaxObjects = 4;
+
+/// What of one object can be changed while it is simulated.
+struct ObjectSettings {
+  Friction friction;
+  RigidDamping damping;
+  Tether tether;
+  double material_damping = 1.0;  ///< times that of the model, 0.1..10
+  EngineKind engine = EngineKind::kModal;
+  bool inertial_loading = false;
+
+  bool operator==(const ObjectSettings&) const = default;
+};
+
+/// What of a scene can be changed while it is simulated. Objects beyond the scene's mean nothing.
+struct Settings {
+  Vector3 gravity = Vector3::Zero();  ///< [m/s^2], W
+  std::array<ObjectSettings, kMaxObjects> object;
+
+  bool operator==(const Settings&) const = default;
+};
+
+/// Which settings of an object are more than a number of the step.
+struct SettingsChoice {
+  bool material_damping = false;  ///< a dense response has its damping in it; a floor relies on it
+  bool engine = false;            ///< the object has both forms of its response
+  bool inertial_loading = false;  ///< its model says what spin does, and it can turn
+
+  bool operator==(const SettingsChoice&) const = default;
+};
+
+/// The settings that a scene begins with.
+Settings initial_settings(const SimulationConfig& config);
+
+/// What can be chosen for object i.
+SettingsChoice settings_choice(const SimulationConfig& config, std::size_t i);
+
+/// Makes an engine work as set. Real-time safe. @param material_damping that it works with, kept
+/// by whoever owns the engine
+void follow_settings(ResponseEngine& engine, const ObjectSettings& settings,
+                     double& material_damping) noexcept;
+
+/// Throws Error when the step of the scene cannot bear these settings: something that cannot be
+/// chosen differs from the beginning, or a damping or tether is too strong for dt.
+void check_settings(const SimulationConfig& config, const Settings& settings);
+
+}  // namespace irdm

@@ -1,0 +1,168 @@
+#include "simulation/step/simulation.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "common/error.hpp"
+#include "common/realtime/no_denormals.hpp"
+
+namespace irdm {
+Simulation::Simulation(const SimulationConfig& config)
+    : settings_(initial_settings(config)), stylus_count_(config.styluses.size()) {
+  if (config.objects.empty() || config.objects.size() > kMaxObjects) {
+    throw Error("scene", "has " + std::to_string(config.objects.size()) + " objects",
+                "use 1 to " + std::to_string(kMaxObjects));
+  }
+  if (config.styluses.empty() || config.styluses.size() > kMaxStyluses) {
+    throw Error("scene", "has " + std::to_string(config.styluses.size()) + " styluses",
+                "use 1 to " + std::to_string(kMaxStyluses));
+  }
+  reset_down_.fill(true);
+  foreseen_.fill(-1);
+  dt_ = config.objects.front().model->dt;
+  for (const SimulationObject& object : config.objects) {
+    if (object.model->dt != dt_) {
+      throw Error("scene", "has models of different dt", "compute them with the same response.dt");
+    }
+    objects_.push_back(
+        std::make_unique<SoftObject>(object, config, static_cast<int>(objects_.size())));
+  }
+  check_settings(config, settings_);
+}
+
+void Simulation::set(const Settings& settings) noexcept {
+  settings_ = settings;
+  ++settings_change_;
+  for (std::size_t i = 0; i < objects_.size(); ++i) {
+    objects_[i]->set(settings.gravity, settings.object[i]);
+  }
+}
+
+std::uint64_t Simulation::missed_columns() const noexcept {
+  std::uint64_t sum = 0;
+  for (const auto& object : objects_) sum += object->engine().missed_columns();
+  return sum;
+}
+
+void Simulation::reset() noexcept {
+  for (const auto& object : objects_) object->reset();
+  late_.count = 0;
+  was_reset_ = true;
+  reset_step_ = next_step_;
+}
+
+// A button that is down when its stylus appears has not gone down.
+bool Simulation::reset_pressed(std::span<const StylusCommand> commands) noexcept {
+  bool pressed = false;
+  for (std::size_t s = 0; s < stylus_count_; ++s) {
+    const bool down = !commands[s].present || (commands[s].buttons & kResetButton) != 0;
+    pressed = pressed || (commands[s].present && down && !reset_down_[s]);
+    reset_down_[s] = down;
+  }
+  return pressed;
+}
+
+void Simulation::step(std::span<const StylusCommand> commands, StepRecord& record,
+                      bool put_back) noexcept {
+  const NoDenormals here;  // in whatever thread: the same bits
+  if (reset_pressed(commands) || put_back) reset();
+  record.reset = std::exchange(was_reset_, false);
+  record.reset_step = reset_step_;
+  record.force_step = next_step_++;
+  record.time = static_cast<double>(next_step_) * dt_;
+  record.settings = settings_;
+  record.settings_change = settings_change_;
+  record.late.count = std::exchange(late_.count, 0);
+  std::copy_n(late_.force.begin(), record.late.count, record.late.force.begin());
+  record.object_count = object_count();
+  record.stylus_count = static_cast<int>(stylus_count_);
+  if (record.reset) {
+    std::copy_n(commands.begin(), stylus_count_, commands_.begin());
+    for (StylusCommand& command : commands_) {
+      if (command.bridged) command.bridged = BridgedForce{};  // for the object as it was before
+    }
+    commands = commands_;
+  }
+  for (std::size_t i = 0; i < objects_.size(); ++i) objects_[i]->step(commands, record.object[i]);
+  for (std::size_t s = 0; s < stylus_count_; ++s) {
+    write_stylus(s, commands[s], record);
+  }
+}
+
+// The object that a stylus is in contact with, or else the nearest.
+int Simulation::touched_by(std::size_t s, const Vector3& tip) noexcept {
+  int nearest = -1;
+  double distance = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < object_count(); ++i) {
+    SoftObject& candidate = *objects_[static_cast<std::size_t>(i)];
+    if (candidate.contact_state(s) != ContactState::kFree || objects_.size() == 1) return i;
+    const double here = candidate.distance(tip);
+    if (here < distance) nearest = i;
+    distance = std::min(distance, here);
+  }
+  return nearest;
+}
+
+void Simulation::foresee(std::size_t s, const Vector3& tip, int horizon,
+                         ContactModel& model) noexcept {
+  const NoDenormals here;
+  model.valid = false;
+  model.step = next_step_ - 1;
+  model.dt = dt_;
+  foreseen_[s] = -1;
+  if (next_step_ == 0 || !tip.allFinite()) return;
+  foreseen_[s] = touched_by(s, tip);
+  if (foreseen_[s] < 0) return;
+  objects_[static_cast<std::size_t>(foreseen_[s])]->foresee(s, tip, horizon, model);
+}
+
+bool Simulation::enter_late(std::size_t s, const AppliedForce& applied, int age) noexcept {
+  const NoDenormals here;
+  if (age < 0 || age >= kMaxHorizon) return false;
+  if (!applied.force.allFinite() || !applied.tip.allFinite() || !applied.arm.allFinite()) {
+    return false;
+  }
+  if (late_.count == LateForces::kMost) return false;
+  LateForce& entry = late_.force[late_.count];
+  entry.stylus = static_cast<int>(s);
+  entry.age = age;
+  entry.object = foreseen_[s];
+  if (entry.object < 0) return false;
+  SoftObject& touched = *objects_[static_cast<std::size_t>(entry.object)];
+  if (!touched.enter_late(s, applied, entry)) return false;
+  ++late_.count;
+  return true;
+}
+
+bool Simulation::enter_late(const LateForce& late) noexcept {
+  const NoDenormals here;
+  if (late_.count == LateForces::kMost) return false;
+  if (!objects_[static_cast<std::size_t>(late.object)]->enter_late(late)) return false;
+  late_.force[late_.count++] = late;
+  return true;
+}
+
+// Step 6: -Q f, Q half-way through the step.
+void Simulation::write_stylus(std::size_t s, const StylusCommand& command,
+                              StepRecord& record) const noexcept {
+  StylusRecord& stylus = record.stylus[s];
+  stylus = StylusRecord{};
+  stylus.present = command.present;
+  stylus.buttons = command.buttons;
+  stylus.tip = stylus.proxy = command.tip;
+  stylus.bridged = command.bridged;
+  double largest = -1.0;
+  for (std::size_t i = 0; i < objects_.size(); ++i) {
+    const ContactRecord& contact = record.object[i].contact[s];
+    if (contact.state == ContactState::kFree) continue;
+    stylus.force -= record.object[i].halfway * contact.force;
+    if (contact.force.norm() <= largest) continue;
+    largest = contact.force.norm();
+    stylus.object = static_cast<int>(i);
+    stylus.contact = contact.state;
+    stylus.proxy = contact.proxy;
+  }
+}
+
+}  // namespace irdm

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "common/contact/applied_forces.hpp"
+#include "simulation/step/simulation_config.hpp"
+#include "simulation/step/soft_object.hpp"
+#include "simulation/step/step_record.hpp"
+
+namespace irdm {
+
+/// The force step of a scene: a pure function of the commands and of the state in here. It knows no
+/// clock, thread, file or socket; the same commands give the same bits. Objects do not touch each
+/// other, so each is stepped by itself; a stylus may touch several and feels the sum. One thread;
+/// step() is real-time safe.
+class Simulation {
+ public:
+  /// Throws Error when a model lacks the response that its engine needs, when models differ in dt,
+  /// when damping or tether are too strong for it, or when there are too many objects or styluses.
+  explicit Simulation(const SimulationConfig& config);
+
+  /// Step k = 0, 1, ...: from time k dt to (k + 1) dt. Before it everything is put back to the
+  /// start if `put_back` says so or the reset button of a stylus has gone down since the step
+  /// before. A stylus then has to come from outside, and press its grab button again, to touch or
+  /// take hold.
+  /// @param commands one a stylus
+  void step(std::span<const StylusCommand> commands, StepRecord& record,
+            bool put_back = false) noexcept;
+
+  /// Puts everything back to the start; the step number goes on. The record of the next step says
+  /// so.
+  void reset() noexcept;
+
+  /// For the bridge of stylus s, between steps: how its contact goes on after the last step.
+  /// @param tip where the stylus was in the last step [m], W
+  /// @param horizon steps to look ahead, 1 to kMaxHorizon
+  void foresee(std::size_t s, const Vector3& tip, int horizon, ContactModel& model) noexcept;
+
+  /// Between steps: stylus s exerted this force on the object, besides what is known, in the
+  /// step `age` steps before the last one. False: that is too long ago, it touched
+  /// nothing, or there are more of them than LateForces::kMost.
+  bool enter_late(std::size_t s, const AppliedForce& applied, int age) noexcept;
+  /// The same of a recorded one (StepRecord::late), when a run is made again.
+  bool enter_late(const LateForce& late) noexcept;
+  /// How many more can be entered before the coming step.
+  std::size_t late_room() const noexcept { return LateForces::kMost - late_.count; }
+  /// The object that foresee() last spoke of; -1: none.
+  int foreseen_object(std::size_t s) const noexcept { return foreseen_[s]; }
+  /// The last step before which everything was put back; 0: none.
+  std::uint64_t reset_step() const noexcept { return reset_step_; }
+
+  /// From the next step on. They must have passed check_settings(). Real-time safe.
+  void set(const Settings& settings) noexcept;
+  const Settings& settings() const noexcept { return settings_; }
+
+  double dt() const noexcept { return dt_; }
+  /// The number of the coming step.
+  std::uint64_t next_step() const noexcept { return next_step_; }
+  /// Nodes that forces began to act on while their columns of R were not there, so far.
+  std::uint64_t missed_columns() const noexcept;
+  int object_count() const noexcept { return static_cast<int>(objects_.size()); }
+  const SoftObject& object(int i = 0) const noexcept {
+    return *objects_[static_cast<std::size_t>(i)];
+  }
+
+ private:
+  int touched_by(std::size_t s, const Vector3& tip) noexcept;
+  bool reset_pressed(std::span<const StylusCommand> commands) noexcept;
+  void write_stylus(std::size_t s, const StylusCommand& command, StepRecord& record) const noexcept;
+
+  double dt_ = 0.0;
+  Settings settings_;
+  std::uint32_t settings_change_ = 0;
+  std::uint64_t next_step_ = 0;
+  std::uint64_t reset_step_ = 0;
+  bool was_reset_ = false;  ///< since the last step
+  /// The reset button was down, or nobody there, in the last step.
+  std::array<bool, kMaxStyluses> reset_down_;
+  std::size_t stylus_count_;
+  std::vector<std::unique_ptr<SoftObject>> objects_;
+  std::array<int, kMaxStyluses> foreseen_;            ///< object, -1: none
+  std::array<StylusCommand, kMaxStyluses> commands_;  ///< of a step that begins with a reset
+  LateForces late_;                                   ///< entered since the last step
+};
+
+}  // namespace irdm

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "common/contact/contact_problem.hpp"
+#include "common/geometry.hpp"
+#include "common/model/model.hpp"
+#include "common/motion/free_motion.hpp"
+#include "simulation/engine/response_engine.hpp"
+
+namespace irdm {
+
+/// One object at the start.
+struct SimulationObject {
+  std::shared_ptr<const Model> model;
+  Vector3 position = Vector3::Zero();               ///< of the centre of mass [m], W
+  Quaternion orientation = Quaternion::Identity();  ///< B to W
+  Vector3 velocity = Vector3::Zero();               ///< [m/s], W
+  Vector3 angular_velocity = Vector3::Zero();       ///< [rad/s], W
+  Friction friction;                                ///< of tips on its surface
+  RigidDamping damping;
+  Tether tether;
+  /// Centrifugal loading of the elastic part by the body's own spin. false: none, as in the paper.
+  bool inertial_loading = false;
+  /// The same model with the other form of its response, so that the engine can be switched while
+  /// it runs; null: it cannot.
+  std::shared_ptr<const Model> other_model = nullptr;
+};
+
+/// A plane on which objects rest; the side that the normal points to is free.
+struct FloorConfig {
+  Vector3 normal = Vector3(0, 1, 0);  ///< unit, W
+  double height = 0.0;                ///< n . x of its points [m]
+  Friction friction{0.5, 0.5};
+};
+
+/// How one stylus touches.
+struct SimulationStylus {
+  double radius = 0.0;              ///< of the fingertip [m]; 0: a point
+  double coupling_stiffness = 0.0;  ///< k_vc, spring between tip and surface [N/m]; 0: none (rigid)
+  double reach = 0.0;  ///< pressed within it, the grab button holds the nearest node [m]
+};
+
+/// Objects among their styluses. All models have the same dt.
+struct SimulationConfig {
+  Vector3 gravity = Vector3::Zero();  ///< [m/s^2], W
+  std::vector<SimulationObject> objects;
+  std::vector<SimulationStylus> styluses{1};
+  std::optional<FloorConfig> floor;
+  double release_time = 0.03;  ///< in which a held point that pulls is given up [s]
+};
+
+}  // namespace irdm

@@ -1,0 +1,136 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "common/contact/contact_problem.hpp"
+#include "common/geometry.hpp"
+#include "common/motion/rigid_body.hpp"
+#include "common/stylus.hpp"
+#include "simulation/step/settings.hpp"
+
+namespace irdm {
+
+inline constexpr int kMaxStyluses = 4;
+
+/// A force that was decided elsewhere (by a bridge that solved the contact itself); the step
+/// applies it.
+struct GivenForce {
+  ContactState contact = ContactState::kTouching;
+  SurfacePoint point;
+  Vector3 force = Vector3::Zero();  ///< on the object [N], W
+  int object = 0;
+};
+
+/// A force that the bridge decided on: it acts in place of the one that the step would find. Where
+/// the contact is, how it slips and when it ends is found here from the tip.
+struct BridgedForce {
+  Vector3 force = Vector3::Zero();  ///< on the object [N], W
+  Vector3 arm = Vector3::Zero();    ///< from the centre of mass to where it acts [m], B
+  int object = -1;                  ///< the only one that the stylus touches; -1: none
+};
+
+/// What one stylus asks of one step.
+struct StylusCommand {
+  bool present = false;  ///< false: nobody is there; a contact that was there ends
+  std::uint32_t buttons = 0;
+  Vector3 tip =
+      Vector3::Zero();  ///< at the end of the step [m], W; the step solves for the force ...
+  std::optional<GivenForce> given;           ///< ... unless it is given
+  std::optional<BridgedForce> bridged = {};  ///< the bridge solves the contact
+};
+
+/// What one stylus did to one object in one step.
+struct ContactRecord {
+  ContactState state = ContactState::kFree;
+  bool slipping = false;
+  SurfacePoint point;  ///< middle of the contact; this and what follows means nothing when free
+  Vector3 force = Vector3::Zero();   ///< on the object [N], B
+  Vector3 normal = Vector3::Zero();  ///< outward, of the surface at rest under the tip; unit, B
+  Vector3 offset = Vector3::Zero();  ///< from the point to where the force acts [m], B
+  /// From where the point would be at the end of the step without forces to where it is in the mean
+  /// over the step: the torque's lever arm is the mean one [m], B.
+  Vector3 arm_shift = Vector3::Zero();
+  Vector3 proxy = Vector3::Zero();  ///< god-object: the point at the end of the step [m], W
+};
+
+/// Contacts with the floor that an object can have in one step.
+inline constexpr int kMaxFloorContacts = 192;
+
+/// Force of the floor on one surface node. Single precision, and applied as such: what is recorded
+/// is what acted.
+struct FloorForce {
+  int node = 0;
+  Eigen::Vector3f force = Eigen::Vector3f::Zero();  ///< on the object [N], B
+};
+
+/// What became of one object in one step.
+struct ObjectRecord {
+  RigidState start;  ///< before the step, with the late forces that were entered by then
+  /// Half-way through the step, B to W: contact forces, held in B, have their direction in W by it.
+  Quaternion halfway = Quaternion::Identity();
+  Vector3 position = Vector3::Zero();               ///< of the body at the end of the step [m], W
+  Quaternion orientation = Quaternion::Identity();  ///< B to W
+  Vector3 velocity = Vector3::Zero();               ///< [m/s], W
+  Vector3 angular_velocity = Vector3::Zero();       ///< [rad/s], W
+  Vector3 spin = Vector3::Zero();  ///< that loaded the elastic part during the step [rad/s], B
+  std::array<ContactRecord, kMaxStyluses> contact;
+  int floor_count = 0;
+  std::array<FloorForce, kMaxFloorContacts> floor;  ///< the first floor_count
+  Vector3 floor_force = Vector3::Zero();            ///< their sum [N], W
+  double residual = 0.0;                            ///< of the contact problem [m]
+  int sweeps = 0;                                   ///< of its solver; 0: solved directly
+  bool solved = true;  ///< false: the contact problem had no finite solution and no force acted
+};
+
+/// A force that a bridge has told of after its step: it was entered before this one.
+struct LateForce {
+  int object = 0;
+  int stylus = 0;
+  int age = 0;                      ///< of its step, in steps before the last one
+  SurfacePoint point;               ///< middle of the contact
+  Vector3 force = Vector3::Zero();  ///< on the object [N], B
+  Vector3 arm = Vector3::Zero();    ///< from the centre of mass to where it acts [m], B
+};
+
+/// In the order in which they were entered.
+struct LateForces {
+  static constexpr std::size_t kMost = 32;  ///< that can be entered before one step
+
+  std::size_t count = 0;
+  std::array<LateForce, kMost> force;  ///< the first `count`
+
+  std::span<const LateForce> view() const noexcept { return {force.data(), count}; }
+};
+
+/// What became of one stylus in one step.
+struct StylusRecord {
+  bool present = false;
+  std::uint32_t buttons = 0;
+  int object =
+      -1;  ///< the one that it touches (the one with the largest force, if several); -1: none
+  ContactState contact = ContactState::kFree;  ///< with that object
+  Vector3 tip = Vector3::Zero();               ///< [m], W
+  Vector3 proxy = Vector3::Zero();             ///< of that contact; free: the tip [m], W
+  Vector3 force = Vector3::Zero();             ///< on the stylus, of all objects [N], W
+  std::optional<BridgedForce> bridged = {};    ///< that the step was given, as it was given
+};
+
+/// What happened in one step: everything that the trace, the deformation and the bridges need.
+struct StepRecord {
+  std::uint64_t force_step = 0;  ///< k
+  double time = 0.0;             ///< (k + 1) dt, the end of the step [s]
+  bool reset = false;            ///< everything was put back to the start before this step
+  std::uint64_t reset_step = 0;  ///< the last step that this was so in, this one included; 0: none
+  Settings settings;             ///< that the step was made with
+  std::uint32_t settings_change = 0;  ///< how often they were changed so far
+  int object_count = 0;
+  int stylus_count = 0;
+  std::array<ObjectRecord, kMaxObjects> object;
+  std::array<StylusRecord, kMaxStyluses> stylus;
+  LateForces late;  ///< entered before the step
+};
+
+}  // namespace irdm

@@ -1,0 +1,112 @@
+#include "viewer/message_parts.hpp"
+
+namespace irdm::viewer {
+namespace {
+
+constexpr std::uint32_t kLockstepFlag = 1;
+constexpr std::uint32_t kFloorFlag = 2;
+constexpr std::uint32_t kViewerStylusFlag = 4;
+constexpr std::uint32_t kRecordedFlag = 8;
+
+void put_object(Writer& writer, const SceneObject& object) {
+  const std::string name = object.name.substr(0, kMaxNameLength);
+  writer.put(static_cast<std::uint32_t>(object.rest.rows()));
+  writer.put(static_cast<std::uint32_t>(object.triangles.rows()));
+  writer.put(static_cast<std::uint32_t>(name.size()));
+  writer.put(object.mass);
+  writer.put(object.stiffness);
+  writer.put_zeros(4);
+  writer.put_text(name);
+  writer.align();
+  for (Eigen::Index i = 0; i < object.rest.size(); ++i) {
+    writer.put(static_cast<float>(object.rest.data()[i]));
+  }
+  for (Eigen::Index i = 0; i < object.triangles.size(); ++i) {
+    writer.put(static_cast<std::uint32_t>(object.triangles.data()[i]));
+  }
+  const auto nodes = static_cast<std::size_t>(object.rest.rows());
+  for (std::size_t i = 0; i < nodes; ++i) {
+    writer.put(i < object.compliance.size() ? object.compliance[i]
+                                            : std::numeric_limits<float>::quiet_NaN());
+  }
+}
+
+SceneObject get_object(Reader& reader) {
+  SceneObject object;
+  const auto nodes = reader.get<std::uint32_t>();
+  const auto triangles = reader.get<std::uint32_t>();
+  const auto length = reader.get<std::uint32_t>();
+  if (length > kMaxNameLength) throw MessageError("a name is too long");
+  object.mass = reader.get_single();
+  object.stiffness = reader.get_single();
+  reader.skip(4);
+  object.name = reader.get_text(length);
+  reader.align();
+  reader.expect(nodes, 12);
+  object.rest.resize(nodes, 3);
+  for (Eigen::Index i = 0; i < object.rest.size(); ++i) {
+    object.rest.data()[i] = static_cast<double>(reader.get_single());
+  }
+  reader.expect(triangles, 12);
+  object.triangles.resize(triangles, 3);
+  for (Eigen::Index i = 0; i < object.triangles.size(); ++i) {
+    const auto node = reader.get<std::uint32_t>();
+    if (node >= nodes) throw MessageError("a triangle has a node that is not there");
+    object.triangles.data()[i] = static_cast<int>(node);
+  }
+  reader.expect(nodes, 4);
+  for (std::uint32_t i = 0; i < nodes; ++i) object.compliance.push_back(reader.get_single());
+  return object;
+}
+
+}  // namespace
+
+Bytes encode(const Scene& scene) {
+  Bytes bytes;
+  Writer writer(bytes);
+  put_header(writer, Type::kScene);
+  writer.put(static_cast<std::uint16_t>(scene.objects.size()));
+  writer.put(static_cast<std::uint16_t>(scene.styluses.size()));
+  writer.put((scene.lockstep ? kLockstepFlag : 0) | (scene.floor ? kFloorFlag : 0) |
+             (scene.viewer_stylus ? kViewerStylusFlag : 0) | (scene.recorded ? kRecordedFlag : 0));
+  writer.put(scene.dt);
+  writer.put(scene.floor ? scene.floor->normal : Vector3::Zero().eval());
+  writer.put(scene.floor ? scene.floor->height : 0.0);
+  for (const SimulationStylus& stylus : scene.styluses) {
+    writer.put(static_cast<float>(stylus.radius));
+    writer.put(static_cast<float>(stylus.coupling_stiffness));
+    writer.put(static_cast<float>(stylus.reach));
+    writer.put(scene.viewer_stylus && &stylus == &scene.styluses.back() ? scene.max_force : 0.0F);
+  }
+  for (const SceneObject& object : scene.objects) put_object(writer, object);
+  return bytes;
+}
+
+Scene decode_scene(std::span<const std::uint8_t> bytes) {
+  Reader reader(bytes);
+  expect_type(reader, Type::kScene);
+  Scene scene;
+  const std::size_t objects = get_count(reader, kMaxObjects);
+  const std::size_t styluses = get_count(reader, kMaxStyluses);
+  const auto flags = reader.get<std::uint32_t>();
+  scene.lockstep = (flags & kLockstepFlag) != 0;
+  scene.viewer_stylus = (flags & kViewerStylusFlag) != 0;
+  scene.recorded = (flags & kRecordedFlag) != 0;
+  scene.dt = reader.get_double();
+  FloorConfig floor;
+  floor.normal = reader.get_vector();
+  floor.height = reader.get_double();
+  if ((flags & kFloorFlag) != 0) scene.floor = floor;
+  for (std::size_t s = 0; s < styluses; ++s) {
+    SimulationStylus& stylus = scene.styluses.emplace_back();
+    stylus.radius = static_cast<double>(reader.get_single());
+    stylus.coupling_stiffness = static_cast<double>(reader.get_single());
+    stylus.reach = static_cast<double>(reader.get_single());
+    scene.max_force = reader.get_single();
+  }
+  for (std::size_t i = 0; i < objects; ++i) scene.objects.push_back(get_object(reader));
+  reader.finish();
+  return scene;
+}
+
+}  // namespace irdm::viewer

@@ -1,0 +1,90 @@
+#include <algorithm>
+#include <array>
+
+#include "viewer/message_parts.hpp"
+
+namespace irdm::viewer {
+namespace {
+
+/// The flags of a State, bit by bit.
+template <typename AnyState>
+auto flags_of(AnyState& state) {
+  return std::array{&state.looks_on,  &state.stylus_free, &state.holds_stylus, &state.paused,
+                    &state.recording, &state.playback,    &state.playing,      &state.can_record};
+}
+
+}  // namespace
+
+Bytes encode(const State& state) {
+  Bytes bytes;
+  Writer writer(bytes);
+  put_header(writer, Type::kState);
+  std::uint32_t flags = 0;
+  std::uint32_t bit = 1;
+  for (const bool* flag : flags_of(state)) {
+    if (*flag) flags |= bit;
+    bit <<= 1U;
+  }
+  const std::string notice = state.notice.substr(0, kMaxNotice);
+  const std::size_t recordings = std::min(state.recordings.size(), kMaxRecordings);
+  writer.put(flags);
+  writer.put(state.settings_changes);
+  writer.put(state.length);
+  writer.put(state.speed);
+  writer.put(state.shown);
+  writer.put(static_cast<std::uint16_t>(recordings));
+  writer.put(static_cast<std::uint16_t>(notice.size()));
+  writer.put_zeros(2);
+  writer.put(state.settings.gravity);
+  for (std::size_t i = 0; i < state.choices.size(); ++i) {
+    put_settings(writer, state.settings.object[i], state.choices[i]);
+  }
+  for (std::size_t i = 0; i < recordings; ++i) {
+    const std::string name = state.recordings[i].name.substr(0, kMaxRecordingName);
+    writer.put(state.recordings[i].number);
+    writer.put(static_cast<std::uint16_t>(name.size()));
+    writer.put_text(name);
+    writer.put_zeros(kMaxRecordingName - name.size());
+  }
+  writer.put_text(notice);
+  writer.align();
+  return bytes;
+}
+
+State decode_state(std::span<const std::uint8_t> bytes, std::size_t objects) {
+  Reader reader(bytes);
+  expect_type(reader, Type::kState);
+  State state;
+  auto flags = reader.get<std::uint32_t>();
+  for (bool* flag : flags_of(state)) {
+    *flag = (flags & 1U) != 0;
+    flags >>= 1U;
+  }
+  state.settings_changes = reader.get<std::uint32_t>();
+  state.length = reader.get_double();
+  state.speed = reader.get_double();
+  state.shown = reader.get<std::uint16_t>();
+  const auto recordings = reader.get<std::uint16_t>();
+  const auto notice = reader.get<std::uint16_t>();
+  if (recordings > kMaxRecordings || notice > kMaxNotice) {
+    throw MessageError("a count is out of range");
+  }
+  reader.skip(2);
+  state.settings.gravity = get_bounded_vector(reader, kMostGravity);
+  for (std::size_t i = 0; i < objects; ++i) {
+    state.settings.object.at(i) = get_settings(reader, state.choices.emplace_back());
+  }
+  for (std::uint16_t i = 0; i < recordings; ++i) {
+    const auto number = reader.get<std::uint16_t>();
+    const auto length = reader.get<std::uint16_t>();
+    if (length > kMaxRecordingName) throw MessageError("a name is too long");
+    state.recordings.push_back({number, reader.get_text(length)});
+    reader.skip(kMaxRecordingName - length);
+  }
+  state.notice = reader.get_text(notice);
+  reader.align();
+  reader.finish();
+  return state;
+}
+
+}  // namespace irdm::viewer

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+
+#include "viewer/viewed_run.hpp"
+
+namespace irdm::viewer {
+
+/// Who of the viewers has their one stylus: the first one to press, until it lets go or falls
+/// silent. Pure but for what it asks of the run; viewer's thread.
+class StylusHolder {
+ public:
+  StylusHolder(ViewedRun& run, std::int64_t timeout_ns) : run_(run), timeout_ns_(timeout_ns) {}
+
+  bool free() const noexcept { return holder_ == nullptr; }
+  bool held_by(const void* viewer) const noexcept {
+    return holder_ != nullptr && holder_ == viewer;
+  }
+
+  /// True when the stylus has changed hands.
+  bool take(const StylusRequest& request, const void* viewer, std::int64_t now_ns) {
+    if (holder_ != nullptr && holder_ != viewer) return false;
+    if (holder_ == nullptr && !request.present) return false;
+    run_.carry_out(request);
+    heard_ns_ = now_ns;
+    const void* before = holder_;
+    holder_ = request.present ? viewer : nullptr;
+    return holder_ != before;
+  }
+
+  /// Takes it from a viewer that has fallen silent or is gone.
+  /// @param there bool(const void* viewer): it is still connected
+  template <typename There>
+  void expire(std::int64_t now_ns, const There& there) {
+    if (holder_ == nullptr) return;
+    if (now_ns - heard_ns_ <= timeout_ns_ && there(holder_)) return;
+    holder_ = nullptr;
+    run_.carry_out(StylusRequest{});
+  }
+
+ private:
+  ViewedRun& run_;
+  std::int64_t timeout_ns_;
+  const void* holder_ = nullptr;  ///< compared only
+  std::int64_t heard_ns_ = 0;
+};
+
+}  // namespace irdm::viewer

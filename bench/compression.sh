@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# How small dense R gets and how far off its forces then are (docs/compression.md):
+# How small dense R gets and how far off its forces then are (docs/theory.md):
 #   bench/compression.sh [CELLS [OPTIONS OF irdm-precompute compress]]
 # The cube of configs/models/small-cube.toml with CELLS cells an edge: 9 unless given (4.3 GB, some 20 minutes).
 set -euo pipefail

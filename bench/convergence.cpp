@@ -1,6 +1,6 @@
 // Convergence of the finite elements on the cube of the paper: lowest elastic frequency of the free
 // cube and compliance under a patch, for linear and quadratic tetrahedra on finer and finer meshes.
-// Writes the table of docs/convergence.md; sparse solvers only, nothing in common with
+// Writes the table of docs/results.md; sparse solvers only, nothing in common with
 // irdm-precompute but mesh, stiffness and mass.
 //   bench_convergence [CELLS_OF_THE_REFERENCE]      14 unless given
 #include <Eigen/SparseCholesky>

@@ -175,7 +175,7 @@ class Rig {
   PressingDevice device_;
   std::vector<ServoLoop> loops_;
   ServoLink link_;
-  Wakeup done_;
+  EventFd done_;
   std::optional<NetworkClient> client_;
   std::optional<ServoThread> servo_;
 };

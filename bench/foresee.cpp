@@ -34,10 +34,11 @@ void measure(const char* engine, int modes, Model model) {
     const StylusCommand command{
         true, kGrabButton, {0.0013 + 0.001 * std::sin(0.018 * k), height, 0.0011}, {}};
     step.push_back(1e6 * bench::seconds([&] { simulation.step({&command, 1}, record); }));
-    ahead.push_back(1e6 *
-                    bench::seconds([&] { simulation.foresee(0, command.tip, kHorizon, contact); }));
+    ahead.push_back(1e6 * bench::seconds([&] {
+                      simulation.predict_horizon(0, command.tip, kHorizon, contact);
+                    }));
     late.push_back(1e6 * bench::seconds([&] {
-                     simulation.enter_late(0, {Vector3(0, -1e-6, 0), command.tip}, 3);
+                     simulation.insert_delayed_force(0, {Vector3(0, -1e-6, 0), command.tip}, 3);
                    }));
   }
   std::printf("| %s | %d | %d |", engine, config.objects[0].model->mesh.surface_node_count(),

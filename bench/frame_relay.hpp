@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <thread>
 
-#include "common/realtime/wakeup.hpp"
+#include "common/realtime/event_fd.hpp"
 
 namespace irdm {
 
@@ -50,7 +50,7 @@ class FrameRelay {
   std::atomic<std::int64_t> last_model_ns_{0};
   std::atomic<std::int64_t> last_force_ns_{0};
   std::atomic<bool> stop_{false};
-  Wakeup change_;
+  EventFd change_;
   std::thread thread_;
 };
 

@@ -88,7 +88,7 @@ class Bridge {
   }
 
   ServoLink link_;
-  Wakeup gave_up_;
+  EventFd gave_up_;
   NetworkClient client_;
   PeriodicSchedule schedule_{monotonic_ns(), kMillisecond};
   std::uint64_t sequence_ = 0;

@@ -77,7 +77,7 @@ FilterLimits limits_for(const HapticDevice& device, const BridgeConfig& config) 
 }
 
 // Until a signal comes, a thread of ours ends, or a driver stops making ticks.
-void await_end(StopSignal& stop_signal, Wakeup& done, const ServoThread& servo,
+void await_end(StopSignal& stop_signal, EventFd& done, const ServoThread& servo,
                DeviceWatch& watch) {
   constexpr int kLookMs = 100;
   constexpr int kSilentLooks = 3;  // one is seen by a process that was itself asleep
@@ -130,7 +130,7 @@ BridgeReport run_bridge(const BridgeConfig& config, StopSignal& stop_signal, dou
     simulated = simulated && device->simulated();
   }
 
-  Wakeup done;
+  EventFd done;
   ServoLink link(loops.size());
   ClientSettings settings = client_settings(config);
   settings.lockstep = simulated;

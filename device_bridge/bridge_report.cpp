@@ -36,8 +36,8 @@ std::string to_text(const BridgeReport& report) {
        << client.steps_missed << " steps missed, longest gap " << client.longest_gap << ", "
        << client.forces_old << " dropped\n";
   if (client.models + client.models_refused > 0) {
-    text << "contact models: " << client.models << " taken, " << client.models_refused
-         << " not believed\n";
+    text << "contact models: " << client.models << " used, " << client.models_refused
+         << " invalid\n";
   }
   if (client.datagram_sessions > 0) {
     text << "datagrams: " << client.datagrams << " received in " << client.datagram_sessions

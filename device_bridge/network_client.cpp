@@ -23,7 +23,7 @@ using boost::system::error_code;
 
 class NetworkClient::Impl {
  public:
-  Impl(ServoLink& link, const ClientSettings& settings, Wakeup& gave_up);
+  Impl(ServoLink& link, const ClientSettings& settings, EventFd& gave_up);
   ~Impl() { stop(false); }
 
   void start();
@@ -45,7 +45,7 @@ class NetworkClient::Impl {
 
   ServoLink& link_;
   const ClientSettings settings_;
-  Wakeup& gave_up_;
+  EventFd& gave_up_;
   const std::string server_;  ///< for messages
   ArmingPatience patience_;
   std::optional<wire::Tls> tls_;
@@ -63,7 +63,7 @@ class NetworkClient::Impl {
   std::thread thread_;
 };
 
-NetworkClient::Impl::Impl(ServoLink& link, const ClientSettings& settings, Wakeup& gave_up)
+NetworkClient::Impl::Impl(ServoLink& link, const ClientSettings& settings, EventFd& gave_up)
     : link_(link),
       settings_(settings),
       gave_up_(gave_up),
@@ -210,7 +210,7 @@ void NetworkClient::Impl::give_up(const std::string& why) {
   gave_up_.signal();
 }
 
-NetworkClient::NetworkClient(ServoLink& link, const ClientSettings& settings, Wakeup& gave_up)
+NetworkClient::NetworkClient(ServoLink& link, const ClientSettings& settings, EventFd& gave_up)
     : impl_(std::make_unique<Impl>(link, settings, gave_up)) {}
 NetworkClient::~NetworkClient() = default;
 void NetworkClient::start() {

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "common/realtime/wakeup.hpp"
+#include "common/realtime/event_fd.hpp"
 #include "device_bridge/link/client_report.hpp"
 #include "device_bridge/link/client_settings.hpp"
 #include "device_bridge/servo_link.hpp"
@@ -17,7 +17,7 @@ class NetworkClient {
  public:
   /// Resolves the server's name. Throws Error when it cannot.
   /// @param gave_up signalled when it gives up
-  NetworkClient(ServoLink& link, const ClientSettings& settings, Wakeup& gave_up);
+  NetworkClient(ServoLink& link, const ClientSettings& settings, EventFd& gave_up);
   NetworkClient(const NetworkClient&) = delete;
   NetworkClient& operator=(const NetworkClient&) = delete;
   ~NetworkClient();  ///< stops

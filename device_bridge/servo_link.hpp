@@ -7,8 +7,8 @@
 
 #include "common/contact/applied_forces.hpp"
 #include "common/contact/contact_model.hpp"
-#include "common/realtime/mailbox.hpp"
-#include "common/realtime/wakeup.hpp"
+#include "common/realtime/event_fd.hpp"
+#include "common/realtime/triple_buffer.hpp"
 #include "common/stylus.hpp"
 #include "device_bridge/servo_input.hpp"
 
@@ -39,10 +39,10 @@ struct LinkedForces {
 /// Hand-over between servo thread and network thread. Neither ever waits for the other.
 struct ServoLink {
   struct Stylus {
-    Mailbox<StylusSample> sample;           ///< servo writes
-    Mailbox<ServoInput> input;              ///< network writes
-    Mailbox<LinkedModel> model;             ///< network writes, where the contact is solved here
-    Mailbox<LinkedForces> applied;          ///< servo writes, then
+    TripleBuffer<StylusSample> sample;      ///< servo writes
+    TripleBuffer<ServoInput> input;         ///< network writes
+    TripleBuffer<LinkedModel> model;        ///< network writes, where the contact is solved here
+    TripleBuffer<LinkedForces> applied;     ///< servo writes, then
     std::atomic<bool> armed{false};         ///< servo writes; and the next
     std::atomic<double> success_rate{0.0};  ///< LinkGate's
     std::atomic<double> gain{1.0};          ///< Oscillation's
@@ -50,9 +50,9 @@ struct ServoLink {
   explicit ServoLink(std::size_t count) : styluses(count) {}
 
   std::vector<Stylus> styluses;
-  Mailbox<LinkState> state;  ///< network writes
-  Wakeup samples_ready;      ///< servo to network: the samples of a tick are there
-  Wakeup news;               ///< network to servo: input or state changed
+  TripleBuffer<LinkState> state;  ///< network writes
+  EventFd samples_ready;          ///< servo to network: the samples of a tick are there
+  EventFd news;                   ///< network to servo: input or state changed
 };
 
 }  // namespace irdm

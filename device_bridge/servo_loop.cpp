@@ -64,8 +64,8 @@ ForceDemand ServoLoop::demand(std::int64_t now_ns, const ServoInput& input) noex
             .contact = newest.contact,
             .force = newest.force};
   }
-  const BridgeContact::Wanted& wanted = contact_->wanted();
-  return {.linked = input.linked && !wanted.standing,
+  const BridgeContact::ForceCommand& wanted = contact_->wanted();
+  return {.linked = input.linked && !wanted.paused,
           .any = wanted.any,
           .sample_time_ns = std::min(wanted.content_ns, now_ns),
           .horizon_ns = wanted.horizon_ns,
@@ -77,7 +77,7 @@ ForceDemand ServoLoop::demand(std::int64_t now_ns, const ServoInput& input) noex
 }
 
 // What is not ready gets no force, and afterwards it comes back as after an arm action.
-void ServoLoop::heed_device() noexcept {
+void ServoLoop::update_device_state() noexcept {
   const FilterState state = filter_.state();
   const bool was_ready = std::exchange(was_ready_, device_state_.ready);
   if (state == FilterState::kFault) return;
@@ -92,7 +92,7 @@ void ServoLoop::heed_device() noexcept {
 
 void ServoLoop::apply(std::int64_t now_ns, const ServoInput& input) noexcept {
   if (!reading_) return rest();
-  heed_device();
+  update_device_state();
   ForceDemand wanted = demand(now_ns, input);
   wanted.force = clutch_.gain(now_ns) * mapping_.workspace.to_device(wanted.force);
   wanted.normal = mapping_.workspace.direction_to_device(wanted.normal);

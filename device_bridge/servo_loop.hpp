@@ -84,7 +84,7 @@ class ServoLoop {
 
  private:
   ForceDemand demand(std::int64_t now_ns, const ServoInput& input) noexcept;
-  void heed_device() noexcept;
+  void update_device_state() noexcept;
   void show(const Vector3& force) noexcept {
     shown_ = force;
     device_.write(force);

@@ -17,7 +17,7 @@ std::int64_t to_ns(double seconds) noexcept {
 }  // namespace
 
 ServoThread::ServoThread(ServoLink& link, std::vector<ServoLoop>& loops,
-                         const ServoSettings& settings, Wakeup& done)
+                         const ServoSettings& settings, EventFd& done)
     : link_(link), loops_(loops), settings_(settings), done_(done) {}
 
 ServoThread::~ServoThread() {
@@ -87,7 +87,7 @@ bool ServoThread::source_tick() noexcept {
     report_.wakeup.add(late_ns_);
     if (late_ns_ > 0) report_.missed += static_cast<std::uint64_t>(late_ns_ / period_ns);
   }
-  if (beat(now_ns)) return true;
+  if (tick(now_ns)) return true;
   source_ended_.signal();
   done_.signal();
   return false;
@@ -110,7 +110,7 @@ void ServoThread::run_real_time() noexcept {
     late_ns_ = now_ns - deadline_ns;
     report_.wakeup.add(late_ns_);
     report_.missed = schedule.missed();
-    if (!beat(now_ns)) return;
+    if (!tick(now_ns)) return;
     if (report_.lockstep) {
       report_.end = run_lockstep();
       return;
@@ -119,10 +119,10 @@ void ServoThread::run_real_time() noexcept {
 }
 
 // One tick in real time; false when it was the last.
-bool ServoThread::beat(std::int64_t now_ns) noexcept {
+bool ServoThread::tick(std::int64_t now_ns) noexcept {
   if (phase_ == Phase::kWaiting) wait_for_session(now_ns);
   if (phase_ == Phase::kRunning) {
-    tick(now_ns);
+    render_tick(now_ns);
   } else if (phase_ == Phase::kFading) {
     fade(now_ns);
   }
@@ -149,7 +149,7 @@ void ServoThread::wait_for_session(std::int64_t now_ns) noexcept {
   if (lost || stop_) phase_ = Phase::kOver;
 }
 
-void ServoThread::tick(std::int64_t now_ns) noexcept {
+void ServoThread::render_tick(std::int64_t now_ns) noexcept {
   link_.state.receive();
   const LinkState& state = link_.state.front();
   if (session_ != state.sessions) begin_session(state);

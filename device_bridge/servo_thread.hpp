@@ -6,9 +6,9 @@
 #include <thread>
 #include <vector>
 
+#include "common/realtime/event_fd.hpp"
 #include "common/realtime/histogram.hpp"
 #include "common/realtime/scheduling.hpp"
-#include "common/realtime/wakeup.hpp"
 #include "device_bridge/blackbox/tick_log.hpp"
 #include "device_bridge/servo_link.hpp"
 #include "device_bridge/servo_loop.hpp"
@@ -50,7 +50,7 @@ class ServoThread {
   /// @param loops one for each stylus of the link, opened devices; used by the thread until stop()
   /// @param done signalled when the thread ends by itself
   ServoThread(ServoLink& link, std::vector<ServoLoop>& loops, const ServoSettings& settings,
-              Wakeup& done);
+              EventFd& done);
   ServoThread(const ServoThread&) = delete;
   ServoThread& operator=(const ServoThread&) = delete;
   ~ServoThread();  ///< stops
@@ -78,9 +78,9 @@ class ServoThread {
   void run_real_time() noexcept;
   ServoEnd run_lockstep() noexcept;
   ServoEnd lockstep_end() noexcept;
-  bool beat(std::int64_t now_ns) noexcept;
+  bool tick(std::int64_t now_ns) noexcept;
   void wait_for_session(std::int64_t now_ns) noexcept;
-  void tick(std::int64_t now_ns) noexcept;
+  void render_tick(std::int64_t now_ns) noexcept;
   void fade(std::int64_t now_ns) noexcept;
   void write_down(std::size_t i, std::int64_t now_ns) noexcept;
   void end(ServoEnd end, std::int64_t now_ns) noexcept;
@@ -92,7 +92,7 @@ class ServoThread {
   ServoLink& link_;
   std::vector<ServoLoop>& loops_;
   ServoSettings settings_;
-  Wakeup& done_;
+  EventFd& done_;
   std::uint64_t session_ = 0;  ///< that the loops are in
   ServoReport report_;
   std::string scheduling_;
@@ -102,7 +102,7 @@ class ServoThread {
   std::int64_t late_ns_ = 0;                   ///< by how much this tick began too late
   TickSource* source_ = nullptr;               ///< whose ticks they are; none: our own thread's
   std::atomic<std::int64_t> last_tick_ns_{0};  ///< of the source
-  Wakeup source_ended_;                        ///< the source's last tick is over
+  EventFd source_ended_;                       ///< the source's last tick is over
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };

@@ -29,12 +29,12 @@
 #include "precompute/modal/reduced_modes.hpp"
 #include "precompute/modal/shared_modes.hpp"
 #include "precompute/modal/symmetric_eigen.hpp"
-#include "precompute/process/last_action.hpp"
+#include "precompute/process/signal_cleanup.hpp"
 
 namespace irdm::precompute {
 namespace {
 
-// Above this, linear tetrahedra are far too stiff: they lock (docs/convergence.md).
+// Above this, linear tetrahedra are far too stiff: they lock (docs/results.md).
 constexpr double kLockingPoissonRatio = 0.45;
 constexpr double kMaxDecayLeft = 0.01;
 constexpr double kMaxForceError = 0.05;
@@ -291,7 +291,7 @@ Summary precompute_model(const PrecomputeConfig& config, const std::filesystem::
       by_columns(*modal_columns(response, model, config.response.precision));
     } else {
       ModelFileWriter writer(output);
-      const LastAction cleanup({.remove = writer.temporary_path()});
+      const SignalCleanup cleanup({.remove = writer.temporary_path()});
       writer.write_description(model);
       write_modal_response(writer, std::move(response), model, config.response, threads, console);
       writer.commit();

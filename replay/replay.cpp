@@ -11,16 +11,16 @@
 #include "precompute/progress.hpp"
 #include "replay/frame_steps.hpp"
 #include "replay/interruption.hpp"
-#include "replay/made_again/deviation.hpp"
-#include "replay/made_again/finite_step.hpp"
-#include "replay/made_again/from_forces.hpp"
-#include "replay/made_again/from_tips.hpp"
-#include "replay/made_again/told_late.hpp"
 #include "replay/output/csv_output.hpp"
 #include "replay/output/picture_output.hpp"
 #include "replay/output/run_output.hpp"
 #include "replay/output/vtk_output.hpp"
 #include "replay/reference/fem_reference.hpp"
+#include "replay/rerun/delayed_forces.hpp"
+#include "replay/rerun/deviation.hpp"
+#include "replay/rerun/finite_step.hpp"
+#include "replay/rerun/force_rerun.hpp"
+#include "replay/rerun/input_rerun.hpp"
 #include "replay/traced_scene.hpp"
 #include "trace/recording.hpp"
 
@@ -44,7 +44,7 @@ std::string reference_key(const TracedScene& scene, const ReplayOptions& options
   key.precision(17);
   key << "irdm " << IRDM_VERSION << " trace " << sha256_of_file(options.trace) << " substep "
       << fem_substep(scene.dt(), options.substep.value_or(kReferenceSubstep)) << " tips "
-      << options.from_tips << " elasticity " << static_cast<int>(*options.reference);
+      << options.from_inputs << " elasticity " << static_cast<int>(*options.reference);
   for (const TracedObject& object : scene.objects) key << " model " << object.checksum;
   return key.str();
 }
@@ -58,14 +58,14 @@ std::optional<std::filesystem::path> journal_path(const ReplayOptions& options) 
   return std::nullopt;
 }
 
-std::unique_ptr<MadeAgain> make_again(const TracedScene& scene, const std::vector<ToldLate>& late,
-                                      const ReplayOptions& options, StepJournal* journal) {
+std::unique_ptr<Rerun> make_again(const TracedScene& scene, const std::vector<DelayedForces>& late,
+                                  const ReplayOptions& options, StepJournal* journal) {
   if (options.reference) {
     return fem_reference(scene, *options.reference, options.substep.value_or(kReferenceSubstep),
-                         options.from_tips, late, journal);
+                         options.from_inputs, late, journal);
   }
-  if (options.from_tips) return std::make_unique<FromTips>(scene.config, options.solve_bridged);
-  return std::make_unique<FromForces>(scene.config);
+  if (options.from_inputs) return std::make_unique<InputRerun>(scene.config, options.solve_bridged);
+  return std::make_unique<ForceRerun>(scene.config);
 }
 
 std::string how(const TracedScene& scene, const ReplayOptions& options) {
@@ -93,13 +93,13 @@ Outputs make_outputs(const ReplayOptions& options, const TracedScene& scene) {
   if (options.output) {
     outputs.push_back(std::make_unique<RunOutput>(
         *options.output, scene,
-        RunOrigin{options.trace.filename().string(), options.from_tips ? "tips" : "forces",
+        RunOrigin{options.trace.filename().string(), options.from_inputs ? "inputs" : "forces",
                   how(scene, options)}));
   }
   return outputs;
 }
 
-void put_frame(const MadeAgain& made, const StepRecord& record, std::vector<Points>& surfaces,
+void put_frame(const Rerun& made, const StepRecord& record, std::vector<Points>& surfaces,
                Outputs& outputs, const std::string& trace) {
   bool looked_at = false;
   for (const auto& output : outputs) looked_at = looked_at || output->needs_surfaces();
@@ -153,8 +153,8 @@ int replay(const ReplayOptions& options) {
   Outputs outputs = make_outputs(options, scene);
   std::optional<StepJournal> journal;
   if (path) journal.emplace(*path, reference_key(scene, options));
-  const std::vector<ToldLate> late =
-      options.solve_bridged ? std::vector<ToldLate>() : told_late(recording);
+  const std::vector<DelayedForces> late =
+      options.solve_bridged ? std::vector<DelayedForces>() : delayed_forces(recording);
   const auto made = make_again(scene, late, options, journal ? &*journal : nullptr);
   std::vector<Points> surfaces(scene.config.objects.size());
   Deviation deviation;
@@ -166,15 +166,15 @@ int replay(const ReplayOptions& options) {
     made->step(*recorded, *again);
     require_finite(*again, options.trace.string());
     deviation.add(*recorded, *again);
-    add_told_late(late, k, options.reference && options.from_tips, *again);
+    add_delayed_forces(late, k, options.reference && options.from_inputs, *again);
     if (frames.has(k)) put_frame(*made, *again, surfaces, outputs, options.trace.string());
     run.done(k + 1);
   }
   for (const auto& output : outputs) output->finish();
   if (journal) journal->remove();
   std::cout << options.trace.string() << ": " << recording.steps() << " steps of " << scene.dt()
-            << " s from " << (options.from_tips ? "tips" : "forces") << ", " << how(scene, options)
-            << "; " << frames.count() << " frames\n"
+            << " s from " << (options.from_inputs ? "inputs" : "forces") << ", "
+            << how(scene, options) << "; " << frames.count() << " frames\n"
             << taken_text(journal, scene) << deviation.text() << std::flush;
   return 0;
 }

@@ -16,7 +16,7 @@ namespace irdm::replay {
 struct ReplayOptions {
   std::filesystem::path trace;
   std::vector<std::string> models;   ///< FILE or NAME=FILE
-  bool from_tips = false;            ///< the whole step, not only what its forces do
+  bool from_inputs = false;          ///< the whole step, not only what its forces do
   bool solve_bridged = false;        ///< from tips: what bridges solved, too
   std::optional<EngineKind> engine;  ///< none: the run's own
   /// By finite elements of this kind instead of an engine.

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Gives every parser bytes of the fuzzer's choice (docs/fuzzing.md), as many parsers at a time as there are processors,
+# Gives every parser bytes of the fuzzer's choice (docs/contributing.md), as many parsers at a time as there are processors,
 # and fails when one does not stand them. What was found worth keeping, and what brought a parser down, is in out/fuzz.
 #   scripts/fuzz.sh [SECONDS [PARSER ...]]    SECONDS for each parser, 60 unless given
 # IRDM_FUZZ_SEED=N makes every run begin with the same inputs; else no two do. IRDM_FUZZ_AT_ONCE=N: so many at a time.

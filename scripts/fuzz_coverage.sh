@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Which lines of the decoders the fuzzers' seeds reach (docs/fuzzing.md), and those that they do not; fails below 95 %.
+# Which lines of the decoders the fuzzers' seeds reach (docs/contributing.md), and those that they do not; fails below 95 %.
 #   scripts/fuzz.sh --coverage
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -18,7 +18,7 @@ decoders=(
   viewer/message_parts.cpp viewer/client_message.cpp viewer/scene_message.cpp
   viewer/health_message.cpp viewer/state_message.cpp viewer/frame_message.cpp
   viewer/request_rules.cpp viewer/connection.cpp
-  device_bridge/link/server_session.cpp device_bridge/link/force_intake.cpp
+  device_bridge/link/server_session.cpp device_bridge/link/force_receiver.cpp
   device_bridge/bridge_config.cpp device_bridge/stylus_script.cpp
   device_bridge/link/server_datagrams.cpp
   precompute/config.cpp precompute/modal/modes_config.cpp precompute/dynamics/time_stepping_config.cpp

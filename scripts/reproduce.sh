@@ -84,7 +84,7 @@ reference() {
 }
 # A held point can be led along the same path, so that forces can be compared; takes several times as long.
 led_reference() {
-  OMP_NUM_THREADS=1 replay swing-modes fem --reference fem --from tips --substep $substep
+  OMP_NUM_THREADS=1 replay swing-modes fem --reference fem --from inputs --substep $substep
   mkdir -p "$work/swing-fem"
   compare swing-modes/run.h5 swing-modes/fem.h5 swing-fem/compare.json
 }
@@ -167,7 +167,7 @@ for i in 1 2; do
   if [ ! -f "$compressed" ] || [ "$work/models/own.h5" -nt "$compressed" ]; then
     rm -f "$compressed"
     "$IRDM_PROGRAMS/irdm-precompute" compress "$work/models/own.h5" -o "$compressed" --error "${errors[i - 1]}" \
-      --early-steps 16 >"$work/models/compress-$i.log" 2>&1 || fail "compression failed" "$work/models/compress-$i.log"
+      --fir-steps 16 >"$work/models/compress-$i.log" 2>&1 || fail "compression failed" "$work/models/compress-$i.log"
   fi
   for motion in swing tap; do
     scene $motion-own-$i $motion own-$i 'engine = "compressed"'

@@ -8,7 +8,7 @@
 #include "common/checksum.hpp"
 #include "common/error.hpp"
 #include "common/program/stop_signal.hpp"
-#include "common/realtime/wakeup.hpp"
+#include "common/realtime/event_fd.hpp"
 #include "scene/scene_simulation.hpp"
 #include "server/viewed_run/recorded_run.hpp"
 #include "trace/recording.hpp"
@@ -46,7 +46,7 @@ int run_playback(const ServerOptions& options) {
   player.start();
   viewers.start();
   std::cout << "listening on " + viewers.url() + "\n" << std::flush;
-  const Wakeup never;
+  const EventFd never;
   stop.wait(never.descriptor());
   viewers.stop();
   player.finish();

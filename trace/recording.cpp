@@ -39,7 +39,8 @@ struct Recording::Data {
   void number_late(const std::string& file);
   void number_bridged();
   RigidState before(std::size_t object, std::size_t k) const;
-  void object_step(std::size_t object, std::size_t k, ObjectRecord& out, bool feels_spin) const;
+  void object_step(std::size_t object, std::size_t k, ObjectRecord& out,
+                   bool has_inertial_loading) const;
   ContactRecord contact(const trace::ContactRows& rows, std::size_t k,
                         const Quaternion& halfway) const;
 };
@@ -199,7 +200,7 @@ ContactRecord Recording::Data::contact(const trace::ContactRows& rows, std::size
 }
 
 void Recording::Data::object_step(std::size_t i, std::size_t k, ObjectRecord& out,
-                                  bool feels_spin) const {
+                                  bool has_inertial_loading) const {
   const trace::ObjectRows& rows = objects[i];
   const RigidState start = before(i, k);
   const double* q = rows.orientation.data() + 4 * k;
@@ -209,7 +210,7 @@ void Recording::Data::object_step(std::size_t i, std::size_t k, ObjectRecord& ou
   out.orientation = Quaternion(q[0], q[1], q[2], q[3]);
   out.velocity = trace::vector_of(rows.velocity, k);
   out.angular_velocity = trace::vector_of(rows.angular_velocity, k);
-  out.spin = feels_spin ? bodies[i].mid_step_spin(start) : Vector3::Zero();
+  out.spin = has_inertial_loading ? bodies[i].mid_step_spin(start) : Vector3::Zero();
   out.contact.fill(ContactRecord{});
   for (std::size_t s = 0; s < rows.contacts.size(); ++s) {
     out.contact[s] = contact(rows.contacts[s], k, out.halfway);

@@ -2,16 +2,16 @@
 
 #include <vector>
 
-#include "common/realtime/mailbox.hpp"
-#include "common/realtime/wakeup.hpp"
+#include "common/realtime/event_fd.hpp"
+#include "common/realtime/triple_buffer.hpp"
 #include "viewer/message.hpp"
 
 namespace irdm::viewer {
 
 /// Where new surfaces come from. The viewer's thread is the reader of both.
 struct SurfaceSource {
-  Mailbox<SurfaceFrame>& surfaces;
-  Wakeup& ready;  ///< signalled whenever there is a new one
+  TripleBuffer<SurfaceFrame>& surfaces;
+  EventFd& ready;  ///< signalled whenever there is a new one
 };
 
 /// What viewers see of a run and may ask of it. All of it is called by the viewer's thread, and

@@ -14,7 +14,7 @@
 #include "common/error.hpp"
 #include "common/quoted.hpp"
 #include "common/realtime/clock.hpp"
-#include "common/wire/allowance.hpp"
+#include "common/wire/token_bucket.hpp"
 #include "viewer/connection.hpp"
 #include "viewer/stylus_holder.hpp"
 
@@ -95,7 +95,7 @@ class ViewerServer::Impl final : public Hub {
   StylusHolder stylus_;
   State state_;  ///< that all were told last
   int ticks_ = 0;
-  Allowance complaints_ = complaint_allowance();
+  TokenBucket complaints_ = complaint_allowance();
   /// They keep themselves alive; what is gone, is over.
   std::vector<std::weak_ptr<Connection>> connections_;
   bool accepting_ = false;

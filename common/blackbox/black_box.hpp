@@ -10,7 +10,7 @@
 
 #include "common/blackbox/black_box_part.hpp"
 #include "common/realtime/bounded_queue.hpp"
-#include "common/realtime/wakeup.hpp"
+#include "common/realtime/event_fd.hpp"
 
 namespace irdm {
 
@@ -56,7 +56,7 @@ class BlackBox {
   std::optional<Fault> due_;                     ///< that is to be written soon
   std::map<std::string, std::int64_t> written_;  ///< when, by kind
   BoundedQueue<Fault> reported_{8};
-  Wakeup stop_;
+  EventFd stop_;
   std::thread thread_;
 };
 

@@ -33,7 +33,7 @@ struct ContactModel {
   /// The newest step of which the bridge's force had come by then; kNoStep: none had.
   std::uint64_t newest = kNoStep;
   /// The run stands still: what is felt is to fade. Nothing else means anything then.
-  bool standing = false;
+  bool paused = false;
   double dt = 0.0;  ///< of a step [s], > 0
   int horizon = 0;  ///< H, 1 to kMaxHorizon
 

@@ -58,7 +58,7 @@ int strongest_pull(const ContactProblem& problem, const Active& active) noexcept
   int worst = -1;
   double pull = 0.0;
   for (int a = 0; a < problem.count(); ++a) {
-    const ContactUnknown& contact = problem.contact(a);
+    const ContactConstraint& contact = problem.contact(a);
     if (!active[static_cast<std::size_t>(a)] || contact.law != ContactLaw::kTouching) continue;
     const double outward = contact.force.dot(contact.normal);
     if (outward > pull) {
@@ -69,7 +69,7 @@ int strongest_pull(const ContactProblem& problem, const Active& active) noexcept
   return worst;
 }
 
-bool inside_cone(const ContactUnknown& contact) noexcept {
+bool inside_cone(const ContactConstraint& contact) noexcept {
   if (contact.law != ContactLaw::kTouching || std::isinf(contact.friction.static_)) return true;
   const double push = -contact.force.dot(contact.normal);
   const Vector3 along = contact.force + push * contact.normal;
@@ -87,7 +87,7 @@ void give_up(ContactProblem& problem) noexcept {
 double largest_error(const ContactProblem& problem) noexcept {
   double largest = 0.0;
   for (int a = 0; a < problem.count(); ++a) {
-    const ContactUnknown& contact = problem.contact(a);
+    const ContactConstraint& contact = problem.contact(a);
     if (contact.law == ContactLaw::kGiven || contact.mode != ContactMode::kSticking) continue;
     largest = std::max(largest, (contact.gap - moved(problem, a)).norm());
   }
@@ -109,7 +109,7 @@ ContactProblem::ContactProblem(int capacity)
 
 void ContactProblem::begin(int count) noexcept {
   count_ = count;
-  std::fill_n(contacts_.begin(), count, ContactUnknown{});
+  std::fill_n(contacts_.begin(), count, ContactConstraint{});
 }
 
 ContactSolver::ContactSolver(int capacity)
@@ -149,7 +149,7 @@ bool ContactSolver::stick(ContactProblem& problem) noexcept {
   }
   bool sticks = true;
   for (int a = 0; a < problem.count(); ++a) {
-    ContactUnknown& contact = problem.contact(a);
+    ContactConstraint& contact = problem.contact(a);
     const bool on = active[static_cast<std::size_t>(a)];
     contact.mode = on ? ContactMode::kSticking : ContactMode::kOpen;
     if (on && !inside_cone(contact)) sticks = false;
@@ -171,7 +171,7 @@ void ContactSolver::start(const ContactProblem& problem) noexcept {
   now_.setZero();
   auto u = now_.segment(6, 3 * problem.count());
   for (int b = 0; b < problem.count(); ++b) {
-    const ContactUnknown& contact = problem.contact(b);
+    const ContactConstraint& contact = problem.contact(b);
     if (contact.force.isZero(0.0)) continue;
     u.noalias() += problem.elastic_column(b) * contact.force;
     push() += contact.force;
@@ -220,7 +220,7 @@ Vector3 ContactSolver::displacement(const ContactProblem& problem, int a) const 
 
 void ContactSolver::add(ContactProblem& problem, int a, const Vector3& more) noexcept {
   if (more.isZero(0.0)) return;
-  ContactUnknown& contact = problem.contact(a);
+  ContactConstraint& contact = problem.contact(a);
   contact.force += more;
   now_.segment(6, 3 * problem.count()).noalias() += problem.elastic_column(a) * more;
   push() += more;
@@ -268,7 +268,7 @@ double ContactSolver::solve_held(ContactProblem& problem) noexcept {
 }
 
 double ContactSolver::solve_touching(ContactProblem& problem, int a) noexcept {
-  ContactUnknown& contact = problem.contact(a);
+  ContactConstraint& contact = problem.contact(a);
   const Matrix3 W = own_compliance(problem, a);
   const Vector3 own = contact.gap - displacement(problem, a) + W * contact.force;
   const SingleContact found =
@@ -286,7 +286,7 @@ double ContactSolver::sweep(ContactProblem& problem) noexcept {
   double largest = held_count_ > 0 ? solve_held(problem) : 0.0;
   int held = 0;
   for (int a = 0; a < problem.count(); ++a) {
-    ContactUnknown& contact = problem.contact(a);
+    ContactConstraint& contact = problem.contact(a);
     if (contact.law == ContactLaw::kGiven) {
       contact.mode = ContactMode::kSticking;
     } else if (contact.law != ContactLaw::kHeld || held++ >= held_count_) {

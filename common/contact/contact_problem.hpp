@@ -42,7 +42,7 @@ enum class ContactMode {
 };
 
 /// One contact of a problem: what is asked and what was found.
-struct ContactUnknown {
+struct ContactConstraint {
   ContactLaw law = ContactLaw::kHeld;
   Vector3 normal = Vector3::Zero();  ///< outward unit normal of the object's surface; of touching
   Friction friction;
@@ -78,8 +78,8 @@ class ContactProblem {
   /// Starts a problem of `count` contacts, all of them blank; elastic blocks keep their values.
   void begin(int count) noexcept;
 
-  ContactUnknown& contact(int a) noexcept { return contacts_[static_cast<std::size_t>(a)]; }
-  const ContactUnknown& contact(int a) const noexcept {
+  ContactConstraint& contact(int a) noexcept { return contacts_[static_cast<std::size_t>(a)]; }
+  const ContactConstraint& contact(int a) const noexcept {
     return contacts_[static_cast<std::size_t>(a)];
   }
   /// Elastic compliance within the step between contacts a and b (coupling springs included) [m/N].
@@ -97,7 +97,7 @@ class ContactProblem {
  private:
   int count_ = 0;
   Eigen::MatrixXd elastic_;
-  std::vector<ContactUnknown> contacts_;
+  std::vector<ContactConstraint> contacts_;
 };
 
 /// How a problem was solved.

@@ -19,13 +19,13 @@ class ColumnSupply {
   /// The columns of a node, which stay where they are until they are given back as often as they
   /// were taken. Null: they are not there, or not yet; whoever goes on asking gets them before
   /// others.
-  virtual const void* take(int node) noexcept = 0;
-  virtual void give_back(int node) noexcept = 0;
+  virtual const void* acquire(int node) noexcept = 0;
+  virtual void release(int node) noexcept = 0;
   /// Of how many nodes an engine may have the columns at a time.
   virtual int share() const noexcept = 0;
   /// Where tips are: what is near them is wanted next. Of one engine's thread only.
   /// @param tips [m], B
-  virtual void expect(std::span<const Vector3> tips) noexcept = 0;
+  virtual void prefetch(std::span<const Vector3> tips) noexcept = 0;
 };
 
 }  // namespace irdm

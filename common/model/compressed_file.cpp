@@ -66,7 +66,7 @@ void check_own_responses(const hdf5::File& file, const CompressedResponse& respo
       for (int b = 0; b < 3; ++b) {
         sum(a, b) = with_early(response, i, a, i, b, [&](const auto* numbers, double scale) {
           double total = 0.0;
-          for (int s = 0; s < response.early_steps; ++s) total += to_double(numbers[s]);
+          for (int s = 0; s < response.fir_steps; ++s) total += to_double(numbers[s]);
           return scale * total;
         });
       }
@@ -98,7 +98,7 @@ void check_poles(const hdf5::File& file, const CompressedResponse& response) {
 void write_compressed(hdf5::File& file, const CompressedResponse& response,
                       const CompressionError& error) {
   const auto dof = static_cast<hsize_t>(response.shapes.rows());
-  const auto steps = static_cast<hsize_t>(response.early_steps);
+  const auto steps = static_cast<hsize_t>(response.fir_steps);
   std::visit(
       [&]<typename Scalar>(const std::vector<Scalar>& early) {
         file.write<Scalar>(kCompressedEarly, {early.size() / 9 / steps, 9, steps}, early.data());
@@ -130,8 +130,8 @@ CompressedResponse read_compressed(const hdf5::File& file, const Model& model) {
   }
   CompressedResponse response;
   const std::int64_t early = file.read_integer_attribute(kCompressedGroup, "early_steps");
-  require(file, early >= 1 && early <= kMostEarlySteps, "has early_steps out of range");
-  response.early_steps = static_cast<int>(early);
+  require(file, early >= 1 && early <= kMostEarlySteps, "has fir_steps out of range");
+  response.fir_steps = static_cast<int>(early);
   const auto nodes = static_cast<std::size_t>(model.mesh.surface_node_count());
   const hdf5::Shape shape{early_entries(nodes) / 9, 9, static_cast<hsize_t>(early)};
   require(file, file.stored_shape(kCompressedEarly) == shape, "has an early part of another shape");

@@ -169,7 +169,7 @@ struct StreamedResponse {
 ///
 /// for s >= m. Both parts are symmetric: reciprocity holds to the bit.
 struct CompressedResponse {
-  int early_steps = 0;  ///< m, >= 1
+  int fir_steps = 0;  ///< m, >= 1
   /// R[s] for s < m, of pairs of surface nodes i >= j: entry ((i (i + 1) / 2 + j) * 9 + 3 a + b) *
   /// m + s is the displacement of i along a after 1 N on j along b [m/N].
   /// Of 16 bits: times the entry's scale, which is not there for single precision.

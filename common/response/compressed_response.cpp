@@ -28,7 +28,7 @@ RowMatrix<double> compressed_column(const CompressedResponse& response,
                                     const RowMatrix<double>& late, int b, int steps) {
   const auto dof = static_cast<int>(response.shapes.rows());
   RowMatrix<double> column(steps, dof);
-  const int early = std::min(response.early_steps, steps);
+  const int early = std::min(response.fir_steps, steps);
   for (int a = 0; a < dof; ++a) {
     with_early(response, a / 3, a % 3, b / 3, b % 3, [&](const auto* numbers, double scale) {
       for (int s = 0; s < early; ++s) column(s, a) = scale * to_double(numbers[s]);

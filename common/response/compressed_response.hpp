@@ -25,7 +25,7 @@ auto with_early(const CompressedResponse& response, int i, int a, int j, int b,
   const auto column = static_cast<std::size_t>(stored ? j : i);
   const std::size_t entry =
       (row * (row + 1) / 2 + column) * 9 + static_cast<std::size_t>(stored ? 3 * a + b : 3 * b + a);
-  const std::size_t first = entry * static_cast<std::size_t>(response.early_steps);
+  const std::size_t first = entry * static_cast<std::size_t>(response.fir_steps);
   const auto* const integers = std::get_if<std::vector<std::int16_t>>(&response.early);
   if (integers != nullptr) {
     return use(integers->data() + first, static_cast<double>(response.early_scale[entry]));

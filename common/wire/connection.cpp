@@ -45,10 +45,11 @@ Connection::Connection(std::unique_ptr<Stream> stream, FrameTap* tap,
 void Connection::start(Handlers handlers) {
   handlers_ = std::move(handlers);
   received_ns_ = monotonic_ns();
-  stream_->handshake([self = shared_from_this()](const error_code& error) { self->shaken(error); });
+  stream_->handshake(
+      [self = shared_from_this()](const error_code& error) { self->on_handshake(error); });
 }
 
-void Connection::shaken(const error_code& error) {
+void Connection::on_handshake(const error_code& error) {
   if (!open_) return;
   refused_ = is_tls_failure(error);
   if (error) return close(error.message());

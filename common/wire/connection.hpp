@@ -102,7 +102,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   std::optional<std::int64_t> writing_since_ns() const noexcept { return writing_since_ns_; }
 
  private:
-  void shaken(const boost::system::error_code& error);
+  void on_handshake(const boost::system::error_code& error);
   void read();
   void take(std::span<const std::uint8_t> bytes);
   void check_order(std::uint64_t sequence);

@@ -11,9 +11,9 @@ namespace {
 // Bits of a contact model's flags.
 constexpr std::uint16_t kValid = 1u << 0;
 constexpr std::uint16_t kSlipping = 1u << 1;
-constexpr std::uint16_t kStanding = 1u << 2;
+constexpr std::uint16_t kPaused = 1u << 2;
 constexpr std::uint16_t kFixed = 1u << 3;
-constexpr std::uint16_t kAllFlags = kValid | kSlipping | kStanding | kFixed;
+constexpr std::uint16_t kAllFlags = kValid | kSlipping | kPaused | kFixed;
 
 [[noreturn]] void bad_contact_value(const std::string& what) {
   throw ProtocolError(ProtocolFault::kBadValue, what);
@@ -62,7 +62,7 @@ std::uint16_t flags(const ContactModel& model) {
   unsigned bits = 0;
   if (model.valid) bits |= kValid;
   if (model.slipping) bits |= kSlipping;
-  if (model.standing) bits |= kStanding;
+  if (model.paused) bits |= kPaused;
   if (model.body.support == Support::kFixed) bits |= kFixed;
   return static_cast<std::uint16_t>(bits);
 }
@@ -152,7 +152,7 @@ ContactModelMessage decode_contact_model(ByteReader& in) {
     bad_contact_value("the flags are " + std::to_string(bits));
   model.valid = (bits & kValid) != 0;
   model.slipping = (bits & kSlipping) != 0;
-  model.standing = (bits & kStanding) != 0;
+  model.paused = (bits & kPaused) != 0;
   model.body.support = (bits & kFixed) != 0 ? Support::kFixed : Support::kFloating;
   const auto state = in.get<std::uint16_t>();
   if (state > 2) bad_contact_value("the contact state is " + std::to_string(state));

@@ -6,13 +6,13 @@
 namespace irdm {
 
 void BridgeContact::receive(const ContactModel& model, std::int64_t now_ns) noexcept {
-  if (model.standing) {  // nothing goes on from here: when the run does, all begins anew
+  if (model.paused) {  // nothing goes on from here: when the run does, all begins anew
     pacer_.stop();
-    wanted_.standing = true;
+    wanted_.paused = true;
     return;
   }
   if (pacer_.running() && model.step <= newest_model_) return;
-  wanted_.standing = false;
+  wanted_.paused = false;
   if (!pacer_.running()) {
     predictor_.reset();
     in_contact_ = false;

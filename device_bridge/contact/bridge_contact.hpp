@@ -15,9 +15,9 @@ namespace irdm {
 class BridgeContact {
  public:
   /// The force that the contact asks for, and what it rests on.
-  struct Wanted {
+  struct ForceCommand {
     bool any = false;             ///< the rest means something
-    bool standing = false;        ///< the run stands still: what was felt is to fade
+    bool paused = false;          ///< the run stands still: what was felt is to fade
     std::int64_t content_ns = 0;  ///< end of the last step that the server knew everything of
     std::int64_t horizon_ns = 0;  ///< how long after that it is good
     std::int64_t solved_ns = 0;   ///< when it was solved, with the tip of then
@@ -36,7 +36,7 @@ class BridgeContact {
   /// in applied().
   bool tick(std::int64_t now_ns, const Vector3& tip) noexcept;
 
-  const Wanted& wanted() const noexcept { return wanted_; }
+  const ForceCommand& wanted() const noexcept { return wanted_; }
   /// Of the last steps.
   const AppliedForces& applied() const noexcept { return applied_; }
   /// By how many steps it is ahead of the newest model; 0 without one.
@@ -51,7 +51,7 @@ class BridgeContact {
   ContactPredictor predictor_;
   std::uint64_t newest_model_ = 0;  ///< step of the newest model; while the pacer runs
   std::int64_t horizon_ns_ = 0;     ///< of that model
-  Wanted wanted_;
+  ForceCommand wanted_;
   bool in_contact_ = false;  ///< in the last step that anything is known of
   AppliedForces applied_;
   std::optional<Vector3> last_tip_;  ///< at the end of the last step; none: it begins anew

@@ -11,7 +11,7 @@ namespace irdm {
 /// The contact of one stylus, solved at the bridge from what the server sent: it goes on with the
 /// rigid motion from the newest model's state, under the forces that the server did not know of
 /// yet, and solves in each step the contact problem that the server would solve
-/// (docs/architecture.md, one force step), with u the model's free path, R its response and f_i
+/// (docs/theory.md), with u the model's free path, R its response and f_i
 /// those forces in B:
 ///
 ///     (R_0 + rigid + series) f_k = Q^T (x - c) - place - u_k - sum_i R_{k-i} f_i

@@ -39,7 +39,7 @@ std::string connect_failure(const ServerAddress& server) {
 }  // namespace
 
 Permission try_real_time() {
-  Wakeup over;
+  EventFd over;
   std::thread thread([&] { over.wait(-1); });
   Permission permission;
   try {
@@ -93,7 +93,7 @@ ServerFacts ask_server(const ClientSettings& settings, std::size_t styluses) {
   ClientSettings asking = settings;
   asking.lockstep = false;
   ServoLink link(styluses);
-  Wakeup gave_up;
+  EventFd gave_up;
   NetworkClient client(link, asking, gave_up);
   client.start();
   const std::int64_t deadline_ns = monotonic_ns() + kPatienceMs * std::int64_t{1'000'000};

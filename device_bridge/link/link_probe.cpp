@@ -20,7 +20,7 @@ const Vector3 kFarAway(0.0, 500.0, 0.0);             // where a tip touches noth
 /// A servo loop without a device.
 class ProbeLoop {
  public:
-  ProbeLoop(ServoLink& link, double rate, double duration, Wakeup& done)
+  ProbeLoop(ServoLink& link, double rate, double duration, EventFd& done)
       : link_(link), rate_(rate), duration_(duration), done_(done) {}
   ~ProbeLoop() { stop(); }
 
@@ -42,7 +42,7 @@ class ProbeLoop {
   ServoLink& link_;
   double rate_;
   double duration_;
-  Wakeup& done_;
+  EventFd& done_;
   LinkMeasurement measured_;
   std::uint64_t sequence_ = 0;
   std::atomic<bool> stop_{false};
@@ -87,7 +87,7 @@ void ProbeLoop::run() noexcept {
 }  // namespace
 
 LinkMeasurement probe_link(const BridgeConfig& config, double duration, StopSignal& stop_signal) {
-  Wakeup done;
+  EventFd done;
   ServoLink link(1);
   ClientSettings settings = client_settings(config);
   settings.name = "irdm-bridge check-link";

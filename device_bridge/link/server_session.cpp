@@ -107,7 +107,7 @@ void ServerSession::welcomed(const wire::Welcome& welcome) {
                  .dt = welcome.dt};
   for (ServoLink::Stylus& stylus : shared_.link.styluses) {
     intakes_.emplace_back(welcome.lockstep);
-    told_of_shaking_.push_back(false);
+    warned_of_oscillation_.push_back(false);
     stylus.sample.receive();  // what was taken before the session is no part of it
     stylus.applied.receive();
   }
@@ -145,14 +145,14 @@ std::size_t ServerSession::ours(std::uint16_t slot) const {
   return static_cast<std::size_t>(index);
 }
 
-// A model that cannot be true is as good as lost.
+// An invalid model is as good as lost.
 void ServerSession::take(const wire::ContactModelMessage& message) {
   const std::size_t stylus = ours(message.stylus);
   const ContactModelFault fault = check(message.model, {.dt = link_state_.dt});
   if (fault != ContactModelFault::kNone) {
     if (shared_.report.models_refused++ == 0) {
-      spdlog::error("server {}: step {}: a contact model that cannot be true ({}) is not used",
-                    shared_.server, message.model.step, word(fault));
+      spdlog::error("server {}: step {}: invalid contact model ({}), not used", shared_.server,
+                    message.model.step, word(fault));
     }
     return;
   }
@@ -182,14 +182,14 @@ void ServerSession::take(const wire::Datagrams& offer) {
 
 void ServerSession::send_samples() {
   for (std::size_t i = 0; i < intakes_.size(); ++i) {
-    Mailbox<StylusSample>& box = shared_.link.styluses[i].sample;
+    TripleBuffer<StylusSample>& box = shared_.link.styluses[i].sample;
     if (!box.receive() || state_ != State::kLinked) continue;
     intakes_[i].sent(box.front());
     connection_->send_newest(i, wire::SampleMessage{slot(i), box.front()});
     ++shared_.report.samples;
   }
   for (std::size_t i = 0; i < intakes_.size(); ++i) {
-    Mailbox<LinkedForces>& box = shared_.link.styluses[i].applied;
+    TripleBuffer<LinkedForces>& box = shared_.link.styluses[i].applied;
     if (!box.receive() || state_ != State::kLinked || !link_state_.predict) continue;
     if (box.front().session != link_state_.sessions) continue;
     wire::AppliedForcesMessage message{slot(i), box.front().applied};
@@ -229,16 +229,15 @@ void ServerSession::tell_of_arming(std::int64_t now_ns) {
 }
 
 // Nor should one who feels less than there is be left to guess. Once a session.
-void ServerSession::tell_of_shaking() {
+void ServerSession::warn_force_reduced() {
   constexpr double kMuchLess = 0.75;
   for (std::size_t i = 0; i < shared_.link.styluses.size(); ++i) {
     const double gain = shared_.link.styluses[i].gain;
-    if (gain > kMuchLess || told_of_shaking_[i]) continue;
-    told_of_shaking_[i] = true;
+    if (gain > kMuchLess || warned_of_oscillation_[i]) continue;
+    warned_of_oscillation_[i] = true;
     spdlog::warn(
-        "stylus {}: its force shook the hand and is shown at {:.0f} % for now, what it touches "
-        "feels softer than it is; bridge.mode = \"predict\" or a faster link helps, or a smaller "
-        "coupling_stiffness",
+        "stylus {}: oscillation detected, force scaled to {:.0f} %, objects feel softer; use "
+        "bridge.mode = \"predict\", a faster link or a smaller coupling_stiffness",
         i, 100.0 * gain);
   }
 }
@@ -258,7 +257,7 @@ void ServerSession::check_time(std::int64_t now_ns) {
     case State::kLinked:
       send_reports(now_ns);
       tell_of_arming(now_ns);
-      tell_of_shaking();
+      warn_force_reduced();
       if (datagrams_) datagrams_->check_time(now_ns);
       if (!link_state_.lockstep && now_ns - answered_ns_ > silence_ns_) {
         ++shared_.report.stalls;

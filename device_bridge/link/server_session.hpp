@@ -11,7 +11,7 @@
 #include "device_bridge/link/arming_patience.hpp"
 #include "device_bridge/link/client_report.hpp"
 #include "device_bridge/link/client_settings.hpp"
-#include "device_bridge/link/force_intake.hpp"
+#include "device_bridge/link/force_receiver.hpp"
 #include "device_bridge/link/server_datagrams.hpp"
 #include "device_bridge/servo_link.hpp"
 
@@ -70,7 +70,7 @@ class ServerSession {
   void leave();
   void send_reports(std::int64_t now_ns);
   void tell_of_arming(std::int64_t now_ns);
-  void tell_of_shaking();
+  void warn_force_reduced();
   void publish();
   void deadline_in(int milliseconds);
   std::uint16_t slot(std::size_t stylus) const noexcept;
@@ -89,8 +89,8 @@ class ServerSession {
   std::unique_ptr<ServerDatagrams> datagrams_;
   bool reports_ = false;  ///< the server takes them
   std::int64_t next_report_ns_ = 0;
-  std::vector<ForceIntake> intakes_;   ///< one a stylus, from Welcome on
-  std::vector<bool> told_of_shaking_;  ///< the same
+  std::vector<ForceReceiver> intakes_;       ///< one a stylus, from Welcome on
+  std::vector<bool> warned_of_oscillation_;  ///< the same
 };
 
 }  // namespace irdm

@@ -8,10 +8,10 @@
 #include "device_bridge/safety/arming.hpp"
 #include "device_bridge/safety/guards.hpp"
 #include "device_bridge/safety/link_gate.hpp"
-#include "device_bridge/safety/oscillation.hpp"
+#include "device_bridge/safety/oscillation_detector.hpp"
 #include "device_bridge/safety/passivity.hpp"
 #include "device_bridge/safety/rate_limit.hpp"
-#include "device_bridge/safety/reading_check.hpp"
+#include "device_bridge/safety/sensor_plausibility.hpp"
 #include "device_bridge/safety/thermal_derating.hpp"
 #include "device_bridge/safety/world_work.hpp"
 
@@ -109,12 +109,12 @@ class SafetyFilter {
 
   FilterLimits limits_;
   Guards guards_;
-  ReadingCheck reading_;
+  SensorPlausibility reading_;
   Arming arming_;
   LinkGate gate_;
   bool waits_ = false;  ///< told to arm, and the link is not good enough yet
   Passivity passivity_;
-  Oscillation oscillation_;
+  OscillationDetector oscillation_;
   WorldWork world_;
   ThermalDerating thermal_;
   ForceDemand held_;     ///< the newest that was accepted

@@ -142,7 +142,7 @@ Report check_compressed(const std::filesystem::path& path, const CheckOptions& o
   append(report, static_lines(model, columns));
 
   const RecordLength length = record_length(response);
-  const RowMatrix<double> late = late_responses(response, length.steps - response.early_steps);
+  const RowMatrix<double> late = late_responses(response, length.steps - response.fir_steps);
   const int nodes = model.mesh.surface_node_count();
   std::vector<NodeFindings> findings(static_cast<std::size_t>(nodes));
   Progress progress(console, "nodes (compressed)", nodes);

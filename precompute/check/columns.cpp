@@ -111,21 +111,21 @@ bool StoredColumns::has_checksums() const {
 }
 
 RowMatrix<double> CompressedColumns::column(int b, int steps) const {
-  const int late = std::max(0, steps - response_.early_steps);
+  const int late = std::max(0, steps - response_.fir_steps);
   return compressed_column(response_, late_responses(response_, late), b, steps);
 }
 
 Eigen::VectorXd CompressedColumns::settled(int b) const {
   const RowMatrix<double> none(0, response_.shape_count());
   const Eigen::VectorXd early =
-      compressed_column(response_, none, b, response_.early_steps).colwise().sum().transpose();
+      compressed_column(response_, none, b, response_.fir_steps).colwise().sum().transpose();
   const Eigen::VectorXd weighted = settled_late_responses(response_).cwiseProduct(
       response_.shapes.row(b).cast<double>().transpose());
   return early + response_.shapes.cast<double>() * weighted;
 }
 
 DrivingPoint CompressedColumns::driving_point(int node, const RowMatrix<double>& late) const {
-  const int m = response_.early_steps;
+  const int m = response_.fir_steps;
   DrivingPoint record(9, m + late.rows());
   const RowMatrix<double> rows = response_.shapes.middleRows(3 * node, 3).cast<double>();
   for (int entry = 0; entry < 9; ++entry) {
@@ -174,7 +174,7 @@ RecordLength record_length(const ModalResponse& response, double dt) {
 RecordLength record_length(const CompressedResponse& response) {
   const double largest = response.pole_count() == 0 ? 0.0 : response.pole.cwiseAbs().maxCoeff();
   RecordLength length = length_for(-std::log(std::max(largest, 1e-3)));
-  length.steps = std::max(length.steps, response.early_steps + 2);
+  length.steps = std::max(length.steps, response.fir_steps + 2);
   return length;
 }
 

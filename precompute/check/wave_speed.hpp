@@ -35,7 +35,7 @@ struct MeasuredWave {
 /// Speeds along the surface: the nodes' distances over the times at which their total displacement
 /// (nodes that are equally far count as one; elastic and rigid: the elastic part alone moves
 /// everywhere at once) first reaches 5 % of its first peak, that peak, and the largest displacement
-/// along the force, by a straight line in the least-squares sense. docs/wave-speed.md says what
+/// along the force, by a straight line in the least-squares sense. docs/check.md says what
 /// they mean. Nothing to measure (distances < 3): zero.
 /// @param b degree of freedom of the tap
 /// @param column R[s](:, b), (steps, 3n), sampled every `dt` [s]

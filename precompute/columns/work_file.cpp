@@ -7,7 +7,7 @@
 #include "precompute/columns/assemble.hpp"
 #include "precompute/columns/column_file_writer.hpp"
 #include "precompute/columns/compute_columns.hpp"
-#include "precompute/process/last_action.hpp"
+#include "precompute/process/signal_cleanup.hpp"
 
 namespace irdm::precompute {
 namespace {
@@ -77,7 +77,7 @@ int complete(ColumnFileWriter& file, const std::filesystem::path& path, const Co
              const ColumnFileHeader& header, int threads, const Console& console) {
   tell_of_earlier_run(file, path, header.range, console);
   const ColumnRange left{header.range.begin + file.resumed(), header.range.end};
-  const LastAction message({.say = kGoesOn});
+  const SignalCleanup message({.say = kGoesOn});
   if (left.count() > 0) {
     Progress progress(console, "columns of R", left.count());
     FileStore store(file, header.column_bytes(), progress);
@@ -107,7 +107,7 @@ double join(const ColumnWork& work, int size, const Console& console) {
   for (int rank = 0; rank < size; ++rank) parts.push_back(work_name(work.output, rank, size));
   // Nobody else writes under this name while the work file is locked.
   const std::filesystem::path temporary = work.output.string() + ".part";
-  const LastAction cleanup({.remove = temporary, .say = kGoesOn});
+  const SignalCleanup cleanup({.remove = temporary, .say = kGoesOn});
   const double left = assemble(parts, work.output, temporary, console);
   for (const auto& part : parts) std::filesystem::remove(part);
   return left;

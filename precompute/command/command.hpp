@@ -18,7 +18,7 @@ Command add_merge_command(CLI::App& app);
 /// check MODEL.h5: a table with a verdict a line (docs/check.md); status 1 when a line fails.
 Command add_check_command(CLI::App& app);
 
-/// compress IN.h5 -o OUT.h5: dense R as a small compressed response (docs/compression.md); status 1
+/// compress IN.h5 -o OUT.h5: dense R as a small compressed response (docs/theory.md); status 1
 /// where the error that is asked for cannot be reached.
 Command add_compress_command(CLI::App& app);
 

@@ -9,7 +9,7 @@
 #include "precompute/blas_kernel.hpp"
 #include "precompute/command/command.hpp"
 #include "precompute/compress/compress_model.hpp"
-#include "precompute/process/last_action.hpp"
+#include "precompute/process/signal_cleanup.hpp"
 
 namespace irdm::precompute {
 namespace {
@@ -28,7 +28,7 @@ std::string text(const CompressionSummary& summary) {
                 "%d poles; error measured on %d columns: %.3g %% of displacement at most (%.3g %% "
                 "rms), %.3g %% of the force on a held node",
                 summary.output_bytes / 1e6, summary.input_bytes / 1e6,
-                summary.input_bytes / summary.output_bytes, summary.early_steps, summary.shapes,
+                summary.input_bytes / summary.output_bytes, summary.fir_steps, summary.shapes,
                 summary.poles, summary.error.measured_columns, 100.0 * summary.error.displacement,
                 100.0 * summary.error.displacement_rms, 100.0 * summary.error.force);
   return line;
@@ -42,7 +42,7 @@ int compress(const CompressOptions& options) {
     throw Error(options.output, "is the input itself", "give the output another name");
   }
   const std::filesystem::path temporary = fresh_part_name(options.output);
-  const LastAction cleanup({.remove = temporary});
+  const SignalCleanup cleanup({.remove = temporary});
   const CompressionSummary summary =
       compress_model(options.input, options.output, temporary, options.settings, console);
   console.line(options.output + ": " + text(summary));
@@ -64,9 +64,13 @@ Command add_compress_command(CLI::App& app) {
       ->capture_default_str()
       ->check(CLI::Range(1e-4, 0.5));
   command
-      ->add_option("--early-steps", options->settings.early_steps,
+      ->add_option("--fir-steps", options->settings.fir_steps,
                    "Steps of R that are kept as they are (default: 16, more where it takes more)")
       ->check(CLI::Range(1, 1000));
+  command->add_option("--early-steps")
+      ->group("")
+      ->check(CLI::Validator([](const std::string&) { return std::string("is named --fir-steps"); },
+                             ""));
   command->add_option("--threads", options->threads, "Threads of the BLAS (default: all cores)")
       ->check(CLI::Range(1, 1024));
   return [options] { return compress(*options); };

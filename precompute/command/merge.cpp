@@ -7,7 +7,7 @@
 #include "common/process/part_name.hpp"
 #include "precompute/columns/assemble.hpp"
 #include "precompute/command/command.hpp"
-#include "precompute/process/last_action.hpp"
+#include "precompute/process/signal_cleanup.hpp"
 
 namespace irdm::precompute {
 namespace {
@@ -21,7 +21,7 @@ int merge(const MergeOptions& options) {
   const Console console{std::cout, ::isatty(STDOUT_FILENO) != 0};
   const std::vector<std::filesystem::path> parts(options.parts.begin(), options.parts.end());
   const std::filesystem::path temporary = fresh_part_name(options.output);
-  const LastAction cleanup({.remove = temporary});
+  const SignalCleanup cleanup({.remove = temporary});
   const double left = assemble(parts, options.output, temporary, console);
   char text[64];
   std::snprintf(text, sizeof text, "%.4g", 100.0 * left);

@@ -66,7 +66,7 @@ std::vector<PoleFit> fit_all(const Parts& parts, double error, const Console& co
 
 // The numbers of each entry in 32767ths of its largest.
 void set_integers(const std::vector<float>& early, CompressedResponse& response) {
-  const auto steps = static_cast<std::size_t>(response.early_steps);
+  const auto steps = static_cast<std::size_t>(response.fir_steps);
   std::vector<std::int16_t> integers(early.size());
   for (std::size_t first = 0; first < early.size(); first += steps) {
     const std::span<const float> entry(early.data() + first, steps);
@@ -88,7 +88,7 @@ void set_integers(const std::vector<float>& early, CompressedResponse& response)
 CompressedResponse assemble(const Survey& found, const Parts& parts,
                             const std::vector<PoleFit>& fits) {
   CompressedResponse response;
-  response.early_steps = found.early_steps;
+  response.fir_steps = found.fir_steps;
   set_integers(found.early, response);
   std::vector<Eigen::Index> used;
   std::vector<std::complex<double>> poles, amplitudes;
@@ -130,7 +130,7 @@ std::string percent(double share) {
               "cannot be compressed to an error of " + percent(error.requested) + ": " +
                   percent(error.displacement) + " of displacement and " + percent(error.force) +
                   " of force is the best that was reached",
-              "allow more with --error, or keep more steps as they are with --early-steps; R that "
+              "allow more with --error, or keep more steps as they are with --fir-steps; R that "
               "is not reciprocal or not linear cannot be compressed (irdm-precompute check)");
 }
 
@@ -139,7 +139,7 @@ void check_early_steps(const DenseInput& input, int early) {
   throw Error(input.name(),
               "has " + std::to_string(input.steps()) + " steps, too few to keep " +
                   std::to_string(early) + " of them and compress the rest",
-              "use fewer --early-steps, or precompute more steps");
+              "use fewer --fir-steps, or precompute more steps");
 }
 
 double larger(const CompressionError& error) {
@@ -153,10 +153,10 @@ CompressionSummary compress_model(const std::filesystem::path& input,
                                   const std::filesystem::path& temporary,
                                   const CompressSettings& settings, const Console& console) {
   const DenseInput dense(input);
-  const bool automatic = settings.early_steps == 0;
+  const bool automatic = settings.fir_steps == 0;
   const int most_early = (dense.steps() - 1) / 4;
   const int early =
-      automatic ? std::min(kFirstEarlySteps, std::max(1, most_early)) : settings.early_steps;
+      automatic ? std::min(kFirstEarlySteps, std::max(1, most_early)) : settings.fir_steps;
   check_early_steps(dense, early);
   Survey found = survey(dense, early, console);
   double finer = 1.0;
@@ -187,7 +187,7 @@ CompressionSummary compress_model(const std::filesystem::path& input,
       writer.write_description(dense.description());
       writer.write_compressed(response, error);
       writer.commit();
-      return {error,         found.early_steps, response.shape_count(), response.pole_count(),
+      return {error,         found.fir_steps, response.shape_count(), response.pole_count(),
               dense.bytes(), bytes(response)};
     }
     // Shapes and poles take little room beside early steps: more of them as long as they help as
@@ -198,8 +198,8 @@ CompressionSummary compress_model(const std::filesystem::path& input,
     previous = larger(error);
     in_vain = larger(error) < 0.95 * larger(best) ? 0 : in_vain + 1;
     if (larger(error) < larger(best)) best = error;
-    if (automatic && 2 * found.early_steps <= most_early && expected > settings.error) {
-      found = survey(dense, 2 * found.early_steps, console);
+    if (automatic && 2 * found.fir_steps <= most_early && expected > settings.error) {
+      found = survey(dense, 2 * found.fir_steps, console);
       attempts = in_vain = 0;
       previous = std::numeric_limits<double>::infinity();
     } else if (attempts < kMostAttempts && in_vain < 2) {

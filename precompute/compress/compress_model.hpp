@@ -11,12 +11,12 @@ struct CompressSettings {
   double error = 1e-2;  ///< share, of displacement and of force: see CompressionError
   /// m, steps of R that are kept as they are; below T / 4. 0: 16, and twice as many again where
   /// the error is not reached otherwise.
-  int early_steps = 0;
+  int fir_steps = 0;
 };
 
 struct CompressionSummary {
   CompressionError error;
-  int early_steps = 0;
+  int fir_steps = 0;
   int shapes = 0;
   int poles = 0;
   double input_bytes = 0.0;   ///< of dense R

@@ -50,7 +50,7 @@ Core project(const DenseInput& input, const Survey& survey, int r, int K, const 
     std::vector<RowMatrix<float>> projected(static_cast<std::size_t>(count));
     for (int i = 0; i < count; ++i) {
       const RowMatrix<float> later =
-          input.column(first + i).bottomRows(input.steps() - survey.early_steps);
+          input.column(first + i).bottomRows(input.steps() - survey.fir_steps);
       product(time, Of::kTransposed, later, Of::kItself, in_time);
       product(in_time, Of::kItself, core.space, Of::kItself,
               projected[static_cast<std::size_t>(i)]);

@@ -21,7 +21,7 @@ int sample_stride(int dof) {
 
 // Half of R and half of its transpose: reciprocity.
 void add_early(const RowMatrix<float>& column, int b, Survey& survey) {
-  const int m = survey.early_steps;
+  const int m = survey.fir_steps;
   const int j = b / 3;
   const auto add = [&](int row, int first, int other, int second, int a) {
     float* entry = survey.early.data() +
@@ -50,14 +50,13 @@ void directions(RowMatrix<double>& covariance, double norm, Eigen::VectorXd& val
 
 }  // namespace
 
-Survey survey(const DenseInput& input, int early_steps, const Console& console) {
+Survey survey(const DenseInput& input, int fir_steps, const Console& console) {
   const int dof = input.degrees_of_freedom();
-  const int late = input.steps() - early_steps;
+  const int late = input.steps() - fir_steps;
   Survey result;
-  result.early_steps = early_steps;
+  result.fir_steps = fir_steps;
   result.early.assign(
-      early_entries(static_cast<std::size_t>(dof / 3)) * static_cast<std::size_t>(early_steps),
-      0.0F);
+      early_entries(static_cast<std::size_t>(dof / 3)) * static_cast<std::size_t>(fir_steps), 0.0F);
   RowMatrix<double> space = RowMatrix<double>::Zero(dof, dof);
   RowMatrix<double> time = RowMatrix<double>::Zero(late, late);
   double energy = 0.0;

@@ -11,7 +11,7 @@ namespace irdm::precompute {
 
 /// What one pass over R finds. m early steps, L = T - m late ones.
 struct Survey {
-  int early_steps = 0;            ///< m
+  int fir_steps = 0;              ///< m
   std::vector<float> early;       ///< as in CompressedResponse: the mean of R and its transpose
   double norm = 0.0;              ///< Frobenius, of R; estimated from the sampled columns
   Eigen::VectorXd space_values;   ///< (3n) share of the norm that each direction carries
@@ -22,7 +22,7 @@ struct Survey {
 
 /// All columns are read for the early part; the directions are those of some 250 columns, always
 /// the same ones. Throws Error, as where R is zero.
-Survey survey(const DenseInput& input, int early_steps, const Console& console);
+Survey survey(const DenseInput& input, int fir_steps, const Console& console);
 
 /// The fewest directions that leave out at most this share of the norm, at least 1.
 int directions_for(const Eigen::VectorXd& values, double share);

@@ -52,7 +52,7 @@ RowMatrix<float> late_column(const CompressedResponse& response, const RowMatrix
 }
 
 RowMatrix<float> column(const CompressedResponse& response, const RowMatrix<float>& late, int b) {
-  const int m = response.early_steps;
+  const int m = response.fir_steps;
   RowMatrix<float> values(m + late.rows(), response.shapes.rows());
   for (int a = 0; a < values.cols(); ++a) {
     with_early(response, a / 3, a % 3, b / 3, b % 3, [&](const auto* numbers, double scale) {
@@ -84,7 +84,7 @@ CompressionError measure_error(const CompressedResponse& response, const DenseIn
   const int nodes = input.degrees_of_freedom() / 3;
   const int stride = (nodes + kMeasuredNodes - 1) / kMeasuredNodes;
   const RowMatrix<float> late =
-      late_responses(response, input.steps() - response.early_steps).cast<float>();
+      late_responses(response, input.steps() - response.fir_steps).cast<float>();
   CompressionError error;
   double squares = 0.0;
   Progress progress(console, "measuring", nodes);

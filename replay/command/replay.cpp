@@ -16,7 +16,7 @@ void check_reference(const ReplayOptions& options, const std::string& engine) {
     throw Error("--substep", "is of a reference", "give --reference fem, too");
   }
   if (options.solve_bridged) {
-    throw Error("--solve-bridged", "is of the force step", "leave out one of it and --reference");
+    throw Error("--solve-bridged", "cannot be combined with --reference", "leave out one of them");
   }
   if (engine.empty()) return;
   throw Error("--engine " + shortened(engine), "means nothing to a reference, which has none",
@@ -68,12 +68,12 @@ Command add_replay_command(CLI::App& app) {
                  "trace, beside it or where its scene says)")
       ->allow_extra_args(false);
   app.add_option("--from", *from,
-                 "forces: what was exerted moves the objects again; tips: the whole step is made "
+                 "forces: what was exerted moves the objects again; inputs: the whole step is made "
                  "again from where the styluses were")
-      ->check(CLI::IsMember({"forces", "tips"}))
+      ->check(CLI::IsMember({"forces", "inputs"}))
       ->capture_default_str();
   app.add_flag("--solve-bridged", options->solve_bridged,
-               "From tips: contacts that bridges solved are solved here too");
+               "From inputs: contacts that bridges solved are solved here too");
   app.add_option("--engine", *engine, "Engine to compute with (default: the run's own)")
       ->check(CLI::IsMember({"modal", "dense", "compressed"}));
   auto reference = std::make_shared<std::string>();
@@ -104,9 +104,9 @@ Command add_replay_command(CLI::App& app) {
   return [options, from, engine, reference, words] {
     if (!words->size.empty()) read_size(words->size, options->look);
     if (!words->camera.empty()) options->look.camera = read_camera(words->camera);
-    options->from_tips = *from == "tips";
-    if (options->solve_bridged && !options->from_tips) {
-      throw Error("--solve-bridged", "solves nothing from forces", "give --from tips, too");
+    options->from_inputs = *from == "inputs";
+    if (options->solve_bridged && !options->from_inputs) {
+      throw Error("--solve-bridged", "solves nothing from forces", "give --from inputs, too");
     }
     if (!reference->empty()) {
       options->reference = *reference == "fem" ? precompute::Elasticity::kCorotational

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "common/error.hpp"
-#include "replay/made_again/deviation.hpp"
+#include "replay/rerun/deviation.hpp"
 
 namespace irdm::replay {
 namespace {

@@ -60,7 +60,8 @@ std::vector<double> sizes_of(const Points& signal) {
   return {sizes.begin(), sizes.end()};
 }
 
-SignalPair pair_of(const Points& a, const Points& b, const Measures& all, const Stretch& stretch) {
+SignalPair pair_of(const Points& a, const Points& b, const Measures& all,
+                   const TimeInterval& stretch) {
   SignalPair pair;
   pair.size_a = sizes_of(a);
   pair.size_b = sizes_of(b);
@@ -156,7 +157,7 @@ Measures measure_runs(const RunReader& a, const RunReader& b, const Comparison& 
   if (times.size() > 1) {
     found.interval = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
   }
-  const Stretch free = longest_stretch(free_frames(side_a, side_b));
+  const TimeInterval free = longest_stretch(free_frames(side_a, side_b));
   for (std::size_t i = 0; i < comparison.objects.size(); ++i) {
     const ObjectComparison& object = comparison.objects[i];
     SignalPair& pair = found.nodes.emplace_back();

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "replay/compare/compare_runs.hpp"
-#include "replay/compare/stretch.hpp"
+#include "replay/compare/time_interval.hpp"
 #include "replay/measures/compliance.hpp"
 #include "replay/measures/force_difference.hpp"
 #include "replay/measures/onsets.hpp"
@@ -19,7 +19,7 @@ namespace irdm::replay {
 struct SignalPair {
   std::vector<double> size_a, size_b;
   Spectrum spectrum_a, spectrum_b;
-  Stretch stretch;  ///< of common frames
+  TimeInterval stretch;  ///< of common frames
   std::vector<Ringing> ringing_a, ringing_b;
 };
 

@@ -1,7 +1,7 @@
 #pragma once
 
 /// What a hand can tell apart, as far as compare judges by it. Sources and how far they carry:
-/// docs/compare.md. All of it is of people on average.
+/// docs/replay.md. All of it is of people on average.
 namespace irdm::replay::perception {
 
 /// Smallest difference of a force that is noticed, as a share of the force. Pang, Tan and Durlach

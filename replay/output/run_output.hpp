@@ -14,7 +14,7 @@ namespace irdm::replay {
 /// What a run was made again from.
 struct RunOrigin {
   std::string trace;    ///< name of the trace file
-  std::string from;     ///< "forces" or "tips"
+  std::string from;     ///< "forces" or "inputs"
   std::string by = {};  ///< for people: engines, or a reference and its sub-step
 };
 

@@ -46,7 +46,7 @@ std::string from_base64(const std::string& text) {
 }
 
 // The descriptors of --remote-debugging-pipe.
-std::map<int, int> its_descriptors(const ZeroEndedPipe& pipe) {
+std::map<int, int> its_descriptors(const NulDelimitedPipe& pipe) {
   return {{3, pipe.its_input()}, {4, pipe.its_output()}};
 }
 

@@ -5,7 +5,7 @@
 
 #include "common/process/child_program.hpp"
 #include "common/process/temporary_folder.hpp"
-#include "replay/pictures/zero_ended_pipe.hpp"
+#include "replay/pictures/nul_delimited_pipe.hpp"
 
 namespace irdm::replay {
 
@@ -39,7 +39,7 @@ class Browser {
   // In this order: Chromium ends when its pipe does.
   TemporaryFolder profile_{"irdm-pictures"};
   std::optional<ChildProgram> chromium_;
-  ZeroEndedPipe pipe_;
+  NulDelimitedPipe pipe_;
   std::string session_;
   int calls_ = 0;
 };

@@ -25,8 +25,8 @@ class DrawnRun final : public viewer::ViewedRun {
  private:
   viewer::Scene scene_;
   viewer::State state_;
-  Mailbox<SurfaceFrame> surfaces_;
-  Wakeup ready_;
+  TripleBuffer<SurfaceFrame> surfaces_;
+  EventFd ready_;
 };
 
 }  // namespace irdm::replay

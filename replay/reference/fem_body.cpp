@@ -50,14 +50,14 @@ FemBody::Mesh::Mesh(const Model& model, precompute::Elasticity elasticity, doubl
 
 FemBody::FemBody(const SimulationConfig& config, std::size_t number,
                  precompute::Elasticity elasticity, double substep, bool follow_tips,
-                 std::vector<ToldLate> told_late)
+                 std::vector<DelayedForces> delayed_forces)
     : model_(config.objects[number].model),
       rigid_(model_->body, model_->dt),
       surface_(model_->mesh),
       recorded_forces_(surface_, tip_radii(config)),
       elasticity_(elasticity),
       follow_tips_(follow_tips),
-      told_late_(std::move(told_late)),
+      delayed_forces_(std::move(delayed_forces)),
       parts_(fem_parts(model_->dt, substep)),
       h_(model_->dt / parts_),
       mesh_(std::make_unique<Mesh>(*model_, elasticity_, 1.0, h_)),
@@ -155,7 +155,7 @@ void FemBody::hold(const ObjectRecord& recorded) {
 
 // What was told late and belongs to this step, unless it is found here anew.
 void FemBody::hold_late() {
-  for (const ToldLate& told : told_late_) {
+  for (const DelayedForces& told : delayed_forces_) {
     if (told.step != steps_) continue;
     const auto own = [&](const Followed& f) {
       return static_cast<int>(f.stylus) == told.late.stylus;

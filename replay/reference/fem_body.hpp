@@ -5,10 +5,10 @@
 
 #include "precompute/dynamics/implicit_midpoint.hpp"
 #include "precompute/dynamics/rigid_extraction.hpp"
-#include "replay/made_again/forced_body.hpp"
-#include "replay/made_again/told_late.hpp"
 #include "replay/reference/broyden_solver.hpp"
 #include "replay/reference/step_journal.hpp"
+#include "replay/rerun/delayed_forces.hpp"
+#include "replay/rerun/forced_body.hpp"
 #include "simulation/step/recorded_forces.hpp"
 #include "simulation/step/simulation_config.hpp"
 
@@ -30,9 +30,9 @@ class FemBody final : public ForcedBody {
   /// @param substep longest step of the rule [s], > 0; the server's is cut into equal ones
   /// @param follow_tips points that are held follow their tips as in the server's step, with the
   /// force that this takes here, in place of the recorded one
-  /// @param told_late of this object: they act in the steps that they belong to
+  /// @param delayed_forces of this object: they act in the steps that they belong to
   FemBody(const SimulationConfig& config, std::size_t number, precompute::Elasticity elasticity,
-          double substep, bool follow_tips = false, std::vector<ToldLate> told_late = {});
+          double substep, bool follow_tips = false, std::vector<DelayedForces> delayed_forces = {});
 
   /// From now on: steps that a journal has are taken from it, and others kept in it.
   /// @param journal must outlive this object
@@ -40,7 +40,7 @@ class FemBody final : public ForcedBody {
 
   void reset() override;
   /// Nothing: it has acted in its own step.
-  void enter_late(const LateForce& /*late*/) override {}
+  void insert_delayed_force(const LateForce& /*late*/) override {}
   void set(const Vector3& gravity, const ObjectSettings& settings) override;
   /// Contact forces and the floor's are written as they stand in B here.
   void step(ObjectRecord& again, std::span<const StylusRecord> styluses) override;
@@ -97,7 +97,7 @@ class FemBody final : public ForcedBody {
   std::vector<Followed> followed_;
   BroydenSolver tip_forces_;                  ///< [N], W, of all followed_
   std::vector<Eigen::VectorXd> last_forces_;  ///< of the steps before, the last one first
-  std::vector<ToldLate> told_late_;
+  std::vector<DelayedForces> delayed_forces_;
   std::size_t steps_ = 0;  ///< made so far
   int parts_;              ///< sub-steps of a step
   double h_;               ///< [s]

@@ -2,8 +2,8 @@
 
 #include "common/error.hpp"
 #include "precompute/fem/assembly.hpp"
-#include "replay/made_again/from_forces.hpp"
 #include "replay/reference/fem_body.hpp"
+#include "replay/rerun/force_rerun.hpp"
 
 namespace irdm::replay {
 namespace {
@@ -26,15 +26,15 @@ double fem_substep(double dt, double longest) {
   return dt / fem_parts(dt, longest);
 }
 
-std::unique_ptr<MadeAgain> fem_reference(const TracedScene& scene,
-                                         precompute::Elasticity elasticity, double substep,
-                                         bool follow_tips, const std::vector<ToldLate>& told_late,
-                                         StepJournal* journal) {
+std::unique_ptr<Rerun> fem_reference(const TracedScene& scene, precompute::Elasticity elasticity,
+                                     double substep, bool follow_tips,
+                                     const std::vector<DelayedForces>& delayed_forces,
+                                     StepJournal* journal) {
   std::vector<std::unique_ptr<ForcedBody>> bodies;
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     check_model(*scene.config.objects[i].model, scene.objects[i].model.string());
-    std::vector<ToldLate> own;
-    for (const ToldLate& told : told_late) {
+    std::vector<DelayedForces> own;
+    for (const DelayedForces& told : delayed_forces) {
       if (told.late.object == static_cast<int>(i)) own.push_back(told);
     }
     auto body = std::make_unique<FemBody>(scene.config, i, elasticity, substep, follow_tips,
@@ -42,7 +42,7 @@ std::unique_ptr<MadeAgain> fem_reference(const TracedScene& scene,
     if (journal != nullptr) body->use(*journal);
     bodies.push_back(std::move(body));
   }
-  return std::make_unique<FromForces>(scene.config, std::move(bodies));
+  return std::make_unique<ForceRerun>(scene.config, std::move(bodies));
 }
 
 }  // namespace irdm::replay

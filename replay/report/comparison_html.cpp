@@ -139,7 +139,7 @@ std::string findings(const StylusMeasures& stylus, const Measures& measures,
          finding(texts[2], stylus.vibration_difference.noticeable()) +
          finding(texts[3], stylus.onsets.noticeable(measures.interval)) +
          "</ul>\n<p>Thresholds of people on average; sources and how far they carry are in irdm's "
-         "docs/compare.md.</p>\n";
+         "docs/replay.md.</p>\n";
 }
 
 std::string stylus_part(std::size_t s, const Apart& force, const Measures& measures,

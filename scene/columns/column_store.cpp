@@ -65,7 +65,7 @@ const void* ColumnStore::try_take(int node) noexcept {
   return nullptr;
 }
 
-const void* ColumnStore::take(int node) noexcept {
+const void* ColumnStore::acquire(int node) noexcept {
   Node& wanted = nodes_[static_cast<std::size_t>(node)];
   while (true) {
     if (const void* columns = try_take(node)) return columns;
@@ -77,11 +77,11 @@ const void* ColumnStore::take(int node) noexcept {
   }
 }
 
-void ColumnStore::give_back(int node) noexcept {
+void ColumnStore::release(int node) noexcept {
   slots_[static_cast<std::size_t>(slot_of(node))].users.fetch_sub(1, std::memory_order_release);
 }
 
-void ColumnStore::expect(std::span<const Vector3> tips) noexcept {
+void ColumnStore::prefetch(std::span<const Vector3> tips) noexcept {
   Tips& next = tips_.back();
   next.count = std::min(tips.size(), next.place.size());
   std::copy_n(tips.begin(), next.count, next.place.begin());

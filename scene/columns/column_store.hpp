@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "common/model/column_supply.hpp"
-#include "common/realtime/mailbox.hpp"
-#include "common/realtime/wakeup.hpp"
+#include "common/realtime/event_fd.hpp"
+#include "common/realtime/triple_buffer.hpp"
 #include "simulation/step/step_record.hpp"
 
 namespace irdm {
@@ -31,7 +31,7 @@ class ColumnStore final : public ColumnSupply {
   struct Settings {
     std::size_t slot_bytes = 0;
     int slots = 0;  ///< at least one, no more than nodes
-    /// Lockstep: take() waits for the disk, and each engine may have only as many columns as are
+    /// Lockstep: acquire() waits for the disk, and each engine may have only as many columns as are
     /// left to it whatever the others have, so that what comes of it does not depend on time.
     bool waits = false;
   };
@@ -50,10 +50,10 @@ class ColumnStore final : public ColumnSupply {
   /// Nothing is read any more; who waits gets nothing.
   void finish();
 
-  const void* take(int node) noexcept override;
-  void give_back(int node) noexcept override;
+  const void* acquire(int node) noexcept override;
+  void release(int node) noexcept override;
   int share() const noexcept override;
-  void expect(std::span<const Vector3> tips) noexcept override;
+  void prefetch(std::span<const Vector3> tips) noexcept override;
 
   /// Nodes whose columns have been read, and whose cannot be; any thread.
   std::uint64_t loaded() const noexcept { return loaded_.load(std::memory_order_relaxed); }
@@ -102,11 +102,11 @@ class ColumnStore final : public ColumnSupply {
   std::unique_ptr<std::byte[]> memory_;
   std::vector<Slot> slots_;
   std::vector<Node> nodes_;
-  Mailbox<Tips> tips_;
+  TripleBuffer<Tips> tips_;
   std::atomic<std::uint64_t> loaded_{0};
   std::atomic<std::uint64_t> failed_count_{0};
   std::atomic<bool> stopped_{false};
-  Wakeup news_;  ///< in lockstep: a column is waited for; and the end
+  EventFd news_;  ///< in lockstep: a column is waited for; and the end
   std::thread thread_;
 };
 

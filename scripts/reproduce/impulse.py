@@ -48,7 +48,7 @@ def theoretical_speeds(material):
 def first_peaks(model, degree, dt):
     """Distance [m] and time of the first peak [s] of every node of the tapped face: the first maximum of the length of
     the total displacement that is at least 30 % of the largest while a Rayleigh wave runs over the face
-    (docs/wave-speed.md; precompute/check/wave_speed.cpp)."""
+    (docs/check.md; precompute/check/wave_speed.cpp)."""
     node = degree // 3
     source = model.rest[node]
     away = model.rest - source

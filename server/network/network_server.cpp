@@ -57,8 +57,8 @@ class NetworkServer::Impl {
 
   const NetworkSettings settings_;
   NetworkStats stats_;
-  Wakeup forces_ready_;
-  Mailbox<wire::Status> status_;
+  EventFd forces_ready_;
+  TripleBuffer<wire::Status> status_;
   StylusSlots slots_;
   std::uint16_t port_ = 0;
 
@@ -92,7 +92,7 @@ class NetworkServer::Impl {
   std::optional<DatagramPort> datagrams_;
   std::list<Session> sessions_;
   std::random_device random_;
-  Allowance complaints_ = complaint_allowance();
+  TokenBucket complaints_ = complaint_allowance();
   bool accepting_ = false;
   bool opened_ = false;
   bool stopping_ = false;
@@ -264,7 +264,7 @@ bool NetworkServer::Impl::make_room_for_connection() {
   if (sessions_.size() - ending < limit) return true;
   const auto silent = first(&Session::unwelcomed);
   if (silent == sessions_.end()) return false;
-  silent->displace();
+  silent->evict();
   return true;
 }
 
@@ -345,10 +345,10 @@ int NetworkServer::styluses() const noexcept {
 StylusPort& NetworkServer::port(int stylus) {
   return impl_->slots_.port(stylus);
 }
-Wakeup& NetworkServer::forces_ready() noexcept {
+EventFd& NetworkServer::forces_ready() noexcept {
   return impl_->forces_ready_;
 }
-Mailbox<wire::Status>& NetworkServer::status() noexcept {
+TripleBuffer<wire::Status>& NetworkServer::status() noexcept {
   return impl_->status_;
 }
 const NetworkStats& NetworkServer::stats() const noexcept {

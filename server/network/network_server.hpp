@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
+#include "common/realtime/event_fd.hpp"
 #include "common/realtime/scheduling.hpp"
-#include "common/realtime/wakeup.hpp"
 #include "common/wire/frame_tap.hpp"
 #include "common/wire/secret_key.hpp"
 #include "server/network/stylus_port.hpp"
@@ -79,10 +79,10 @@ class NetworkServer {
   StylusPort& port(int stylus);
   /// To be signalled once after the `out` mailboxes of a step were filled, where there is a thread
   /// that waits for it.
-  Wakeup& forces_ready() noexcept;
+  EventFd& forces_ready() noexcept;
   const NetworkStats& stats() const noexcept;
   /// What goes to the bridges soon after it is put in; from one thread.
-  Mailbox<wire::Status>& status() noexcept;
+  TripleBuffer<wire::Status>& status() noexcept;
 
   /// Starts the thread. Throws Error when real-time scheduling is required and not permitted.
   void start();

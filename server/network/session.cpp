@@ -252,7 +252,7 @@ void Session::yield(std::int64_t now_ns) {
   time_out("silent, and another bridge asks for a stylus");
 }
 
-void Session::displace() {
+void Session::evict() {
   complain("no Hello yet, and another peer asks; connection closed");
   shared_.stats.displaced.fetch_add(1);
   connection_->drop("displaced");

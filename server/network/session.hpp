@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "common/wire/allowance.hpp"
 #include "common/wire/connection.hpp"
+#include "common/wire/token_bucket.hpp"
 #include "server/network/datagram_port.hpp"
 #include "server/network/network_server.hpp"
 #include "server/network/stylus_slots.hpp"
@@ -23,7 +23,7 @@ class Session {
     const NetworkSettings& settings;
     StylusSlots& slots;
     NetworkStats& stats;
-    Allowance& complaints;              ///< lines of the log about peers
+    TokenBucket& complaints;            ///< lines of the log about peers
     std::function<void()> make_room;    ///< ends the sessions that yield
     DatagramPort* datagrams = nullptr;  ///< null: everything goes by TCP
   };
@@ -44,7 +44,7 @@ class Session {
   /// Ends it when its bridge is silent: another one asks for a stylus.
   void yield(std::int64_t now_ns);
   /// Cuts a connection whose peer has not said Hello: another one has come.
-  void displace();
+  void evict();
   /// Cuts a connection that has ended without waiting for its peer.
   void drop();
   /// Sends the forces that are ready.
@@ -78,7 +78,7 @@ class Session {
   std::shared_ptr<wire::Connection> connection_;
   Shared shared_;
   std::int64_t accepted_ns_;
-  Allowance frames_;
+  TokenBucket frames_;
   std::optional<std::int64_t> ending_since_ns_;
   bool welcomed_ = false;
   bool predicts_ = false;  ///< contact models go out, applied forces come in

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "common/realtime/mailbox.hpp"
+#include "common/realtime/triple_buffer.hpp"
 #include "common/stylus.hpp"
 #include "common/wire/message.hpp"
 #include "simulation/step/applied_history.hpp"
@@ -31,12 +31,12 @@ struct ServedModel {
 /// Hand-over between network thread and force thread for one stylus: the network thread writes `in`
 /// and reads `out`, the force thread the other way round. Neither ever waits.
 struct StylusPort {
-  Mailbox<StylusInput> in;
-  Mailbox<StylusForce> out;
+  TripleBuffer<StylusInput> in;
+  TripleBuffer<StylusForce> out;
   // Where the bridge solves the contact:
-  Mailbox<AppliedHistory> applied;  ///< from the network thread
-  Mailbox<ServedModel> model;       ///< from the force thread
-  Mailbox<LinkReport> link;         ///< from the network thread to a viewer's thread
+  TripleBuffer<AppliedHistory> applied;  ///< from the network thread
+  TripleBuffer<ServedModel> model;       ///< from the force thread
+  TripleBuffer<LinkReport> link;         ///< from the network thread to a viewer's thread
 };
 
 }  // namespace irdm

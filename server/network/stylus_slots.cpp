@@ -48,7 +48,7 @@ void StylusSlots::put(int slot, const AppliedForces& applied) {
 }
 
 const ContactModel* StylusSlots::take_model(int slot) {
-  Mailbox<ServedModel>& box = port(slot).model;
+  TripleBuffer<ServedModel>& box = port(slot).model;
   const Owner& owner = owners_[static_cast<std::size_t>(slot)];
   const bool usable = box.receive() && owner.predicts && box.front().session == owner.session;
   return usable ? &box.front().model : nullptr;

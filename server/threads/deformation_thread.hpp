@@ -5,9 +5,9 @@
 #include <memory>
 #include <thread>
 
+#include "common/realtime/event_fd.hpp"
 #include "common/realtime/histogram.hpp"
-#include "common/realtime/mailbox.hpp"
-#include "common/realtime/wakeup.hpp"
+#include "common/realtime/triple_buffer.hpp"
 #include "server/threads/step_sink.hpp"
 #include "simulation/deformation/deformation.hpp"
 
@@ -25,9 +25,9 @@ class DeformationThread {
   /// Where the force thread puts its steps.
   StepSink& sink() noexcept { return sink_; }
   /// The newest surface; for one reader.
-  Mailbox<SurfaceFrame>& surfaces() noexcept { return surfaces_; }
+  TripleBuffer<SurfaceFrame>& surfaces() noexcept { return surfaces_; }
   /// Signalled whenever there is a new one.
-  Wakeup& surface_ready() noexcept { return surface_ready_; }
+  EventFd& surface_ready() noexcept { return surface_ready_; }
 
   /// @param beside_real_time leave a processor to the real-time threads
   void start(bool beside_real_time = false);
@@ -48,12 +48,12 @@ class DeformationThread {
   std::int64_t period_ns_;
   int threads_;
   StepSink sink_;
-  Mailbox<SurfaceFrame> surfaces_;
+  TripleBuffer<SurfaceFrame> surfaces_;
   Histogram compute_time_;
   std::atomic<std::uint64_t> frames_{0};
   std::atomic<std::uint64_t> lost_steps_{0};
-  Wakeup surface_ready_;
-  Wakeup stop_;
+  EventFd surface_ready_;
+  EventFd stop_;
   std::thread thread_;
 };
 

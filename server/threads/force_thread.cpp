@@ -155,7 +155,7 @@ void ForceThread::stand_still() noexcept {
     if (!port.in.front().predicts) continue;
     port.model.back().session = port.in.front().session;
     port.model.back().model.valid = false;
-    port.model.back().model.standing = true;
+    port.model.back().model.paused = true;
     port.model.publish();
   }
   network_.forces_ready().signal();
@@ -199,17 +199,17 @@ void ForceThread::step() noexcept {
     if (!record_.object[static_cast<std::size_t>(i)].solved) ++report_.unsolved;
   }
   for (StepSink* sink : sinks_) sink->put(record_);
-  foresee();
+  predict_horizon();
 }
 
 // After all else: who waits for a force has it by now.
-void ForceThread::foresee() noexcept {
+void ForceThread::predict_horizon() noexcept {
   bool any = false;
   for (std::size_t s = 0; s < bridged_.size(); ++s) {
     StylusPort& port = network_.port(static_cast<int>(s));
     if (!commands_[s].present || !port.in.front().predicts) continue;
     port.model.back().session = port.in.front().session;
-    bridged_[s].foresee(port.model.back().model);
+    bridged_[s].predict_horizon(port.model.back().model);
     port.model.publish();
     any = true;
   }

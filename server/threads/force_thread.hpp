@@ -6,10 +6,10 @@
 #include <thread>
 #include <vector>
 
+#include "common/realtime/event_fd.hpp"
 #include "common/realtime/histogram.hpp"
-#include "common/realtime/mailbox.hpp"
 #include "common/realtime/scheduling.hpp"
-#include "common/realtime/wakeup.hpp"
+#include "common/realtime/triple_buffer.hpp"
 #include "server/blackbox/step_log.hpp"
 #include "server/network/network_server.hpp"
 #include "server/threads/run_control.hpp"
@@ -62,12 +62,12 @@ class ForceThread {
   /// Tells it of every step. Before start(); outlives the thread.
   void write_down_in(StepLog& log) noexcept { log_ = &log; }
   /// Becomes readable when the thread has made its last step.
-  Wakeup& finished() noexcept { return finished_; }
+  EventFd& finished() noexcept { return finished_; }
   const ForceThreadReport& report() const noexcept { return report_; }
   /// While it runs, anew about every kHealthPeriodNs; for one reader.
-  Mailbox<ForceHealth>& health() noexcept { return health_; }
+  TripleBuffer<ForceHealth>& health() noexcept { return health_; }
   /// The same for another one.
-  Mailbox<ForceHealth>& status() noexcept { return status_; }
+  TripleBuffer<ForceHealth>& status() noexcept { return status_; }
   static constexpr double kPauseFade = 0.03;  ///< in which a force fades when the run is paused [s]
   static constexpr std::int64_t kHealthPeriodNs = 1'000'000'000;
   /// How the thread is scheduled, for a report.
@@ -77,7 +77,7 @@ class ForceThread {
   void run() noexcept;
   void step() noexcept;
   void stand_still() noexcept;
-  void foresee() noexcept;
+  void predict_horizon() noexcept;
   void take_commands() noexcept;
   void write_down(std::int64_t begin_ns, std::int64_t end_ns) noexcept;
   void watch_health(std::int64_t begin_ns, std::int64_t end_ns) noexcept;
@@ -99,10 +99,10 @@ class ForceThread {
   ForceThreadReport report_;
   ForceHealth window_;  ///< what is being gathered for health_
   std::int64_t window_begin_ns_ = 0;
-  Mailbox<ForceHealth> health_;
-  Mailbox<ForceHealth> status_;
+  TripleBuffer<ForceHealth> health_;
+  TripleBuffer<ForceHealth> status_;
   std::string scheduling_;
-  Wakeup finished_;
+  EventFd finished_;
   std::thread thread_;
 };
 

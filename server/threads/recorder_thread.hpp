@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-#include "common/realtime/wakeup.hpp"
+#include "common/realtime/event_fd.hpp"
 #include "server/threads/step_sink.hpp"
 #include "trace/trace_writer.hpp"
 
@@ -49,7 +49,7 @@ class RecorderThread {
   std::uint64_t lost_before_;
   bool begun_;
   std::vector<StepRecord> batch_;
-  Wakeup stop_;
+  EventFd stop_;
   std::atomic<std::uint64_t> rows_{0};
   std::string error_;
   std::thread thread_;

@@ -3,7 +3,7 @@
 #include <atomic>
 #include <cstdint>
 
-#include "common/realtime/mailbox.hpp"
+#include "common/realtime/triple_buffer.hpp"
 #include "server/network/stylus_port.hpp"
 #include "simulation/step/settings.hpp"
 
@@ -31,7 +31,7 @@ class RunControl {
   /// From the next step on; they must have passed check_settings().
   void set(const Settings& settings) noexcept { settings_.put(settings); }
   /// Where the viewers' stylus is; not present: nobody has it.
-  Mailbox<StylusInput>& stylus() noexcept { return stylus_; }
+  TripleBuffer<StylusInput>& stylus() noexcept { return stylus_; }
 
   // Force thread.
   bool take_reset() noexcept {
@@ -54,8 +54,8 @@ class RunControl {
   std::atomic<bool> reset_{false};
   std::atomic<bool> paused_{false};
   std::atomic<std::uint32_t> steps_{0};
-  Mailbox<Settings> settings_;
-  Mailbox<StylusInput> stylus_;
+  TripleBuffer<Settings> settings_;
+  TripleBuffer<StylusInput> stylus_;
 };
 
 }  // namespace irdm

@@ -4,7 +4,7 @@
 #include <string>
 #include <thread>
 
-#include "common/realtime/wakeup.hpp"
+#include "common/realtime/event_fd.hpp"
 #include "common/wire/message.hpp"
 #include "server/network/network_server.hpp"
 #include "server/threads/deformation_thread.hpp"
@@ -39,7 +39,7 @@ class StatusThread {
   std::int64_t log_period_ns_;
   std::uint64_t frames_ = 0;  ///< and the next: at the last gathering
   std::int64_t gathered_ns_ = 0;
-  Wakeup stop_;
+  EventFd stop_;
   std::thread thread_;
 };
 

@@ -57,7 +57,7 @@ viewer::LinkHealth LiveRun::link_health(int stylus) {
   const auto percentiles_of = [](const wire::Quantiles& quantiles) -> viewer::Percentiles {
     return {quantiles.median, quantiles.p99, quantiles.maximum};
   };
-  Mailbox<LinkReport>& link = parts_.network.port(stylus).link;
+  TripleBuffer<LinkReport>& link = parts_.network.port(stylus).link;
   link.receive();
   const LinkReport& report = link.front();
   return {report.reported, percentiles_of(report.report.round_trip),

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "common/realtime/bounded_queue.hpp"
-#include "common/realtime/mailbox.hpp"
-#include "common/realtime/wakeup.hpp"
+#include "common/realtime/event_fd.hpp"
+#include "common/realtime/triple_buffer.hpp"
 #include "simulation/deformation/deformation.hpp"
 #include "trace/recording.hpp"
 
@@ -48,10 +48,10 @@ class Player {
   void set_speed(double speed);  ///< > 0, 1: as it was
 
   /// The newest surface, for one reader, and a signal whenever there is one.
-  Mailbox<SurfaceFrame>& surfaces() noexcept { return surfaces_; }
-  Wakeup& surface_ready() noexcept { return surface_ready_; }
+  TripleBuffer<SurfaceFrame>& surfaces() noexcept { return surfaces_; }
+  EventFd& surface_ready() noexcept { return surface_ready_; }
   /// For one reader.
-  Mailbox<PlayerStatus>& status() noexcept { return status_; }
+  TripleBuffer<PlayerStatus>& status() noexcept { return status_; }
 
  private:
   struct Request {
@@ -73,11 +73,11 @@ class Player {
   int period_ms_;
   int threads_;
   BoundedQueue<Request> requests_{256};
-  Wakeup asked_;
+  EventFd asked_;
   std::atomic<bool> stopping_{false};
-  Mailbox<SurfaceFrame> surfaces_;
-  Wakeup surface_ready_;
-  Mailbox<PlayerStatus> status_;
+  TripleBuffer<SurfaceFrame> surfaces_;
+  EventFd surface_ready_;
+  TripleBuffer<PlayerStatus> status_;
 
   // Player's thread.
   std::optional<Recording> recording_;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "simulation/collision/straight_walk.hpp"
+#include "simulation/collision/geodesic_step.hpp"
 
 namespace irdm {
 namespace {
@@ -104,7 +104,7 @@ int RestSurface::neighbour(int triangle, std::size_t corner) const noexcept {
 
 SurfaceLocation RestSurface::straight_on(const SurfaceLocation& from, const Vector3& direction,
                                          double length) const noexcept {
-  StraightWalk walk(*this, from, direction);
+  GeodesicStep walk(*this, from, direction);
   for (int leg = 0; leg < kMaxWalkMoves && length > 0.0 && walk.moves(); ++leg) {
     length -= walk.leg(length);
   }

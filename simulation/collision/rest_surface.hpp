@@ -33,7 +33,7 @@ class RestSurface {
   /// nearer until none is: across edges and round corners, but not through the object.
   SurfaceLocation walk(int triangle, const Vector3& p) const noexcept;
 
-  /// The end of a StraightWalk of a `length` [m].
+  /// The end of a GeodesicStep of a `length` [m].
   SurfaceLocation straight_on(const SurfaceLocation& from, const Vector3& direction,
                               double length) const noexcept;
   /// The triangle that a point belongs to, with its place.

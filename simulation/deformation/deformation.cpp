@@ -29,7 +29,7 @@ Deformation::Deformation(const SimulationConfig& config, double tolerance) {
   for (const SimulationStylus& stylus : config.styluses) radii.push_back(stylus.radius);
   for (const SimulationObject& object : config.objects) {
     Follower follower{object, make_engine(object.model, object.other_model), nullptr, nullptr,
-                      feels_spin(*object.model, object.inertial_loading)};
+                      has_inertial_loading(*object.model, object.inertial_loading)};
     follow_gravity(*follower.engine, object, config.gravity);
     follower.tolerance = tolerance * object.model->mesh.nodes.rowwise().norm().maxCoeff();
     follower.surface = std::make_unique<RestSurface>(object.model->mesh);
@@ -40,7 +40,8 @@ Deformation::Deformation(const SimulationConfig& config, double tolerance) {
 
 void Deformation::advance(const StepRecord& record) {
   for (std::size_t i = 0; i < objects_.size(); ++i) {
-    if (objects_[i].feels_spin) objects_[i].engine->hold_spin(record.object[i].spin);
+    if (objects_[i].has_inertial_loading)
+      objects_[i].engine->set_angular_velocity(record.object[i].spin);
     objects_[i].engine->advance(objects_[i].forces->of(record.object[i]));
   }
 }
@@ -49,7 +50,8 @@ void Deformation::follow_settings(const StepRecord& record) {
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     const ObjectSettings& settings = record.settings.object[i];
     Follower& follower = objects_[i];
-    follower.feels_spin = feels_spin(*follower.object.model, settings.inertial_loading);
+    follower.has_inertial_loading =
+        has_inertial_loading(*follower.object.model, settings.inertial_loading);
     irdm::follow_settings(*follower.engine, settings, follower.material_damping);
     follow_gravity(*follower.engine, follower.object, record.settings.gravity);
   }
@@ -69,7 +71,7 @@ void Deformation::follow(const StepRecord& record) {
   for (; next < record.force_step; ++next) advance(last_);
   for (const LateForce& late : record.late.view()) {  // of steps with the settings as they were
     Follower& follower = objects_[static_cast<std::size_t>(late.object)];
-    follower.engine->add_past(follower.forces->of(late), late.age);
+    follower.engine->add_delayed_force(follower.forces->of(late), late.age);
   }
   if (record.settings_change != last_.settings_change) follow_settings(record);
   advance(record);

@@ -72,7 +72,7 @@ class Deformation {
     std::unique_ptr<ResponseEngine> engine;
     std::unique_ptr<RestSurface> surface;
     std::unique_ptr<RecordedForces> forces;
-    bool feels_spin;
+    bool has_inertial_loading;
     double tolerance = 0.0;  ///< [m]
     double material_damping = 1.0;
   };

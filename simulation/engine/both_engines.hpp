@@ -14,15 +14,15 @@ class BothEngines final : public ResponseEngine {
   /// Of different kinds, and of one model; the first one answers until use() says otherwise.
   BothEngines(std::unique_ptr<ResponseEngine> first, std::unique_ptr<ResponseEngine> second);
 
-  bool takes_spin() const noexcept override;
-  void hold_spin(const Vector3& w) noexcept override;
+  bool supports_inertial_loading() const noexcept override;
+  void set_angular_velocity(const Vector3& w) noexcept override;
   bool takes_gravity() const noexcept override;
   void set_gravity(const Vector3& gravity) noexcept override;
   EngineKind kind() const noexcept override { return engines_[answering_]->kind(); }
   const ResponseEngine& answering() const noexcept override { return *engines_[answering_]; }
   bool has_both_kinds() const noexcept override { return true; }
   void use(EngineKind kind) noexcept override;
-  void expect(std::span<const Vector3> tips) noexcept override;
+  void prefetch(std::span<const Vector3> tips) noexcept override;
   std::uint64_t missed_columns() const noexcept override;
   Vector3 free_displacement(int node) const noexcept override {
     return engines_[answering_]->free_displacement(node);
@@ -34,19 +34,21 @@ class BothEngines final : public ResponseEngine {
                ContactMatrix& compliance) noexcept override {
     engines_[answering_]->predict(patches, h, compliance);
   }
-  void foresee(const ContactPatch& patch, std::span<const NodalForce> held, std::span<Vector3> path,
-               std::span<Matrix3> response) noexcept override {
-    engines_[answering_]->foresee(patch, held, path, response);
+  void predict_horizon(const ContactPatch& patch, std::span<const NodalForce> held,
+                       std::span<Vector3> path, std::span<Matrix3> response) noexcept override {
+    engines_[answering_]->predict_horizon(patch, held, path, response);
   }
-  void add_past(std::span<const NodalForce> forces, int age) noexcept override;
-  void follow(std::span<const int> nodes) noexcept override { engines_[answering_]->follow(nodes); }
+  void add_delayed_force(std::span<const NodalForce> forces, int age) noexcept override;
+  void cache_nodes(std::span<const int> nodes) noexcept override {
+    engines_[answering_]->cache_nodes(nodes);
+  }
   void advance(std::span<const NodalForce> forces) noexcept override;
   using ResponseEngine::displacement;
   void displacement(Points& u, double tolerance) const override {
     engines_[answering_]->displacement(u, tolerance);
   }
-  Eigen::MatrixXd instant_compliance() const override {
-    return engines_[answering_]->instant_compliance();
+  Eigen::MatrixXd zero_lag_compliance() const override {
+    return engines_[answering_]->zero_lag_compliance();
   }
   void reset() noexcept override;
 

@@ -38,7 +38,7 @@ Matrix3 block(const CompressedResponse& response, const ContactPatch& a, const C
 CompressedEngine::CompressedEngine(std::shared_ptr<const Model> model)
     : model_(std::move(model)),
       response_(&std::get<CompressedResponse>(model_->response)),
-      history_(model_->mesh.surface_node_count(), response_->early_steps),
+      history_(model_->mesh.surface_node_count(), response_->fir_steps),
       late_(*response_) {
   contact_shapes_.assign(3 * late_.shape_count(), 0.0);
   products_.assign(6 * late_.shape_count(), 0.0);
@@ -51,7 +51,7 @@ Vector3 CompressedEngine::early(int node, int shift) const noexcept {
     for (int b = 0; b < 3; ++b) {
       const ForceHistory::Series series = history_.series(from, b);
       const int first = series.first_age + shift;
-      const int count = std::min(series.count, response_->early_steps - first);
+      const int count = std::min(series.count, response_->fir_steps - first);
       if (count <= 0) continue;
       for (int a = 0; a < 3; ++a) {
         u[a] += with_early(*response_, node, a, from, b, [&](const auto* numbers, double scale) {
@@ -104,17 +104,18 @@ void CompressedEngine::mean_shapes(const ContactPatch& patch) noexcept {
   }
 }
 
-void CompressedEngine::foresee(const ContactPatch& patch, std::span<const NodalForce> held,
-                               std::span<Vector3> path, std::span<Matrix3> response) noexcept {
+void CompressedEngine::predict_horizon(const ContactPatch& patch, std::span<const NodalForce> held,
+                                       std::span<Vector3> path,
+                                       std::span<Matrix3> response) noexcept {
   const std::size_t shapes = late_.shape_count();
-  const auto early_steps = static_cast<std::size_t>(response_->early_steps);
+  const auto fir_steps = static_cast<std::size_t>(response_->fir_steps);
   mean_shapes(patch);
   late_.collect(held, held_force_.data());
   Vector3 by_held = Vector3::Zero();
   late_.begin_path();
   for (std::size_t n = 0; n < path.size(); ++n) {
     if (n > 0) late_.continue_path(held_force_.data());
-    if (n < early_steps) {
+    if (n < fir_steps) {
       for (const NodalForce& force : held) {
         by_held += mean(patch, [&](int node) -> Vector3 {
           return block(*response_, node, force.node, n) * force.force;
@@ -133,7 +134,7 @@ void CompressedEngine::foresee(const ContactPatch& patch, std::span<const NodalF
              products_.data() + k * shapes, shapes);
   }
   for (std::size_t n = 0; n < response.size(); ++n) {
-    if (n < early_steps) {
+    if (n < fir_steps) {
       response[n] = block(*response_, patch, patch, n);
     } else {
       const Sums<6> r = dot_six(late_.after(n), products_.data(), shapes);
@@ -142,10 +143,10 @@ void CompressedEngine::foresee(const ContactPatch& patch, std::span<const NodalF
   }
 }
 
-void CompressedEngine::add_past(std::span<const NodalForce> forces, int age) noexcept {
+void CompressedEngine::add_delayed_force(std::span<const NodalForce> forces, int age) noexcept {
   if (age >= kMaxHorizon) return;
-  history_.add_past(forces, age);
-  late_.add_past(forces, age);
+  history_.add_delayed_force(forces, age);
+  late_.add_delayed_force(forces, age);
 }
 
 void CompressedEngine::advance(std::span<const NodalForce> forces) noexcept {
@@ -162,7 +163,7 @@ void CompressedEngine::displacement(Points& u, double /*tolerance*/) const {
   }
 }
 
-Eigen::MatrixXd CompressedEngine::instant_compliance() const {
+Eigen::MatrixXd CompressedEngine::zero_lag_compliance() const {
   const int nodes = model_->mesh.surface_node_count();
   Eigen::MatrixXd R(3 * nodes, 3 * nodes);
   for (int i = 0; i < nodes; ++i) {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "simulation/engine/force_history.hpp"
-#include "simulation/engine/late_part.hpp"
+#include "simulation/engine/recursive_tail.hpp"
 #include "simulation/engine/response_engine.hpp"
 
 namespace irdm {
@@ -14,19 +14,19 @@ class CompressedEngine final : public ResponseEngine {
   /// @param model holds a CompressedResponse
   explicit CompressedEngine(std::shared_ptr<const Model> model);
 
-  bool takes_spin() const noexcept override { return false; }
-  void hold_spin(const Vector3& /*w*/) noexcept override {}
+  bool supports_inertial_loading() const noexcept override { return false; }
+  void set_angular_velocity(const Vector3& /*w*/) noexcept override {}
   EngineKind kind() const noexcept override { return EngineKind::kCompressed; }
   Vector3 free_displacement(int node) const noexcept override;
   void predict(std::span<const ContactPatch> patches, std::span<Vector3> h,
                ContactMatrix& compliance) noexcept override;
-  void foresee(const ContactPatch& patch, std::span<const NodalForce> held, std::span<Vector3> path,
-               std::span<Matrix3> response) noexcept override;
-  void add_past(std::span<const NodalForce> forces, int age) noexcept override;
+  void predict_horizon(const ContactPatch& patch, std::span<const NodalForce> held,
+                       std::span<Vector3> path, std::span<Matrix3> response) noexcept override;
+  void add_delayed_force(std::span<const NodalForce> forces, int age) noexcept override;
   void advance(std::span<const NodalForce> forces) noexcept override;
   using ResponseEngine::displacement;
   void displacement(Points& u, double tolerance) const override;
-  Eigen::MatrixXd instant_compliance() const override;
+  Eigen::MatrixXd zero_lag_compliance() const override;
   void reset() noexcept override;
 
  private:
@@ -40,7 +40,7 @@ class CompressedEngine final : public ResponseEngine {
   std::shared_ptr<const Model> model_;
   const CompressedResponse* response_;
   ForceHistory history_;  ///< of m steps
-  LatePart late_;
+  RecursiveTail late_;
   std::vector<double> contact_shapes_;  ///< (3, r)
   std::vector<double> products_;        ///< (6, r)
   std::vector<double> held_force_;      ///< (r)

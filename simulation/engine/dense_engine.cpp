@@ -62,19 +62,20 @@ void DenseEngine<Scalar>::predict(std::span<const ContactPatch> patches, std::sp
 }
 
 template <typename Scalar>
-void DenseEngine<Scalar>::foresee(const ContactPatch& patch, std::span<const NodalForce> held,
-                                  std::span<Vector3> path, std::span<Matrix3> response) noexcept {
+void DenseEngine<Scalar>::predict_horizon(const ContactPatch& patch,
+                                          std::span<const NodalForce> held, std::span<Vector3> path,
+                                          std::span<Matrix3> response) noexcept {
   const auto steps = static_cast<int>(path.size());
   for (int i = 0; i < patch.count; ++i) {
-    past_.foresee(patch.nodes[static_cast<std::size_t>(i)], steps);
-    spin_.foresee(patch.nodes[static_cast<std::size_t>(i)], steps);
-    gravity_.foresee(patch.nodes[static_cast<std::size_t>(i)], steps);
+    past_.predict_horizon(patch.nodes[static_cast<std::size_t>(i)], steps);
+    spin_.predict_horizon(patch.nodes[static_cast<std::size_t>(i)], steps);
+    gravity_.predict_horizon(patch.nodes[static_cast<std::size_t>(i)], steps);
   }
   const auto place = [&](int node, int n) {
     Vector3 u = Vector3::Zero();
-    past_.add_foreseen(node, n, u);
-    spin_.add_foreseen(node, n, u);
-    gravity_.add_foreseen(node, n, u);
+    past_.add_ahead(node, n, u);
+    spin_.add_ahead(node, n, u);
+    gravity_.add_ahead(node, n, u);
     return u;
   };
   Vector3 by_held = Vector3::Zero();
@@ -90,17 +91,17 @@ void DenseEngine<Scalar>::foresee(const ContactPatch& patch, std::span<const Nod
 }
 
 template <typename Scalar>
-void DenseEngine<Scalar>::follow(std::span<const int> nodes) noexcept {
+void DenseEngine<Scalar>::cache_nodes(std::span<const int> nodes) noexcept {
   for (const int node : nodes) {
-    past_.follow(node);
-    spin_.follow(node);
-    gravity_.follow(node);
+    past_.cache_node(node);
+    spin_.cache_node(node);
+    gravity_.cache_node(node);
   }
 }
 
 template <typename Scalar>
-void DenseEngine<Scalar>::add_past(std::span<const NodalForce> forces, int age) noexcept {
-  if (age < kMaxHorizon) past_.add_past(forces, age);
+void DenseEngine<Scalar>::add_delayed_force(std::span<const NodalForce> forces, int age) noexcept {
+  if (age < kMaxHorizon) past_.add_delayed_force(forces, age);
 }
 
 template <typename Scalar>
@@ -119,7 +120,7 @@ void DenseEngine<Scalar>::displacement(Points& u, double /*tolerance*/) const {
 }
 
 template <typename Scalar>
-Eigen::MatrixXd DenseEngine<Scalar>::instant_compliance() const {
+Eigen::MatrixXd DenseEngine<Scalar>::zero_lag_compliance() const {
   return whole_response(model_->degrees_of_freedom(), [&](int a, int b) { return entry(0, a, b); });
 }
 

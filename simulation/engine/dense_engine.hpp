@@ -1,9 +1,9 @@
 #pragma once
 
+#include "simulation/engine/cached_convolution.hpp"
 #include "simulation/engine/dense_gravity.hpp"
 #include "simulation/engine/dense_load.hpp"
 #include "simulation/engine/response_engine.hpp"
-#include "simulation/engine/running_convolution.hpp"
 
 namespace irdm {
 
@@ -16,23 +16,23 @@ class DenseEngine final : public ResponseEngine {
   /// @param model holds a DenseResponse of type Scalar
   explicit DenseEngine(std::shared_ptr<const Model> model);
 
-  bool takes_spin() const noexcept override { return spin_.any(); }
+  bool supports_inertial_loading() const noexcept override { return spin_.any(); }
   bool takes_gravity() const noexcept override { return gravity_.any(); }
   EngineKind kind() const noexcept override { return EngineKind::kDense; }
-  void hold_spin(const Vector3& w) noexcept override { spin_.hold(spin_products(w)); }
+  void set_angular_velocity(const Vector3& w) noexcept override { spin_.hold(spin_products(w)); }
   void set_gravity(const Vector3& gravity) noexcept override { gravity_.set(gravity); }
   Vector3 free_displacement(int node) const noexcept override;
   double free_displacement_bound() const noexcept override;
   void predict(std::span<const ContactPatch> patches, std::span<Vector3> h,
                ContactMatrix& compliance) noexcept override;
-  void foresee(const ContactPatch& patch, std::span<const NodalForce> held, std::span<Vector3> path,
-               std::span<Matrix3> response) noexcept override;
-  void add_past(std::span<const NodalForce> forces, int age) noexcept override;
-  void follow(std::span<const int> nodes) noexcept override;
+  void predict_horizon(const ContactPatch& patch, std::span<const NodalForce> held,
+                       std::span<Vector3> path, std::span<Matrix3> response) noexcept override;
+  void add_delayed_force(std::span<const NodalForce> forces, int age) noexcept override;
+  void cache_nodes(std::span<const int> nodes) noexcept override;
   void advance(std::span<const NodalForce> forces) noexcept override;
   using ResponseEngine::displacement;
   void displacement(Points& u, double tolerance) const override;
-  Eigen::MatrixXd instant_compliance() const override;
+  Eigen::MatrixXd zero_lag_compliance() const override;
   void reset() noexcept override;
 
  private:
@@ -44,7 +44,7 @@ class DenseEngine final : public ResponseEngine {
 
   std::shared_ptr<const Model> model_;
   ResidentColumns<Scalar> R_;
-  RunningConvolution<ResidentColumns<Scalar>> past_;
+  CachedConvolution<ResidentColumns<Scalar>> past_;
   DenseSpin<LoadNumber<Scalar>> spin_;
   DenseGravity<LoadNumber<Scalar>> gravity_;
 };

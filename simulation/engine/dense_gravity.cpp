@@ -32,10 +32,10 @@ void DenseGravity<Number>::add_coming(int node, Vector3& u) const noexcept {
 }
 
 template <typename Number>
-void DenseGravity<Number>::add_foreseen(int node, int n, Vector3& u) const noexcept {
+void DenseGravity<Number>::add_ahead(int node, int n, Vector3& u) const noexcept {
   if (!any()) return;
   add_sag(node, u);
-  changes_.add_foreseen(node, n, u);
+  changes_.add_ahead(node, n, u);
   changes_.add_held(node, n, u);
 }
 

@@ -25,10 +25,10 @@ class DenseGravity final {
   /// Adds what a node does at the end of the coming step.
   void add_coming(int node, Vector3& u) const noexcept;
   /// The same at the end of the n-th coming step.
-  void add_foreseen(int node, int n, Vector3& u) const noexcept;
-  /// As RunningConvolution's.
-  void follow(int node) noexcept { changes_.follow(node); }
-  void foresee(int node, int n) noexcept { changes_.foresee(node, n); }
+  void add_ahead(int node, int n, Vector3& u) const noexcept;
+  /// As CachedConvolution's.
+  void cache_node(int node) noexcept { changes_.cache_node(node); }
+  void predict_horizon(int node, int n) noexcept { changes_.predict_horizon(node, n); }
   /// Adds the displacement of all nodes at the end of the last step.
   void add_all(Points& u) const;
   void advance() noexcept;

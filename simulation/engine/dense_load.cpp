@@ -21,18 +21,18 @@ DenseLoad<Number, kCount>::DenseLoad(const Values& values, int dof, int steps)
     : columns_(columns_of<Number>(values, dof, steps)), past_(columns_, kCount / 3) {}
 
 template <typename Number, int kCount>
-void DenseLoad<Number, kCount>::add_foreseen(int node, int n, Vector3& u) const noexcept {
-  if (any()) past_.add_foreseen(node, n, u);
+void DenseLoad<Number, kCount>::add_ahead(int node, int n, Vector3& u) const noexcept {
+  if (any()) past_.add_ahead(node, n, u);
 }
 
 template <typename Number, int kCount>
-void DenseLoad<Number, kCount>::follow(int node) noexcept {
-  if (any()) past_.follow(node);
+void DenseLoad<Number, kCount>::cache_node(int node) noexcept {
+  if (any()) past_.cache_node(node);
 }
 
 template <typename Number, int kCount>
-void DenseLoad<Number, kCount>::foresee(int node, int n) noexcept {
-  if (any()) past_.foresee(node, n);
+void DenseLoad<Number, kCount>::predict_horizon(int node, int n) noexcept {
+  if (any()) past_.predict_horizon(node, n);
 }
 
 template <typename Number, int kCount>

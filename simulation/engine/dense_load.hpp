@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/response/spin_products.hpp"
-#include "simulation/engine/running_convolution.hpp"
+#include "simulation/engine/cached_convolution.hpp"
 
 namespace irdm {
 
@@ -32,12 +32,12 @@ class DenseLoad {
   /// Adds what a node does at the end of the coming step, with what is held.
   void add_coming(int node, Vector3& u) const noexcept;
   /// The same at the end of the n-th coming step, of the steps until now alone.
-  void add_foreseen(int node, int n, Vector3& u) const noexcept;
+  void add_ahead(int node, int n, Vector3& u) const noexcept;
   /// Adds what is held alone does to a node at the end of the n-th coming step.
   void add_held(int node, int n, Vector3& u) const noexcept;
-  /// As RunningConvolution's.
-  void follow(int node) noexcept;
-  void foresee(int node, int n) noexcept;
+  /// As CachedConvolution's.
+  void cache_node(int node) noexcept;
+  void predict_horizon(int node, int n) noexcept;
   /// Adds the displacement of all nodes at the end of the last step.
   void add_all(Points& u) const {
     if (any()) columns_.add_all(past_.history(), u);
@@ -49,7 +49,7 @@ class DenseLoad {
   static_assert(kCount % 3 == 0);
 
   ResidentColumns<Number> columns_;
-  RunningConvolution<ResidentColumns<Number>> past_;
+  CachedConvolution<ResidentColumns<Number>> past_;
   Numbers coming_ = Numbers::Zero();
 };
 

@@ -46,7 +46,7 @@ void ForceHistory::push(std::span<const NodalForce> forces) noexcept {
   }
 }
 
-bool ForceHistory::add_past(std::span<const NodalForce> forces, int age) noexcept {
+bool ForceHistory::add_delayed_force(std::span<const NodalForce> forces, int age) noexcept {
   if (age < 0 || age >= steps_ || age > clock_) return false;
   const std::int64_t then = clock_ - age;
   for (const NodalForce& nodal : forces) {

@@ -21,7 +21,7 @@ class ForceHistory {
   void push(std::span<const NodalForce> forces) noexcept;
   /// Adds forces to those of the step `age` steps before the last one; false, and nothing added,
   /// where that is before the first step or no longer kept.
-  bool add_past(std::span<const NodalForce> forces, int age) noexcept;
+  bool add_delayed_force(std::span<const NodalForce> forces, int age) noexcept;
   void clear() noexcept;
 
   /// Nodes with a force within the last T steps.

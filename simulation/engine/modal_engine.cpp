@@ -59,7 +59,7 @@ void ModalEngine<Scalar>::set_transitions(double damping) noexcept {
 }
 
 // Step by step from unit forces, coordinates and velocities. Of the latter two only the coordinates
-// that come of them are kept; how fast they move is in what foresee() fills later on.
+// that come of them are kept; how fast they move is in what predict_horizon() fills later on.
 template <typename Scalar>
 void ModalEngine<Scalar>::tabulate_horizon() noexcept {
   const Transitions A{a11_.data(), a12_.data(), a21_.data(), a22_.data()};
@@ -139,7 +139,7 @@ void ModalEngine<Scalar>::settle() noexcept {
 }
 
 template <typename Scalar>
-void ModalEngine<Scalar>::hold_spin(const Vector3& w) noexcept {
+void ModalEngine<Scalar>::set_angular_velocity(const Vector3& w) noexcept {
   if (centrifugal_ == nullptr) return;
   const SpinProducts q = spin_products(w);
   for (std::size_t i = 0; i < modes_; ++i) {
@@ -252,8 +252,9 @@ void ModalEngine<Scalar>::collect_modal_forces(std::span<const NodalForce> force
 // for all of its steps. Gravity goes on like what is held: it is taken out of where the first step
 // ends.
 template <typename Scalar>
-void ModalEngine<Scalar>::foresee(const ContactPatch& patch, std::span<const NodalForce> held,
-                                  std::span<Vector3> path, std::span<Matrix3> response) noexcept {
+void ModalEngine<Scalar>::predict_horizon(const ContactPatch& patch,
+                                          std::span<const NodalForce> held, std::span<Vector3> path,
+                                          std::span<Matrix3> response) noexcept {
   collect_modal_forces(held, {0, modes_});
   for (std::size_t i = 0; i < 3; ++i) {
     double* shape = contact_shapes_.data() + i * modes_;
@@ -301,7 +302,7 @@ void ModalEngine<Scalar>::hold_gravity(const double* shape, double* products) co
 }
 
 template <typename Scalar>
-void ModalEngine<Scalar>::add_past(std::span<const NodalForce> forces, int age) noexcept {
+void ModalEngine<Scalar>::add_delayed_force(std::span<const NodalForce> forces, int age) noexcept {
   if (age < 0 || age >= kMaxHorizon) return;
   if (age == 0) residual_.hold_more(forces);
   begun_ = true;
@@ -347,7 +348,7 @@ void ModalEngine<Scalar>::displacements(std::span<const SurfaceRequest> requests
     const auto* engine = static_cast<const ModalEngine*>(request.engine);
     request.u->setZero(model_->mesh.surface_node_count(), 3);
     parts.push_back({engine,
-                     strong_modes(engine->coordinate_, engine->largest_shape_, request.tolerance),
+                     active_modes(engine->coordinate_, engine->largest_shape_, request.tolerance),
                      request.u->data()});
   }
   const auto dof = static_cast<std::size_t>(shapes_->rows());
@@ -373,7 +374,7 @@ void ModalEngine<Scalar>::displacements(std::span<const SurfaceRequest> requests
 
 // Phi diag(b1) Phi^T, and what is left out.
 template <typename Scalar>
-Eigen::MatrixXd ModalEngine<Scalar>::instant_compliance() const {
+Eigen::MatrixXd ModalEngine<Scalar>::zero_lag_compliance() const {
   const Eigen::Map<const Eigen::VectorXd> weights(b1_.data(), static_cast<Eigen::Index>(modes_));
   const Eigen::MatrixXd weighted =
       shapes_->template cast<double>() * weights.cwiseMax(0.0).cwiseSqrt().asDiagonal();

@@ -1,10 +1,10 @@
 #pragma once
 
+#include "simulation/engine/active_modes.hpp"
 #include "simulation/engine/aligned_numbers.hpp"
 #include "simulation/engine/modal_gravity.hpp"
 #include "simulation/engine/residual_part.hpp"
 #include "simulation/engine/response_engine.hpp"
-#include "simulation/engine/strong_modes.hpp"
 
 namespace irdm {
 
@@ -17,20 +17,20 @@ class ModalEngine final : public ResponseEngine {
   /// @param model holds a ModalResponse with shapes of type Scalar
   explicit ModalEngine(std::shared_ptr<const Model> model);
 
-  bool takes_spin() const noexcept override { return centrifugal_ != nullptr; }
+  bool supports_inertial_loading() const noexcept override { return centrifugal_ != nullptr; }
   bool takes_gravity() const noexcept override { return gravity_.any(); }
   void set_gravity(const Vector3& gravity) noexcept override;
   bool takes_damping() const noexcept override { return true; }
   void scale_damping(double factor) noexcept override;
   EngineKind kind() const noexcept override { return EngineKind::kModal; }
-  void hold_spin(const Vector3& w) noexcept override;
+  void set_angular_velocity(const Vector3& w) noexcept override;
   Vector3 free_displacement(int node) const noexcept override;
   double free_displacement_bound() const noexcept override;
   void predict(std::span<const ContactPatch> patches, std::span<Vector3> h,
                ContactMatrix& compliance) noexcept override;
-  void foresee(const ContactPatch& patch, std::span<const NodalForce> held, std::span<Vector3> path,
-               std::span<Matrix3> response) noexcept override;
-  void add_past(std::span<const NodalForce> forces, int age) noexcept override;
+  void predict_horizon(const ContactPatch& patch, std::span<const NodalForce> held,
+                       std::span<Vector3> path, std::span<Matrix3> response) noexcept override;
+  void add_delayed_force(std::span<const NodalForce> forces, int age) noexcept override;
   void advance(std::span<const NodalForce> forces) noexcept override;
   using ResponseEngine::displacement;
   void displacement(Points& u, double tolerance) const override {
@@ -39,7 +39,7 @@ class ModalEngine final : public ResponseEngine {
   }
   void displacements(std::span<const SurfaceRequest> requests) const override;
   const void* shared_surface() const noexcept override { return shapes_; }
-  Eigen::MatrixXd instant_compliance() const override;
+  Eigen::MatrixXd zero_lag_compliance() const override;
   void reset() noexcept override;
 
  private:
@@ -54,7 +54,8 @@ class ModalEngine final : public ResponseEngine {
   void add_slice(std::span<const ContactPatch> patches, const ModeRange& modes,
                  std::span<Vector3> h, ContactMatrix& compliance) noexcept;
   void collect_modal_forces(std::span<const NodalForce> forces, const ModeRange& modes) noexcept;
-  /// Of one row of a contact's shapes, in what foresee() makes of the state: (r) and (3, r).
+  /// Of one row of a contact's shapes, in what predict_horizon() makes of the state: (r) and (3,
+  /// r).
   void hold_gravity(const double* shape, double* products) const noexcept;
   const Scalar* shape_row(int dof) const noexcept {
     return shapes_->data() + static_cast<std::size_t>(dof) * modes_;

@@ -30,9 +30,9 @@ struct ResidentColumns {
   double scale(std::size_t b) const noexcept { return scales == nullptr ? 1.0 : scales[b]; }
 
   const ResidentColumns& frame() const noexcept { return *this; }
-  /// All are there, always: see HeldColumns.
+  /// All are there, always: see PinnedColumns.
   bool whole(int /*node*/) const noexcept { return true; }
-  bool follow(const ForceHistory& /*history*/) const noexcept { return false; }
+  bool update(const ForceHistory& /*history*/) const noexcept { return false; }
 
   /// Adds sum over the history of R_i.[age + shift] f[age], i the three degrees of freedom of a
   /// node: shift 0 gives the end of the last step, 1 that of the coming one. Real-time safe.

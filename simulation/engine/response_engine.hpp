@@ -39,12 +39,12 @@ class ResponseEngine {
   virtual ~ResponseEngine() = default;
 
   /// Whether the model says what its own spin does to it.
-  virtual bool takes_spin() const noexcept = 0;
+  virtual bool supports_inertial_loading() const noexcept = 0;
 
   /// The body turns with w [rad/s], B, throughout the coming step: its centrifugal load acts
   /// besides the forces. Before all else that is asked about the step, at most once a step; without
-  /// it there is no such load. Only where takes_spin().
-  virtual void hold_spin(const Vector3& w) noexcept = 0;
+  /// it there is no such load. Only where supports_inertial_loading().
+  virtual void set_angular_velocity(const Vector3& w) noexcept = 0;
 
   /// Whether the model says what gravity does to it: that of a fixed body, which gravity cannot
   /// move as a whole.
@@ -73,7 +73,7 @@ class ResponseEngine {
 
   /// Tips are here, and what they may touch soon is better fetched now; of one engine of a model
   /// only. @param tips at most kMaxStyluses [m], B
-  virtual void expect(std::span<const Vector3> /*tips*/) noexcept {}
+  virtual void prefetch(std::span<const Vector3> /*tips*/) noexcept {}
   /// Nodes that forces began to act on while their columns of R were not there.
   virtual std::uint64_t missed_columns() const noexcept { return 0; }
 
@@ -95,16 +95,16 @@ class ResponseEngine {
   /// mean displacement goes, path[n-1] at the end of the n-th coming step [m], if these forces are
   /// held all the time and no others act; and how it answers, response[n] the blocks sum_ij w_i w_j
   /// R_ij[n] [m/N]. Spin that is held acts in the coming step only.
-  virtual void foresee(const ContactPatch& patch, std::span<const NodalForce> held,
-                       std::span<Vector3> path, std::span<Matrix3> response) noexcept = 0;
+  virtual void predict_horizon(const ContactPatch& patch, std::span<const NodalForce> held,
+                               std::span<Vector3> path, std::span<Matrix3> response) noexcept = 0;
 
   /// These forces were held, besides the others, during the step `age` steps before the last one
   /// (0: the last one itself). @param age below kMaxHorizon; what is older is left out
-  virtual void add_past(std::span<const NodalForce> forces, int age) noexcept = 0;
+  virtual void add_delayed_force(std::span<const NodalForce> forces, int age) noexcept = 0;
 
   /// These nodes were asked for in the coming step, and may well be in the one after it: what they
   /// will do may be kept ready. Before advance(); any number of times.
-  virtual void follow(std::span<const int> /*nodes*/) noexcept {}
+  virtual void cache_nodes(std::span<const int> /*nodes*/) noexcept {}
 
   /// Ends the coming step with these forces held during it.
   virtual void advance(std::span<const NodalForce> forces) noexcept = 0;
@@ -129,7 +129,7 @@ class ResponseEngine {
 
   /// R[0], the displacement within the step of all nodes per force on each: (3n, 3n) [m/N]. Takes
   /// its time; not for the force thread.
-  virtual Eigen::MatrixXd instant_compliance() const = 0;
+  virtual Eigen::MatrixXd zero_lag_compliance() const = 0;
 
   /// Forgets all forces: at rest under gravity as it is.
   virtual void reset() noexcept = 0;

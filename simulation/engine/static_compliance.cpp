@@ -61,7 +61,7 @@ double of_compressed(const CompressedResponse& response, const Eigen::VectorXd& 
   for (int a = 0; a < 3; ++a) {
     for (int b = 0; b < 3; ++b) {
       double entry = 0.0;
-      for (int s = 0; s < response.early_steps; ++s) {
+      for (int s = 0; s < response.fir_steps; ++s) {
         entry += early_response(response, i, a, i, b, s);
       }
       sum += entry * d[a] * d[b];

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "simulation/engine/force_stretches.hpp"
 #include "simulation/engine/kernels.hpp"
+#include "simulation/engine/nonzero_intervals.hpp"
 #include "simulation/engine/patch_response.hpp"
 
 namespace irdm {
@@ -22,7 +22,7 @@ StreamedEngine<Scalar>::StreamedEngine(std::shared_ptr<const Model> model)
 // Once a step, for whichever nodes are asked for in the coming one.
 template <typename Scalar>
 void StreamedEngine<Scalar>::settle() noexcept {
-  for (const int node : columns_.followed()) {
+  for (const int node : columns_.pinned()) {
     if (columns_.whole(node)) continue;
     for (int axis = 0; axis < 3; ++axis) {
       coming_[static_cast<std::size_t>(3 * node + axis)] = settled(node, axis, 1);
@@ -74,7 +74,7 @@ typename StreamedEngine<Scalar>::Settled StreamedEngine<Scalar>::settled(int sou
 // What forces do on nodes whose columns are not, or not wholly, there.
 template <typename Scalar>
 void StreamedEngine<Scalar>::add_lacking(int node, int shift, Vector3& u) const noexcept {
-  for (const int source : columns_.followed()) {
+  for (const int source : columns_.pinned()) {
     if (columns_.whole(source)) continue;
     const double share = columns_.share(source);
     for (int b = 3 * source; b < 3 * source + 3; ++b) {
@@ -118,16 +118,17 @@ void StreamedEngine<Scalar>::predict(std::span<const ContactPatch> patches, std:
 }
 
 template <typename Scalar>
-void StreamedEngine<Scalar>::foresee(const ContactPatch& patch, std::span<const NodalForce> held,
-                                     std::span<Vector3> path,
-                                     std::span<Matrix3> response) noexcept {
+void StreamedEngine<Scalar>::predict_horizon(const ContactPatch& patch,
+                                             std::span<const NodalForce> held,
+                                             std::span<Vector3> path,
+                                             std::span<Matrix3> response) noexcept {
   const auto steps = static_cast<int>(path.size());
   for (int i = 0; i < patch.count; ++i) {
     const int node = patch.nodes[static_cast<std::size_t>(i)];
     columns_.borrow(node);
-    past_.foresee(node, steps);
-    spin_.foresee(node, steps);
-    gravity_.foresee(node, steps);
+    past_.predict_horizon(node, steps);
+    spin_.predict_horizon(node, steps);
+    gravity_.predict_horizon(node, steps);
   }
   for (const NodalForce& force : held) columns_.borrow(force.node);
   const auto answer = [&](std::size_t step, const auto& from) {
@@ -135,10 +136,10 @@ void StreamedEngine<Scalar>::foresee(const ContactPatch& patch, std::span<const 
   };
   const auto place = [&](int node, int shift) {
     Vector3 u = Vector3::Zero();
-    past_.add_foreseen(node, shift, u);
+    past_.add_ahead(node, shift, u);
     add_lacking(node, shift, u);
-    spin_.add_foreseen(node, shift, u);
-    gravity_.add_foreseen(node, shift, u);
+    spin_.add_ahead(node, shift, u);
+    gravity_.add_ahead(node, shift, u);
     return u;
   };
   Vector3 by_held = Vector3::Zero();
@@ -155,18 +156,19 @@ void StreamedEngine<Scalar>::foresee(const ContactPatch& patch, std::span<const 
 }
 
 template <typename Scalar>
-void StreamedEngine<Scalar>::add_past(std::span<const NodalForce> forces, int age) noexcept {
+void StreamedEngine<Scalar>::add_delayed_force(std::span<const NodalForce> forces,
+                                               int age) noexcept {
   if (age >= kMaxHorizon) return;
-  past_.add_past(forces, age);
+  past_.add_delayed_force(forces, age);
   settle();
 }
 
 template <typename Scalar>
-void StreamedEngine<Scalar>::follow(std::span<const int> nodes) noexcept {
+void StreamedEngine<Scalar>::cache_nodes(std::span<const int> nodes) noexcept {
   for (const int node : nodes) {
-    past_.follow(node);
-    spin_.follow(node);
-    gravity_.follow(node);
+    past_.cache_node(node);
+    spin_.cache_node(node);
+    gravity_.cache_node(node);
   }
 }
 
@@ -182,7 +184,7 @@ void StreamedEngine<Scalar>::advance(std::span<const NodalForce> forces) noexcep
 // As ResidentColumns::add_all(), and then what is missing.
 template <typename Scalar>
 void StreamedEngine<Scalar>::add_columns(Points& u) const {
-  const std::vector<ForceStretch> stretches = force_stretches(past_.history());
+  const std::vector<NonzeroInterval> stretches = nonzero_intervals(past_.history());
   std::vector<Settled> missing;
   for (const int node : past_.history().active()) {
     if (columns_.whole(node)) continue;
@@ -195,7 +197,7 @@ void StreamedEngine<Scalar>::add_columns(Points& u) const {
   for (int block = 0; block < blocks; ++block) {
     const std::size_t begin = static_cast<std::size_t>(block) * rows_at_once;
     const std::size_t count = std::min(rows_at_once, frame.dof - begin);
-    for (const ForceStretch& push : stretches) {
+    for (const NonzeroInterval& push : stretches) {
       const double share = columns_.share(static_cast<int>(push.column / 3));
       if (share == 0.0) continue;
       const Scalar* rows = columns_.row(static_cast<int>(begin), static_cast<int>(push.column));
@@ -221,7 +223,7 @@ void StreamedEngine<Scalar>::displacement(Points& u, double /*tolerance*/) const
 }
 
 template <typename Scalar>
-Eigen::MatrixXd StreamedEngine<Scalar>::instant_compliance() const {
+Eigen::MatrixXd StreamedEngine<Scalar>::zero_lag_compliance() const {
   return whole_response(response_.degrees_of_freedom, [&](int a, int b) { return first(a, b); });
 }
 

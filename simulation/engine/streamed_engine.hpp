@@ -3,15 +3,15 @@
 #include <cstdint>
 #include <vector>
 
+#include "simulation/engine/cached_convolution.hpp"
 #include "simulation/engine/dense_gravity.hpp"
 #include "simulation/engine/dense_load.hpp"
-#include "simulation/engine/held_columns.hpp"
+#include "simulation/engine/pinned_columns.hpp"
 #include "simulation/engine/response_engine.hpp"
-#include "simulation/engine/running_convolution.hpp"
 
 namespace irdm {
 
-/// The dense engine on a response whose columns come and go (StreamedResponse, HeldColumns). With
+/// The dense engine on a response whose columns come and go (StreamedResponse, PinnedColumns). With
 /// all of them there in time it equals DenseEngine to the bit.
 ///
 /// Where they are not, forces on the node are answered by the static answer
@@ -24,25 +24,27 @@ class StreamedEngine final : public ResponseEngine {
   /// @param model holds a StreamedResponse of type Scalar, with columns
   explicit StreamedEngine(std::shared_ptr<const Model> model);
 
-  bool takes_spin() const noexcept override { return spin_.any(); }
+  bool supports_inertial_loading() const noexcept override { return spin_.any(); }
   bool takes_gravity() const noexcept override { return gravity_.any(); }
   EngineKind kind() const noexcept override { return EngineKind::kDense; }
-  void hold_spin(const Vector3& w) noexcept override { spin_.hold(spin_products(w)); }
+  void set_angular_velocity(const Vector3& w) noexcept override { spin_.hold(spin_products(w)); }
   void set_gravity(const Vector3& gravity) noexcept override { gravity_.set(gravity); }
-  void expect(std::span<const Vector3> tips) noexcept override { response_.columns->expect(tips); }
+  void prefetch(std::span<const Vector3> tips) noexcept override {
+    response_.columns->prefetch(tips);
+  }
   std::uint64_t missed_columns() const noexcept override { return columns_.missed(); }
   Vector3 free_displacement(int node) const noexcept override;
   double free_displacement_bound() const noexcept override;
   void predict(std::span<const ContactPatch> patches, std::span<Vector3> h,
                ContactMatrix& compliance) noexcept override;
-  void foresee(const ContactPatch& patch, std::span<const NodalForce> held, std::span<Vector3> path,
-               std::span<Matrix3> response) noexcept override;
-  void add_past(std::span<const NodalForce> forces, int age) noexcept override;
-  void follow(std::span<const int> nodes) noexcept override;
+  void predict_horizon(const ContactPatch& patch, std::span<const NodalForce> held,
+                       std::span<Vector3> path, std::span<Matrix3> response) noexcept override;
+  void add_delayed_force(std::span<const NodalForce> forces, int age) noexcept override;
+  void cache_nodes(std::span<const int> nodes) noexcept override;
   void advance(std::span<const NodalForce> forces) noexcept override;
   using ResponseEngine::displacement;
   void displacement(Points& u, double tolerance) const override;
-  Eigen::MatrixXd instant_compliance() const override;
+  Eigen::MatrixXd zero_lag_compliance() const override;
   void reset() noexcept override;
 
  private:
@@ -65,8 +67,8 @@ class StreamedEngine final : public ResponseEngine {
   std::shared_ptr<const Model> model_;
   const StreamedResponse& response_;
   const Scalar* first_;  ///< R[0]
-  HeldColumns<Scalar> columns_;
-  RunningConvolution<HeldColumns<Scalar>> past_;
+  PinnedColumns<Scalar> columns_;
+  CachedConvolution<PinnedColumns<Scalar>> past_;
   DenseSpin<LoadNumber<Scalar>> spin_;
   DenseGravity<LoadNumber<Scalar>> gravity_;
   std::vector<Settled> coming_;  ///< settled(node, axis, 1), of nodes with a past that lack a share

@@ -46,12 +46,12 @@ StylusCommand BridgedStylus::next(const StylusCommand& command, std::uint64_t se
     tip_ = command.tip;
     return next;
   }
-  enter_late(history, k);
+  insert_delayed_force(history, k);
   const AppliedForce* const applied = find(history, k);
   known_ = known_ << 1 | (applied != nullptr || k < first_ ? 1 : 0);
   if (applied != nullptr) tip_ = applied->tip;
   next.tip = tip_;
-  next.bridged = BridgedForce{.object = simulation_.foreseen_object(s_)};
+  next.bridged = BridgedForce{.object = simulation_.local_model_object(s_)};
   if (applied != nullptr) {
     next.bridged->force = bounded_force(applied->force);
     next.bridged->arm = applied->arm;
@@ -71,7 +71,7 @@ void BridgedStylus::begin(const StylusCommand& command, const AppliedHistory& hi
 
 // Bit i of known_ is step k - 1 - i. What finds no place is left out for good; what finds no room
 // waits for the next step.
-void BridgedStylus::enter_late(const AppliedHistory& history, std::uint64_t k) noexcept {
+void BridgedStylus::insert_delayed_force(const AppliedHistory& history, std::uint64_t k) noexcept {
   constexpr std::uint64_t kOldest = kMaxHorizon - 1;
   for (std::uint64_t i = 0; i <= kOldest && i < k; ++i) {
     if ((known_ >> i & 1) != 0) continue;
@@ -83,16 +83,16 @@ void BridgedStylus::enter_late(const AppliedHistory& history, std::uint64_t k) n
     known_ |= std::uint64_t{1} << i;
     if (applied->force.isZero(0.0)) continue;
     const AppliedForce late{bounded_force(applied->force), applied->tip, applied->arm};
-    ++(simulation_.enter_late(s_, late, static_cast<int>(i)) ? late_ : lost_);
+    ++(simulation_.insert_delayed_force(s_, late, static_cast<int>(i)) ? late_ : lost_);
   }
 }
 
-void BridgedStylus::foresee(ContactModel& model) noexcept {
+void BridgedStylus::predict_horizon(ContactModel& model) noexcept {
   const auto horizon = static_cast<int>(kLongestHorizon / simulation_.dt() + 1e-6);
-  simulation_.foresee(s_, tip_, std::clamp(horizon, 1, kMaxHorizon), model);
+  simulation_.predict_horizon(s_, tip_, std::clamp(horizon, 1, kMaxHorizon), model);
   model.missing = ~known_ & ((std::uint64_t{1} << kMaxHorizon) - 1);
   model.newest = newest_;
-  model.standing = false;
+  model.paused = false;
 }
 
 void BridgedStylus::forget(const AppliedHistory& history) noexcept {

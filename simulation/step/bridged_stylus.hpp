@@ -23,7 +23,7 @@ class BridgedStylus {
                      const AppliedHistory& history) noexcept;
 
   /// After the step of next(): how the contact goes on.
-  void foresee(ContactModel& model) noexcept;
+  void predict_horizon(ContactModel& model) noexcept;
 
   /// What was sent so far is not for any step to come.
   void forget(const AppliedHistory& history) noexcept;
@@ -34,7 +34,7 @@ class BridgedStylus {
 
  private:
   void begin(const StylusCommand& command, const AppliedHistory& history) noexcept;
-  void enter_late(const AppliedHistory& history, std::uint64_t k) noexcept;
+  void insert_delayed_force(const AppliedHistory& history, std::uint64_t k) noexcept;
   const AppliedForce* find(const AppliedHistory& history, std::uint64_t step) const noexcept;
 
   Simulation& simulation_;

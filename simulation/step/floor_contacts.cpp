@@ -30,11 +30,11 @@ FloorContacts::FloorContacts(const FloorConfig& floor, const RestSurface& rest,
                     " surface nodes is too large for a floor",
                 "use a mesh of at most " + std::to_string(kMaxNodes) + " surface nodes");
   }
-  compliance_ = engine.instant_compliance();
+  compliance_ = engine.zero_lag_compliance();
 }
 
 void FloorContacts::reset() noexcept {
-  std::fill(feet_.begin(), feet_.end(), Foot{});
+  std::fill(feet_.begin(), feet_.end(), FloorAnchor{});
   count_ = 0;
   posed_count_ = 0;
   displaced_ = 0.0;
@@ -48,7 +48,7 @@ int FloorContacts::find(const FreeMotion& motion, DeformedSurface& surface,
   const Vector3 up = motion.orientation.conjugate() * floor_.normal;
   const double offset = height(motion.position);
   for (int i = 0; i < rest_.node_count() && count_ < kMaxFloorContacts; ++i) {
-    Foot& foot = feet_[static_cast<std::size_t>(i)];
+    FloorAnchor& foot = feet_[static_cast<std::size_t>(i)];
     if (!foot.down && offset + up.dot(rest_.node(i)) > margin) continue;
     const Vector3& r = surface.node(i);
     displaced_ = std::max(displaced_, (r - rest_.node(i)).norm());
@@ -70,8 +70,8 @@ void FloorContacts::pose(const FreeMotion& motion, DeformedSurface& surface,
       count_ == posed_count_ && std::equal(nodes_.begin(), nodes_.begin() + count_, posed_.begin());
   for (std::size_t a = 0; a < m; ++a) {
     const int i = nodes_[a];
-    const Foot& foot = feet_[static_cast<std::size_t>(i)];
-    ContactUnknown& unknown = problem.contact(static_cast<int>(a));
+    const FloorAnchor& foot = feet_[static_cast<std::size_t>(i)];
+    ContactConstraint& unknown = problem.contact(static_cast<int>(a));
     unknown.law = ContactLaw::kTouching;
     unknown.normal = -(motion.orientation.conjugate() * floor_.normal);
     unknown.friction = floor_.friction;
@@ -97,10 +97,11 @@ Matrix3 FloorContacts::between(const ContactPatch& patch, int i) const noexcept 
   return sum;
 }
 
-void FloorContacts::settle(const FreeMotion& motion, const ContactProblem& problem) noexcept {
+void FloorContacts::update_contacts(const FreeMotion& motion,
+                                    const ContactProblem& problem) noexcept {
   for (int a = 0; a < count_; ++a) {
-    const ContactUnknown& solved = problem.contact(a);
-    Foot& foot = feet_[static_cast<std::size_t>(node(a))];
+    const ContactConstraint& solved = problem.contact(a);
+    FloorAnchor& foot = feet_[static_cast<std::size_t>(node(a))];
     foot.down = solved.mode != ContactMode::kOpen;
     foot.slipping = solved.mode == ContactMode::kSlipping;
     foot.force = solved.force;

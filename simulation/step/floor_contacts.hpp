@@ -30,14 +30,14 @@ class FloorContacts {
   /// Compliance between a patch and the floor contact i: displacement of the patch per force there.
   Matrix3 between(const ContactPatch& patch, int i) const noexcept;
   /// After the solution: anchors slip, forces are kept for the next start.
-  void settle(const FreeMotion& motion, const ContactProblem& problem) noexcept;
+  void update_contacts(const FreeMotion& motion, const ContactProblem& problem) noexcept;
   void reset() noexcept;
 
   int count() const noexcept { return count_; }
   int node(int i) const noexcept { return nodes_[static_cast<std::size_t>(i)]; }
 
  private:
-  struct Foot {
+  struct FloorAnchor {
     bool down = false;                 ///< pressed on the floor in the last step
     Vector3 anchor = Vector3::Zero();  ///< [m], W
     Vector3 force = Vector3::Zero();   ///< of the last step [N], B
@@ -47,10 +47,10 @@ class FloorContacts {
 
   FloorConfig floor_;
   const RestSurface& rest_;
-  Eigen::MatrixXd compliance_;  ///< R[0] (3n, 3n) [m/N]
-  std::vector<Foot> feet_;      ///< of all nodes
-  std::vector<int> nodes_;      ///< of this step's contacts
-  std::vector<int> posed_;      ///< whose blocks are in the problem
+  Eigen::MatrixXd compliance_;     ///< R[0] (3n, 3n) [m/N]
+  std::vector<FloorAnchor> feet_;  ///< of all nodes
+  std::vector<int> nodes_;         ///< of this step's contacts
+  std::vector<int> posed_;         ///< whose blocks are in the problem
   int count_ = 0;
   int posed_count_ = 0;
   double displaced_ = 0.0;  ///< how far nodes were seen away from where they are at rest [m]

@@ -134,12 +134,12 @@ void GodObject::turn_to_touching() noexcept {
   releasing_ = false;
 }
 
-void GodObject::pass_by() noexcept {
+void GodObject::reject_contact() noexcept {
   state_ = ContactState::kFree;
   outside_ = false;
 }
 
-void GodObject::let_go(const Vector3& tip) noexcept {
+void GodObject::release(const Vector3& tip) noexcept {
   state_ = ContactState::kFree;
   slipping_ = false;
   releasing_ = false;

@@ -51,10 +51,10 @@ class GodObject {
   /// After the step: a point that is given up is pushed on, so that it can be touched on.
   void turn_to_touching() noexcept;
   /// After the step: the contact let go, and the tip [m, B] is outside.
-  void let_go(const Vector3& tip) noexcept;
+  void release(const Vector3& tip) noexcept;
 
   /// In place of a contact that began: none, and the tip has to come out before it can touch.
-  void pass_by() noexcept;
+  void reject_contact() noexcept;
   /// How far the tip has moved since the step before [m].
   double tip_moved() const noexcept { return tip_moved_; }
   /// A touching contact's offset: from its point to where the tip feels the surface [m, B].

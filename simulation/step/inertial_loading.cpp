@@ -5,7 +5,7 @@
 namespace irdm {
 
 void check_inertial_loading(const Model& model, bool inertial_loading, const std::string& where) {
-  if (!feels_spin(model, inertial_loading) || has_centrifugal(model)) return;
+  if (!has_inertial_loading(model, inertial_loading) || has_centrifugal(model)) return;
   const bool dense = !std::holds_alternative<ModalResponse>(model.response);
   throw Error(where,
               std::string("has no centrifugal response for engine = \"") +

@@ -7,7 +7,7 @@
 namespace irdm {
 
 /// Whether the body's own spin is to load its elastic part. A fixed body has none.
-inline bool feels_spin(const Model& model, bool inertial_loading) {
+inline bool has_inertial_loading(const Model& model, bool inertial_loading) {
   return inertial_loading && model.body.support == Support::kFloating;
 }
 

@@ -19,7 +19,7 @@ Simulation::Simulation(const SimulationConfig& config)
                 "use 1 to " + std::to_string(kMaxStyluses));
   }
   reset_down_.fill(true);
-  foreseen_.fill(-1);
+  local_model_object_.fill(-1);
   dt_ = config.objects.front().model->dt;
   for (const SimulationObject& object : config.objects) {
     if (object.model->dt != dt_) {
@@ -104,20 +104,22 @@ int Simulation::touched_by(std::size_t s, const Vector3& tip) noexcept {
   return nearest;
 }
 
-void Simulation::foresee(std::size_t s, const Vector3& tip, int horizon,
-                         ContactModel& model) noexcept {
+void Simulation::predict_horizon(std::size_t s, const Vector3& tip, int horizon,
+                                 ContactModel& model) noexcept {
   const NoDenormals here;
   model.valid = false;
   model.step = next_step_ - 1;
   model.dt = dt_;
-  foreseen_[s] = -1;
+  local_model_object_[s] = -1;
   if (next_step_ == 0 || !tip.allFinite()) return;
-  foreseen_[s] = touched_by(s, tip);
-  if (foreseen_[s] < 0) return;
-  objects_[static_cast<std::size_t>(foreseen_[s])]->foresee(s, tip, horizon, model);
+  local_model_object_[s] = touched_by(s, tip);
+  if (local_model_object_[s] < 0) return;
+  objects_[static_cast<std::size_t>(local_model_object_[s])]->predict_horizon(s, tip, horizon,
+                                                                              model);
 }
 
-bool Simulation::enter_late(std::size_t s, const AppliedForce& applied, int age) noexcept {
+bool Simulation::insert_delayed_force(std::size_t s, const AppliedForce& applied,
+                                      int age) noexcept {
   const NoDenormals here;
   if (age < 0 || age >= kMaxHorizon) return false;
   if (!applied.force.allFinite() || !applied.tip.allFinite() || !applied.arm.allFinite()) {
@@ -127,18 +129,18 @@ bool Simulation::enter_late(std::size_t s, const AppliedForce& applied, int age)
   LateForce& entry = late_.force[late_.count];
   entry.stylus = static_cast<int>(s);
   entry.age = age;
-  entry.object = foreseen_[s];
+  entry.object = local_model_object_[s];
   if (entry.object < 0) return false;
   SoftObject& touched = *objects_[static_cast<std::size_t>(entry.object)];
-  if (!touched.enter_late(s, applied, entry)) return false;
+  if (!touched.insert_delayed_force(s, applied, entry)) return false;
   ++late_.count;
   return true;
 }
 
-bool Simulation::enter_late(const LateForce& late) noexcept {
+bool Simulation::insert_delayed_force(const LateForce& late) noexcept {
   const NoDenormals here;
   if (late_.count == LateForces::kMost) return false;
-  if (!objects_[static_cast<std::size_t>(late.object)]->enter_late(late)) return false;
+  if (!objects_[static_cast<std::size_t>(late.object)]->insert_delayed_force(late)) return false;
   late_.force[late_.count++] = late;
   return true;
 }

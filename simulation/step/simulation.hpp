@@ -37,18 +37,19 @@ class Simulation {
   /// For the bridge of stylus s, between steps: how its contact goes on after the last step.
   /// @param tip where the stylus was in the last step [m], W
   /// @param horizon steps to look ahead, 1 to kMaxHorizon
-  void foresee(std::size_t s, const Vector3& tip, int horizon, ContactModel& model) noexcept;
+  void predict_horizon(std::size_t s, const Vector3& tip, int horizon,
+                       ContactModel& model) noexcept;
 
   /// Between steps: stylus s exerted this force on the object, besides what is known, in the
   /// step `age` steps before the last one. False: that is too long ago, it touched
   /// nothing, or there are more of them than LateForces::kMost.
-  bool enter_late(std::size_t s, const AppliedForce& applied, int age) noexcept;
+  bool insert_delayed_force(std::size_t s, const AppliedForce& applied, int age) noexcept;
   /// The same of a recorded one (StepRecord::late), when a run is made again.
-  bool enter_late(const LateForce& late) noexcept;
+  bool insert_delayed_force(const LateForce& late) noexcept;
   /// How many more can be entered before the coming step.
   std::size_t late_room() const noexcept { return LateForces::kMost - late_.count; }
-  /// The object that foresee() last spoke of; -1: none.
-  int foreseen_object(std::size_t s) const noexcept { return foreseen_[s]; }
+  /// The object that predict_horizon() last spoke of; -1: none.
+  int local_model_object(std::size_t s) const noexcept { return local_model_object_[s]; }
   /// The last step before which everything was put back; 0: none.
   std::uint64_t reset_step() const noexcept { return reset_step_; }
 
@@ -81,7 +82,7 @@ class Simulation {
   std::array<bool, kMaxStyluses> reset_down_;
   std::size_t stylus_count_;
   std::vector<std::unique_ptr<SoftObject>> objects_;
-  std::array<int, kMaxStyluses> foreseen_;            ///< object, -1: none
+  std::array<int, kMaxStyluses> local_model_object_;  ///< object, -1: none
   std::array<StylusCommand, kMaxStyluses> commands_;  ///< of a step that begins with a reset
   LateForces late_;                                   ///< entered since the last step
 };

@@ -16,7 +16,7 @@ Eigen::Index row(int i) {
 }
 
 // Inside the cone of a touching contact.
-bool pushes(const ContactUnknown& contact) noexcept {
+bool pushes(const ContactConstraint& contact) noexcept {
   const double push = -contact.force.dot(contact.normal);
   const Vector3 along = contact.force + push * contact.normal;
   return push >= 0 &&
@@ -27,7 +27,7 @@ bool pushes(const ContactUnknown& contact) noexcept {
 constexpr double kNear = 0.002;
 // How far the surface may be from where the bridge knows it to be, as a share of the object's size.
 constexpr double kFarFromOwn = 1.0;
-// Over which the force of a stylus is averaged for what the bridges of others foresee [s].
+// Over which the force of a stylus is averaged for what the bridges of others predict_horizon [s].
 constexpr double kAverageTime = 0.2;
 // In which a contact catches up with a tip that has passed an edge [s].
 constexpr double kEdgeTime = 0.06;
@@ -50,7 +50,7 @@ SoftObject::SoftObject(const SimulationObject& object, const SimulationConfig& c
       rest_(model_->mesh),
       surface_(rest_),
       body_(model_->body, model_->dt),
-      feels_spin_(irdm::feels_spin(*model_, object.inertial_loading)),
+      feels_spin_(irdm::has_inertial_loading(*model_, object.inertial_loading)),
       styluses_(config.styluses.size()),
       last_(config.styluses.size()),
       problem_(kMaxContacts + (config.floor ? kMaxFloorContacts : 0)),
@@ -101,7 +101,7 @@ void SoftObject::set(const Vector3& gravity, const ObjectSettings& settings) noe
   free_forces_.gravity = gravity;
   free_forces_.damping = settings.damping;
   free_forces_.tether = settings.tether;
-  feels_spin_ = irdm::feels_spin(*model_, settings.inertial_loading);
+  feels_spin_ = irdm::has_inertial_loading(*model_, settings.inertial_loading);
   follow_settings(*engine_, settings, material_damping_);
   follow_gravity(*engine_, object_, gravity);
 }
@@ -113,13 +113,13 @@ void SoftObject::step(std::span<const StylusCommand> commands, ObjectRecord& rec
   surface_.begin_step(*engine_);
   motion_ = free_motion(body_, free_forces_, state_);
   record.halfway = motion_.halfway;
-  tell_tips(commands);
+  prefetch_columns(commands);
   collect(commands);
   floor_count_ = floor_ ? floor_->find(motion_, surface_, displaced()) : 0;
   solve(commands, record);
   write(record);
   write_floor(record);
-  settle(commands);
+  update_contacts(commands);
   advance();
   record.position = state_.position;
   record.orientation = state_.orientation;
@@ -138,16 +138,16 @@ void SoftObject::spin(ObjectRecord& record) noexcept {
   record.spin.setZero();
   if (!feels_spin_) return;
   record.spin = body_.mid_step_spin(state_);
-  engine_->hold_spin(record.spin);
+  engine_->set_angular_velocity(record.spin);
 }
 
-void SoftObject::tell_tips(std::span<const StylusCommand> commands) noexcept {
+void SoftObject::prefetch_columns(std::span<const StylusCommand> commands) noexcept {
   std::array<Vector3, kMaxStyluses> tips;
   std::size_t count = 0;
   for (const StylusCommand& command : commands) {
     if (command.present && command.tip.allFinite()) tips[count++] = motion_.to_body(command.tip);
   }
-  engine_->expect({tips.data(), count});
+  engine_->prefetch({tips.data(), count});
 }
 
 // Decides which styluses are in contact in this step, and where.
@@ -167,10 +167,10 @@ void SoftObject::collect(std::span<const StylusCommand> commands) noexcept {
       const bool grab = (command.buttons & kGrabButton) != 0;
       stylus.find({motion_.to_body(command.tip), grab, config_.styluses[s].reach}, surface_);
     }
-    if (command.bridged) take_over(s, command);
+    if (command.bridged) apply_remote_contact(s, command);
     if (stylus.state() == ContactState::kFree) continue;
-    if (stylus.fresh() && !settle_down(s, motion_.to_body(command.tip))) {
-      stylus.pass_by();
+    if (stylus.fresh() && !project_initial_contact(s, motion_.to_body(command.tip))) {
+      stylus.reject_contact();
       continue;
     }
     const auto a = static_cast<std::size_t>(contact_count_++);
@@ -180,7 +180,7 @@ void SoftObject::collect(std::span<const StylusCommand> commands) noexcept {
     points_[a] = stylus.point();
     masks_[s].spread(points_[a], patches_[a]);
     if (stylus.state() != ContactState::kTouching || command.given) continue;
-    const RoundedSurface::Place place = rounded_[s].at(points_[a]);
+    const SmoothedSurface::Place place = rounded_[s].at(points_[a]);
     contacts_[a].normal = place.normal;
     stylus.set_inset(place.position - mean(patches_[a], [&](int i) { return rest_.node(i); }));
   }
@@ -188,10 +188,10 @@ void SoftObject::collect(std::span<const StylusCommand> commands) noexcept {
 
 // The bridge has one object in mind. Its contact with that one may be none by now: its force acts
 // where the tip is, if that is near enough.
-void SoftObject::take_over(std::size_t s, const StylusCommand& command) noexcept {
+void SoftObject::apply_remote_contact(std::size_t s, const StylusCommand& command) noexcept {
   GodObject& stylus = styluses_[s];
   if (command.bridged->object != number_) {
-    if (stylus.state() != ContactState::kFree) stylus.pass_by();
+    if (stylus.state() != ContactState::kFree) stylus.reject_contact();
     return;
   }
   if (stylus.state() != ContactState::kFree || !stylus.outside()) return;
@@ -204,11 +204,11 @@ void SoftObject::take_over(std::size_t s, const StylusCommand& command) noexcept
 // A contact begins where the tip is straight below the surface that it feels: were it drawn aside
 // from the start, it would get energy from nowhere. False: it is deeper there than it can have come
 // in this step. Such a tip was inside all along, and there is no telling how it got there.
-bool SoftObject::settle_down(std::size_t s, const Vector3& tip) noexcept {
+bool SoftObject::project_initial_contact(std::size_t s, const Vector3& tip) noexcept {
   GodObject& stylus = styluses_[s];
   double depth = 0.0;
   for (int round = 0; round < kSettlingRounds; ++round) {
-    const RoundedSurface::Place place = rounded_[s].at(stylus.point());
+    const SmoothedSurface::Place place = rounded_[s].at(stylus.point());
     const Vector3 moved = interpolate(
         stylus.point(), [&](int i) -> Vector3 { return surface_.node(i) - rest_.node(i); });
     const Vector3 gap = tip - place.position - moved;
@@ -243,7 +243,7 @@ void SoftObject::predict_contacts() noexcept {
 }
 
 // Step 2 and the rest of 3.
-void SoftObject::pose_problem(std::span<const StylusCommand> commands) noexcept {
+void SoftObject::assemble_contacts(std::span<const StylusCommand> commands) noexcept {
   problem_.begin(floor_count_ + contact_count_);
   problem_.rigid = body_.mobility();
   if (floor_count_ > 0) pose_floor();
@@ -252,7 +252,7 @@ void SoftObject::pose_problem(std::span<const StylusCommand> commands) noexcept 
     const Contact& contact = contacts_[static_cast<std::size_t>(a)];
     const auto s = static_cast<std::size_t>(contact.stylus);
     const GodObject& stylus = styluses_[s];
-    ContactUnknown& unknown = problem_.contact(row_a);
+    ContactConstraint& unknown = problem_.contact(row_a);
     for (int b = 0; b < contact_count_; ++b) {
       problem_.elastic(row_a, floor_count_ + b) = elastic_.block<3, 3>(row(a), row(b));
     }
@@ -286,14 +286,14 @@ void SoftObject::pose_problem(std::span<const StylusCommand> commands) noexcept 
       unknown.law = ContactLaw::kGiven;
       unknown.force = motion_.halfway.conjugate() * commands[s].bridged->force;
       if (!unknown.force.isZero(0.0)) {
-        unknown.arm = believed(commands[s].bridged->arm, unknown.arm);
+        unknown.arm = accepted_arm(commands[s].bridged->arm, unknown.arm);
       }
     }
   }
 }
 
 // The bridge knows best where it pushed: the surface here may lack forces that are still under way.
-Vector3 SoftObject::believed(const Vector3& arm, const Vector3& own) const noexcept {
+Vector3 SoftObject::accepted_arm(const Vector3& arm, const Vector3& own) const noexcept {
   return (arm - own).norm() < kFarFromOwn * size_ ? arm : own;
 }
 
@@ -317,7 +317,7 @@ void SoftObject::solve(std::span<const StylusCommand> commands, ObjectRecord& re
   problem_.begin(0);
   if (contact_count_ + floor_count_ == 0) return;
   if (contact_count_ > 0) predict_contacts();
-  pose_problem(commands);
+  assemble_contacts(commands);
   const ContactSolution solution =
       solver_.solve(problem_, floor_count_ > 0 ? kFloorLimits : SolverLimits{});
   follow_bridged(commands);
@@ -334,7 +334,7 @@ void SoftObject::follow_bridged(std::span<const StylusCommand> commands) noexcep
     const auto s = static_cast<std::size_t>(contact.stylus);
     if (!commands[s].bridged) continue;
     const int row_a = floor_count_ + a;
-    ContactUnknown& unknown = problem_.contact(row_a);
+    ContactConstraint& unknown = problem_.contact(row_a);
     Vector3 gap = unknown.gap;
     for (int b = 0; b < problem_.count(); ++b) {
       if (b != row_a) gap -= problem_.compliance(row_a, b) * problem_.contact(b).force;
@@ -362,7 +362,7 @@ Vector3 SoftObject::arm_shift(int a, const Vector3& moved) const noexcept {
 void SoftObject::write(ObjectRecord& record) noexcept {
   record.contact.fill(ContactRecord{});
   for (int a = 0; a < contact_count_; ++a) {
-    const ContactUnknown& solved = problem_.contact(floor_count_ + a);
+    const ContactConstraint& solved = problem_.contact(floor_count_ + a);
     if (solved.mode == ContactMode::kOpen) continue;
     Contact& contact = contacts_[static_cast<std::size_t>(a)];
     const GodObject& stylus = styluses_[static_cast<std::size_t>(contact.stylus)];
@@ -390,7 +390,7 @@ void SoftObject::write_floor(ObjectRecord& record) noexcept {
   record.floor_count = 0;
   record.floor_force.setZero();
   for (int i = 0; i < floor_count_; ++i) {
-    ContactUnknown& solved = problem_.contact(i);
+    ContactConstraint& solved = problem_.contact(i);
     if (solved.mode == ContactMode::kOpen) continue;
     FloorForce& out = record.floor[static_cast<std::size_t>(record.floor_count++)];
     out = {floor_->node(i), solved.force.cast<float>()};
@@ -399,13 +399,13 @@ void SoftObject::write_floor(ObjectRecord& record) noexcept {
   }
 }
 
-void SoftObject::settle(std::span<const StylusCommand> commands) noexcept {
+void SoftObject::update_contacts(std::span<const StylusCommand> commands) noexcept {
   for (int a = 0; a < contact_count_; ++a) {
     const Contact& contact = contacts_[static_cast<std::size_t>(a)];
     const auto s = static_cast<std::size_t>(contact.stylus);
-    const ContactUnknown& solved = problem_.contact(floor_count_ + a);
+    const ContactConstraint& solved = problem_.contact(floor_count_ + a);
     if (solved.mode == ContactMode::kOpen || contact.lets_go) {
-      styluses_[s].let_go(motion_.to_body(commands[s].tip));
+      styluses_[s].release(motion_.to_body(commands[s].tip));
     } else {
       styluses_[s].stay(solved.slip, model_->dt / kEdgeTime, contact.arm, rest_);
       if (solved.law == ContactLaw::kTouching && !std::isinf(solved.friction.kinetic)) {
@@ -416,15 +416,15 @@ void SoftObject::settle(std::span<const StylusCommand> commands) noexcept {
       }
     }
   }
-  if (floor_) floor_->settle(motion_, problem_);
+  if (floor_) floor_->update_contacts(motion_, problem_);
 }
 
 // What this step looked at, the next one will look at again.
-void SoftObject::follow() noexcept {
-  engine_->follow(surface_.seen());
+void SoftObject::cache_nodes() noexcept {
+  engine_->cache_nodes(surface_.seen());
   for (int a = 0; a < contact_count_; ++a) {
     const ContactPatch& patch = patches_[static_cast<std::size_t>(a)];
-    engine_->follow(std::span(patch.nodes).first(static_cast<std::size_t>(patch.count)));
+    engine_->cache_nodes(std::span(patch.nodes).first(static_cast<std::size_t>(patch.count)));
   }
 }
 
@@ -434,9 +434,9 @@ void SoftObject::advance() noexcept {
   for (LastContact& last : last_) last.average *= 1.0 - share;
   nodal_.clear();
   const Quaternion& Q = motion_.halfway;
-  RigidPast::Forces forces;
+  RigidStateHistory::Forces forces;
   for (int a = 0; a < contact_count_; ++a) {
-    const ContactUnknown& solved = problem_.contact(floor_count_ + a);
+    const ContactConstraint& solved = problem_.contact(floor_count_ + a);
     if (solved.mode == ContactMode::kOpen) continue;
     const auto index = static_cast<std::size_t>(a);
     nodal_.add(patches_[index], solved.force);
@@ -452,12 +452,12 @@ void SoftObject::advance() noexcept {
     forces.add(Q * solved.force, solved.arm + contacts_[index].arm_shift);
   }
   for (int i = 0; i < floor_count_; ++i) {
-    const ContactUnknown& solved = problem_.contact(i);
+    const ContactConstraint& solved = problem_.contact(i);
     if (solved.mode == ContactMode::kOpen) continue;
     nodal_.add(floor_->node(i), solved.force);
     forces.add(Q * solved.force, solved.arm);
   }
-  follow();
+  cache_nodes();
   engine_->advance(nodal_.view());
   past_.remember(state_, Q, forces);
   state_ = end_of_step(body_, free_forces_, motion_, forces.sum, forces.torque(Q));

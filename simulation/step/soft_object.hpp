@@ -9,10 +9,10 @@
 #include "common/contact/contact_model.hpp"
 #include "common/motion/free_motion.hpp"
 #include "common/motion/rigid_body.hpp"
-#include "common/motion/rigid_past.hpp"
+#include "common/motion/rigid_state_history.hpp"
 #include "simulation/collision/deformed_surface.hpp"
 #include "simulation/contact/pressure_mask.hpp"
-#include "simulation/contact/rounded_surface.hpp"
+#include "simulation/contact/smoothed_surface.hpp"
 #include "simulation/engine/response_engine.hpp"
 #include "simulation/step/floor_contacts.hpp"
 #include "simulation/step/god_object.hpp"
@@ -45,14 +45,15 @@ class SoftObject {
   /// each other's last answer, and shake a stiff object. Between steps.
   /// @param tip where the stylus was in the last step [m], W
   /// @param horizon steps to look ahead, 1 to kMaxHorizon
-  void foresee(std::size_t s, const Vector3& tip, int horizon, ContactModel& model) noexcept;
+  void predict_horizon(std::size_t s, const Vector3& tip, int horizon,
+                       ContactModel& model) noexcept;
   /// What stylus s exerted, besides what is known, in the step `age` steps before the last one: at
   /// the contact that it had then, or else where the tip was near the surface. Between steps.
   /// False: neither.
   /// @param entry knows its age; the rest of it is written
-  bool enter_late(std::size_t s, const AppliedForce& applied, LateForce& entry) noexcept;
+  bool insert_delayed_force(std::size_t s, const AppliedForce& applied, LateForce& entry) noexcept;
   /// The same of an entry that is whole. False: that is too long ago.
-  bool enter_late(const LateForce& entry) noexcept;
+  bool insert_delayed_force(const LateForce& entry) noexcept;
   /// From the surface to a point of W, positive outside [m]. Between steps.
   double distance(const Vector3& tip) noexcept;
   ContactState contact_state(std::size_t s) const noexcept { return styluses_[s].state(); }
@@ -87,22 +88,22 @@ class SoftObject {
     Vector3 average = Vector3::Zero();    ///< of its force over the last while [N], B
     Vector3 displaced = Vector3::Zero();  ///< of its place by the end of its step [m], B
   };
-  void take_over(std::size_t s, const StylusCommand& command) noexcept;
+  void apply_remote_contact(std::size_t s, const StylusCommand& command) noexcept;
   double displaced() const noexcept;
-  Vector3 believed(const Vector3& arm, const Vector3& own) const noexcept;
+  Vector3 accepted_arm(const Vector3& arm, const Vector3& own) const noexcept;
   bool place_late(std::size_t s, const Vector3& tip, LateForce& entry) noexcept;
   void collect_others(std::size_t s, ContactModel& model) noexcept;
   void follow_bridged(std::span<const StylusCommand> commands) noexcept;
   void spin(ObjectRecord& record) noexcept;
-  void tell_tips(std::span<const StylusCommand> commands) noexcept;
+  void prefetch_columns(std::span<const StylusCommand> commands) noexcept;
   void collect(std::span<const StylusCommand> commands) noexcept;
-  bool settle_down(std::size_t s, const Vector3& tip) noexcept;
+  bool project_initial_contact(std::size_t s, const Vector3& tip) noexcept;
   void predict_contacts() noexcept;
-  void pose_problem(std::span<const StylusCommand> commands) noexcept;
+  void assemble_contacts(std::span<const StylusCommand> commands) noexcept;
   void solve(std::span<const StylusCommand> commands, ObjectRecord& record) noexcept;
   void pose_floor() noexcept;
-  void settle(std::span<const StylusCommand> commands) noexcept;
-  void follow() noexcept;
+  void update_contacts(std::span<const StylusCommand> commands) noexcept;
+  void cache_nodes() noexcept;
   void advance() noexcept;
   Vector3 arm_shift(int a, const Vector3& moved) const noexcept;
   void write(ObjectRecord& record) noexcept;
@@ -123,10 +124,10 @@ class SoftObject {
   std::uint64_t steps_ = 0;  ///< made so far
   RigidState start_;
   RigidState state_;
-  RigidPast past_;
+  RigidStateHistory past_;
   std::vector<GodObject> styluses_;
   std::vector<PressureMask> masks_;
-  std::vector<RoundedSurface> rounded_;   ///< as each stylus feels it
+  std::vector<SmoothedSurface> rounded_;  ///< as each stylus feels it
   std::unique_ptr<FloorContacts> floor_;  ///< null: no floor
 
   // Of the step under way.
@@ -135,7 +136,7 @@ class SoftObject {
   int floor_count_ = 0;
   std::array<Contact, kMaxContacts> contacts_{};
   std::vector<LastContact> last_;  ///< one a stylus
-  ContactPatch foreseen_patch_;
+  ContactPatch local_model_patch_;
   std::array<SurfacePoint, kMaxContacts> points_{};
   std::array<ContactPatch, kMaxContacts> patches_{};
   ContactMatrix elastic_;  ///< elastic compliance between the contacts, (3m, 3m) [m/N], B

@@ -65,7 +65,7 @@ TEST_CASE("contact at the bridge: a wall pushes by its stiffness, and the server
   Bench bench;
   bench.ticks(100, 0.001);
   CHECK(bench.ticks(40, -0.001) == 20);
-  const BridgeContact::Wanted& wanted = bench.contact.wanted();
+  const BridgeContact::ForceCommand& wanted = bench.contact.wanted();
   CHECK(wanted.contact == ContactState::kTouching);
   CHECK((wanted.force - Vector3(0, 1, 0)).norm() < 1e-12);
   CHECK((wanted.normal - Vector3(0, 1, 0)).norm() < 1e-12);
@@ -95,13 +95,13 @@ TEST_CASE("contact at the bridge: a run that stands still says so, and goes on a
   Bench bench;
   bench.ticks(100, -0.001);
   ContactModel standing;
-  standing.standing = true;
+  standing.paused = true;
   standing.step = bench.server_step - 1;
   bench.contact.receive(standing, bench.now_ns);
-  CHECK(bench.contact.wanted().standing);
+  CHECK(bench.contact.wanted().paused);
   CHECK(bench.ticks(500, -0.001, false) == 0);
   CHECK(bench.ticks(20, -0.001) > 5);
-  CHECK_FALSE(bench.contact.wanted().standing);
+  CHECK_FALSE(bench.contact.wanted().paused);
   CHECK(bench.contact.lookahead() < 5);
   CHECK(bench.contact.wanted().force.y() < 0.05);
   bench.ticks(500, -0.001);
@@ -168,7 +168,7 @@ TEST_CASE("contact at the bridge: the way of a tip while the run stood still doe
   Bench bench;
   bench.ticks(100, 0.05);
   ContactModel standing;
-  standing.standing = true;
+  standing.paused = true;
   standing.step = bench.server_step - 1;
   bench.contact.receive(standing, bench.now_ns);
   bench.ticks(100, -0.05, false);

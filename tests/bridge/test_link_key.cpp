@@ -42,7 +42,7 @@ class Link {
 
   NetworkServer server;
   ServoLink link;
-  Wakeup gave_up;
+  EventFd gave_up;
   NetworkClient client;
 };
 
@@ -61,7 +61,7 @@ TEST_CASE("with the server's key samples and forces go both ways") {
     CHECK(port.in.front().sample.tip == Vector3(1, 2, 3));
     port.out.put({.force_step = sequence, .sample_sequence = sequence, .force = Vector3(4, 5, 6)});
     both.server.forces_ready().signal();
-    Mailbox<ServoInput>& input = both.link.styluses[0].input;
+    TripleBuffer<ServoInput>& input = both.link.styluses[0].input;
     const auto answered = [&] {
       input.receive();
       return input.front().any_force && input.front().force.force_step == sequence;
@@ -116,7 +116,7 @@ TEST_CASE("garbage and silence to a server with a key are sent away, and it serv
   CHECK(server.stats().wrong_keys == 1);
   CHECK(server.stats().timeouts == 1);
   ServoLink link(1);
-  Wakeup gave_up;
+  EventFd gave_up;
   NetworkClient client(link, {.server = {"127.0.0.1", server.port_number()}, .key = key_of(1)},
                        gave_up);
   client.start();
@@ -130,7 +130,7 @@ TEST_CASE("beyond this machine nobody listens or connects without a key") {
   CHECK_NOTHROW(NetworkServer({.address = "0.0.0.0", .key = key_of(1)}));
   CHECK_NOTHROW(NetworkServer({.address = "127.0.0.2"}));
   ServoLink link(1);
-  Wakeup gave_up;
+  EventFd gave_up;
   ClientSettings far;
   far.server = {"192.0.2.1", 4711};
   CHECK_THROWS_WITH(NetworkClient(link, far, gave_up), Contains("bridge.key_file"));

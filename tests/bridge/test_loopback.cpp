@@ -96,7 +96,7 @@ class Bridge {
     std::istringstream text("time,x,y,z\n" + rows);
     return StylusScript::parse(text, "motion.csv");
   }
-  Wakeup done_;
+  EventFd done_;
   WatchedStylus device_;
   std::vector<ServoLoop> loops_;
   ServoLink link_;
@@ -220,7 +220,7 @@ TEST_CASE("a lockstep run that is stopped because the server ended says that the
   std::vector<ServoLoop> loops;
   loops.emplace_back(device, FilterLimits{});
   ServoLink link(1);
-  Wakeup done;
+  EventFd done;
   ServoThread servo(link, loops, {.duration = kForever}, done);
   LinkState state{.linked = true, .sessions = 1, .lockstep = true, .dt = 0.002};
   link.state.put(state);

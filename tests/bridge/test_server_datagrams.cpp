@@ -74,7 +74,7 @@ class RealEnds {
  public:
   NetworkServer server;
   ServoLink link;
-  Wakeup gave_up;
+  EventFd gave_up;
   NetworkClient client;
 };
 
@@ -132,7 +132,7 @@ class ScriptedServer {
 
   RawListener listener;
   ServoLink link;
-  Wakeup gave_up;
+  EventFd gave_up;
   std::optional<NetworkClient> client;
   std::unique_ptr<RawChannel> channel;
   std::uint64_t given = 0;

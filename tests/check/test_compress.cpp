@@ -85,7 +85,7 @@ TEST_CASE("compress: the stated errors are those of the file, twice to the same 
   const auto& response = std::get<CompressedResponse>(model.response);
   const bool integers = !response.early_scale.empty();
   CHECK(integers == (allowed > 1e-3));
-  const RowMatrix<double> late = late_responses(response, 200 - response.early_steps);
+  const RowMatrix<double> late = late_responses(response, 200 - response.fir_steps);
   double largest = 0.0;
   for (int b = 0; b < model.degrees_of_freedom(); b += 5) {
     const RowMatrix<double> column = compressed_column(response, late, b, 200);
@@ -97,8 +97,8 @@ TEST_CASE("compress: the stated errors are those of the file, twice to the same 
       for (int a = 0; a < model.degrees_of_freedom(); ++a) {
         size += cube.at(s, a, b) * cube.at(s, a, b);
         difference += std::pow(column(s, a) - cube.at(s, a, b), 2);
-        early = std::max(
-            early, s < response.early_steps ? std::abs(column(s, a) - cube.at(s, a, b)) : 0.0);
+        early = std::max(early,
+                         s < response.fir_steps ? std::abs(column(s, a) - cube.at(s, a, b)) : 0.0);
         peak = std::max(peak, std::abs(cube.at(s, a, b)));
       }
     }
@@ -146,7 +146,7 @@ TEST_CASE("compress keeps as few early steps as shapes and poles can make up for
     }
   }
   cube.write(work.file("dense.h5"));
-  CHECK(work.compress("small.h5", {.error = error}).early_steps == kept);
+  CHECK(work.compress("small.h5", {.error = error}).fir_steps == kept);
 }
 
 TEST_CASE("a compressed response needs the scales that it was written with") {
@@ -158,7 +158,7 @@ TEST_CASE("a compressed response needs the scales that it was written with") {
   auto& response = std::get<CompressedResponse>(model.response);
   REQUIRE_FALSE(response.early_scale.empty());
   const auto early = std::get<std::vector<std::int16_t>>(response.early);
-  const auto m = static_cast<std::size_t>(response.early_steps);
+  const auto m = static_cast<std::size_t>(response.fir_steps);
   // Of nodes 2 and 1: entry (2 3 / 2 + 1) 9 + 3 a + b.
   const std::size_t entry = 4 * 9 + 3 * 2 + 0;
   const double expected = static_cast<double>(response.early_scale[entry]) * early[entry * m + 1];
@@ -200,9 +200,9 @@ TEST_CASE("compress refuses what cannot be reached, and leaves nothing behind") 
     }
   }
   cube.write(work.file("dense.h5"));
-  CHECK_THROWS_WITH(work.compress("small.h5", {.error = 0.01, .early_steps = 8}),
+  CHECK_THROWS_WITH(work.compress("small.h5", {.error = 0.01, .fir_steps = 8}),
                     Contains("cannot be compressed to an error of 1 %"));
-  CHECK_THROWS_WITH(work.compress("small.h5", {.error = 0.01, .early_steps = 25}),
+  CHECK_THROWS_WITH(work.compress("small.h5", {.error = 0.01, .fir_steps = 25}),
                     Contains("100 steps, too few"));
   CHECK_FALSE(std::filesystem::exists(work.file("small.h5")));
   CHECK_FALSE(std::filesystem::exists(work.file("part")));

@@ -4,12 +4,12 @@
 #include <thread>
 #include <utility>
 
-#include "common/realtime/mailbox.hpp"
+#include "common/realtime/triple_buffer.hpp"
 
-using irdm::Mailbox;
+using irdm::TripleBuffer;
 
 TEST_CASE("mailbox hands over the newest value and only once") {
-  Mailbox<int> mailbox(7);
+  TripleBuffer<int> mailbox(7);
   CHECK(mailbox.front() == 7);
   CHECK_FALSE(mailbox.receive());
   mailbox.put(1);
@@ -25,7 +25,7 @@ TEST_CASE("mailbox never shows a torn or an older value while both sides run") {
     std::uint64_t a = 0, b = 0;
   };
   constexpr std::uint64_t kLast = 200'000;
-  Mailbox<Pair> mailbox;
+  TripleBuffer<Pair> mailbox;
   std::thread writer([&] {
     for (std::uint64_t i = 1; i <= kLast; ++i) mailbox.put({i, ~i});
   });

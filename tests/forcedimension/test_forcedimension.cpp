@@ -118,7 +118,7 @@ TEST_CASE("a device of Force Dimension that is unplugged ends the servo thread")
   std::vector<ServoLoop> loops;
   loops.emplace_back(device, FilterLimits{});
   ServoLink link(1);
-  Wakeup done;
+  EventFd done;
   ServoThread servo(link, loops, {.duration = std::numeric_limits<double>::infinity()}, done);
   servo.start();
   link.state.put({.linked = true, .sessions = 1, .dt = 0.002});

@@ -5,8 +5,9 @@
 #include <span>
 #include <string_view>
 
-/// What the fuzzer does with bytes of any origin, one function for every parser (docs/fuzzing.md).
-/// Each returns, whatever the bytes are; what must never be ends the process.
+/// What the fuzzer does with bytes of any origin, one function for every parser
+/// (docs/contributing.md). Each returns, whatever the bytes are; what must never be ends the
+/// process.
 namespace irdm::fuzz {
 
 using Input = std::span<const std::uint8_t>;

@@ -20,7 +20,7 @@ std::filesystem::path valid_run() {
   scene.config = test::two_cubes();
   const std::filesystem::path path = scratch_file("valid_run.h5", "");
   std::filesystem::remove(path);
-  replay::RunOutput output(path, scene, {"trace.h5", "tips"});
+  replay::RunOutput output(path, scene, {"trace.h5", "inputs"});
   StepRecord record;
   record.object_count = record.stylus_count = 2;
   const int nodes = scene.config.objects[0].model->mesh.surface_node_count();

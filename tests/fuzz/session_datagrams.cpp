@@ -91,7 +91,7 @@ class ServedBridge {
       const bool present = port.in.receive() && port.in.front().present;
       expect(!present || port.in.front().sample.tip.allFinite(), "a sample's tip is finite");
     }
-    if (displaced && session_.unwelcomed()) session_.displace();
+    if (displaced && session_.unwelcomed()) session_.evict();
     line_.hang_up();
     expect(session_.over() && !session_.ending(), "a session ends with its connection");
     expect(stats_.protocol_errors + stats_.refused + stats_.goodbyes + stats_.timeouts <= 1,
@@ -145,7 +145,7 @@ class ServedBridge {
   bool room_;
   StylusSlots slots_{2};
   NetworkStats stats_;
-  Allowance complaints_{1.0, 1.0};
+  TokenBucket complaints_{1.0, 1.0};
   DatagramPort port_{line_.executor(), {boost::asio::ip::address_v4::loopback(), 0}, true};
   Session session_;
   // Where what the server answers goes, and nobody reads it.

@@ -28,7 +28,7 @@ void bridge_session(Input input) {
   const NetworkSettings settings{.styluses = 2, .max_frame_rate = 100};
   StylusSlots slots(settings.styluses);
   NetworkStats stats;
-  Allowance complaints(1.0, 1.0);
+  TokenBucket complaints(1.0, 1.0);
   DatagramPort port(line.executor(), {boost::asio::ip::address_v4::loopback(), 0}, true);
   Session session(kFuzzedSession, line.connection(),
                   {settings, slots, stats, complaints, [] {}, &port});

@@ -1,8 +1,8 @@
 // Traces of two objects and two styluses, with edits of the fuzzer's choice.
 #include "common/error.hpp"
-#include "replay/made_again/finite_step.hpp"
-#include "replay/made_again/from_forces.hpp"
-#include "replay/made_again/from_tips.hpp"
+#include "replay/rerun/finite_step.hpp"
+#include "replay/rerun/force_rerun.hpp"
+#include "replay/rerun/input_rerun.hpp"
 #include "tests/fuzz/edited_file.hpp"
 #include "tests/fuzz/harness.hpp"
 #include "tests/fuzz/scratch_file.hpp"
@@ -39,7 +39,7 @@ std::filesystem::path valid_trace() {
 }
 
 /// What comes out need not be what was recorded; it is finite, or irdm-replay refuses the trace.
-void make_again(replay::MadeAgain& made, const Recording& recording) {
+void make_again(replay::Rerun& made, const Recording& recording) {
   constexpr std::size_t kMost = 60;
   StepRecord recorded;
   StepRecord again;
@@ -72,10 +72,10 @@ void trace_file(Input input) {
                "the floor's forces fit into a step");
       }
     }
-    replay::FromForces from_forces(scene());
+    replay::ForceRerun from_forces(scene());
     make_again(from_forces, recording);
-    replay::FromTips from_tips(scene());
-    make_again(from_tips, recording);
+    replay::InputRerun from_inputs(scene());
+    make_again(from_inputs, recording);
   } catch (const Error&) {
     expect(!input.empty(), "a trace can be read as it was written");
   }

@@ -73,7 +73,7 @@ void write_contact_models(const Seeds& seeds) {
   model.missing = 6;
   write("held_floating");
   model.valid = false;
-  model.standing = true;
+  model.paused = true;
   write("standing");
   int number = 0;
   for (const ContactModel& each : untrue_models()) {

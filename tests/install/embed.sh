@@ -20,5 +20,5 @@ cp "$model" "$build/small-cube.h5"
 sed -e 's/^engine = .*/engine = "modal"/' -e 's/^name = .*/&\nangular_velocity = [1, 2, 3]/' \
   "$tree/share/irdm/configs/scenes/small-cube-dense.toml" >"$build/scene.toml"
 "$build/scene" "$build/scene.toml" "$build/trace.h5"
-replayed=$("$tree/bin/irdm-replay" "$build/trace.h5" --from tips --rate 10 --csv "$build/run.csv")
+replayed=$("$tree/bin/irdm-replay" "$build/trace.h5" --from inputs --rate 10 --csv "$build/run.csv")
 [[ $replayed == *"500 steps"*"velocity 0 m/s, angular velocity 0 rad/s"* ]] || { echo "$replayed" >&2; exit 1; }

@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-#include "common/realtime/wakeup.hpp"
+#include "common/realtime/event_fd.hpp"
 
 namespace irdm::test {
 
@@ -57,7 +57,7 @@ class PacketRelay {
   std::atomic<std::uint64_t> corrupted_{0};
   std::atomic<bool> cut_{false};
   std::atomic<bool> stop_{false};
-  Wakeup change_;
+  EventFd change_;
   std::atomic<std::uint64_t> rounds_{0};
   std::thread thread_;
 };

@@ -56,7 +56,7 @@ class Rig {
   ServoLink link;
   std::vector<ServoLoop> loops;
   std::vector<StylusSample> samples;
-  Wakeup done;
+  EventFd done;
   std::unique_ptr<ServoThread> servo;
 };
 
@@ -213,7 +213,7 @@ TEST_CASE("a servo loop refuses two drivers that both want to make its ticks") {
   loops.emplace_back(left, FilterLimits{});
   loops.emplace_back(right, FilterLimits{});
   ServoLink link(2);
-  Wakeup done;
+  EventFd done;
   ServoThread servo(link, loops, {}, done);
   CHECK_THROWS_WITH(servo.start(), Catch::Contains("two drivers"));
 }

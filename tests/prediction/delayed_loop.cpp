@@ -160,7 +160,7 @@ class Loop {
   // Without a filter, what is too old is shown no more.
   void want(std::size_t s, double now) {
     Stylus& stylus = *styluses_[s];
-    const BridgeContact::Wanted& wanted = stylus.contact.wanted();
+    const BridgeContact::ForceCommand& wanted = stylus.contact.wanted();
     const bool old = wanted.any && to_ns(now) - wanted.content_ns > wanted.horizon_ns;
     run_.unknown += old ? 1 : 0;
     stylus.asked = {.any = wanted.any,
@@ -237,7 +237,7 @@ class Loop {
     }
     if (mode_ == LoopMode::kPredict) {
       if (!stylus.command.present) return;
-      bridged_[s].foresee(message.model);
+      bridged_[s].predict_horizon(message.model);
     }
     stylus.down.send(now, message);
   }

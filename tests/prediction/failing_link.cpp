@@ -217,7 +217,7 @@ void FailingLink::serve() {
   const std::uint32_t session = wrong(Cause::kSecondMaster) ? kLinkSession + 1 : kLinkSession;
   send_down(wire::ForceMessage{0, answer}, session);
   if (!predict_) return;
-  bridged_.foresee(model_);
+  bridged_.predict_horizon(model_);
   send_down(wire::ContactModelMessage{0, model_}, session);
 }
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "common/wire/frame.hpp"
-#include "device_bridge/link/force_intake.hpp"
+#include "device_bridge/link/force_receiver.hpp"
 #include "device_bridge/servo_loop.hpp"
 #include "simulation/step/bridged_stylus.hpp"
 #include "simulation/step/simulation.hpp"
@@ -83,7 +83,7 @@ class FailingLink {
   // The bridge:
   std::unique_ptr<Device> device_;
   ServoLoop loop_;
-  ForceIntake intake_{false};
+  ForceReceiver intake_{false};
   ClientReport report_;
   bool linked_ = true;
   std::int64_t answered_ns_ = 0;

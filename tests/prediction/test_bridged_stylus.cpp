@@ -41,7 +41,7 @@ class Served {
     if (told) history.take(applied);
     const std::array commands{bridged.next({true, 0, tip, {}}, session, history)};
     simulation.step(commands, record, put_back);
-    bridged.foresee(model);
+    bridged.predict_horizon(model);
   }
   void tell_now(std::uint64_t step, const Vector3& tip, const Vector3& force) {
     applied.step = step;
@@ -236,7 +236,7 @@ TEST_CASE("bridged stylus: the other's force is in its contact model as the mean
   const double settled = 1.0 - std::pow(1.0 - simulation.dt() / 0.2, kSteps);
   for (std::size_t s = 0; s < 2; ++s) {
     const std::size_t other = 1 - s;
-    simulation.foresee(s, tips[s], 10, model);
+    simulation.predict_horizon(s, tips[s], 10, model);
     REQUIRE(model.valid);
     const Vector3 expected = settled * forces[other];
     CHECK((model.other_force - expected).norm() < 1e-12);

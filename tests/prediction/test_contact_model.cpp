@@ -30,7 +30,7 @@ ContactModel good_model(ResponseKind kind = ResponseKind::kModal) {
     simulation.step({&command, 1}, record);
   }
   ContactModel model;
-  simulation.foresee(0, command.tip, 25, model);
+  simulation.predict_horizon(0, command.tip, 25, model);
   return model;
 }
 

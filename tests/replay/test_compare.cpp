@@ -36,7 +36,7 @@ struct Off {
 
 void write_run(const std::filesystem::path& path, const TracedScene& scene, const Off& off = {},
                int first = 1) {
-  RunOutput output(path, scene, {"trace.h5", "tips"});
+  RunOutput output(path, scene, {"trace.h5", "inputs"});
   const int nodes = scene.config.objects[0].model->mesh.surface_node_count();
   for (int k = first; k < first + 4; ++k) {
     StepRecord record;
@@ -147,6 +147,6 @@ TEST_CASE("a comparison as JSON has its numbers and quotes its words") {
 TEST_CASE("an output is not written over, and one that is not finished leaves nothing") {
   const TwoRuns runs;
   CHECK_THROWS_WITH(write_run(runs.a, one_cube()), Contains("exists already"));
-  { RunOutput unfinished(runs.folder.path() / "c.h5", one_cube(), {"trace.h5", "tips"}); }
+  { RunOutput unfinished(runs.folder.path() / "c.h5", one_cube(), {"trace.h5", "inputs"}); }
   CHECK(std::distance(std::filesystem::directory_iterator(runs.folder.path()), {}) == 2);
 }

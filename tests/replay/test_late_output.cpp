@@ -33,7 +33,7 @@ std::vector<StepRecord> late_run(const SimulationConfig& config) {
   std::vector<StepRecord> records(kSteps);
   for (int k = 0; k < kSteps; ++k) {
     for (int age = 0; k > 10 && k < 30 && age < k % 4; ++age) {
-      REQUIRE(simulation.enter_late(
+      REQUIRE(simulation.insert_delayed_force(
           LateForce{0, 0, age, {}, Vector3(0.01, -0.03, 0.01 * age), Vector3(0.02, 0.06, 0.0)}));
     }
     const StylusCommand command{true, 0, Vector3(0, 0.1, 0), {}};
@@ -65,7 +65,7 @@ TEST_CASE("a replay's output has the force that acted in the end, as the trace s
 
   ReplayOptions options;
   options.trace = trace;
-  options.from_tips = GENERATE(false, true);
+  options.from_inputs = GENERATE(false, true);
   options.output = output;
   REQUIRE(replay::replay(options) == 0);
   const RunReader run(output);

@@ -49,7 +49,7 @@ double displacement(const StruckRun& tap, int k) {
 
 void write_tap(const std::filesystem::path& path, const StruckRun& tap) {
   const TracedScene scene = tapped_cube();
-  RunOutput output(path, scene, {"trace.h5", "tips"});
+  RunOutput output(path, scene, {"trace.h5", "inputs"});
   const int nodes = scene.config.objects[0].model->mesh.surface_node_count();
   const Quaternion Q = rotation_from_vector(Vector3(0.0, 0.0, 0.5 * std::numbers::pi));
   for (int k = 0; k < kFrames; ++k) {

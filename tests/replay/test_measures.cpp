@@ -4,7 +4,7 @@
 #include <numbers>
 #include <random>
 
-#include "replay/compare/stretch.hpp"
+#include "replay/compare/time_interval.hpp"
 #include "replay/measures/compliance.hpp"
 #include "replay/measures/force_difference.hpp"
 #include "replay/measures/onsets.hpp"
@@ -294,7 +294,7 @@ TEST_CASE("compliance is that of the line through zero, and along the force") {
 }
 
 TEST_CASE("stretches and spacing of frames") {
-  const Stretch found = longest_stretch({true, false, true, true, false, true, true, false});
+  const TimeInterval found = longest_stretch({true, false, true, true, false, true, true, false});
   CHECK(found.first == 2);
   CHECK(found.count == 2);
   CHECK(longest_stretch({false}).count == 0);

@@ -2,9 +2,9 @@
 #include <catch2/catch.hpp>
 #include <numbers>
 
-#include "replay/made_again/deviation.hpp"
-#include "replay/made_again/from_forces.hpp"
-#include "replay/made_again/from_tips.hpp"
+#include "replay/rerun/deviation.hpp"
+#include "replay/rerun/force_rerun.hpp"
+#include "replay/rerun/input_rerun.hpp"
 #include "tests/replay/kept_run.hpp"
 #include "tests/support/fem_cube.hpp"
 
@@ -47,7 +47,7 @@ struct Errors {
   double displacement = 0.0;  ///< as a share of the largest
 };
 
-Errors make_again(MadeAgain& made, const KeptRun& run, EngineKind kind) {
+Errors make_again(Rerun& made, const KeptRun& run, EngineKind kind) {
   const Recording recording = run.recording();
   Errors errors;
   double largest = 0.0;
@@ -74,9 +74,9 @@ Errors make_again(MadeAgain& made, const KeptRun& run, EngineKind kind) {
 TEST_CASE("dense makes a run of modal again within the end of its responses and rounding") {
   const KeptRun run = swing();
   const SimulationConfig dense = scene(ResponseKind::kDense);
-  FromTips from_tips(dense);
-  FromForces from_forces(dense);
-  MadeAgain& made = GENERATE(true, false) ? static_cast<MadeAgain&>(from_tips) : from_forces;
+  InputRerun from_inputs(dense);
+  ForceRerun from_forces(dense);
+  Rerun& made = GENERATE(true, false) ? static_cast<Rerun&>(from_inputs) : from_forces;
   const Errors errors = make_again(made, run, EngineKind::kDense);
   INFO(errors.deviation.text() << "displacement " << errors.displacement);
   CHECK(errors.deviation.peak_force() > 0.2);
@@ -88,7 +88,7 @@ TEST_CASE("dense makes a run of modal again within the end of its responses and 
 TEST_CASE("a compressed response makes a run again within its error") {
   const KeptRun run = swing();
   const SimulationConfig compressed = scene(ResponseKind::kCompressed);
-  FromForces made(compressed);
+  ForceRerun made(compressed);
   const Errors errors = make_again(made, run, EngineKind::kCompressed);
   INFO(errors.deviation.text() << "displacement " << errors.displacement);
   CHECK(errors.displacement < 0.05);  // what fem_cube() asks for

@@ -3,9 +3,9 @@
 #include <catch2/catch.hpp>
 #include <numbers>
 
-#include "replay/made_again/from_forces.hpp"
 #include "replay/reference/fem_body.hpp"
 #include "replay/reference/fem_reference.hpp"
+#include "replay/rerun/force_rerun.hpp"
 #include "tests/replay/kept_run.hpp"
 #include "tests/support/fem_cube.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -298,7 +298,7 @@ TEST_CASE("the reference follows gravity, damping and the material's damping whe
   }
   std::vector<std::unique_ptr<ForcedBody>> bodies;
   bodies.push_back(std::make_unique<FemBody>(config, 0, kCorotational, kReferenceSubstep));
-  FromForces made(config, std::move(bodies));
+  ForceRerun made(config, std::move(bodies));
   FemDifference apart;
   StepRecord again;
   Points u;
@@ -392,14 +392,14 @@ TEST_CASE("what a bridge told too late acts in the step that it belongs to") {
     for (int age = 0; k > 10 && k < 20 && age < k % 4; ++age) {
       LateForce late{0, 0, age, point, Vector3(0.002, -0.01, 0.001 * age), Vector3::Zero()};
       late.arm = config.objects[0].model->mesh.rest_position(point.nodes[0]) + Vector3(0, 0, 0.01);
-      REQUIRE(simulation.enter_late(late));
+      REQUIRE(simulation.insert_delayed_force(late));
     }
     const StylusCommand command{};
     simulation.step({&command, 1}, record);
     run.keep(simulation, record);
   }
   const Recording recording = run.recording();
-  const std::vector<ToldLate> told = told_late(recording);
+  const std::vector<DelayedForces> told = delayed_forces(recording);
   REQUIRE(told.size() == 15);
   FemBody body(config, 0, kCorotational, kReferenceSubstep, false, told);
   FemDifference late_apart;

@@ -58,21 +58,21 @@ std::vector<int> there(const ColumnStore& store) {
 
 void expect_at(ColumnStore& store, double x) {
   const std::array<Vector3, 1> tip{Vector3(x, 0, 0)};
-  store.expect(tip);
+  store.prefetch(tip);
 }
 
 }  // namespace
 
 TEST_CASE("a store with room for all reads all, and hands out what it read") {
   ColumnStore store = make_store(kNodes);
-  CHECK(store.take(3) == nullptr);
+  CHECK(store.acquire(3) == nullptr);
   store.start();
   REQUIRE(eventually([&] { return store.loaded() == kNodes; }));
   for (int i = 0; i < kNodes; ++i) {
-    const void* columns = store.take(i);
+    const void* columns = store.acquire(i);
     REQUIRE(columns != nullptr);
     CHECK(is_of(columns, i));
-    store.give_back(i);
+    store.release(i);
   }
 }
 
@@ -83,22 +83,22 @@ TEST_CASE(
   store.start();
   expect_at(store, 2.0);
   REQUIRE(eventually([&] { return there(store) == std::vector<int>{0, 1, 2, 3, 4}; }));
-  REQUIRE(store.take(1) != nullptr);
-  REQUIRE(store.take(2) != nullptr);
+  REQUIRE(store.acquire(1) != nullptr);
+  REQUIRE(store.acquire(2) != nullptr);
   expect_at(store, 15.1);
   REQUIRE(eventually([&] { return there(store) == std::vector<int>{1, 2, 14, 15, 16}; }));
   SECTION("given back, it makes room") {
-    store.give_back(1);
-    store.give_back(2);
+    store.release(1);
+    store.release(2);
     REQUIRE(eventually([&] { return there(store) == std::vector<int>{13, 14, 15, 16, 17}; }));
   }
   SECTION("what is asked for comes before what is near, and waits until it is taken") {
     const void* columns = nullptr;
-    REQUIRE(eventually([&] { return (columns = store.take(9)) != nullptr; }));
+    REQUIRE(eventually([&] { return (columns = store.acquire(9)) != nullptr; }));
     CHECK(is_of(columns, 9));
     CHECK(there(store).size() <= 5);
-    CHECK(store.take(1) != nullptr);
-    CHECK(store.take(2) != nullptr);
+    CHECK(store.acquire(1) != nullptr);
+    CHECK(store.acquire(2) != nullptr);
   }
 }
 
@@ -109,8 +109,8 @@ TEST_CASE("columns that cannot be read are not there, and the others are") {
   });
   store.start();
   REQUIRE(eventually([&] { return store.loaded() == kNodes - 2 && store.failed() == 2; }));
-  CHECK(store.take(7) == nullptr);
-  CHECK(store.take(6) != nullptr);
+  CHECK(store.acquire(7) == nullptr);
+  CHECK(store.acquire(6) != nullptr);
 }
 
 TEST_CASE("in lockstep taking waits for the disk, and each engine has its share") {
@@ -125,14 +125,14 @@ TEST_CASE("in lockstep taking waits for the disk, and each engine has its share"
   CHECK(store.share() == 2);
   store.start();
   for (int i = 0; i < kNodes; ++i) {
-    const void* columns = store.take(i);
+    const void* columns = store.acquire(i);
     REQUIRE((columns != nullptr) == (i != 4));
     if (columns == nullptr) continue;
     CHECK(is_of(columns, i));
-    store.give_back(i);
+    store.release(i);
   }
   store.finish();
-  CHECK(store.take(0) == (store.has(0) ? store.take(0) : nullptr));  // nobody waits any more
+  CHECK(store.acquire(0) == (store.has(0) ? store.acquire(0) : nullptr));  // nobody waits any more
 }
 
 TEST_CASE("two threads take and give back while tips wander: each always has what it took") {
@@ -147,11 +147,11 @@ TEST_CASE("two threads take and give back while tips wander: each always has wha
     for (int k = 0; k < 20000 || waits(); ++k) {
       const int node = (seed * 7 + k / 50) % kNodes;
       if (seed == 0 && k % 100 == 0) expect_at(store, node);
-      const void* columns = store.take(node);
+      const void* columns = store.acquire(node);
       if (columns == nullptr) continue;
       if (!is_of(columns, node)) wrong = true;
       ++had;
-      store.give_back(node);
+      store.release(node);
     }
   };
   std::thread other(use, 1);
@@ -171,9 +171,9 @@ TEST_CASE("taking, giving back and telling tips is real-time safe") {
   for (int k = 0; k < 2000; ++k) {
     const int node = k / 20 % kNodes;
     expect_at(store, node);
-    if (store.take(node) == nullptr) continue;
+    if (store.acquire(node) == nullptr) continue;
     ++had;
-    store.give_back(node);
+    store.release(node);
   }
   const std::string violations = guard.violations();
   CHECK(violations.empty());

@@ -96,8 +96,8 @@ struct Fall {
     force->add_viewer_stylus({0.002, 300.0, 3.3});
   }
   /// Takes steps until one is as wanted.
-  template <typename Wanted>
-  bool comes(const Wanted& wanted) {
+  template <typename ForceCommand>
+  bool comes(const ForceCommand& wanted) {
     return eventually([&] {
       while (sink.take(record)) {
         if (wanted(record)) return true;
@@ -124,7 +124,7 @@ TEST_CASE("a paused run stands still, makes the steps that are asked for, and go
   fall.force->start(RealTimeScheduling::kIgnore);
   fall.control->request_steps(3);
   REQUIRE(fall.comes([](const StepRecord& record) { return record.force_step == 2; }));
-  CHECK_FALSE(Wakeup().wait(30));  // a moment in which nothing comes
+  CHECK_FALSE(EventFd().wait(30));  // a moment in which nothing comes
   CHECK_FALSE(fall.sink.take(fall.record));
   fall.control->request_steps(1);
   REQUIRE(fall.comes([](const StepRecord& record) { return record.force_step == 3; }));

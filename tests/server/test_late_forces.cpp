@@ -25,7 +25,7 @@ std::vector<StepRecord> late_run(const SimulationConfig& config) {
         const auto corners = config.objects[0].model->mesh.triangles.row(0);
         late.point = {{corners[0], corners[1], corners[2]}, {0.2, 0.3, 0.5}};
         late.arm = Vector3(0.02, 0.06, 0.01 * object);
-        REQUIRE(simulation.enter_late(late));
+        REQUIRE(simulation.insert_delayed_force(late));
       }
     }
     const double depth = std::min(2e-4 * k, 0.01);

@@ -39,8 +39,8 @@ inline void play_step(Simulation& simulation, int k, StepRecord& record) {
     simulation.set(settings);
   }
   for (int age = 0; k > 30 && k < 50 && age < k % 4; ++age) {
-    simulation.enter_late(0, {Vector3(0.001 * age, -0.002, 0.0005 * k), Vector3(0.01, 0.06, 0.005)},
-                          age);
+    simulation.insert_delayed_force(
+        0, {Vector3(0.001 * age, -0.002, 0.0005 * k), Vector3(0.01, 0.06, 0.005)}, age);
   }
   const double depth = std::min(2e-4 * k, 0.01);
   const std::array<StylusCommand, 2> commands{
@@ -49,7 +49,7 @@ inline void play_step(Simulation& simulation, int k, StepRecord& record) {
           true, k > 20 && k < 90 ? kGrabButton : 0, Vector3(0.30 + 1e-4 * k, 0.17, 0.0), {}}};
   simulation.step(commands, record, k == 110);
   ContactModel model;
-  if (k > 25 && k < 60) simulation.foresee(0, commands[0].tip, 1, model);
+  if (k > 25 && k < 60) simulation.predict_horizon(0, commands[0].tip, 1, model);
 }
 
 }  // namespace irdm::test

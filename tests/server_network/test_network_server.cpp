@@ -102,7 +102,7 @@ TEST_CASE("a bridge's report is there for who watches, until the bridge goes") {
   REQUIRE(welcome);
   CHECK(welcome->capabilities == wire::kCapabilityReport);
   peer.send(wire::Report{.round_trip = {1.0F, 2.0F, 3.0F}});
-  Mailbox<LinkReport>& link = running.server.port(0).link;
+  TripleBuffer<LinkReport>& link = running.server.port(0).link;
   REQUIRE(eventually([&] { return link.receive(); }));
   CHECK(link.front().reported);
   CHECK(link.front().report.round_trip.maximum == 3.0F);

@@ -26,7 +26,7 @@ std::shared_ptr<const Model> made_up(bool integers = false) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   CompressedResponse response;
-  response.early_steps = kEarly;
+  response.fir_steps = kEarly;
   const int nodes = model.mesh.surface_node_count();
   std::vector<float> early(early_entries(static_cast<std::size_t>(nodes)) * kEarly);
   for (float& value : early) value = static_cast<float>(uniform(random));
@@ -154,7 +154,7 @@ TEST_CASE("compressed engine predicts the coming step, and R[0] between the cont
     const Vector3 expected = h[a] + answer.segment<3>(static_cast<Eigen::Index>(3 * a));
     CHECK((moved - expected).norm() < 1e-12 * u.norm());
   }
-  const Eigen::MatrixXd R = engine->instant_compliance();
+  const Eigen::MatrixXd R = engine->zero_lag_compliance();
   CHECK((R - R.transpose()).norm() == 0.0);
 }
 
@@ -167,7 +167,7 @@ TEST_CASE("compressed engine: forces that come late are those of equation (10), 
   const auto enter = [&](int k, int age) {
     const std::vector<NodalForce> late{{(3 * k + age) % nodes, Vector3(0.1 * age, 1.0, -0.5)},
                                        {(k + 7 * age) % nodes, Vector3(-0.3, 0.0, 0.02 * k)}};
-    engine->add_past(late, age);
+    engine->add_delayed_force(late, age);
     auto& told = history[static_cast<std::size_t>(k - age)];
     told.insert(told.end(), late.begin(), late.end());
   };
@@ -207,7 +207,7 @@ TEST_CASE(
   const std::vector<NodalForce> held{{2, Vector3(0.1, -0.2, 0.3)}, {9, Vector3(-0.4, 0, 0)}};
   std::vector<Vector3> path(kMaxHorizon);
   std::vector<Matrix3> response(kMaxHorizon);
-  engine->foresee(patch, held, path, response);
+  engine->predict_horizon(patch, held, path, response);
   const Vector3 f(1, -2, 0.5);
   std::vector<std::vector<NodalForce>> push(1);
   for (std::size_t i = 0; i < 3; ++i) push[0].push_back({patch.nodes[i], patch.weights[i] * f});

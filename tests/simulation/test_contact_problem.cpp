@@ -50,7 +50,7 @@ ContactSolution solve(ContactProblem& problem) {
 
 // Coulomb's law, stated without the solver: how far a touching contact is from fulfilling it [m].
 double violation(const ContactProblem& problem, int a) {
-  const ContactUnknown& contact = problem.contact(a);
+  const ContactConstraint& contact = problem.contact(a);
   const Vector3 open = contact.gap - moved(problem, a);
   const double push = -contact.force.dot(contact.normal);
   const Vector3 along = contact.force + push * contact.normal;
@@ -168,7 +168,7 @@ TEST_CASE("one contact meets Coulomb's law for any compliance, gap and friction"
   int open = 0;
   for (unsigned seed = 0; seed < 5000; ++seed) {
     ContactProblem problem = random_problem(1, seed);
-    ContactUnknown& contact = problem.contact(0);
+    ContactConstraint& contact = problem.contact(0);
     contact.law = ContactLaw::kTouching;
     const double mu = 1.2 * uniform(random);
     contact.friction = {mu, mu};
@@ -195,7 +195,7 @@ TEST_CASE("many contacts together meet Coulomb's law, and no friction force give
     const ContactSolution solution = solve(problem);
     REQUIRE(solution.solved);
     for (int a = 0; a < problem.count(); ++a) {
-      const ContactUnknown& contact = problem.contact(a);
+      const ContactConstraint& contact = problem.contact(a);
       INFO("seed " << seed << ", contact " << a << " of " << problem.count() << ", sweeps "
                    << solution.sweeps);
       if (contact.law == ContactLaw::kHeld) {
@@ -214,7 +214,7 @@ TEST_CASE("contacts that stick only by static friction are solved directly") {
     ContactProblem problem = random_problem(4, seed);
     std::vector<Vector3> forces;
     for (int a = 0; a < problem.count(); ++a) {
-      ContactUnknown& contact = problem.contact(a);
+      ContactConstraint& contact = problem.contact(a);
       contact.law = ContactLaw::kTouching;
       contact.friction = {0.5, 0.4};
       contact.force = 0.45 * contact.normal.unitOrthogonal() - contact.normal;

@@ -88,9 +88,9 @@ TEST_CASE("forces are a multiple of others if they were so at every age that is 
     CHECK(history.multiple(0, 2) == 0.0);
   }
   SECTION("late forces are counted where they belong") {
-    history.add_past(std::vector<NodalForce>{{0, Vector3(1, 2, 3)}}, 3);
+    history.add_delayed_force(std::vector<NodalForce>{{0, Vector3(1, 2, 3)}}, 3);
     CHECK(history.multiple(2, 0) == 0.0);
-    history.add_past(std::vector<NodalForce>{{2, 0.7 * Vector3(1, 2, 3)}}, 3);
+    history.add_delayed_force(std::vector<NodalForce>{{2, 0.7 * Vector3(1, 2, 3)}}, 3);
     CHECK(history.multiple(2, 0) == Approx(0.7).epsilon(1e-15));
   }
   SECTION("the newest force tells the factor, where there is one") {

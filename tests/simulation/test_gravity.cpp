@@ -291,7 +291,7 @@ TEST_CASE("gravity: path and prediction are what stepping on brings") {
     const std::vector<NodalForce> held{{2, Vector3(0.1, -0.2, 0.3)}};
     std::vector<Vector3> path(kMaxHorizon);
     std::vector<Matrix3> response(kMaxHorizon);
-    engine->foresee(patch, held, path, response);
+    engine->predict_horizon(patch, held, path, response);
     Vector3 h;
     ContactMatrix W;
     engine->predict({&patch, 1}, {&h, 1}, W);
@@ -319,7 +319,7 @@ TEST_CASE("gravity: a force that comes late acts as one in time") {
       }
       in_time->advance({&force, k == 10 ? 1U : 0U});
       late->advance({});
-      if (k == 14) late->add_past({&force, 1}, 4);
+      if (k == 14) late->add_delayed_force({&force, 1}, 4);
     }
     CHECK(largest_distance(displaced_surface_of(*in_time), displaced_surface_of(*late)) <
           1e-13 * displaced_surface_of(*late).norm());
@@ -428,7 +428,7 @@ TEST_CASE("gravity: nothing allocates while a fixed object sags, swings and is t
     }
     const StylusCommand command = touch(*model, k % 200);
     simulation.step({&command, 1}, record, k == 300);
-    if (command.present) simulation.foresee(0, command.tip, 8, contact);
+    if (command.present) simulation.predict_horizon(0, command.tip, 8, contact);
     touching += record.stylus[0].contact == ContactState::kFree ? 0 : 1;
   }
   CHECK(guard.count() == 0);

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <random>
 
-#include "simulation/engine/force_stretches.hpp"
+#include "simulation/engine/active_modes.hpp"
 #include "simulation/engine/kernels.hpp"
-#include "simulation/engine/strong_modes.hpp"
+#include "simulation/engine/nonzero_intervals.hpp"
 #include "simulation/engine/wide_kernels.hpp"
 
 using namespace irdm;
@@ -297,7 +297,7 @@ TEST_CASE("silences and directions without force are left out of what is convolv
   }
   std::vector<std::vector<double>> seen(15, std::vector<double>(kSteps, 0.0));
   std::size_t read = 0;
-  for (const ForceStretch& stretch : force_stretches(history)) {
+  for (const NonzeroInterval& stretch : nonzero_intervals(history)) {
     read += stretch.count;
     CHECK(stretch.force[0] != 0.0);
     CHECK(stretch.force[stretch.count - 1] != 0.0);
@@ -321,7 +321,7 @@ TEST_CASE("modes that are left out move no node by more than the tolerance") {
     largest[i % kModes] = std::max(largest[i % kModes], std::abs(shapes[i]));
   }
   const double tolerance = GENERATE(0.0, 1e-9, 1e-4, 0.01, 0.3, 1e9);
-  const std::vector<ModeRange> ranges = strong_modes(q, largest, tolerance);
+  const std::vector<ModeRange> ranges = active_modes(q, largest, tolerance);
   std::vector<double> kept(kModes, 0.0);
   std::size_t last = 0;
   for (const ModeRange& range : ranges) {

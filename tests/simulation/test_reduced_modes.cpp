@@ -98,8 +98,8 @@ TEST_CASE("reduced modes: the engine answers as R does that the model stands for
     dense->advance(forces);
     if (k % 4 == 3) {
       for (const int age : {0, 2}) {
-        modal->add_past(forces_of_step(k + 1), age);
-        dense->add_past(forces_of_step(k + 1), age);
+        modal->add_delayed_force(forces_of_step(k + 1), age);
+        dense->add_delayed_force(forces_of_step(k + 1), age);
       }
     }
     modal->displacement(u);
@@ -107,8 +107,8 @@ TEST_CASE("reduced modes: the engine answers as R does that the model stands for
     const double scale = expected_u.cwiseAbs().maxCoeff();
     REQUIRE((u - expected_u).cwiseAbs().maxCoeff() <= 1e-10 * scale);
     REQUIRE((modal->free_displacement(3) - dense->free_displacement(3)).norm() <= 1e-10 * scale);
-    modal->foresee(patches[0], forces, path, response);
-    dense->foresee(patches[0], forces, expected_path, expected_response);
+    modal->predict_horizon(patches[0], forces, path, response);
+    dense->predict_horizon(patches[0], forces, expected_path, expected_response);
     for (std::size_t n = 0; n < path.size(); ++n) {
       REQUIRE((path[n] - expected_path[n]).norm() <= 1e-10 * (scale + expected_path[n].norm()));
       REQUIRE((response[n] - expected_response[n]).norm() <= 1e-10 * expected_response[0].norm());
@@ -116,8 +116,8 @@ TEST_CASE("reduced modes: the engine answers as R does that the model stands for
   }
   // What the bridge is told of the first step is what the step itself uses.
   CHECK((response[0] - W.topLeftCorner<3, 3>()).norm() < 1e-12 * response[0].norm());
-  CHECK((modal->instant_compliance() - dense->instant_compliance()).norm() <
-        1e-10 * dense->instant_compliance().norm());
+  CHECK((modal->zero_lag_compliance() - dense->zero_lag_compliance()).norm() <
+        1e-10 * dense->zero_lag_compliance().norm());
   modal->reset();
   modal->displacement(u);
   CHECK(u.isZero(0.0));

@@ -46,10 +46,10 @@ TEST_CASE("a million force steps touch neither heap, locks, exceptions nor files
     // Every now and then what a bridge decided, and what it says too late.
     const AppliedForce bridged{Vector3(0, -0.1, 0), commands[0].tip, Vector3(0, 0.06, 0)};
     if (k % 100 >= 98) commands[0].bridged = BridgedForce{bridged.force, bridged.arm, 0};
-    if (k % 100 == 99) late += simulation.enter_late(0, bridged, 1) ? 1 : 0;
+    if (k % 100 == 99) late += simulation.insert_delayed_force(0, bridged, 1) ? 1 : 0;
     simulation.step({commands.data(), styluses}, record, k % 2000 == 1999);
     if (k % 10 == 0) {
-      simulation.foresee(0, commands[0].tip, kMaxHorizon, model);
+      simulation.predict_horizon(0, commands[0].tip, kMaxHorizon, model);
       foreseen += model.valid ? 1 : 0;
     }
     for (std::size_t s = 0; s < styluses; ++s) {

@@ -76,8 +76,8 @@ void check_same_answers(ResponseEngine& streamed, ResponseEngine& dense, int nod
   std::array<Vector3, 20> expected_path;
   std::array<Matrix3, 20> response;
   std::array<Matrix3, 20> expected_response;
-  streamed.foresee(patches[0], held, path, response);
-  dense.foresee(patches[0], held, expected_path, expected_response);
+  streamed.predict_horizon(patches[0], held, path, response);
+  dense.predict_horizon(patches[0], held, expected_path, expected_response);
   CHECK(path == expected_path);
   CHECK(response == expected_response);
 }
@@ -88,7 +88,7 @@ void check_equal(Model dense) {
   const auto streamed = make_engine(model.streamed);
   const auto whole = make_engine(model.dense);
   REQUIRE(dynamic_cast<StreamedEngine<Scalar>*>(streamed.get()) != nullptr);
-  CHECK(streamed->instant_compliance() == whole->instant_compliance());
+  CHECK(streamed->zero_lag_compliance() == whole->zero_lag_compliance());
   const int nodes = model.dense->mesh.surface_node_count();
   WanderingForces forces(nodes);
   Points u;
@@ -103,9 +103,9 @@ void check_equal(Model dense) {
     }
     for (ResponseEngine* engine : {streamed.get(), whole.get()}) {
       if (k % 80 < 3) engine->set_gravity(Vector3(0.5 * k, -9.81, k % 160));
-      engine->hold_spin(Vector3(0.1, 0.2, 0.01 * k));
-      engine->follow(followed);
-      if (k % 40 == 39) engine->add_past(now, 3);
+      engine->set_angular_velocity(Vector3(0.1, 0.2, 0.01 * k));
+      engine->cache_nodes(followed);
+      if (k % 40 == 39) engine->add_delayed_force(now, 3);
       engine->advance(now);
     }
     for (int i = 0; i < nodes; ++i) {
@@ -178,7 +178,7 @@ TEST_CASE(
   const auto& response = std::get<StreamedResponse>(model.streamed->response);
   const Eigen::Index dof = response.degrees_of_freedom;
   const Eigen::Map<const Eigen::MatrixXf> rest(response.rest.data(), dof, dof);
-  const Eigen::MatrixXd first = make_engine(model.streamed)->instant_compliance();
+  const Eigen::MatrixXd first = make_engine(model.streamed)->zero_lag_compliance();
   const double estimate = settling_ratio(first.cast<float>(), rest);
   const auto& modes = std::get<ModalResponse>(fem_cube({2, 2000.0, 8.0, kLateDt, 1000})->response);
   const double x = kLateDt * modes.angular_frequency[0];
@@ -273,9 +273,9 @@ TEST_CASE(
     std::array<std::array<Matrix3, 12>, 3> response;
     const ContactPatch patch(SurfacePoint{{4, 5, 6}, {1.0, 0.0, 0.0}});
     const std::array<NodalForce, 1> held{NodalForce{4, Vector3(0.3, -1.0, 0.5)}};
-    late->foresee(patch, held, path[0], response[0]);
-    whole->foresee(patch, held, path[1], response[1]);
-    without->foresee(patch, held, path[2], response[2]);
+    late->predict_horizon(patch, held, path[0], response[0]);
+    whole->predict_horizon(patch, held, path[1], response[1]);
+    without->predict_horizon(patch, held, path[2], response[2]);
     for (std::size_t n = 0; n < path[0].size(); ++n) {
       const Vector3 expected = share * path[1][n] + (1.0 - share) * path[2][n];
       REQUIRE((path[0][n] - expected).norm() < 1e-12);
@@ -297,7 +297,7 @@ TEST_CASE(
   model.supply->most = 8;
   auto engine = make_engine(model.streamed);
   const std::array<Vector3, 2> tips{Vector3::Zero(), Vector3::Ones()};
-  engine->expect(tips);
+  engine->prefetch(tips);
   CHECK(model.supply->tips() == 2);
   WanderingForces forces(model.dense->mesh.surface_node_count());
   int most = 0;
@@ -427,7 +427,7 @@ TEST_CASE("a streamed step allocates nothing, whatever becomes of the columns") 
   for (; k < 1500; ++k) {
     const StylusCommand command = at_tip(cycle.tip(k % 900));
     simulation.step({&command, 1}, record, k == 1000);
-    simulation.foresee(0, command.tip, 20, foreseen);
+    simulation.predict_horizon(0, command.tip, 20, foreseen);
     touching += record.stylus[0].contact == ContactState::kTouching ? 1 : 0;
   }
   CHECK(guard.count() == 0);

@@ -20,8 +20,8 @@ class FakeEngine final : public ResponseEngine {
     for (int i = 0; i < mesh.surface_node_count(); ++i) u_.push_back(field(mesh.rest_position(i)));
   }
   EngineKind kind() const noexcept override { return EngineKind::kModal; }
-  bool takes_spin() const noexcept override { return false; }
-  void hold_spin(const Vector3&) noexcept override {}
+  bool supports_inertial_loading() const noexcept override { return false; }
+  void set_angular_velocity(const Vector3&) noexcept override {}
   Vector3 free_displacement(int node) const noexcept override {
     ++evaluations;
     return u_[static_cast<std::size_t>(node)];
@@ -29,12 +29,12 @@ class FakeEngine final : public ResponseEngine {
   double free_displacement_bound() const noexcept override { return bound; }
   void predict(std::span<const ContactPatch>, std::span<Vector3>,
                ContactMatrix&) noexcept override {}
-  void foresee(const ContactPatch&, std::span<const NodalForce>, std::span<Vector3>,
-               std::span<Matrix3>) noexcept override {}
-  void add_past(std::span<const NodalForce>, int) noexcept override {}
+  void predict_horizon(const ContactPatch&, std::span<const NodalForce>, std::span<Vector3>,
+                       std::span<Matrix3>) noexcept override {}
+  void add_delayed_force(std::span<const NodalForce>, int) noexcept override {}
   void advance(std::span<const NodalForce>) noexcept override {}
   void displacement(Points&, double) const override {}
-  Eigen::MatrixXd instant_compliance() const override { return {}; }
+  Eigen::MatrixXd zero_lag_compliance() const override { return {}; }
   void reset() noexcept override {}
   mutable int evaluations = 0;
   double bound = std::numeric_limits<double>::infinity();
@@ -290,9 +290,9 @@ TEST_CASE("a god-object is the same whether far ways are known to be far or not"
     ++touches;
     for (GodObject& stylus : styluses) {
       if (k % 2 == 0) {
-        stylus.let_go(tip);
+        stylus.release(tip);
       } else {
-        stylus.pass_by();
+        stylus.reject_contact();
       }
     }
   }

@@ -94,7 +94,7 @@ ScriptedSupply::ScriptedSupply(const DenseResponse& response)
                     static_cast<std::size_t>(response.steps)),
       taken_(static_cast<std::size_t>(response.degrees_of_freedom / 3), 0) {}
 
-const void* ScriptedSupply::take(int node) noexcept {
+const void* ScriptedSupply::acquire(int node) noexcept {
   if (!there(node)) return nullptr;
   const auto index = static_cast<std::size_t>(node);
   ++taken_[index];

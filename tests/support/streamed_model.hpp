@@ -20,10 +20,10 @@ class ScriptedSupply final : public ColumnSupply {
   std::function<bool(int node)> there = [](int) { return true; };
   int most = 1 << 20;  ///< share()
 
-  const void* take(int node) noexcept override;
-  void give_back(int node) noexcept override { --taken_[static_cast<std::size_t>(node)]; }
+  const void* acquire(int node) noexcept override;
+  void release(int node) noexcept override { --taken_[static_cast<std::size_t>(node)]; }
   int share() const noexcept override { return most; }
-  void expect(std::span<const Vector3> tips) noexcept override { tips_ = tips.size(); }
+  void prefetch(std::span<const Vector3> tips) noexcept override { tips_ = tips.size(); }
 
   /// How often the columns of a node are taken now; of all nodes.
   int taken(int node) const { return taken_[static_cast<std::size_t>(node)]; }

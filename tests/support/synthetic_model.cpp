@@ -146,7 +146,7 @@ void add_residual(Model& modal, unsigned seed) {
 
 CompressedResponse compressed_response(const Model& model) {
   CompressedResponse response;
-  response.early_steps = 2;
+  response.fir_steps = 2;
   const auto nodes = static_cast<std::size_t>(model.mesh.surface_node_count());
   response.early = std::vector<std::int16_t>(early_entries(nodes) * 2, 1000);
   response.early_scale.assign(early_entries(nodes), 1e-6F);

@@ -12,8 +12,8 @@
 #include <string>
 #include <thread>
 
+#include "common/realtime/event_fd.hpp"
 #include "common/realtime/scheduling.hpp"
-#include "common/realtime/wakeup.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/left_out.hpp"
 #include "tests/system/stage.hpp"
@@ -52,7 +52,7 @@ pid_t await_thread(const ChildProcess& process, const std::string& name) {
 
 /// Whether threads may be put under SCHED_FIFO here, by this process and those that it starts.
 bool real_time_permitted() {
-  Wakeup over;
+  EventFd over;
   std::thread thread([&] { over.wait(-1); });
   const std::string outcome = apply_scheduling(RealTimeScheduling::kPrefer, thread, kServoPriority);
   over.signal();

@@ -69,7 +69,7 @@ Quaternion halfway(const Body& body, const Model& model) {
   return Eigen::AngleAxisd(0.5 * model.dt * w.norm(), w.normalized()) * body.orientation;
 }
 
-/// The force on the object [N], B, for one contact: docs/architecture.md, one force step. Where the
+/// The force on the object [N], B, for one contact: docs/theory.md. Where the
 /// point is wanted is taken into the frame that free motion leads to, with the whole of its
 /// rotation.
 Vector3 contact_force(const Model& model, const SceneConfig& scene, const Body& body,
@@ -374,7 +374,7 @@ TEST_CASE("the touched point's place is recomputed from a trace, inertial loadin
     for (std::size_t i = 0; i < 3 && !free; ++i) {
       nodal.push_back({point.nodes[i], point.weights[i] * force});
     }
-    with->hold_spin(held_spin(before, *model));
+    with->set_angular_velocity(held_spin(before, *model));
     with->advance(nodal);
     without->advance(nodal);
     if (free) continue;

@@ -157,7 +157,7 @@ TEST_CASE("irdm-replay makes a run again, with two styluses, a floor and a reset
   // In real time bridges solve the contacts themselves, and what they tell may come late.
   const bool lockstep = GENERATE(true, false);
   const std::filesystem::path trace = record(stage, lockstep);
-  for (const std::string from : {"tips", "forces"}) {
+  for (const std::string from : {"inputs", "forces"}) {
     const FinishedProgram again = run_replay(trace, {"--from", from});
     REQUIRE(again.status == 0);
     CHECK(again.err.empty());
@@ -172,7 +172,7 @@ TEST_CASE("irdm-replay makes a run in real time again, and its table has the tra
                                 "angular_velocity = [0.1, 0.4, -0.2]\ninertial_loading = true\n");
   const std::filesystem::path path = record(stage, false);
   const FinishedProgram again =
-      run_replay(path, {"--from", "tips", "--csv", stage.path("run.csv").string()});
+      run_replay(path, {"--from", "inputs", "--csv", stage.path("run.csv").string()});
   REQUIRE(again.status == 0);
   check_near(again.out);
   const Trace trace = read_trace(path);
@@ -348,7 +348,8 @@ TEST_CASE("irdm-replay refuses what it cannot make again, in one line") {
   record(stage, true);
   refused({"--engine", "compressed"}, "compressed");
   refused({"--rate", "1000"}, "above the rate of the steps");
-  refused({"--reference", "fem", "--from", "tips", "--solve-bridged"}, "leave out one of it");
+  refused({"--reference", "fem", "--from", "inputs", "--solve-bridged"},
+          "cannot be combined with --reference");
   refused({"--reference", "fem", "--engine", "modal"}, "means nothing to a reference");
   refused({"--substep", "0.001"}, "give --reference fem");
   refused({"--csv", stage.path("scene.toml").string()}, "exists already");

@@ -71,7 +71,7 @@ TEST_CASE("a run in real time: both end in order, and the trace says what they s
   check_one_session(bridge.out());
   CHECK(number_after(bridge.out(), "forces: ") > 0);
   CHECK(number_after(bridge.out(), "contact models: ") > 10);
-  CHECK_THAT(bridge.out(), Contains(" 0 not believed"));
+  CHECK_THAT(bridge.out(), Contains(" 0 invalid"));
   if (!kKeepsPace) return leave_out(kTooSlow);
   CHECK(rows_in(trace, kTouching) > 0);
   CHECK(rows_in(trace, kHolding) > 0);

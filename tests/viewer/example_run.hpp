@@ -32,9 +32,9 @@ struct ExampleRun final : viewer::ViewedRun {
   }
 
   viewer::Scene scene_ = example_scene();
-  Mailbox<SurfaceFrame> surfaces{example_frame(scene_, 0.001)};
-  Mailbox<SurfaceFrame> other_surfaces{example_frame(scene_, 0.001, 5)};
-  Wakeup ready, other_ready;
+  TripleBuffer<SurfaceFrame> surfaces{example_frame(scene_, 0.001)};
+  TripleBuffer<SurfaceFrame> other_surfaces{example_frame(scene_, 0.001, 5)};
+  EventFd ready, other_ready;
   std::atomic<std::size_t> shown{0};
   std::atomic<std::uint64_t> steps{77};
   std::atomic<int> put_backs{0}, settings{0}, presses{0}, releases{0};

@@ -148,18 +148,18 @@ TEST_CASE("a contact model's flags and horizon come back, and what is beyond the
   CHECK(number_at(payload, 472 + 72 * 7) == 0.0);
   const ContactModel back = read_back<ContactModelMessage>(payload).model;
   CHECK(back.slipping);
-  CHECK_FALSE(back.standing);
+  CHECK_FALSE(back.paused);
   CHECK(back.body.support == Support::kFixed);
   CHECK(back.horizon == 7);
   CHECK(back.path[6] == message.model.path[6]);
   CHECK(back.response[6] == message.model.response[6]);
   message.model.valid = false;
-  message.model.standing = true;
+  message.model.paused = true;
   message.model.step = 9;
   message.model.newest = kNoStep;
   const ContactModel none = read_back<ContactModelMessage>(payload_of(message)).model;
   CHECK_FALSE(none.valid);
-  CHECK(none.standing);
+  CHECK(none.paused);
   CHECK(none.step == 9);
   CHECK(none.newest == kNoStep);
 }

@@ -1,0 +1,318 @@
+// Runs that are made again from their traces, against what they were.
+#include <catch2/catch.hpp>
+
+#include "replay/rerun/delayed_forces.hpp"
+#include "replay/rerun/deviation.hpp"
+#include "replay/rerun/force_rerun.hpp"
+#include "replay/rerun/input_rerun.hpp"
+#include "simulation/step/bridged_stylus.hpp"
+#include "tests/replay/kept_run.hpp"
+#include "tests/server/two_cubes.hpp"
+#include "tests/support/fem_cube.hpp"
+
+using namespace irdm;
+using namespace irdm::replay;
+using namespace irdm::test;
+
+namespace {
+
+constexpr std::uint64_t kSession = 3;
+
+/// Largest differences of a run that is made again.
+struct Found {
+  Deviation deviation;
+  double displacement = 0.0;  ///< of a component [m]
+};
+
+Found make_again(Rerun& made, const KeptRun& run) {
+  const Recording recording = run.recording();
+  REQUIRE(recording.steps() == run.records.size());
+  REQUIRE(recording.lost_steps() == 0);
+  Found found;
+  StepRecord recorded;
+  StepRecord again;
+  Points u;
+  for (std::size_t k = 0; k < recording.steps(); ++k) {
+    recording.step(k, recorded);
+    made.step(recorded, again);
+    found.deviation.add(run.records[k], again);
+    for (std::size_t i = 0; i < run.names.size(); ++i) {
+      made.displacement(i, u);
+      const Points& was = run.displacements[k][i];
+      found.displacement = std::max(found.displacement, (u - was).cwiseAbs().maxCoeff());
+    }
+  }
+  return found;
+}
+
+void check_to_the_bit(const KeptRun& run) {
+  InputRerun made(run.config);
+  const Found found = make_again(made, run);
+  INFO(found.deviation.text());
+  CHECK(found.deviation.force() == 0.0);
+  CHECK(found.deviation.position() == 0.0);
+  CHECK(found.deviation.orientation() == 0.0);
+  CHECK(found.deviation.other_contacts() == 0);
+  CHECK(found.displacement == 0.0);
+}
+
+void check_from_forces(const KeptRun& run) {
+  ForceRerun made(run.config);
+  const Found found = make_again(made, run);
+  INFO(found.deviation.text());
+  CHECK(found.deviation.peak_force() > 0.1);
+  CHECK(found.deviation.force() < 1e-12);
+  CHECK(found.deviation.position() < 1e-12);
+  CHECK(found.deviation.orientation() < 1e-12);
+  CHECK(found.displacement < 1e-12);
+}
+
+void check_both(const KeptRun& run) {
+  check_to_the_bit(run);
+  check_from_forces(run);
+}
+
+/// Falls, spins, is touched and held, changes its settings, is put back; forces come late.
+KeptRun fall(std::size_t objects) {
+  SimulationConfig config = two_cubes();
+  config.objects.resize(objects);
+  KeptRun run(config);
+  Simulation simulation(config);
+  StepRecord record;
+  for (int k = 0; k < 160; ++k) {
+    play_step(simulation, k, record);
+    run.keep(simulation, record);
+  }
+  return run;
+}
+
+/// A fixed cube that sags, is touched and held, swings as gravity changes, and is put back.
+KeptRun sag() {
+  Model model = synthetic_cube(3, 12, 40);
+  add_gravity(model, true);
+  model.body.support = Support::kFixed;
+  SimulationConfig config;
+  config.gravity = Vector3(0.5, -9.81, 1);
+  config.styluses = {{0.0, 300.0, 0.02}};
+  config.objects.resize(1);
+  config.objects[0].model = std::make_shared<const Model>(model);
+  config.objects[0].orientation = Quaternion(Eigen::AngleAxisd(0.3, Vector3::UnitY()));
+  KeptRun run(config);
+  Simulation simulation(config);
+  StepRecord record;
+  for (int k = 0; k < 160; ++k) {
+    if (k == 60 || k == 110) {
+      Settings settings = simulation.settings();
+      settings.gravity = Vector3(0, -0.1 * k, -2);
+      simulation.set(settings);
+    }
+    const double depth = std::min(2e-4 * k, 0.01);
+    const StylusCommand command{
+        k > 5, k > 40 && k < 130 ? kGrabButton : 0, Vector3(0.01, 0.064 - depth, 0.005), {}};
+    simulation.step({&command, 1}, record, k == 110);
+    run.keep(simulation, record);
+  }
+  return run;
+}
+
+Vector3 told_force(int k) {
+  return {0.05 * std::sin(0.3 * k), k % 40 < 30 ? -0.3 : 0.0, 0.03 * std::cos(0.2 * k)};
+}
+
+/// The first stylus has a bridge that solves its contact; what it tells arrives zero to four steps
+/// late, and for a while there is another bridge.
+KeptRun bridged_fall() {
+  KeptRun run(two_cubes());
+  Simulation simulation(run.config);
+  BridgedStylus bridged(simulation, 0);
+  AppliedHistory history(kSession);
+  std::vector<std::vector<AppliedForces>> arrivals(200);
+  StepRecord record;
+  ContactModel model;
+  std::uint64_t session = kSession;
+  for (int k = 0; k < 160; ++k) {
+    const auto step = static_cast<std::size_t>(k);
+    const Vector3 tip(0.01 + 1e-4 * k, 0.064 - std::min(2e-4 * k, 0.009), 0.005);
+    AppliedForces told{.step = step, .base = step, .count = 1, .past = {}};
+    told.past[0] = {told_force(k), tip, Vector3(0.012, 0.055, 0.004)};
+    arrivals[step + (7 * step) % 5].push_back(told);
+    if (k == 130) history = AppliedHistory(++session);
+    for (const AppliedForces& applied : arrivals[step]) history.take(applied);
+    const StylusCommand other{
+        true, k > 20 && k < 90 ? kGrabButton : 0, Vector3(0.30 + 1e-4 * k, 0.17, 0.0), {}};
+    const std::array commands{bridged.next({k > 3, 0, tip, {}}, session, history), other};
+    simulation.step(commands, record, k == 100);
+    bridged.predict_horizon(model);
+    run.keep(simulation, record);
+  }
+  return run;
+}
+
+/// A tethered cube: a fingertip slides over its top and round an edge, and a point takes hold of it
+/// from a distance.
+KeptRun slide_over_an_edge() {
+  SimulationConfig config;
+  config.objects.resize(1);
+  config.objects[0].model = fem_cube({.cells = 4, .poisson_ratio = 0.45});
+  config.objects[0].friction = {0.2, 0.15};
+  config.objects[0].tether = {50.0, 0.1};
+  config.objects[0].damping = {2.0, 2.0};
+  config.styluses = {{0.01, 1000.0, 0.0}, {0.0, 1000.0, 0.02}};
+  KeptRun run(config);
+  Simulation simulation(config);
+  StepRecord record;
+  for (int k = 0; k < 500; ++k) {
+    const double depth = std::min(1e-4 * k, 0.012);
+    const std::array<StylusCommand, 2> commands{
+        StylusCommand{true, 0, Vector3(2e-4 * std::max(k - 100, 0), 0.065 - depth, 0.045), {}},
+        StylusCommand{
+            true, k > 200 && k < 400 ? kGrabButton : 0, Vector3(-0.07, 5e-5 * k, -2e-5 * k), {}}};
+    simulation.step(commands, record);
+    run.keep(simulation, record);
+  }
+  return run;
+}
+
+}  // namespace
+
+TEST_CASE("forces act where they acted: off the surface's point, near an edge and held from afar") {
+  const KeptRun run = slide_over_an_edge();
+  std::array<double, 2> offset{};
+  int slipping = 0;
+  for (const StepRecord& record : run.records) {
+    for (std::size_t s = 0; s < 2; ++s) {
+      const ContactRecord& contact = record.object[0].contact[s];
+      if (contact.state == ContactState::kFree) continue;
+      offset[s] = std::max(offset[s], contact.offset.norm());
+      slipping += contact.slipping ? 1 : 0;
+    }
+  }
+  REQUIRE(offset[0] > 1e-3);
+  REQUIRE(offset[1] > 5e-3);
+  REQUIRE(slipping > 50);
+  check_both(run);
+}
+
+TEST_CASE("a run of a fixed object that sags is made again, to the bit from its tips") {
+  check_both(sag());
+}
+
+TEST_CASE("a run is made again: floor, spin, settings, a reset and late forces") {
+  const KeptRun run = fall(GENERATE(1, 2));
+  std::size_t late = 0;
+  for (const StepRecord& record : run.records) late += record.late.count;
+  REQUIRE(late > 10);
+  check_both(run);
+}
+
+TEST_CASE("a run in which a bridge solved contacts is made again") {
+  const KeptRun run = bridged_fall();
+  std::size_t late = 0;
+  std::size_t bridged = 0;
+  double peak = 0.0;
+  for (const StepRecord& record : run.records) {
+    late += record.late.count;
+    if (!record.stylus[0].bridged) continue;
+    ++bridged;
+    peak = std::max(peak, record.stylus[0].force.norm());
+  }
+  REQUIRE(late > 20);
+  REQUIRE(bridged > 100);
+  REQUIRE(peak > 0.1);
+  check_both(run);
+}
+
+TEST_CASE("what a bridge told acted in the end, whenever it came") {
+  const KeptRun run = bridged_fall();
+  const std::vector<DelayedForces> told = delayed_forces(run.recording());
+  int came_late = 0;
+  double largest = 0.0;
+  for (std::size_t k = 10; k < 95; ++k) {
+    StepRecord record = run.records[k];
+    const Vector3 expected = -told_force(static_cast<int>(k));
+    came_late += (record.stylus[0].force - expected).norm() > 0.01 ? 1 : 0;
+    add_delayed_forces(told, k, false, record);
+    largest = std::max(largest, (record.stylus[0].force - expected).norm());
+  }
+  CHECK(came_late > 20);
+  INFO("largest difference " << largest << " N");
+  CHECK(largest < 1e-3);  // the object was believed to stand otherwise when it came
+}
+
+TEST_CASE("forces of held points that were found anew have what was told late") {
+  StepRecord record;
+  record.object[0].contact[0].state = ContactState::kHeld;
+  record.stylus[0] = {.present = true, .buttons = kGrabButton, .force = Vector3(1, 0, 0)};
+  std::vector<DelayedForces> told(1);
+  told[0].step = 4;
+  told[0].late.force = Vector3(0, 2, 0);
+  add_delayed_forces(told, 4, true, record);
+  CHECK(record.stylus[0].force == Vector3(1, 0, 0));
+  record.stylus[0].buttons = 0;  // it is given up: what was recorded acts
+  add_delayed_forces(told, 4, true, record);
+  CHECK(record.stylus[0].force == Vector3(1, -2, 0));
+  add_delayed_forces(told, 5, false, record);
+  CHECK(record.stylus[0].force == Vector3(1, -2, 0));
+}
+
+TEST_CASE(
+    "what a viewer recorded is made again: it begins with a reset, and settings as they were") {
+  SimulationConfig config = two_cubes();
+  config.floor.reset();
+  config.objects[0].friction = {0.3, 0.2};
+  KeptRun run(config);
+  Simulation simulation(config);
+  Settings settings = simulation.settings();
+  settings.gravity = Vector3(0.1, -0.3, 0.0);
+  settings.object[0].material_damping = 3.0;
+  settings.object[0].friction = {1.0, 0.9};
+  settings.object[1].tether = {5.0, 0.01};
+  settings.object[1].damping = {1.0, 2.0};
+  StepRecord record;
+  for (int k = 0; k < 160; ++k) {
+    if (k == 20) simulation.set(settings);
+    const double depth = std::min(1e-4 * (k % 80), 0.006);
+    const std::array<StylusCommand, 2> commands{
+        StylusCommand{true, 0, Vector3(0.01, 0.061 - depth, 0.005), {}},
+        StylusCommand{true,
+                      k % 70 > 20 || (k > 65 && k < 76) ? kGrabButton : 0,
+                      Vector3(0.30 + 1e-4 * (k % 70), 0.17, 0.0),
+                      {}}};
+    simulation.step(commands, record, k == 70);
+    if (k >= 70) run.keep(simulation, record);
+  }
+  REQUIRE(run.records[0].reset);
+  check_both(run);
+}
+
+TEST_CASE("steps that were lost on the way to the disk are counted") {
+  KeptRun run = fall(1);
+  run.records.erase(run.records.begin() + 40, run.records.begin() + 43);
+  CHECK(run.recording().lost_steps() == 3);
+}
+
+TEST_CASE("contacts that a bridge solved can be solved in the step instead") {
+  const KeptRun run = bridged_fall();
+  InputRerun made(run.config, true);
+  const Recording recording = run.recording();
+  Simulation alone(run.config);
+  StepRecord recorded;
+  StepRecord again;
+  StepRecord expected;
+  double difference = 0.0;
+  for (std::size_t k = 0; k < recording.steps(); ++k) {
+    recording.step(k, recorded);
+    made.step(recorded, again);
+    std::array<StylusCommand, 2> commands;
+    for (std::size_t s = 0; s < 2; ++s) {
+      const StylusRecord& stylus = run.records[k].stylus[s];
+      commands[s] = {stylus.present, stylus.buttons, stylus.tip, {}};
+    }
+    alone.step(commands, expected, run.records[k].reset);
+    REQUIRE(again.late.count == 0);
+    REQUIRE(again.stylus[0].force == expected.stylus[0].force);
+    REQUIRE(again.object[0].position == expected.object[0].position);
+    difference = std::max(difference, (again.stylus[0].force - recorded.stylus[0].force).norm());
+  }
+  CHECK(difference > 0.01);
+}

@@ -5,7 +5,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 preset=${IRDM_BENCH_PRESET:-release}
-scripts/build.sh "$preset"
+scripts/build.sh "$preset" irdm-precompute irdm-server irdm-bridge irdm-replay benchmarks
 bin=build/$preset/bin
 export IRDM_BENCH_JSON=out/bench
 mkdir -p "$IRDM_BENCH_JSON"

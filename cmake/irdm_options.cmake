@@ -38,7 +38,7 @@ if(IRDM_SANITIZE)
   endif()
 endif()
 
-# Headers that most files of a target need, read once: saves half of the time to compile. Not in the other builds:
+# Headers that most files of a target need, read once: saves half of the time to compile. Not in the preset `debug`:
 # there every file has to name what it needs.
 function(irdm_precompile name)
   if(IRDM_PRECOMPILE)

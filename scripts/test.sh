@@ -1,15 +1,16 @@
 #!/usr/bin/env bash
-# Sets up, builds and tests everything: formatting, warnings as errors, the tests under the address and
-# undefined-behaviour sanitizers and under the thread sanitizer, the fuzzers, and last the whole suite as it ships.
-#   scripts/test.sh [--quick]    --quick: without the sanitizers
+# Sets up, builds and runs the whole suite as it ships; checks the formatting.
+#   scripts/test.sh [--all]
+#     --all: first the tests under the address and undefined-behaviour sanitizers and under the thread sanitizer, and the
+#            fuzzers; then the suite with warnings as errors, MPI and SLEPc (preset ci)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-quick=no
+all=no
 case "${1:-}" in
   "") ;;
-  --quick) quick=yes ;;
-  *) echo "usage: scripts/test.sh [--quick]" >&2; exit 2 ;;
+  --all) all=yes ;;
+  *) echo "usage: scripts/test.sh [--all]" >&2; exit 2 ;;
 esac
 
 # The next builds go on while tests wait for something and fuzzers have their time; they never take a processor from one.
@@ -46,9 +47,9 @@ echo "format: checking"
 scripts/format.sh --check
 echo "includes: checking"
 scripts/check_includes.py
-if [ $quick = yes ]; then
-  scripts/build.sh ci
-else
+preset=release
+if [ $all = yes ]; then
+  preset=ci
   # Tests labelled "slow" measure or play for long and find nothing new under a sanitizer.
   scripts/build.sh asan
   build_ahead tsan
@@ -58,7 +59,9 @@ else
   finish tsan
   run_tests tsan --label-exclude slow --parallel 2
   finish ci
+else
+  scripts/build.sh release
 fi
 # Under sanitizers some tests cannot run; here all must that the machine allows.
-run_tests ci --parallel 4 --output-junit tests.xml
-scripts/check_left_out.py build/ci/tests.xml
+run_tests $preset --parallel 4 --output-junit tests.xml
+scripts/check_left_out.py build/$preset/tests.xml

@@ -162,7 +162,6 @@ int replay(const ReplayOptions& options) {
   const auto again = std::make_unique<StepRecord>();
   for (std::size_t k = 0; k < recording.steps(); ++k) {
     recording.step(k, *recorded);
-    scene.choose_engine(recorded->settings);
     made->step(*recorded, *again);
     require_finite(*again, options.trace.string());
     deviation.add(*recorded, *again);

@@ -15,15 +15,15 @@
 
 namespace irdm {
 
-EngineKind replay::engine_from_word(const std::string& word) {
-  if (word == "dense") return EngineKind::kDense;
-  return word == "compressed" ? EngineKind::kCompressed : EngineKind::kModal;
+ResponseKind replay::engine_from_word(const std::string& word) {
+  if (word == "dense") return ResponseKind::kDense;
+  return word == "compressed" ? ResponseKind::kCompressed : ResponseKind::kModal;
 }
 
 namespace replay {
 namespace {
 
-const char* word_of(EngineKind kind) {
+const char* word_of(ResponseKind kind) {
   constexpr std::array<const char*, 3> kWords{"modal", "dense", "compressed"};
   return kWords.at(static_cast<std::size_t>(kind));
 }
@@ -126,15 +126,9 @@ std::string TracedScene::engine_words() const {
   return words;
 }
 
-void TracedScene::choose_engine(Settings& settings) const noexcept {
-  for (std::size_t i = 0; i < objects.size() && other_engine; ++i) {
-    settings.object[i].engine = objects[i].engine;
-  }
-}
-
 TracedScene read_traced_scene(const std::filesystem::path& trace,
                               const std::vector<std::string>& models,
-                              std::optional<EngineKind> engine) {
+                              std::optional<ResponseKind> engine) {
   const TraceHeader header = read_trace_header(trace);
   SceneConfig scene = read_scene(TomlTable::parse_text(header.scene, trace.string() + ", scene"));
   check_given(models, scene);
@@ -144,14 +138,10 @@ TracedScene read_traced_scene(const std::filesystem::path& trace,
   Reading reading{trace, models, {}};
   for (std::size_t i = 0; i < objects.size(); ++i) {
     ObjectConfig& object = scene.objects[i];
-    if (engine) {
-      object.engine = *engine;
-      object.switchable = false;
-    }
+    if (engine) object.engine = *engine;
     reading.add(objects[i], object, objects.size() > 1);
   }
   TracedScene traced = std::move(reading.traced);
-  traced.other_engine = engine.has_value();
   traced.config =
       simulation_config(scene, recorded_viewer_stylus(scene, header.stylus_count, trace.string()));
   check_dt(traced, header.dt, trace.string());

@@ -181,10 +181,10 @@ std::string read_name(TomlTable& table, const std::string& fallback) {
   return name;
 }
 
-EngineKind read_engine(TomlTable& table) {
+ResponseKind read_engine(TomlTable& table) {
   const std::string word = table.choice("engine", {"modal", "dense", "compressed"}, "modal");
-  if (word == "dense") return EngineKind::kDense;
-  return word == "compressed" ? EngineKind::kCompressed : EngineKind::kModal;
+  if (word == "dense") return ResponseKind::kDense;
+  return word == "compressed" ? ResponseKind::kCompressed : ResponseKind::kModal;
 }
 
 ObjectConfig read_object(TomlTable table) {
@@ -200,17 +200,16 @@ ObjectConfig read_object(TomlTable table) {
   config.damping = read_damping(table.table("damping"));
   config.tether = read_tether(table.table("tether"));
   config.inertial_loading = table.boolean("inertial_loading", config.inertial_loading);
-  config.switchable = table.boolean("switchable", config.switchable);
+  if (table.has("switchable")) {
+    table.fail("switchable", "is not a key any more",
+               "leave it out; irdm-replay --engine compares the engines on a recorded run");
+  }
   if (table.has("memory_budget")) {
     config.memory_budget = table.number("memory_budget", between(1.0, 1e8), 0.0);
-    if (config.engine != EngineKind::kDense && !config.switchable) {
+    if (config.engine != ResponseKind::kDense) {
       table.fail("memory_budget", "is for the engine \"dense\"",
                  "leave it out, or set engine = \"dense\"");
     }
-  }
-  if (config.switchable && config.engine == EngineKind::kCompressed) {
-    table.fail("switchable", "is for the engines \"modal\" and \"dense\"",
-               "leave it out, or choose another engine");
   }
   table.finish();
   return config;

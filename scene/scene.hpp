@@ -7,8 +7,8 @@
 
 #include "common/blackbox/black_box.hpp"
 #include "common/config/toml_reader.hpp"
+#include "common/model/model_file.hpp"
 #include "common/realtime/scheduling.hpp"
-#include "simulation/engine/response_engine.hpp"
 #include "simulation/step/simulation_config.hpp"
 #include "simulation/step/step_record.hpp"
 
@@ -63,7 +63,7 @@ struct ContactConfig {
 struct ObjectConfig {
   std::string name = "object";
   std::filesystem::path model;  ///< required
-  EngineKind engine = EngineKind::kModal;
+  ResponseKind engine = ResponseKind::kModal;
   Vector3 position = Vector3::Zero();               ///< of the centre of mass [m], W
   Quaternion orientation = Quaternion::Identity();  ///< w x y z, normalised when read
   Vector3 velocity = Vector3::Zero();               ///< [m/s], W
@@ -74,7 +74,6 @@ struct ObjectConfig {
   bool inertial_loading = false;  ///< centrifugal loading by its own spin
   /// Of its dense response in memory [MiB], at least 1; none: all of it
   std::optional<double> memory_budget = {};
-  bool switchable = false;  ///< keeps both engines, so that viewers can switch
 };
 
 /// What irdm-server is to run.

@@ -11,16 +11,11 @@
 namespace irdm {
 namespace {
 
-ResponseKind response_kind(EngineKind kind) {
-  if (kind == EngineKind::kDense) return ResponseKind::kDense;
-  return kind == EngineKind::kCompressed ? ResponseKind::kCompressed : ResponseKind::kModal;
-}
-
 constexpr double kBytesAMebibyte = 1024.0 * 1024.0;
 
-Model read_by_budget(const ObjectConfig& object, EngineKind kind, SceneColumns* columns) {
-  if (kind != EngineKind::kDense || !object.memory_budget || columns == nullptr) {
-    return read_model(object.model, response_kind(kind));
+Model read_by_budget(const ObjectConfig& object, SceneColumns* columns) {
+  if (object.engine != ResponseKind::kDense || !object.memory_budget || columns == nullptr) {
+    return read_model(object.model, object.engine);
   }
   return columns->read(object.model,
                        static_cast<std::size_t>(*object.memory_budget * kBytesAMebibyte));
@@ -32,11 +27,11 @@ class Models {
  public:
   explicit Models(SceneColumns* columns) : columns_(columns) {}
 
-  std::shared_ptr<const Model> of(const ObjectConfig& object, EngineKind kind) {
-    std::shared_ptr<const Model> model = find(object, kind);
+  std::shared_ptr<const Model> of(const ObjectConfig& object) {
+    std::shared_ptr<const Model> model = find(object);
     if (!model) {
-      model = std::make_shared<const Model>(read_by_budget(object, kind, columns_));
-      if (!object.memory_budget) read_.push_back({object.model, kind, model});
+      model = std::make_shared<const Model>(read_by_budget(object, columns_));
+      if (!object.memory_budget) read_.push_back({object.model, object.engine, model});
     }
     check_inertial_loading(*model, object.inertial_loading, object.model.string());
     return model;
@@ -45,14 +40,14 @@ class Models {
  private:
   struct Read {
     std::filesystem::path file;
-    EngineKind kind;
+    ResponseKind kind;
     std::shared_ptr<const Model> model;
   };
 
-  std::shared_ptr<const Model> find(const ObjectConfig& object, EngineKind kind) const {
+  std::shared_ptr<const Model> find(const ObjectConfig& object) const {
     if (object.memory_budget) return nullptr;
     for (const Read& read : read_) {
-      if (read.kind == kind && read.file == object.model) return read.model;
+      if (read.kind == object.engine && read.file == object.model) return read.model;
     }
     return nullptr;
   }
@@ -60,10 +55,6 @@ class Models {
   SceneColumns* columns_;
   std::vector<Read> read_;
 };
-
-EngineKind other(EngineKind kind) {
-  return kind == EngineKind::kDense ? EngineKind::kModal : EngineKind::kDense;
-}
 
 }  // namespace
 
@@ -87,12 +78,9 @@ SimulationConfig simulation_config(const SceneConfig& scene, bool viewer_stylus,
   SimulationConfig config;
   config.gravity = scene.world.gravity;
   for (const ObjectConfig& object : scene.objects) {
-    config.objects.push_back({models.of(object, object.engine), object.position, object.orientation,
+    config.objects.push_back({models.of(object), object.position, object.orientation,
                               object.velocity, object.angular_velocity, object.friction,
                               object.damping, object.tether, object.inertial_loading});
-    if (object.switchable) {
-      config.objects.back().other_model = models.of(object, other(object.engine));
-    }
   }
   config.styluses = scene.styluses;
   if (viewer_stylus) config.styluses.push_back(scene.viewer.stylus);

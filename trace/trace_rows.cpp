@@ -9,11 +9,6 @@
 namespace irdm::trace {
 namespace {
 
-EngineKind engine_of(std::uint8_t number) {
-  if (number == static_cast<std::uint8_t>(EngineKind::kCompressed)) return EngineKind::kCompressed;
-  return number != 0 ? EngineKind::kDense : EngineKind::kModal;
-}
-
 void check_late(const LateForce& late, const SimulationConfig& config, const std::string& file) {
   const auto within = [](int value, std::size_t count) {
     return value >= 0 && static_cast<std::size_t>(value) < count;
@@ -136,7 +131,6 @@ SettingsRows read_settings(const hdf5::File& file, const SimulationConfig& confi
     const auto damping = file.read<double>(group + "/damping", {count, 2});
     const auto tether = file.read<double>(group + "/tether", {count, 2});
     const auto material = file.read<double>(group + "/material_damping", {count});
-    const auto dense = file.read<std::uint8_t>(group + "/dense", {count});
     const auto loading = file.read<std::uint8_t>(group + "/inertial_loading", {count});
     check_friction(group + "/friction", friction, check);
     check.numbers(group + "/damping", damping, 2, lab::kStiffness);  // restraints say more
@@ -147,7 +141,6 @@ SettingsRows read_settings(const hdf5::File& file, const SimulationConfig& confi
                                     {damping[2 * e], damping[2 * e + 1]},
                                     {tether[2 * e], tether[2 * e + 1]},
                                     material[e],
-                                    engine_of(dense[e]),
                                     loading[e] != 0};
     }
   }

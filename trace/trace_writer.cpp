@@ -101,7 +101,6 @@ void TraceWriter::create_settings() {
       create<double>(group + name, {2});
     }
     create<double>(group + "/material_damping", {});
-    create<std::uint8_t>(group + "/dense", {});
     create<std::uint8_t>(group + "/inertial_loading", {});
   }
 }
@@ -124,8 +123,6 @@ void TraceWriter::append_settings(std::span<const StepRecord> records) {
       pair("/damping", object.damping.linear, object.damping.angular);
       pair("/tether", object.tether.stiffness, object.tether.angular_stiffness);
       file_.append<double>(group + "/material_damping", 1, &object.material_damping);
-      const auto engine = static_cast<std::uint8_t>(object.engine);
-      file_.append<std::uint8_t>(group + "/dense", 1, &engine);
       const std::uint8_t loading = object.inertial_loading ? 1 : 0;
       file_.append<std::uint8_t>(group + "/inertial_loading", 1, &loading);
     }

@@ -36,11 +36,10 @@ void put_settings(Writer& writer, const ObjectSettings& settings, const Settings
         settings.material_damping}) {
     writer.put(value);
   }
-  writer.put(static_cast<std::uint8_t>(settings.engine));
   writer.put(static_cast<std::uint8_t>(settings.inertial_loading ? 1 : 0));
-  writer.put(static_cast<std::uint8_t>((choice.material_damping ? 1 : 0) | (choice.engine ? 2 : 0) |
-                                       (choice.inertial_loading ? 4 : 0)));
-  writer.put_zeros(21);
+  writer.put(static_cast<std::uint8_t>((choice.material_damping ? 1 : 0) |
+                                       (choice.inertial_loading ? 2 : 0)));
+  writer.put_zeros(22);
 }
 
 double get_between(Reader& reader, double least, double largest) {
@@ -60,14 +59,12 @@ ObjectSettings get_settings(Reader& reader, SettingsChoice& choice) {
   settings.tether.angular_stiffness = get_between(reader, 0.0, kMost);
   settings.material_damping =
       get_between(reader, lab::kMaterialDamping.lowest, lab::kMaterialDamping.highest);
-  const auto engine = reader.get<std::uint8_t>();
   const auto loading = reader.get<std::uint8_t>();
   const auto choices = reader.get<std::uint8_t>();
-  if (engine > 2 || loading > 1) throw MessageError("a setting is out of range");
-  settings.engine = static_cast<EngineKind>(engine);
+  if (loading > 1) throw MessageError("a setting is out of range");
   settings.inertial_loading = loading == 1;
-  choice = {(choices & 1) != 0, (choices & 2) != 0, (choices & 4) != 0};
-  reader.skip(21);
+  choice = {(choices & 1) != 0, (choices & 2) != 0};
+  reader.skip(22);
   return settings;
 }
 

@@ -18,7 +18,7 @@ ForcedObject::ForcedObject(const SimulationConfig& config, std::size_t number)
     : object_(config.objects[number]),
       model_(object_.model),
       body_(model_->body, model_->dt),
-      engine_(make_engine(model_, object_.other_model)),
+      engine_(make_engine(model_)),
       surface_(model_->mesh),
       forces_(surface_, radii_of(config)),
       feels_spin_(has_inertial_loading(*model_, object_.inertial_loading)) {

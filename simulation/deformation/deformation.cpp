@@ -28,7 +28,7 @@ Deformation::Deformation(const SimulationConfig& config, double tolerance) {
   std::vector<double> radii;
   for (const SimulationStylus& stylus : config.styluses) radii.push_back(stylus.radius);
   for (const SimulationObject& object : config.objects) {
-    Follower follower{object, make_engine(object.model, object.other_model), nullptr, nullptr,
+    Follower follower{object, make_engine(object.model), nullptr, nullptr,
                       has_inertial_loading(*object.model, object.inertial_loading)};
     follow_gravity(*follower.engine, object, config.gravity);
     follower.tolerance = tolerance * object.model->mesh.nodes.rowwise().norm().maxCoeff();

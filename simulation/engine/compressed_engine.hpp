@@ -16,7 +16,6 @@ class CompressedEngine final : public ResponseEngine {
 
   bool supports_inertial_loading() const noexcept override { return false; }
   void set_angular_velocity(const Vector3& /*w*/) noexcept override {}
-  EngineKind kind() const noexcept override { return EngineKind::kCompressed; }
   Vector3 free_displacement(int node) const noexcept override;
   void predict(std::span<const ContactPatch> patches, std::span<Vector3> h,
                ContactMatrix& compliance) noexcept override;

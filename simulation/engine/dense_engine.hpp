@@ -18,7 +18,6 @@ class DenseEngine final : public ResponseEngine {
 
   bool supports_inertial_loading() const noexcept override { return spin_.any(); }
   bool takes_gravity() const noexcept override { return gravity_.any(); }
-  EngineKind kind() const noexcept override { return EngineKind::kDense; }
   void set_angular_velocity(const Vector3& w) noexcept override { spin_.hold(spin_products(w)); }
   void set_gravity(const Vector3& gravity) noexcept override { gravity_.set(gravity); }
   Vector3 free_displacement(int node) const noexcept override;

@@ -2,7 +2,6 @@
 #include <functional>
 
 #include "common/error.hpp"
-#include "simulation/engine/both_engines.hpp"
 #include "simulation/engine/compressed_engine.hpp"
 #include "simulation/engine/dense_engine.hpp"
 #include "simulation/engine/modal_engine.hpp"
@@ -38,15 +37,7 @@ std::unique_ptr<ResponseEngine> make_engine(std::shared_ptr<const Model> model) 
   throw Error("model", "holds no response", "make it again with irdm-precompute");
 }
 
-std::unique_ptr<ResponseEngine> make_engine(std::shared_ptr<const Model> model,
-                                            std::shared_ptr<const Model> other) {
-  std::unique_ptr<ResponseEngine> first = make_engine(std::move(model));
-  if (!other) return first;
-  return std::make_unique<BothEngines>(std::move(first), make_engine(std::move(other)));
-}
-
 void displacements(std::span<SurfaceRequest> requests) {
-  for (SurfaceRequest& request : requests) request.engine = &request.engine->answering();
   const auto shared = [](const SurfaceRequest& request) {
     return request.engine->shared_surface();
   };

@@ -22,7 +22,6 @@ class ModalEngine final : public ResponseEngine {
   void set_gravity(const Vector3& gravity) noexcept override;
   bool takes_damping() const noexcept override { return true; }
   void scale_damping(double factor) noexcept override;
-  EngineKind kind() const noexcept override { return EngineKind::kModal; }
   void set_angular_velocity(const Vector3& w) noexcept override;
   Vector3 free_displacement(int node) const noexcept override;
   double free_displacement_bound() const noexcept override;

@@ -12,9 +12,6 @@
 
 namespace irdm {
 
-/// The numbers stand in traces and viewer messages.
-enum class EngineKind { kModal, kDense, kCompressed };
-
 /// Force on one surface node during one step [N], B.
 struct NodalForce {
   int node = 0;
@@ -62,14 +59,6 @@ class ResponseEngine {
   /// From the coming step on the material's damping is `factor` > 0 times that of the model; before
   /// all else that is asked about the step. Only where takes_damping().
   virtual void scale_damping(double /*factor*/) noexcept {}
-
-  /// Which form of the response it answers from, and whether there is another one.
-  virtual EngineKind kind() const noexcept = 0;
-  virtual bool has_both_kinds() const noexcept { return false; }
-
-  /// From the coming step on it answers from this form; before all else that is asked about the
-  /// step. Only where has_both_kinds().
-  virtual void use(EngineKind /*kind*/) noexcept {}
 
   /// Tips are here, and what they may touch soon is better fetched now; of one engine of a model
   /// only. @param tips at most kMaxStyluses [m], B
@@ -124,8 +113,6 @@ class ResponseEngine {
   }
   /// What displacements() can read once for all engines that have the same; null: nothing.
   virtual const void* shared_surface() const noexcept { return nullptr; }
-  /// The engine that answers, where there are several in one.
-  virtual const ResponseEngine& answering() const noexcept { return *this; }
 
   /// R[0], the displacement within the step of all nodes per force on each: (3n, 3n) [m/N]. Takes
   /// its time; not for the force thread.
@@ -137,10 +124,6 @@ class ResponseEngine {
 
 /// Makes an engine on a model that holds the response it needs. Throws Error when it does not.
 std::unique_ptr<ResponseEngine> make_engine(std::shared_ptr<const Model> model);
-/// The same with two forms of one model's response, among which use() chooses; first that of
-/// `model`. @param other null: no choice
-std::unique_ptr<ResponseEngine> make_engine(std::shared_ptr<const Model> model,
-                                            std::shared_ptr<const Model> other);
 
 /// ResponseEngine::displacement() of each, to the bit: where engines share their model's shapes as
 /// one matrix product. The requests come back in another order.

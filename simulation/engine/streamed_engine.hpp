@@ -26,7 +26,6 @@ class StreamedEngine final : public ResponseEngine {
 
   bool supports_inertial_loading() const noexcept override { return spin_.any(); }
   bool takes_gravity() const noexcept override { return gravity_.any(); }
-  EngineKind kind() const noexcept override { return EngineKind::kDense; }
   void set_angular_velocity(const Vector3& w) noexcept override { spin_.hold(spin_products(w)); }
   void set_gravity(const Vector3& gravity) noexcept override { gravity_.set(gravity); }
   void prefetch(std::span<const Vector3> tips) noexcept override {

@@ -9,8 +9,7 @@ void follow_gravity(ResponseEngine& engine, const SimulationObject& object,
 }
 
 bool takes_gravity(const SimulationObject& object) {
-  return object.model->body.support == Support::kFloating ||
-         (has_gravity(*object.model) && (!object.other_model || has_gravity(*object.other_model)));
+  return object.model->body.support == Support::kFloating || has_gravity(*object.model);
 }
 
 }  // namespace irdm

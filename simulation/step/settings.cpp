@@ -9,20 +9,11 @@
 namespace irdm {
 namespace {
 
-EngineKind kind_of(const Model& model) {
-  if (std::holds_alternative<CompressedResponse>(model.response)) return EngineKind::kCompressed;
-  if (std::holds_alternative<ModalResponse>(model.response)) return EngineKind::kModal;
-  return EngineKind::kDense;
-}
-
 void check_choice(const SettingsChoice& choice, const ObjectSettings& initial,
                   const ObjectSettings& settings, const std::string& name) {
   if (!choice.material_damping && settings.material_damping != initial.material_damping) {
     throw Error(name, "cannot change the damping of its material while it is simulated",
                 "use engine = \"modal\" and no floor, or precompute it again");
-  }
-  if (!choice.engine && settings.engine != initial.engine) {
-    throw Error(name, "has one engine only", "set switchable = true in its [[object]] table");
   }
   if (!choice.inertial_loading && settings.inertial_loading != initial.inertial_loading) {
     throw Error(name, "has a model that does not say what its spin does",
@@ -37,8 +28,8 @@ Settings initial_settings(const SimulationConfig& config) {
   settings.gravity = config.gravity;
   for (std::size_t i = 0; i < config.objects.size() && i < settings.object.size(); ++i) {
     const SimulationObject& object = config.objects[i];
-    settings.object[i] = {object.friction,        object.damping,         object.tether, 1.0,
-                          kind_of(*object.model), object.inertial_loading};
+    settings.object[i] = {object.friction, object.damping, object.tether, 1.0,
+                          object.inertial_loading};
   }
   return settings;
 }
@@ -47,17 +38,14 @@ SettingsChoice settings_choice(const SimulationConfig& config, std::size_t i) {
   const SimulationObject& object = config.objects.at(i);
   const bool floats = object.model->body.support == Support::kFloating;
   SettingsChoice choice;
-  choice.engine = object.other_model != nullptr;
   choice.material_damping =
-      kind_of(*object.model) == EngineKind::kModal && !choice.engine && !(config.floor && floats);
-  choice.inertial_loading = floats && has_centrifugal(*object.model) &&
-                            (!object.other_model || has_centrifugal(*object.other_model));
+      std::holds_alternative<ModalResponse>(object.model->response) && !(config.floor && floats);
+  choice.inertial_loading = floats && has_centrifugal(*object.model);
   return choice;
 }
 
 void follow_settings(ResponseEngine& engine, const ObjectSettings& settings,
                      double& material_damping) noexcept {
-  if (engine.has_both_kinds()) engine.use(settings.engine);
   if (settings.material_damping == material_damping) return;
   material_damping = settings.material_damping;
   engine.scale_damping(material_damping);

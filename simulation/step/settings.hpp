@@ -14,7 +14,6 @@ struct ObjectSettings {
   RigidDamping damping;
   Tether tether;
   double material_damping = 1.0;  ///< times that of the model, 0.1..10
-  EngineKind engine = EngineKind::kModal;
   bool inertial_loading = false;
 
   bool operator==(const ObjectSettings&) const = default;
@@ -31,7 +30,6 @@ struct Settings {
 /// Which settings of an object are more than a number of the step.
 struct SettingsChoice {
   bool material_damping = false;  ///< a dense response has its damping in it; a floor relies on it
-  bool engine = false;            ///< the object has both forms of its response
   bool inertial_loading = false;  ///< its model says what spin does, and it can turn
 
   bool operator==(const SettingsChoice&) const = default;

@@ -24,9 +24,6 @@ struct SimulationObject {
   Tether tether;
   /// Centrifugal loading of the elastic part by the body's own spin. false: none, as in the paper.
   bool inertial_loading = false;
-  /// The same model with the other form of its response, so that the engine can be switched while
-  /// it runs; null: it cannot.
-  std::shared_ptr<const Model> other_model = nullptr;
 };
 
 /// A plane on which objects rest; the side that the normal points to is free.

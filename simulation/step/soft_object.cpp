@@ -46,7 +46,7 @@ SoftObject::SoftObject(const SimulationObject& object, const SimulationConfig& c
       object_(object),
       config_(config),
       number_(number),
-      engine_(make_engine(model_, object.other_model)),
+      engine_(make_engine(model_)),
       rest_(model_->mesh),
       surface_(rest_),
       body_(model_->body, model_->dt),

@@ -19,7 +19,7 @@ constexpr int kNode = 5;
 
 TracedScene one_cube(int cells = 2) {
   TracedScene scene;
-  scene.objects = {{"the \"cube\"", "folder/cube.h5", "sum", EngineKind::kModal}};
+  scene.objects = {{"the \"cube\"", "folder/cube.h5", "sum", ResponseKind::kModal}};
   scene.config.objects.resize(1);
   scene.config.objects[0].model = std::make_shared<const Model>(synthetic_cube(cells, 5, 10));
   scene.config.styluses.resize(1);

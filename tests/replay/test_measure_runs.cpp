@@ -32,7 +32,7 @@ constexpr int kTapped = 5;
 
 TracedScene tapped_cube() {
   TracedScene scene;
-  scene.objects = {{"cube", "cube.h5", "sum", EngineKind::kModal}};
+  scene.objects = {{"cube", "cube.h5", "sum", ResponseKind::kModal}};
   scene.config.objects.resize(1);
   scene.config.objects[0].model = std::make_shared<const Model>(synthetic_cube(2, 5, 10));
   scene.config.styluses.resize(1);

@@ -316,7 +316,7 @@ TEST_CASE("the reference follows gravity, damping and the material's damping whe
 
 TEST_CASE("what the reference cannot do is refused by name") {
   TracedScene scene;
-  scene.objects.push_back({"cube", "some.h5", "", EngineKind::kModal});
+  scene.objects.push_back({"cube", "some.h5", "", ResponseKind::kModal});
   scene.config = one_fem_cube({.cells = 2});
   Model fixed = *fem_cube({.cells = 2});
   fixed.body.support = Support::kFixed;

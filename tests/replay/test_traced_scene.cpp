@@ -42,7 +42,7 @@ struct Folders {
     writer.commit();
   }
   TracedScene read(const std::vector<std::string>& given = {},
-                   std::optional<EngineKind> engine = std::nullopt) const {
+                   std::optional<ResponseKind> engine = std::nullopt) const {
     return read_traced_scene(trace, given, engine);
   }
 
@@ -97,6 +97,6 @@ TEST_CASE("with several objects a given model names its own") {
 
 TEST_CASE("an engine that the model has no response for is refused") {
   const Folders folders;
-  CHECK_THROWS_AS(folders.read({}, EngineKind::kDense), Error);
-  CHECK(folders.read({}, EngineKind::kModal).engine_words() == "modal");
+  CHECK_THROWS_AS(folders.read({}, ResponseKind::kDense), Error);
+  CHECK(folders.read({}, ResponseKind::kModal).engine_words() == "modal");
 }

@@ -61,7 +61,7 @@ TEST_CASE("every key of a scene arrives where it belongs") {
   const ObjectConfig& object = read.objects[0];
   CHECK(object.name == "liver");
   CHECK(object.model == "/models/liver.h5");
-  CHECK(object.engine == EngineKind::kDense);
+  CHECK(object.engine == ResponseKind::kDense);
   CHECK(object.memory_budget == 1500.5);
   CHECK(object.position == Vector3(4, 5, 6));
   CHECK(object.orientation.isApprox(Quaternion(0, 1, 0, 0)));
@@ -105,7 +105,7 @@ TEST_CASE("a scene needs only a model, the rest has defaults") {
   CHECK(read.contact.coupling_stiffness == 0.0);
   const ObjectConfig& object = read.objects.at(0);
   CHECK(object.model == std::filesystem::current_path() / "cube.h5");
-  CHECK(object.engine == EngineKind::kModal);
+  CHECK(object.engine == ResponseKind::kModal);
   CHECK(object.position.isZero(0.0));
   CHECK(object.orientation.isApprox(Quaternion::Identity()));
   CHECK(object.velocity.isZero(0.0));
@@ -328,6 +328,9 @@ TEST_CASE("each wrong type or value in a scene is told with file, line, key and 
         "engine = \"dense\"");
   CHECK_THAT(rejection(kObject + "engine = \"dense\"\nmemory_budget = 0\n"),
              StartsWith("s.toml:4: object[0].memory_budget is 0"));
+  CHECK(rejection(kObject + "switchable = false\n") ==
+        "s.toml:3: object[0].switchable is not a key any more; leave it out; irdm-replay --engine "
+        "compares the engines on a recorded run");
   CHECK(rejection(kObject + "name = 1\n") ==
         "s.toml:3: object[0].name is not text; give text in quotes");
   CHECK(rejection("server = 1\n" + kObject) ==
@@ -410,7 +413,7 @@ TEST_CASE("objects of one file have one model, but where each has its own budget
     test::write_dense_model(cube, folder.path() / name);
     ObjectConfig object;
     object.model = folder.path() / name;
-    object.engine = EngineKind::kDense;
+    object.engine = ResponseKind::kDense;
     if (config.objects.size() > 2) object.memory_budget = 10.0;
     config.objects.push_back(object);
   }

@@ -19,17 +19,6 @@ namespace {
 
 constexpr double kSettingsDt = 0.002;
 
-/// A cube with both forms of its response.
-SimulationConfig with_both_engines() {
-  const Model modal = synthetic_cube(3, 30, 400);
-  SimulationConfig config;
-  config.objects.resize(1);
-  config.objects[0].model = share(modal);
-  config.objects[0].other_model = share(with_dense_response<double>(modal));
-  config.objects[0].friction = {0.5, 0.4};
-  return config;
-}
-
 SimulationConfig plain(const Model& model) {
   SimulationConfig config;
   config.objects.resize(1);
@@ -129,25 +118,6 @@ TEST_CASE("settings: a factor on the material's damping is that factor on every 
   CHECK(jump > 0.0);
 }
 
-TEST_CASE("settings: engines are switched in the midst of a run without a jump") {
-  Simulation modal(plain(synthetic_cube(3, 30, 400)));
-  Simulation both(with_both_engines());
-  CHECK(run(both, 0, 80).stylus[0].force == run(modal, 0, 80).stylus[0].force);
-  Settings settings = both.settings();
-  settings.object[0].engine = EngineKind::kDense;
-  both.set(settings);
-  CHECK(both.object().engine().kind() == EngineKind::kDense);
-  for (int k = 80; k < 200; ++k) {
-    const Vector3 expected = run(modal, k, k + 1).stylus[0].force;
-    const Vector3 force = run(both, k, k + 1).stylus[0].force;
-    REQUIRE((force - expected).norm() <= 1e-6 * (1.0 + expected.norm()));
-  }
-  settings.object[0].engine = EngineKind::kModal;
-  both.set(settings);
-  const Vector3 expected = run(modal, 200, 201).stylus[0].force;
-  CHECK((run(both, 200, 201).stylus[0].force - expected).norm() <= 1e-6 * (1.0 + expected.norm()));
-}
-
 TEST_CASE("settings: the deformation follows them") {
   SimulationConfig config = plain(synthetic_cube(3, 30, 10));
   Simulation simulation(config);
@@ -186,8 +156,6 @@ TEST_CASE("settings: what a step cannot bear or a model cannot do is refused wit
   };
   CHECK_THAT(refused([](ObjectSettings& s) { s.damping.linear = 1e4; }), Contains("too strong"));
   CHECK_THAT(refused([](ObjectSettings& s) { s.tether.stiffness = 1e9; }), Contains("too stiff"));
-  CHECK_THAT(refused([](ObjectSettings& s) { s.engine = EngineKind::kDense; }),
-             Contains("switchable"));
   CHECK_THAT(refused([](ObjectSettings& s) { s.inertial_loading = true; }), Contains("spin"));
   CHECK(refused([](ObjectSettings& s) { s.material_damping = 2.0; }).empty());
   CHECK(refused([](ObjectSettings& s) { s.friction = {1.0, 1.0}; }).empty());

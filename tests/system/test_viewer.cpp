@@ -131,17 +131,15 @@ TEST_CASE("viewer: an address that can be reached from elsewhere needs a token")
   CHECK_THAT(ended.err, Contains("set viewer.token"));
 }
 
-TEST_CASE(
-    "viewer: its stylus, a switch of engines and gravity act on the run and are in its trace") {
+TEST_CASE("viewer: its stylus, friction and gravity act on the run and are in its trace") {
   const Stage stage;
-  stage.write("scene.toml", scene_text() + "switchable = true\n");
   Server server = stage.start_server({"--record", stage.path("trace.h5").string()});
   WebPeer peer = watch(viewer_port(server.process));
   const std::size_t nodes = nodes_of(next(peer, kScene));
   const auto state = [&] { return viewer::decode_state(next(peer, kState).payload, 1); };
   const viewer::State first = state();
   CHECK(first.stylus_free);
-  CHECK(first.choices.at(0).engine);
+  CHECK(first.choices.at(0).material_damping);
   viewer::StylusRequest hand{true, 0, Vector3(0.0, 0.07, 0.0)};
   const auto force = [&] {
     hand.tip.y() = std::max(hand.tip.y() - 5e-4, 0.055);
@@ -152,7 +150,7 @@ TEST_CASE(
   };
   REQUIRE(eventually([&] { return force() > 0.05; }));
   viewer::SettingsRequest settings{first.settings, 1};
-  settings.settings.object[0].engine = EngineKind::kDense;
+  settings.settings.object[0].friction = {0.25, 0.125};
   settings.settings.gravity = Vector3(0, -1, 0);
   peer.send_message(encode(viewer::ClientMessage(settings)));
   CHECK(eventually([&] { return state().settings == settings.settings; }));
@@ -173,8 +171,9 @@ TEST_CASE(
   CHECK(largest > 0.05);
   CHECK(largest < 3.3 * 1.1);
   const hdf5::File file = hdf5::File::open(stage.path("trace.h5"));
-  CHECK(file.read<std::uint8_t>("/settings/object/0/dense", {0}) ==
-        std::vector<std::uint8_t>{0, 1});
+  CHECK(file.read<double>("/settings/object/0/friction", {2, 2}) ==
+        std::vector<double>{first.settings.object[0].friction.static_,
+                            first.settings.object[0].friction.kinetic, 0.25, 0.125});
   CHECK(file.read<double>("/settings/gravity", {2, 3}) == std::vector<double>{0, 0, 0, 0, -1, 0});
 }
 

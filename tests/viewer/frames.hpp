@@ -88,9 +88,9 @@ inline viewer::State example_state() {
   state.recordings = {{0, "run-1.h5"}, {1, "l\xC3\xA4ufe.h5"}};
   state.notice = "a notice for a person";
   state.settings.gravity = Vector3(0, -9.81, 0);
-  state.settings.object[0] = {{0.6, 0.5}, {0.1, 0.2}, {3.0, 0.01}, 2.0, EngineKind::kModal, true};
-  state.settings.object[1] = {{0.3, 0.3}, {0, 0}, {0, 0}, 1.0, EngineKind::kDense, false};
-  state.choices = {{true, false, true}, {false, true, false}};
+  state.settings.object[0] = {{0.6, 0.5}, {0.1, 0.2}, {3.0, 0.01}, 2.0, true};
+  state.settings.object[1] = {{0.3, 0.3}, {0, 0}, {0, 0}, 1.0, false};
+  state.choices = {{true, false}, {false, true}};
   return state;
 }
 

@@ -36,14 +36,14 @@ SettingsRequest example_settings() {
   SettingsRequest request;
   request.objects = 1;
   request.settings.gravity = Vector3(0, -1, 0);
-  request.settings.object[0] = {{1.0, 0.5}, {2.0, 4.0}, {8.0, 0.25}, 0.5, EngineKind::kDense, true};
+  request.settings.object[0] = {{1.0, 0.5}, {2.0, 4.0}, {8.0, 0.25}, 0.5, true};
   return request;
 }
 
 const char* const kSettingsHex =
     "0000000000000000 000000000000f0bf 0000000000000000 | 000000000000f03f 000000000000e03f"
     "0000000000000040 0000000000001040 0000000000002040 000000000000d03f 000000000000e03f"
-    "01 01 00 000000000000000000000000000000000000000000";
+    "01 00 00000000000000000000000000000000000000000000";
 
 Scene one_point_scene() {
   Scene scene;
@@ -183,7 +183,7 @@ TEST_CASE("state's bytes are those of the document") {
   state.recordings = {{1, "a.h5"}};
   state.notice = "hm";
   state.settings = example_settings().settings;
-  state.choices = {{false, false, false}};
+  state.choices = {{false, false}};
   const std::string zeros(2 * 60, '0');
   CHECK(encode(state) ==
         from_hex("49525657 0100 0400 41000000 02000000 0000000000000040 000000000000e03f"

@@ -207,8 +207,10 @@ test("settings go out whole, and come back without a fight", async (context) => 
   await page.waitForTimeout(1200);
   server.tell({ gravity: [0, -10, 0] });
   await until(async () => (await slider("Gravity").inputValue()) === "500", "there is gravity");
-  assert.equal(await slider("Engine").isDisabled(), true);
-  assert.match(await page.locator("#settings").innerText(), /holds one engine only/);
+  server.state.objects[0].changeable = 1;
+  server.tell({});
+  await until(() => slider("Its own spin bulges it").isDisabled(), "its spin cannot be chosen");
+  assert.match(await page.locator("#settings").innerText(), /has no data for it/);
   assert.deepEqual(page.faults, []);
 });
 

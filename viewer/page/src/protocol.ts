@@ -153,12 +153,6 @@ export interface BridgeHealth {
   forceAge: Percentiles;
 }
 
-export const enum Engine {
-  Modal = 0,
-  Dense = 1,
-  Compressed = 2,
-}
-
 export interface ObjectSettings {
   /** 0 <= kinetic <= static <= 10 */
   staticFriction: number;
@@ -172,7 +166,6 @@ export interface ObjectSettings {
   angularTether: number;
   /** of the material's damping, 0.1 to 10 */
   dampingFactor: number;
-  engine: Engine;
   /** the object's own spin loads its elastic part */
   inertia: boolean;
 }
@@ -186,7 +179,6 @@ export interface Settings {
 /** Which of an object's settings can be changed; the others always can. */
 export interface Changeable {
   dampingFactor: boolean;
-  engine: boolean;
   inertia: boolean;
 }
 
@@ -382,12 +374,11 @@ function readObjectSettings(reader: Reader): [ObjectSettings, Changeable] {
     tether: reader.f64(),
     angularTether: reader.f64(),
     dampingFactor: reader.f64(),
-    engine: upTo(Engine.Compressed, reader.u8()) as Engine,
     inertia: upTo(1, reader.u8()) === 1,
   };
   const bits = reader.u8();
-  reader.skip(21);
-  return [settings, { dampingFactor: (bits & 1) !== 0, engine: (bits & 2) !== 0, inertia: (bits & 4) !== 0 }];
+  reader.skip(22);
+  return [settings, { dampingFactor: (bits & 1) !== 0, inertia: (bits & 2) !== 0 }];
 }
 
 function readRecording(reader: Reader): Recording {
@@ -534,8 +525,7 @@ export function encodeSettings(settings: Settings): ArrayBuffer {
     const { staticFriction, kineticFriction, damping, angularDamping, tether, angularTether } = object;
     const numbers = [staticFriction, kineticFriction, damping, angularDamping, tether, angularTether];
     putNumbers(view, at, [...numbers, object.dampingFactor]);
-    view.setUint8(at + 56, object.engine);
-    view.setUint8(at + 57, object.inertia ? 1 : 0);
+    view.setUint8(at + 56, object.inertia ? 1 : 0);
   });
   return bytesOf(view);
 }

@@ -1,5 +1,5 @@
 import { make } from "./elements";
-import { Engine, type Changeable, type ObjectSettings, type Scene, type Settings, type State, type Vec3 } from "./protocol";
+import type { Changeable, ObjectSettings, Scene, Settings, State, Vec3 } from "./protocol";
 import { SettingsDraft } from "./settings_draft";
 import { byFactor, fromZero, type SliderScale } from "./slider_scale";
 
@@ -17,7 +17,7 @@ interface SliderKind {
   scale(value: number): SliderScale;
 }
 
-const SLIDERS: Record<Exclude<NumberKey, "engine">, SliderKind> = {
+const SLIDERS: Record<NumberKey, SliderKind> = {
   staticFriction: { label: "Friction", unit: "", help: "A tip sticks up to this", scale: (v) => fromZero(Math.max(2, v), 1) },
   kineticFriction: { label: "Friction while slipping", unit: "", help: "At most the friction above", scale: (v) => fromZero(Math.max(2, v), 1) },
   damping: { label: "Damping of motion", unit: "/s", help: "How fast it comes to rest", scale: (v) => fromZero(Math.max(20, v), 2) },
@@ -29,7 +29,6 @@ const SLIDERS: Record<Exclude<NumberKey, "engine">, SliderKind> = {
 
 const FIXED: Record<keyof Changeable, string> = {
   dampingFactor: "The damping of the material is fixed in this model.",
-  engine: "The model file holds one engine only.",
   inertia: "This model has no data for it, or does not spin.",
 };
 
@@ -76,7 +75,7 @@ function lengthOf(vector: Vec3): number {
   return Math.hypot(...vector);
 }
 
-/** Gravity, friction, damping, tether, engine: values come from State, and go out whole. */
+/** Gravity, friction, damping, tether: values come from State, and go out whole. */
 export class SettingsPanel {
   private scene: Scene | null = null;
   private state: State | null = null;
@@ -86,9 +85,8 @@ export class SettingsPanel {
   private timer = 0;
   private gravityDown: Vec3 = [0, -1, 0];
   private readonly gravity: Slider;
-  private readonly sliders = new Map<Exclude<NumberKey, "engine">, Slider>();
+  private readonly sliders = new Map<NumberKey, Slider>();
   private readonly chooser = document.createElement("select");
-  private readonly engine = document.createElement("select");
   private readonly inertia = document.createElement("input");
   private readonly reasons: Record<keyof Changeable, HTMLElement>;
   private readonly chooserRow: HTMLElement;
@@ -100,19 +98,19 @@ export class SettingsPanel {
   ) {
     const kind = { label: "Gravity", unit: "m/s²", help: "On all objects", scale: (v: number) => fromZero(Math.max(MOST_GRAVITY, v), 1) };
     this.gravity = new Slider(kind, "set-gravity", (value) => this.changeGravity(value));
-    this.reasons = { dampingFactor: reasonLine(), engine: reasonLine(), inertia: reasonLine() };
+    this.reasons = { dampingFactor: reasonLine(), inertia: reasonLine() };
     this.chooserRow = labelled("Object", "set-object", this.chooser);
     this.chooser.onchange = () => {
       this.object = Number(this.chooser.value);
       this.render();
     };
     host.append(this.gravity.row, this.chooserRow);
-    for (const [key, slider] of Object.entries(SLIDERS) as [Exclude<NumberKey, "engine">, SliderKind][]) {
+    for (const [key, slider] of Object.entries(SLIDERS) as [NumberKey, SliderKind][]) {
       const made = new Slider(slider, `set-${key}`, (value) => this.changeNumber(key, value));
       this.sliders.set(key, made);
       host.append(made.row);
     }
-    host.append(this.reasons.dampingFactor, this.engineRow(), this.reasons.engine, this.inertiaRow(), this.reasons.inertia);
+    host.append(this.reasons.dampingFactor, this.inertiaRow(), this.reasons.inertia);
   }
 
   show(scene: Scene): void {
@@ -139,15 +137,6 @@ export class SettingsPanel {
     this.render();
   }
 
-  private engineRow(): HTMLElement {
-    this.engine.append(new Option("Modal", String(Engine.Modal)), new Option("Dense, the paper's", String(Engine.Dense)));
-    const compressed = new Option("Compressed", String(Engine.Compressed));
-    compressed.disabled = true; // never one of two
-    this.engine.append(compressed);
-    this.engine.onchange = () => this.change("engine", Number(this.engine.value) as Engine);
-    return labelled("Engine", "set-engine", this.engine);
-  }
-
   private inertiaRow(): HTMLElement {
     const row = make("div", "", "row");
     const label = make("label", "", "check");
@@ -165,7 +154,7 @@ export class SettingsPanel {
     this.sendSoon();
   }
 
-  private changeNumber(key: Exclude<NumberKey, "engine">, value: number): void {
+  private changeNumber(key: NumberKey, value: number): void {
     this.change(key, value);
     const [other, pulled] = key === "staticFriction" ? (["kineticFriction", Math.min] as const) : (["staticFriction", Math.max] as const);
     if (key !== "staticFriction" && key !== "kineticFriction") return;
@@ -217,7 +206,6 @@ export class SettingsPanel {
     const can = (key: string): boolean => why === null && (!(key in FIXED) || changeable?.[key as keyof Changeable] === true);
     for (const [key, slider] of this.sliders) slider.input.disabled = !can(key);
     this.gravity.input.disabled = why !== null;
-    this.engine.disabled = !can("engine");
     this.inertia.disabled = !can("inertia");
     for (const key of Object.keys(FIXED) as (keyof Changeable)[]) {
       this.reasons[key].textContent = FIXED[key];
@@ -235,7 +223,6 @@ export class SettingsPanel {
     this.gravity.show(size);
     const object = objects[this.object]!;
     for (const [key, slider] of this.sliders) slider.show(object[key]);
-    this.engine.value = String(object.engine);
     this.inertia.checked = object.inertia;
   }
 }

@@ -56,7 +56,7 @@ const STATE: StateParts = {
   ],
   notice: "done",
   gravity: [0, -9.81, 0],
-  objects: [{ ...SETTINGS, engine: 1, inertia: true, changeable: 6 }],
+  objects: [{ ...SETTINGS, inertia: true, changeable: 2 }],
 };
 
 test("a scene says whose the last stylus is, how hard it may push, and how soft the object is", () => {
@@ -95,7 +95,7 @@ test("a state is what was written", () => {
     playback: { length: 12.5, speed: 0.5, playing: true, recording: 2 },
     recordings: STATE.recordings,
     settings: { gravity: [0, -9.81, 0], objects: [settings] },
-    changeable: [{ dampingFactor: false, engine: true, inertia: true }],
+    changeable: [{ dampingFactor: false, inertia: true }],
     notice: "done",
   });
 });
@@ -135,8 +135,7 @@ test("a number out of its range is refused", () => {
   for (const [bytes, offset, value] of [
     [state, 34, 101], // recordings
     [state, 37, 3], // length of the notice, high byte
-    [state, object + 56, 3], // engine
-    [state, object + 57, 2], // coupling to inertia
+    [state, object + 56, 2], // coupling to inertia
     [state, recording + 2, 65], // length of a name
     [frameBytes, stylus, 2], // present
     [frameBytes, stylus + 1, 3], // contact
@@ -158,7 +157,7 @@ test("what the page says is what the protocol has", () => {
   assert.deepEqual(encodeCommand(Command.Step, 5), header(17).u16(4, 5).zeros(4).f64(0).done());
   const stylus = header(18).u8(1).zeros(3).u32(1).f64(0.1, -1000, 1000);
   assert.deepEqual(encodeStylus({ present: true, grab: true, tip: [0.1, -1e9, 1e9] }), stylus.done());
-  const settings = header(19).u16(1).zeros(6).f64(0, -9.81, 0, 0.6, 0.5, 1, 2, 30, 0.01, 1).u8(1, 1).zeros(22);
+  const settings = header(19).u16(1).zeros(6).f64(0, -9.81, 0, 0.6, 0.5, 1, 2, 30, 0.01, 1).u8(1).zeros(23);
   const { changeable: _, ...object } = STATE.objects[0]!;
   assert.deepEqual(encodeSettings({ gravity: [0, -9.81, 0], objects: [object] }), settings.done());
 });

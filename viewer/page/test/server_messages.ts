@@ -211,9 +211,8 @@ export const SETTINGS: ObjectSettings & { changeable: number } = {
   tether: 30,
   angularTether: 0.01,
   dampingFactor: 1,
-  engine: 0,
   inertia: false,
-  changeable: 5,
+  changeable: 3,
 };
 
 export function stateMessage(parts: StateParts): ArrayBuffer {
@@ -223,7 +222,7 @@ export function stateMessage(parts: StateParts): ArrayBuffer {
   for (const object of parts.objects) {
     to.f64(object.staticFriction, object.kineticFriction, object.damping, object.angularDamping);
     to.f64(object.tether, object.angularTether, object.dampingFactor);
-    to.u8(object.engine, object.inertia ? 1 : 0, object.changeable).zeros(21);
+    to.u8(object.inertia ? 1 : 0, object.changeable).zeros(22);
   }
   for (const { number, name } of parts.recordings) {
     const text = utf8(name);

@@ -23,10 +23,6 @@ inline Vector3 bounded_force(const Vector3& force) noexcept {
   return norm > kMostAppliedForce ? Vector3(kMostAppliedForce / norm * force) : force;
 }
 
-/// A touch begins no deeper below the surface than this, beyond the way of the tip in the step [m]:
-/// a tip that is deeper was inside all along, and there is no telling how it got there.
-inline constexpr double kDeepestStart = 2e-3;
-
 /// The last steps of such a stylus: each is told several times, so that what is lost on the way
 /// comes with the next.
 struct AppliedForces {

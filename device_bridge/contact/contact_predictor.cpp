@@ -76,7 +76,7 @@ void ContactPredictor::receive(const ContactModel& model) noexcept {
   if (any_ && model.step <= model_.step) return;
   any_ = true;
   model_ = model;
-  if (!model_.valid) return end_touch();
+  if (!model_.valid) return end_contact();
   body_.emplace(model_.body, model_.dt);
   start_motion();
   place_anew();
@@ -85,9 +85,11 @@ void ContactPredictor::receive(const ContactModel& model) noexcept {
 // What the server does not know of our contact yet, expressed on its newest model.
 void ContactPredictor::place_anew() noexcept {
   const bool before_ours = model_.step < began_;  // the model is older than our contact
-  if (model_.state == ContactState::kHeld) return end_touch();
-  if (model_.state == ContactState::kFree && !before_ours) return end_touch();
-  if (!touching_) return;
+  const bool held = model_.state == ContactState::kHeld;
+  if (held != (contact_.state() == ContactState::kHeld)) end_contact();
+  if (held) return contact_.hold();
+  if (model_.state == ContactState::kFree && !before_ours) return end_contact();
+  if (!contact_.any()) return;
   offset_.setZero();
   if (before_ours) {
     offset_ = sideways(last_place_ - model_.place, model_.normal);
@@ -101,24 +103,22 @@ void ContactPredictor::place_anew() noexcept {
   }
 }
 
-void ContactPredictor::end_touch() noexcept {
-  touching_ = false;
-  slipping_ = false;
+void ContactPredictor::end_contact() noexcept {
+  contact_.end();
   offset_.setZero();
 }
 
 // Whether there is a touch in this step; it begins straight below the tip, no deeper than the tip
 // can have come in the step.
 bool ContactPredictor::touch(std::uint64_t k, const Vector3& from_surface, double way) noexcept {
-  if (!touching_) {
+  if (!contact_.any()) {
     const double depth = -from_surface.dot(model_.normal);
     if (depth <= 0.0) return false;
     // What the server touches already has a place.
     const bool known = model_.state == ContactState::kTouching;
     if (!known && depth > way + kDeepestStart) return false;
-    touching_ = true;
+    contact_.begin(ContactState::kTouching, known && model_.slipping);
     began_ = known ? 0 : k;
-    slipping_ = known && model_.slipping;
     offset_ = known ? Vector3::Zero() : sideways(from_surface, model_.normal);
   }
   return true;
@@ -126,7 +126,7 @@ bool ContactPredictor::touch(std::uint64_t k, const Vector3& from_surface, doubl
 
 // Of the force of a contact that was there before a silence.
 double ContactPredictor::share(std::uint64_t k) noexcept {
-  const bool contact = touching_ || model_.state != ContactState::kFree;
+  const bool contact = contact_.any() || model_.state != ContactState::kFree;
   if (std::exchange(silent_, false) && contact) back_ = k;
   if (!contact) back_.reset();
   return back_ ? std::min(model_.dt * static_cast<double>(k - *back_ + 1) / kReturn, 1.0) : 1.0;
@@ -152,33 +152,28 @@ ContactPredictor::Answer ContactPredictor::solve(std::uint64_t k, const Vector3&
   const Vector3 surface = surface_at(k);
   const double way = (tip - tip_before - model_.dt * motion_.velocity).norm();
   if (!held && !touch(k, tip_B - surface, way)) return answer;
-  Friction friction = model_.friction;
-  if (slipping_) friction.static_ = friction.kinetic;
   const Vector3 arm = surface + offset_;
+  ContactConstraint posed;
+  contact_.pose(model_.normal, model_.friction, arm, tip_B, posed);
   const Matrix3 W = model_.response[0] + body_->mobility().between(arm, arm) + model_.series;
-  const SingleContact found = solve_single_contact(W / share_of_it, tip_B - arm,
-                                                   held ? ContactLaw::kHeld : ContactLaw::kTouching,
-                                                   model_.normal, friction);
+  const SingleContact found =
+      solve_single_contact(W / share_of_it, posed.gap, posed.law, posed.normal, posed.friction);
   if (!found.force.allFinite()) return {};
   if (found.mode == ContactMode::kOpen) {
-    end_touch();
+    end_contact();
     return answer;
   }
-  slipping_ = found.mode == ContactMode::kSlipping;
+  contact_.set_slipping(found.mode == ContactMode::kSlipping);
   offset_ += found.slip;
   last_place_ = model_.place + offset_;
   const Vector3 force = bounded_force(found.force);
   answer.force = Q * force;
   answer.state = held ? ContactState::kHeld : ContactState::kTouching;
   answer.normal = end.orientation * model_.normal;
-  // The torque's lever arm is the mean over the step, as at the server.
   const Vector3 free_displacement = surface - model_.place;
   const Vector3 moved = free_displacement + model_.response[0] * force;
-  const bool goes_on = last_contact_ + 1 == k;
-  const Vector3 shift =
-      0.5 * ((goes_on ? last_moved_ : free_displacement) + moved) - free_displacement;
-  last_moved_ = moved;
-  last_contact_ = k;
+  const Vector3 shift = displacement_.arm_shift(k, free_displacement, moved);
+  displacement_.remember(k, moved);
   past(k) = {k, answer.force, force, arm + shift, found.slip};
   return answer;
 }

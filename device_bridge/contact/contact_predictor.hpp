@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "common/contact/contact_model.hpp"
+#include "common/contact/persistent_contact.hpp"
 
 namespace irdm {
 
@@ -67,7 +68,7 @@ class ContactPredictor {
   void place_anew() noexcept;
   double share(std::uint64_t k) noexcept;
   bool touch(std::uint64_t k, const Vector3& from_surface, double way) noexcept;
-  void end_touch() noexcept;
+  void end_contact() noexcept;
 
   bool any_ = false;  ///< model_ means something
   ContactModel model_;
@@ -75,19 +76,16 @@ class ContactPredictor {
   RigidState motion_;              ///< at the end of step moved_to_
   std::uint64_t moved_to_ = 0;
   std::array<Past, kKept> past_{};
-  // A touching contact as it is here: it may have begun, slipped or ended since the model. In B.
-  bool touching_ = false;
-  bool slipping_ = false;
-  std::uint64_t began_ = 0;           ///< in this step
-  Vector3 offset_ = Vector3::Zero();  ///< from the model's place to ours, along the surface [m]
+  // The contact as it is here: a touching one may have begun, slipped or ended since the model.
+  PersistentContact contact_;
+  ContactDisplacement displacement_;  ///< of its place
+  std::uint64_t began_ = 0;           ///< touching in this step
+  Vector3 offset_ = Vector3::Zero();  ///< from the model's place to ours, along the surface [m], B
   std::uint64_t last_step_ = 0;
   bool silent_ = true;                 ///< nothing was known of the last step
   std::optional<std::uint64_t> back_;  ///< the step since which a contact comes back from a silence
   std::optional<Vector3> last_tip_;    ///< W
-  Vector3 last_moved_ =
-      Vector3::Zero();  ///< displacement of the place at the end of last_contact_ [m]
-  std::uint64_t last_contact_ = ~std::uint64_t{0};  ///< the last step with a force
-  Vector3 last_place_ = Vector3::Zero();            ///< of a touching contact, object at rest [m]
+  Vector3 last_place_ = Vector3::Zero();  ///< of a touching contact, object at rest [m]
 };
 
 }  // namespace irdm

@@ -1,12 +1,10 @@
 #pragma once
 
-#include <memory>
 #include <vector>
 
-#include "common/motion/rigid_state_history.hpp"
 #include "replay/rerun/forced_body.hpp"
+#include "simulation/step/deformable_body.hpp"
 #include "simulation/step/recorded_forces.hpp"
-#include "simulation/step/simulation_config.hpp"
 
 namespace irdm::replay {
 
@@ -21,25 +19,16 @@ class ForcedObject final : public ForcedBody {
   void insert_delayed_force(const LateForce& late) override;
   void set(const Vector3& gravity, const ObjectSettings& settings) override;
   void step(ObjectRecord& again, std::span<const StylusRecord> styluses) override;
-  void displacement(Points& u) const override { engine_->displacement(u); }
+  void displacement(Points& u) const override { body_.engine().displacement(u); }
 
  private:
   Vector3 place(const ContactPatch& patch) const;
   RigidStateHistory::Forces collect(const ObjectRecord& recorded);
 
-  SimulationObject object_;
-  std::shared_ptr<const Model> model_;
-  RigidBody body_;
-  std::unique_ptr<ResponseEngine> engine_;
+  DeformableBody body_;
   RestSurface surface_;
   std::vector<PressureMask> masks_;
   RecordedForces forces_;
-  RigidStateHistory past_;
-  RigidState start_;
-  RigidState state_;
-  FreeForces free_forces_;
-  bool feels_spin_;
-  double material_damping_ = 1.0;
   ContactPatch patch_;
 };
 

@@ -21,7 +21,7 @@ FloorContacts::FloorContacts(const FloorConfig& floor, const RestSurface& rest,
                              const ResponseEngine& engine)
     : floor_(floor),
       rest_(rest),
-      feet_(static_cast<std::size_t>(rest.node_count())),
+      anchors_(static_cast<std::size_t>(rest.node_count())),
       nodes_(kMaxFloorContacts),
       posed_(kMaxFloorContacts) {
   if (rest.node_count() > kMaxNodes) {
@@ -34,7 +34,7 @@ FloorContacts::FloorContacts(const FloorConfig& floor, const RestSurface& rest,
 }
 
 void FloorContacts::reset() noexcept {
-  std::fill(feet_.begin(), feet_.end(), FloorAnchor{});
+  std::fill(anchors_.begin(), anchors_.end(), FloorAnchor{});
   count_ = 0;
   posed_count_ = 0;
   displaced_ = 0.0;
@@ -48,14 +48,14 @@ int FloorContacts::find(const FreeMotion& motion, DeformedSurface& surface,
   const Vector3 up = motion.orientation.conjugate() * floor_.normal;
   const double offset = height(motion.position);
   for (int i = 0; i < rest_.node_count() && count_ < kMaxFloorContacts; ++i) {
-    FloorAnchor& foot = feet_[static_cast<std::size_t>(i)];
-    if (!foot.down && offset + up.dot(rest_.node(i)) > margin) continue;
+    FloorAnchor& anchor = anchors_[static_cast<std::size_t>(i)];
+    if (!anchor.contact.any() && offset + up.dot(rest_.node(i)) > margin) continue;
     const Vector3& r = surface.node(i);
     displaced_ = std::max(displaced_, (r - rest_.node(i)).norm());
-    if (!foot.down && offset + up.dot(r) > kNearFloor) continue;
-    if (!foot.down) {
+    if (!anchor.contact.any() && offset + up.dot(r) > kNearFloor) continue;
+    if (!anchor.contact.any()) {
       const Vector3 x = motion.to_world(r);
-      foot.anchor = x - height(x) * floor_.normal;
+      anchor.position = x - height(x) * floor_.normal;
     }
     nodes_[static_cast<std::size_t>(count_++)] = i;
   }
@@ -70,15 +70,11 @@ void FloorContacts::pose(const FreeMotion& motion, DeformedSurface& surface,
       count_ == posed_count_ && std::equal(nodes_.begin(), nodes_.begin() + count_, posed_.begin());
   for (std::size_t a = 0; a < m; ++a) {
     const int i = nodes_[a];
-    const FloorAnchor& foot = feet_[static_cast<std::size_t>(i)];
+    const FloorAnchor& anchor = anchors_[static_cast<std::size_t>(i)];
     ContactConstraint& unknown = problem.contact(static_cast<int>(a));
-    unknown.law = ContactLaw::kTouching;
-    unknown.normal = -(motion.orientation.conjugate() * floor_.normal);
-    unknown.friction = floor_.friction;
-    if (foot.slipping) unknown.friction.static_ = unknown.friction.kinetic;
-    unknown.arm = surface.node(i);
-    unknown.gap = motion.to_body(foot.anchor) - unknown.arm;
-    unknown.force = foot.force;
+    anchor.contact.pose(-(motion.orientation.conjugate() * floor_.normal), floor_.friction,
+                        surface.node(i), motion.to_body(anchor.position), unknown);
+    unknown.force = anchor.force;
     if (same) continue;
     for (std::size_t b = 0; b < m; ++b) {
       problem.elastic(static_cast<int>(a), static_cast<int>(b)) =
@@ -101,15 +97,16 @@ void FloorContacts::update_contacts(const FreeMotion& motion,
                                     const ContactProblem& problem) noexcept {
   for (int a = 0; a < count_; ++a) {
     const ContactConstraint& solved = problem.contact(a);
-    FloorAnchor& foot = feet_[static_cast<std::size_t>(node(a))];
-    foot.down = solved.mode != ContactMode::kOpen;
-    foot.slipping = solved.mode == ContactMode::kSlipping;
-    foot.force = solved.force;
+    FloorAnchor& anchor = anchors_[static_cast<std::size_t>(node(a))];
+    const bool pressed = solved.mode != ContactMode::kOpen;
+    const bool slipping = solved.mode == ContactMode::kSlipping;
+    anchor.contact.begin(pressed ? ContactState::kTouching : ContactState::kFree, slipping);
+    anchor.force = solved.force;
     const Vector3 moved = solved.arm + problem.elastic(a, a) * solved.force - rest_.node(node(a));
     displaced_ = std::max(displaced_, moved.norm());
-    if (!foot.slipping) continue;
-    foot.anchor -= motion.orientation * solved.slip;
-    foot.anchor -= height(foot.anchor) * floor_.normal;
+    if (!slipping) continue;
+    anchor.position -= motion.orientation * solved.slip;
+    anchor.position -= height(anchor.position) * floor_.normal;
   }
 }
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "common/contact/contact_problem.hpp"
+#include "common/contact/persistent_contact.hpp"
 #include "common/motion/free_motion.hpp"
 #include "simulation/collision/deformed_surface.hpp"
 #include "simulation/step/simulation_config.hpp"
@@ -38,19 +38,18 @@ class FloorContacts {
 
  private:
   struct FloorAnchor {
-    bool down = false;                 ///< pressed on the floor in the last step
-    Vector3 anchor = Vector3::Zero();  ///< [m], W
-    Vector3 force = Vector3::Zero();   ///< of the last step [N], B
-    bool slipping = false;
+    PersistentContact contact;           ///< touching: pressed on the floor in the last step
+    Vector3 position = Vector3::Zero();  ///< [m], W
+    Vector3 force = Vector3::Zero();     ///< of the last step [N], B
   };
   double height(const Vector3& x) const noexcept { return floor_.normal.dot(x) - floor_.height; }
 
   FloorConfig floor_;
   const RestSurface& rest_;
-  Eigen::MatrixXd compliance_;     ///< R[0] (3n, 3n) [m/N]
-  std::vector<FloorAnchor> feet_;  ///< of all nodes
-  std::vector<int> nodes_;         ///< of this step's contacts
-  std::vector<int> posed_;         ///< whose blocks are in the problem
+  Eigen::MatrixXd compliance_;        ///< R[0] (3n, 3n) [m/N]
+  std::vector<FloorAnchor> anchors_;  ///< of all nodes
+  std::vector<int> nodes_;            ///< of this step's contacts
+  std::vector<int> posed_;            ///< whose blocks are in the problem
   int count_ = 0;
   int posed_count_ = 0;
   double displaced_ = 0.0;  ///< how far nodes were seen away from where they are at rest [m]

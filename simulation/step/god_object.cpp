@@ -22,19 +22,17 @@ void GodObject::find(const Input& input, DeformedSurface& surface) noexcept {
   tip_moved_ = (input.tip - tip_).norm();
   tip_ = input.tip;
   fresh_ = false;
-  if (state_ == ContactState::kFree && !reach_for(input, surface)) touch(input.tip, surface);
-  if (state_ == ContactState::kFree) {
+  if (!contact_.any() && !reach_for(input, surface)) touch(input.tip, surface);
+  if (!contact_.any()) {
     grabbed_before_ = input.grab;
     return;
   }
   // What is touched goes on from where it is, and only what pushes is taken hold of (hence not in
   // the step in which it begins): so a grab makes no jump.
   if (input.grab && !fresh_) {
-    state_ = ContactState::kHeld;
-    releasing_ = false;
-  } else if (state_ == ContactState::kHeld) {
-    release_steps_ = releasing_ ? release_steps_ + 1 : 0;
-    releasing_ = true;
+    contact_.hold();
+  } else if (contact_.state() == ContactState::kHeld) {
+    contact_.release();
   }
   grabbed_before_ = input.grab;
 }
@@ -51,13 +49,12 @@ void GodObject::touch(const Vector3& tip, DeformedSurface& surface) noexcept {
   if (outside_) entry = surface.first_crossing(last_tip_, tip, hit);
   if (entry || (outside_ && hit.signed_distance <= 0)) {
     const SurfaceHit& at = entry ? *entry : hit;
-    state_ = ContactState::kTouching;
+    contact_.begin(ContactState::kTouching);
     triangle_ = at.triangle;
     point_ = at.point;
     offset_.setZero();
     fresh_ = true;
     reached_ = false;
-    slipping_ = false;
   }
   if (hit.signed_distance > 0) outside_ = true;
   last_tip_ = tip;
@@ -72,33 +69,30 @@ bool GodObject::reach_for(const Input& input, DeformedSurface& surface) noexcept
   for (std::size_t i = 1; i < 3; ++i) {
     if (hit.point.weights[i] > hit.point.weights[nearest]) nearest = i;
   }
-  state_ = ContactState::kHeld;
+  contact_.begin(ContactState::kHeld);
   triangle_ = hit.triangle;
   point_.nodes = hit.point.nodes;
   point_.weights = {0.0, 0.0, 0.0};
   point_.weights[nearest] = 1.0;
   offset_ = input.tip - surface.node(hit.point.nodes[nearest]);
   reached_ = true;
-  slipping_ = false;
   return true;
 }
 
 void GodObject::impose(ContactState state, const SurfacePoint& point) noexcept {
-  state_ = state;
+  contact_.begin(state);
   point_ = point;
   offset_.setZero();
   fresh_ = false;
   reached_ = false;
-  slipping_ = false;
-  releasing_ = false;
 }
 
 void GodObject::stay(const Vector3& slip, double share, const Vector3& point_free,
                      const RestSurface& rest) noexcept {
   const double length = slip.norm();
-  slipping_ = length > 0.0;
+  contact_.set_slipping(length > 0.0);
   slid_ = catch_up(length, share);
-  if (slipping_) slide(slip, slid_, rest);
+  if (length > 0.0) slide(slip, slid_, rest);
   outside_ = true;
   last_tip_ = point_free;
 }
@@ -126,23 +120,16 @@ void GodObject::follow(const Vector3& tip, double share, const RestSurface& rest
   const double length = weight * catch_up(way.norm(), share) - slid_;
   if (!(length > 0.0)) return;
   slide(way, length, rest);
-  slipping_ = true;
-}
-
-void GodObject::turn_to_touching() noexcept {
-  state_ = ContactState::kTouching;
-  releasing_ = false;
+  contact_.set_slipping(true);
 }
 
 void GodObject::reject_contact() noexcept {
-  state_ = ContactState::kFree;
+  contact_.end();
   outside_ = false;
 }
 
 void GodObject::release(const Vector3& tip) noexcept {
-  state_ = ContactState::kFree;
-  slipping_ = false;
-  releasing_ = false;
+  contact_.end();
   outside_ = true;
   last_tip_ = tip;
 }

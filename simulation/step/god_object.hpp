@@ -1,6 +1,6 @@
 #pragma once
 
-#include "common/stylus.hpp"
+#include "common/contact/persistent_contact.hpp"
 #include "simulation/collision/deformed_surface.hpp"
 #include "simulation/collision/rest_surface.hpp"
 
@@ -49,7 +49,7 @@ class GodObject {
   /// Goes a way along the surface.
   void slide(const Vector3& towards, double length, const RestSurface& rest) noexcept;
   /// After the step: a point that is given up is pushed on, so that it can be touched on.
-  void turn_to_touching() noexcept;
+  void turn_to_touching() noexcept { contact_.turn_to_touching(); }
   /// After the step: the contact let go, and the tip [m, B] is outside.
   void release(const Vector3& tip) noexcept;
 
@@ -63,7 +63,8 @@ class GodObject {
   /// The tip is where a touch may begin.
   bool outside() const noexcept { return outside_; }
 
-  ContactState state() const noexcept { return state_; }
+  const PersistentContact& contact() const noexcept { return contact_; }
+  ContactState state() const noexcept { return contact_.state(); }
   int triangle() const noexcept { return triangle_; }
   const SurfacePoint& point() const noexcept { return point_; }
   const Vector3& offset() const noexcept { return offset_; }
@@ -71,12 +72,6 @@ class GodObject {
   bool fresh() const noexcept { return fresh_; }
   /// Held at an offset, by its reach.
   bool reached() const noexcept { return reached_; }
-  /// It slipped in the last step.
-  bool slipping() const noexcept { return slipping_; }
-  /// The button is up, but the point is not given up yet.
-  bool releasing() const noexcept { return releasing_; }
-  /// How many steps ago the button went up.
-  int steps_since_release() const noexcept { return release_steps_; }
 
  private:
   /// How far to go in one step of `length` that are wanted.
@@ -84,15 +79,12 @@ class GodObject {
   void touch(const Vector3& tip, DeformedSurface& surface) noexcept;
   bool reach_for(const Input& input, DeformedSurface& surface) noexcept;
 
-  ContactState state_ = ContactState::kFree;
+  PersistentContact contact_;
   int triangle_ = 0;
   SurfacePoint point_;
   Vector3 offset_ = Vector3::Zero();
   bool fresh_ = false;
   bool reached_ = false;
-  bool slipping_ = false;
-  bool releasing_ = false;
-  int release_steps_ = 0;
   bool grabbed_before_ = false;  ///< the button was down in the last step, or may have been
   /// The tip was outside the surface when last seen. Only from there can it make a contact.
   bool outside_ = false;

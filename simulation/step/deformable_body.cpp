@@ -1,0 +1,66 @@
+#include "simulation/step/deformable_body.hpp"
+
+#include "simulation/step/gravity_load.hpp"
+#include "simulation/step/inertial_loading.hpp"
+
+namespace irdm {
+
+DeformableBody::DeformableBody(const SimulationObject& object, const Vector3& gravity)
+    : object_(object),
+      rigid_(model().body, model().dt),
+      engine_(make_engine(object.model)),
+      inertial_loading_(has_inertial_loading(model(), object.inertial_loading)) {
+  start_.position = object.position;
+  start_.orientation = object.orientation.normalized();
+  start_.velocity = object.velocity;
+  start_.angular_momentum = rigid_.angular_momentum(start_.orientation, object.angular_velocity);
+  state_ = start_;
+  free_forces_ = {gravity, object.damping, object.tether, start_.position, start_.orientation};
+  follow_gravity(*engine_, object_, gravity);
+}
+
+void DeformableBody::reset() noexcept {
+  state_ = start_;
+  past_.clear();
+  engine_->reset();
+}
+
+void DeformableBody::set(const Vector3& gravity, const ObjectSettings& settings) noexcept {
+  free_forces_.gravity = gravity;
+  free_forces_.damping = settings.damping;
+  free_forces_.tether = settings.tether;
+  inertial_loading_ = has_inertial_loading(model(), settings.inertial_loading);
+  follow_settings(*engine_, settings, material_damping_);
+  follow_gravity(*engine_, object_, gravity);
+}
+
+// The spin is that without the torques of the step itself: contacts are solved on a surface that
+// their own forces do not yet blow up.
+void DeformableBody::begin_step(ObjectRecord& record) noexcept {
+  state_ = past_.replay(rigid_, free_forces_, state_);
+  record.start = state_;
+  record.spin = inertial_loading_ ? rigid_.mid_step_spin(state_) : Vector3::Zero();
+  if (inertial_loading_) engine_->set_angular_velocity(record.spin);
+  motion_ = next_motion();
+  record.halfway = motion_.halfway;
+}
+
+void DeformableBody::end_step(std::span<const NodalForce> nodal,
+                              const RigidStateHistory::Forces& forces,
+                              ObjectRecord& record) noexcept {
+  engine_->advance(nodal);
+  past_.remember(state_, motion_.halfway, forces);
+  state_ = end_of_step(rigid_, free_forces_, motion_, forces.sum, forces.torque(motion_.halfway));
+  record.position = state_.position;
+  record.orientation = state_.orientation;
+  record.velocity = state_.velocity;
+  record.angular_velocity = rigid_.angular_velocity(state_);
+}
+
+void DeformableBody::insert_delayed_force(std::span<const NodalForce> nodal, const Vector3& force,
+                                          const Vector3& arm, int age) noexcept {
+  engine_->add_delayed_force(nodal, age);
+  past_.add(age, past_.halfway(age) * force, arm);
+}
+
+}  // namespace irdm

@@ -1,0 +1,385 @@
+#include "simulation/step/stylus_contacts.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/contact/single_contact.hpp"
+#include "common/error.hpp"
+
+namespace irdm {
+namespace {
+
+// First row of contact i in matrices over the contacts.
+Eigen::Index row(int i) {
+  return static_cast<Eigen::Index>(3 * i);
+}
+
+// Inside the cone of a touching contact.
+bool pushes(const ContactConstraint& contact) noexcept {
+  const double push = -contact.force.dot(contact.normal);
+  const Vector3 along = contact.force + push * contact.normal;
+  return push >= 0 &&
+         (std::isinf(contact.friction.static_) || along.norm() <= contact.friction.static_ * push);
+}
+
+// From the surface, within which a force that comes from elsewhere acts on it [m]: one for this
+// step, and one for an earlier step, since when the tip may have gone on.
+constexpr double kNear = 0.002;
+constexpr double kNearDelayed = 0.005;
+// How far the surface may be from where the bridge knows it to be, as a share of the object's size.
+constexpr double kFarFromOwn = 1.0;
+// Over which the force of a stylus is averaged for the contact models of others [s].
+constexpr double kAverageTime = 0.2;
+// In which a contact catches up with a tip that has passed an edge [s].
+constexpr double kEdgeTime = 0.06;
+
+// Rounds of finding where a contact begins, and when it is found [m].
+constexpr int kProjectionRounds = 8;
+constexpr double kProjected = 1e-6;
+
+}  // namespace
+
+StylusContacts::StylusContacts(const SimulationConfig& config, double dt, int object,
+                               const RestSurface& rest, DeformedSurface& surface)
+    : rest_(rest), surface_(surface), dt_(dt), release_time_(config.release_time), object_(object) {
+  const double largest = PressureMask::largest_radius(rest);
+  for (const SimulationStylus& tip : config.styluses) {
+    if (tip.radius > largest) {
+      throw Error("stylus",
+                  "radius " + std::to_string(tip.radius) +
+                      " m is too large for an object whose triangles are this small",
+                  "use at most " + std::to_string(largest) + " m or a coarser mesh");
+    }
+    styluses_.push_back({tip, PressureMask(rest, tip.radius), SmoothedSurface(rest, tip.radius)});
+  }
+  for (int i = 0; i < rest.node_count(); ++i) size_ = std::max(size_, rest.node(i).norm());
+}
+
+void StylusContacts::reset() noexcept {
+  for (Stylus& stylus : styluses_) {
+    stylus.proxy.forget();
+    stylus.displacement = {};
+    stylus.last.any = false;
+    stylus.last.average.setZero();
+  }
+}
+
+void StylusContacts::find(std::span<const StylusCommand> commands,
+                          const FreeMotion& motion) noexcept {
+  count_ = 0;
+  for (std::size_t s = 0; s < styluses_.size(); ++s) {
+    const StylusCommand& command = commands[s];
+    Stylus& stylus = styluses_[s];
+    if (!command.present || !command.tip.allFinite()) {
+      stylus.proxy.forget();
+      continue;
+    }
+    if (!find_contact(stylus, command, motion.to_body(command.tip))) continue;
+    const auto a = static_cast<std::size_t>(count_++);
+    Contact& contact = contacts_[a];
+    contact = {.stylus = static_cast<int>(s),
+               .given = command.given.has_value(),
+               .bridged = command.bridged.has_value(),
+               .point = stylus.proxy.point()};
+    stylus.mask.spread(contact.point, patches_[a]);
+    if (stylus.proxy.state() != ContactState::kTouching || contact.given) continue;
+    const SmoothedSurface::Place place = stylus.felt.at(contact.point);
+    contact.normal = place.normal;
+    stylus.proxy.set_inset(place.position -
+                           mean(patches_[a], [&](int i) { return rest_.node(i); }));
+  }
+}
+
+// Of one stylus that is there. False: none.
+bool StylusContacts::find_contact(Stylus& stylus, const StylusCommand& command,
+                                  const Vector3& tip) noexcept {
+  GodObject& proxy = stylus.proxy;
+  if (command.given) {
+    if (command.given->object != object_) return false;
+    proxy.impose(command.given->contact, command.given->point);
+  } else {
+    proxy.find({tip, (command.buttons & kGrabButton) != 0, stylus.tip.reach}, surface_);
+  }
+  if (command.bridged) apply_remote_contact(stylus, *command.bridged, tip);
+  if (proxy.state() == ContactState::kFree) return false;
+  if (!proxy.fresh() || project_initial_contact(stylus, tip)) return true;
+  proxy.reject_contact();
+  return false;
+}
+
+// The bridge has one object in mind. Its contact with that one may be none by now: its force acts
+// where the tip is, if that is near enough.
+void StylusContacts::apply_remote_contact(Stylus& stylus, const BridgedForce& bridged,
+                                          const Vector3& tip) noexcept {
+  GodObject& proxy = stylus.proxy;
+  if (bridged.object != object_) {
+    if (proxy.state() != ContactState::kFree) proxy.reject_contact();
+    return;
+  }
+  if (proxy.state() != ContactState::kFree || !proxy.outside()) return;
+  if (bridged.force.isZero(0.0)) return;
+  const SurfaceHit hit = surface_.closest(tip);
+  if (std::abs(hit.signed_distance) > proxy.tip_moved() + kNear) return;
+  proxy.impose(ContactState::kTouching, hit.triangle, hit.point);
+}
+
+// A contact begins where the tip is straight below the surface that it feels: were it drawn aside
+// from the start, it would get energy from nowhere. False: it is deeper there than it can have come
+// in this step. Such a tip was inside all along, and there is no telling how it got there.
+bool StylusContacts::project_initial_contact(Stylus& stylus, const Vector3& tip) noexcept {
+  double depth = 0.0;
+  for (int round = 0; round < kProjectionRounds; ++round) {
+    const SmoothedSurface::Place place = stylus.felt.at(stylus.proxy.point());
+    const Vector3 moved = interpolate(
+        stylus.proxy.point(), [&](int i) -> Vector3 { return surface_.node(i) - rest_.node(i); });
+    const Vector3 gap = tip - place.position - moved;
+    depth = -gap.dot(place.normal);
+    const Vector3 aside = gap + depth * place.normal;
+    if (aside.norm() < kProjected) break;
+    stylus.proxy.slide(aside, aside.norm(), rest_);
+  }
+  return depth <= stylus.proxy.tip_moved() + kDeepestStart;
+}
+
+double StylusContacts::displaced() const noexcept {
+  double largest = 0.0;
+  for (const Stylus& stylus : styluses_) {
+    if (stylus.displacement.goes_on_in(steps_)) {
+      largest = std::max(largest, stylus.displacement.last().norm());
+    }
+  }
+  return largest;
+}
+
+void StylusContacts::predict(ResponseEngine& engine) noexcept {
+  if (count_ == 0) return;
+  const auto count = static_cast<std::size_t>(count_);
+  std::array<Vector3, kMaxContacts> h;
+  engine.predict({patches_.data(), count}, {h.data(), count}, elastic_);
+  for (std::size_t a = 0; a < count; ++a) {
+    contacts_[a].free = h[a];
+    contacts_[a].arm = h[a] + mean(patches_[a], [&](int i) { return rest_.node(i); });
+  }
+}
+
+void StylusContacts::pose(std::span<const StylusCommand> commands, const FreeMotion& motion,
+                          const Friction& friction, int first, ContactProblem& problem) noexcept {
+  first_ = first;
+  for (int a = 0; a < count_; ++a) {
+    for (int b = 0; b < count_; ++b) {
+      problem.elastic(first + a, first + b) = elastic_.block<3, 3>(row(a), row(b));
+    }
+    Contact& contact = contacts_[static_cast<std::size_t>(a)];
+    pose_contact(contact, commands[static_cast<std::size_t>(contact.stylus)], motion, friction,
+                 first + a, problem);
+  }
+}
+
+void StylusContacts::pose_contact(Contact& contact, const StylusCommand& command,
+                                  const FreeMotion& motion, const Friction& friction, int row,
+                                  ContactProblem& problem) noexcept {
+  const Stylus& stylus = stylus_of(contact);
+  const PersistentContact& state = stylus.proxy.contact();
+  ContactConstraint& posed = problem.contact(row);
+  posed.arm = contact.arm;
+  if (contact.given) {
+    posed.law = ContactLaw::kGiven;
+    posed.force = motion.halfway.conjugate() * command.given->force;
+    return;
+  }
+  // The tip pushes where it is, so that what it does is what the object gets.
+  state.pose(contact.normal, friction, contact.arm + stylus.proxy.offset(),
+             motion.to_body(command.tip), posed);
+  const double stiffness = stylus.tip.coupling_stiffness;
+  if (stiffness > 0) problem.elastic(row, row).diagonal().array() += 1.0 / stiffness;
+  if (state.releasing()) {
+    const double left = state.hold_left(dt_, release_time_);
+    if (left > 0) {
+      problem.elastic(row, row) += release_compliance(left, problem.compliance(row, row));
+    } else {
+      posed.law = ContactLaw::kReleased;
+    }
+  }
+  if (!contact.bridged) return;
+  contact.law = posed.law;
+  posed.law = ContactLaw::kGiven;
+  posed.force = motion.halfway.conjugate() * command.bridged->force;
+  if (!posed.force.isZero(0.0)) posed.arm = accepted_arm(command.bridged->arm, posed.arm);
+}
+
+// The bridge knows best where it pushed: the surface here may lack forces that are still under way.
+Vector3 StylusContacts::accepted_arm(const Vector3& arm, const Vector3& own) const noexcept {
+  return (arm - own).norm() < kFarFromOwn * size_ ? arm : own;
+}
+
+void StylusContacts::solve_bridged(ContactProblem& problem) noexcept {
+  for (int a = 0; a < count_; ++a) {
+    Contact& contact = contacts_[static_cast<std::size_t>(a)];
+    if (!contact.bridged) continue;
+    const int row = first_ + a;
+    ContactConstraint& posed = problem.contact(row);
+    Vector3 gap = posed.gap;
+    for (int b = 0; b < problem.count(); ++b) {
+      if (b != row) gap -= problem.compliance(row, b) * problem.contact(b).force;
+    }
+    const SingleContact own = solve_single_contact(problem.compliance(row, row), gap, contact.law,
+                                                   posed.normal, posed.friction);
+    contact.lets_go = own.mode == ContactMode::kOpen;
+    posed.law = contact.law;
+    posed.slip = own.slip;
+    posed.mode = contact.lets_go ? ContactMode::kSticking : own.mode;
+  }
+}
+
+void StylusContacts::write(const ContactProblem& problem, ObjectRecord& record) noexcept {
+  record.contact.fill(ContactRecord{});
+  for (int a = 0; a < count_; ++a) {
+    const ContactConstraint& solved = problem.contact(first_ + a);
+    if (solved.mode == ContactMode::kOpen) continue;
+    Contact& contact = contacts_[static_cast<std::size_t>(a)];
+    const Stylus& stylus = stylus_of(contact);
+    ContactRecord& out = record.contact[static_cast<std::size_t>(contact.stylus)];
+    out.state = stylus.proxy.state();
+    out.slipping = solved.mode == ContactMode::kSlipping;
+    out.point = contact.point;
+    out.force = solved.force;
+    out.normal = solved.normal;
+    out.offset = solved.arm - contact.arm;
+    out.proxy = contact.arm;
+    for (int b = 0; b < count_; ++b) {
+      out.proxy += elastic_.block<3, 3>(row(a), row(b)) * problem.contact(first_ + b).force;
+    }
+    for (int i = 0; i < first_; ++i) {
+      out.proxy += problem.elastic(first_ + a, i) * problem.contact(i).force;
+    }
+    contact.moved = out.proxy - (contact.arm - contact.free);
+    // A bridge tells the mean arm itself.
+    if (!contact.bridged) {
+      contact.arm_shift = stylus.displacement.arm_shift(steps_, contact.free, contact.moved);
+    }
+    out.arm_shift = contact.arm_shift;
+  }
+}
+
+void StylusContacts::update(std::span<const StylusCommand> commands, const FreeMotion& motion,
+                            const ContactProblem& problem) noexcept {
+  const double share = dt_ / kEdgeTime;
+  for (int a = 0; a < count_; ++a) {
+    const Contact& contact = contacts_[static_cast<std::size_t>(a)];
+    GodObject& proxy = stylus_of(contact).proxy;
+    const Vector3 tip = motion.to_body(commands[static_cast<std::size_t>(contact.stylus)].tip);
+    const ContactConstraint& solved = problem.contact(first_ + a);
+    if (solved.mode == ContactMode::kOpen || contact.lets_go) {
+      proxy.release(tip);
+      continue;
+    }
+    proxy.stay(solved.slip, share, contact.arm, rest_);
+    if (solved.law == ContactLaw::kTouching && !std::isinf(solved.friction.kinetic)) {
+      proxy.follow(tip, share, rest_);
+    }
+    if (proxy.contact().releasing() && pushes(solved) && !proxy.reached()) {
+      proxy.turn_to_touching();
+    }
+  }
+}
+
+void StylusContacts::end_step(const ContactProblem& problem, const Quaternion& halfway,
+                              NodalForces& nodal, RigidStateHistory::Forces& forces) noexcept {
+  const double share = dt_ / kAverageTime;
+  for (Stylus& stylus : styluses_) stylus.last.average *= 1.0 - share;
+  for (int a = 0; a < count_; ++a) {
+    const ContactConstraint& solved = problem.contact(first_ + a);
+    if (solved.mode == ContactMode::kOpen) continue;
+    const Contact& contact = contacts_[static_cast<std::size_t>(a)];
+    nodal.add(patch(a), solved.force);
+    Stylus& stylus = stylus_of(contact);
+    stylus.displacement.remember(steps_, contact.moved);
+    LastContact& last = stylus.last;
+    if (!last.any || last.last_step + 1 != steps_) last.first_step = steps_;
+    last.last_step = steps_;
+    last.any = true;
+    last.point = contact.point;
+    last.arm = contact.arm;
+    last.average += share * solved.force;
+    forces.add(halfway * solved.force, solved.arm + contact.arm_shift);
+  }
+  ++steps_;
+}
+
+bool StylusContacts::may_touch(std::size_t s) const noexcept {
+  return state(s) != ContactState::kFree || styluses_[s].proxy.outside();
+}
+
+void StylusContacts::locate(std::size_t s, const Vector3& tip, ContactModel& model,
+                            ContactPatch& patch) noexcept {
+  Stylus& stylus = styluses_[s];
+  model.state = stylus.proxy.state();
+  model.slipping = stylus.proxy.contact().slipping();
+  SurfacePoint point = stylus.proxy.point();
+  if (model.state == ContactState::kFree) point = surface_.closest(tip).point;
+  stylus.mask.spread(point, patch);
+  if (model.state == ContactState::kHeld) {
+    model.place = stylus.proxy.offset() + mean(patch, [&](int i) { return rest_.node(i); });
+  } else {
+    const SmoothedSurface::Place place = stylus.felt.at(point);
+    model.normal = place.normal;
+    model.place = place.position;
+  }
+}
+
+bool StylusContacts::write_series(std::size_t s, const RigidMobility& mobility,
+                                  ContactModel& model) noexcept {
+  const Stylus& stylus = styluses_[s];
+  model.series.setZero();
+  const double stiffness = stylus.tip.coupling_stiffness;
+  if (stiffness > 0) model.series.diagonal().array() += 1.0 / stiffness;
+  if (!stylus.proxy.contact().releasing()) return true;
+  const double left = stylus.proxy.contact().hold_left(dt_, release_time_, 1);
+  if (left <= 0) return false;
+  const Vector3 arm = model.place + model.path[0];
+  model.series +=
+      release_compliance(left, model.response[0] + mobility.between(arm, arm) + model.series);
+  return true;
+}
+
+void StylusContacts::add_others(std::size_t s, const ContactProblem& problem, NodalForces& nodal,
+                                ContactModel& model) const noexcept {
+  for (int a = 0; first_ + a < problem.count(); ++a) {
+    const ContactConstraint& solved = problem.contact(first_ + a);
+    const int stylus = contacts_[static_cast<std::size_t>(a)].stylus;
+    if (solved.mode == ContactMode::kOpen || stylus == static_cast<int>(s)) continue;
+    const Vector3& force = styluses_[static_cast<std::size_t>(stylus)].last.average;
+    nodal.add(patch(a), force);
+    model.other_force += force;
+    model.other_torque += solved.arm.cross(force);
+  }
+}
+
+bool StylusContacts::locate_delayed(std::size_t s, const Vector3& tip, const Vector3& arm,
+                                    LateForce& entry) noexcept {
+  Stylus& stylus = styluses_[s];
+  const LastContact& last = stylus.last;
+  const std::uint64_t step = steps_ - 1 - static_cast<std::uint64_t>(entry.age);
+  Vector3 own = last.arm;
+  if (last.any && last.first_step <= step && step <= last.last_step) {
+    entry.point = last.point;
+  } else {
+    const SurfaceHit hit = surface_.closest(tip);
+    if (std::abs(hit.signed_distance) > kNearDelayed) return false;
+    entry.point = hit.point;
+    ContactPatch patch;
+    stylus.mask.spread(entry.point, patch);
+    own = mean(patch, [&](int i) { return rest_.node(i); });
+  }
+  entry.arm = accepted_arm(arm, own);
+  return true;
+}
+
+void StylusContacts::spread(std::size_t s, const SurfacePoint& point, const Vector3& force,
+                            NodalForces& nodal) noexcept {
+  ContactPatch patch;
+  styluses_[s].mask.spread(point, patch);
+  nodal.add(patch, force);
+}
+
+}  // namespace irdm

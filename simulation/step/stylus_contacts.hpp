@@ -1,0 +1,145 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/contact/contact_model.hpp"
+#include "common/contact/persistent_contact.hpp"
+#include "common/motion/free_motion.hpp"
+#include "common/motion/rigid_state_history.hpp"
+#include "simulation/collision/deformed_surface.hpp"
+#include "simulation/contact/pressure_mask.hpp"
+#include "simulation/contact/smoothed_surface.hpp"
+#include "simulation/engine/response_engine.hpp"
+#include "simulation/step/god_object.hpp"
+#include "simulation/step/nodal_forces.hpp"
+#include "simulation/step/simulation_config.hpp"
+#include "simulation/step/step_record.hpp"
+
+namespace irdm {
+
+/// The contacts of all styluses with one object, from step to step. One step is find(), predict(),
+/// pose(), after the solution solve_bridged(), write(), update(), and end_step(). Components in B
+/// where nothing else is said. Real-time safe after construction; one thread.
+class StylusContacts {
+ public:
+  /// Throws Error when a fingertip is too large for the surface.
+  /// @param dt of a step [s]  @param object its number in the scene
+  /// @param rest, surface of the object; they outlive this
+  StylusContacts(const SimulationConfig& config, double dt, int object, const RestSurface& rest,
+                 DeformedSurface& surface);
+
+  void reset() noexcept;
+
+  /// Decides which styluses are in contact in this step, and where.
+  void find(std::span<const StylusCommand> commands, const FreeMotion& motion) noexcept;
+  /// Where their places would be without force, and the elastic compliance between them.
+  void predict(ResponseEngine& engine) noexcept;
+  /// Writes them into the problem, from row `first` on; those of the floor come before.
+  void pose(std::span<const StylusCommand> commands, const FreeMotion& motion,
+            const Friction& friction, int first, ContactProblem& problem) noexcept;
+  /// What the contacts of bridges would do by themselves among the others' forces: that is how they
+  /// slip and end.
+  void solve_bridged(ContactProblem& problem) noexcept;
+  /// The contacts as they were solved; proxies in B.
+  void write(const ContactProblem& problem, ObjectRecord& record) noexcept;
+  /// How they go on into the next step.
+  void update(std::span<const StylusCommand> commands, const FreeMotion& motion,
+              const ContactProblem& problem) noexcept;
+  /// Adds their forces to those of the step, which ends here.
+  void end_step(const ContactProblem& problem, const Quaternion& halfway, NodalForces& nodal,
+                RigidStateHistory::Forces& forces) noexcept;
+
+  int count() const noexcept { return count_; }
+  const ContactPatch& patch(int a) const noexcept { return patches_[static_cast<std::size_t>(a)]; }
+  /// Largest displacement under a stylus by the end of the last step [m].
+  double displaced() const noexcept;
+
+  // Between steps, for the bridge of stylus s.
+  ContactState state(std::size_t s) const noexcept { return styluses_[s].proxy.state(); }
+  /// Whether a contact goes on, or may begin.
+  bool may_touch(std::size_t s) const noexcept;
+  /// State, place and normal of its contact, or of where one would begin; and the patch there.
+  /// @param tip in the coming step [m]
+  void locate(std::size_t s, const Vector3& tip, ContactModel& model, ContactPatch& patch) noexcept;
+  /// The compliance in series with the contact. False: what is left of a hold ends with this step.
+  /// @param mobility of the body; the model has place, path and response
+  bool write_series(std::size_t s, const RigidMobility& mobility, ContactModel& model) noexcept;
+  /// What the other styluses exert: averages, for were they taken as they are, two bridges would
+  /// answer each other's last answer, and shake a stiff object.
+  /// @param problem of the last step
+  void add_others(std::size_t s, const ContactProblem& problem, NodalForces& nodal,
+                  ContactModel& model) const noexcept;
+  /// Where a force acted `entry.age` steps before the last one: at the contact of then, or else at
+  /// the tip, if that is near the surface. Point and arm are written. False: neither.
+  /// @param tip in the coming step [m]  @param arm where the bridge says that it was [m]
+  bool locate_delayed(std::size_t s, const Vector3& tip, const Vector3& arm,
+                      LateForce& entry) noexcept;
+  /// Spreads a force [N] on the object over the nodes under the tip of stylus s.
+  void spread(std::size_t s, const SurfacePoint& point, const Vector3& force,
+              NodalForces& nodal) noexcept;
+
+ private:
+  /// The last contact of a stylus that had a force.
+  struct LastContact {
+    bool any = false;
+    std::uint64_t first_step = 0;  ///< of its steps
+    std::uint64_t last_step = 0;
+    SurfacePoint point;
+    Vector3 arm = Vector3::Zero();      ///< of its force [m]
+    Vector3 average = Vector3::Zero();  ///< of its force over the last while [N]
+  };
+  struct Stylus {
+    SimulationStylus tip;
+    PressureMask mask;
+    SmoothedSurface felt;  ///< the surface as it feels it
+    GodObject proxy = {};
+    ContactDisplacement displacement = {};  ///< of its contact's place
+    LastContact last = {};
+  };
+  /// A contact of this step.
+  struct Contact {
+    int stylus = 0;
+    bool given = false;
+    bool bridged = false;
+    bool lets_go = false;                ///< bridged, and by itself it would be open
+    ContactLaw law = ContactLaw::kHeld;  ///< of a bridged one, were it not
+    SurfacePoint point;
+    Vector3 arm = Vector3::Zero();        ///< r_a = X_a + h_a [m]
+    Vector3 free = Vector3::Zero();       ///< h_a [m]
+    Vector3 moved = Vector3::Zero();      ///< displacement of the place by the end of the step [m]
+    Vector3 arm_shift = Vector3::Zero();  ///< as ContactRecord::arm_shift
+    Vector3 normal = Vector3::Zero();     ///< of a touching one
+  };
+
+  Stylus& stylus_of(const Contact& contact) noexcept {
+    return styluses_[static_cast<std::size_t>(contact.stylus)];
+  }
+  bool find_contact(Stylus& stylus, const StylusCommand& command, const Vector3& tip) noexcept;
+  void apply_remote_contact(Stylus& stylus, const BridgedForce& bridged,
+                            const Vector3& tip) noexcept;
+  bool project_initial_contact(Stylus& stylus, const Vector3& tip) noexcept;
+  void pose_contact(Contact& contact, const StylusCommand& command, const FreeMotion& motion,
+                    const Friction& friction, int row, ContactProblem& problem) noexcept;
+  Vector3 accepted_arm(const Vector3& arm, const Vector3& own) const noexcept;
+
+  const RestSurface& rest_;
+  DeformedSurface& surface_;
+  double dt_;
+  double release_time_;
+  int object_;
+  double size_ = 0.0;  ///< largest distance of the surface from the centre of mass [m]
+  std::vector<Stylus> styluses_;
+  std::uint64_t steps_ = 0;  ///< made so far
+
+  // Of the step under way.
+  int count_ = 0;
+  int first_ = 0;  ///< row of the first of them in the problem
+  std::array<Contact, kMaxContacts> contacts_{};
+  std::array<ContactPatch, kMaxContacts> patches_{};  ///< of each contact, in a row for the engine
+  ContactMatrix elastic_;  ///< elastic compliance between the contacts, (3m, 3m) [m/N]
+};
+
+}  // namespace irdm

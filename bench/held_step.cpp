@@ -119,7 +119,8 @@ StepTimes eight_contacts(const std::shared_ptr<const Model>& model, int measured
       for (std::size_t i = 0; i < static_cast<std::size_t>(patch.count); ++i) {
         forces.push_back({patch.nodes[i], patch.weights[i] * problem.contact(a).force});
       }
-      engine->cache_nodes(std::span(patch.nodes).first(static_cast<std::size_t>(patch.count)));
+      engine->capabilities().caching->cache_nodes(
+          std::span(patch.nodes).first(static_cast<std::size_t>(patch.count)));
     }
     engine->advance(forces);
   };

@@ -40,8 +40,10 @@ Deformation::Deformation(const SimulationConfig& config, double tolerance) {
 
 void Deformation::advance(const StepRecord& record) {
   for (std::size_t i = 0; i < objects_.size(); ++i) {
-    if (objects_[i].has_inertial_loading)
-      objects_[i].engine->set_angular_velocity(record.object[i].spin);
+    InertialLoading* const loading = objects_[i].engine->capabilities().inertial_loading;
+    if (objects_[i].has_inertial_loading && loading != nullptr) {
+      loading->set_angular_velocity(record.object[i].spin);
+    }
     objects_[i].engine->advance(objects_[i].forces->of(record.object[i]));
   }
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include "simulation/engine/force_history.hpp"
 #include "simulation/engine/recursive_tail.hpp"
 #include "simulation/engine/response_engine.hpp"
@@ -14,9 +16,10 @@ class CompressedEngine final : public ResponseEngine {
   /// @param model holds a CompressedResponse
   explicit CompressedEngine(std::shared_ptr<const Model> model);
 
-  bool supports_inertial_loading() const noexcept override { return false; }
-  void set_angular_velocity(const Vector3& /*w*/) noexcept override {}
   Vector3 free_displacement(int node) const noexcept override;
+  double free_displacement_bound() const noexcept override {
+    return std::numeric_limits<double>::infinity();
+  }
   void predict(std::span<const ContactPatch> patches, std::span<Vector3> h,
                ContactMatrix& compliance) noexcept override;
   void predict_horizon(const ContactPatch& patch, std::span<const NodalForce> held,

@@ -11,13 +11,19 @@ namespace irdm {
 /// Works for any linear response, wherever it came from. What happened more than T steps ago is
 /// forgotten.
 template <typename Scalar>
-class DenseEngine final : public ResponseEngine {
+class DenseEngine final : public ResponseEngine,
+                          public InertialLoading,
+                          public GravityLoading,
+                          public PredictionCaching {
  public:
   /// @param model holds a DenseResponse of type Scalar
   explicit DenseEngine(std::shared_ptr<const Model> model);
 
-  bool supports_inertial_loading() const noexcept override { return spin_.any(); }
-  bool takes_gravity() const noexcept override { return gravity_.any(); }
+  EngineCapabilities capabilities() noexcept override {
+    return {.inertial_loading = spin_.any() ? this : nullptr,
+            .gravity = gravity_.any() ? this : nullptr,
+            .caching = this};
+  }
   void set_angular_velocity(const Vector3& w) noexcept override { spin_.hold(spin_products(w)); }
   void set_gravity(const Vector3& gravity) noexcept override { gravity_.set(gravity); }
   Vector3 free_displacement(int node) const noexcept override;

@@ -38,8 +38,9 @@ std::unique_ptr<ResponseEngine> make_engine(std::shared_ptr<const Model> model) 
 }
 
 void displacements(std::span<SurfaceRequest> requests) {
-  const auto shared = [](const SurfaceRequest& request) {
-    return request.engine->shared_surface();
+  const auto shared = [](const SurfaceRequest& request) -> const void* {
+    const auto* surface = dynamic_cast<const SharedSurface*>(request.engine);
+    return surface == nullptr ? nullptr : surface->shared_surface();
   };
   std::stable_sort(requests.begin(), requests.end(), [&](const auto& a, const auto& b) {
     return std::less<>()(shared(a), shared(b));
@@ -49,7 +50,14 @@ void displacements(std::span<SurfaceRequest> requests) {
     const auto other = std::find_if(requests.begin(), requests.end(),
                                     [&](const auto& request) { return shared(request) != what; });
     const auto count = static_cast<std::size_t>(other - requests.begin());
-    requests.front().engine->displacements(requests.first(count));
+    if (what == nullptr) {
+      for (const SurfaceRequest& one : requests.first(count)) {
+        one.engine->displacement(*one.u, one.tolerance);
+      }
+    } else {
+      dynamic_cast<const SharedSurface*>(requests.front().engine)
+          ->displacements(requests.first(count));
+    }
     requests = requests.subspan(count);
   }
 }

@@ -12,15 +12,21 @@ namespace irdm {
 /// once a step. No history is needed; contacts cost nothing after they end. Modes that the model
 /// leaves out answer without delay, as far as it says how (ResidualPart).
 template <typename Scalar>
-class ModalEngine final : public ResponseEngine {
+class ModalEngine final : public ResponseEngine,
+                          public InertialLoading,
+                          public GravityLoading,
+                          public MaterialDamping,
+                          public SharedSurface {
  public:
   /// @param model holds a ModalResponse with shapes of type Scalar
   explicit ModalEngine(std::shared_ptr<const Model> model);
 
-  bool supports_inertial_loading() const noexcept override { return centrifugal_ != nullptr; }
-  bool takes_gravity() const noexcept override { return gravity_.any(); }
+  EngineCapabilities capabilities() noexcept override {
+    return {.inertial_loading = centrifugal_ != nullptr ? this : nullptr,
+            .gravity = gravity_.any() ? this : nullptr,
+            .damping = this};
+  }
   void set_gravity(const Vector3& gravity) noexcept override;
-  bool takes_damping() const noexcept override { return true; }
   void scale_damping(double factor) noexcept override;
   void set_angular_velocity(const Vector3& w) noexcept override;
   Vector3 free_displacement(int node) const noexcept override;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <span>
 
@@ -27,52 +26,92 @@ struct SurfaceRequest {
   Points* u = nullptr;     ///< (n, 3), written [m]
 };
 
+/// The body's own spin loads it.
+class InertialLoading {
+ public:
+  virtual ~InertialLoading() = default;
+  /// The body turns with w [rad/s], B, throughout the coming step: its centrifugal load acts
+  /// besides the forces. Before all else that is asked about the step, at most once a step; without
+  /// it there is no such load. Real-time safe.
+  virtual void set_angular_velocity(const Vector3& w) noexcept = 0;
+};
+
+/// Gravity bends a fixed body, which it cannot move as a whole.
+class GravityLoading {
+ public:
+  virtual ~GravityLoading() = default;
+  /// From the coming step on gravity accelerates every part of the body, in magnitude and direction
+  /// [m/s^2], B; before all else that is asked about the step. It swings to where it is at rest
+  /// under that, or is there at once if there was no step since the start or the last reset(). At
+  /// the start there is none. Real-time safe.
+  virtual void set_gravity(const Vector3& gravity) noexcept = 0;
+};
+
+/// The damping of the material can be changed while it runs.
+class MaterialDamping {
+ public:
+  virtual ~MaterialDamping() = default;
+  /// From the coming step on the material's damping is `factor` > 0 times that of the model; before
+  /// all else that is asked about the step. Real-time safe.
+  virtual void scale_damping(double factor) noexcept = 0;
+};
+
+/// The columns of R come and go.
+class ColumnStreaming {
+ public:
+  virtual ~ColumnStreaming() = default;
+  /// Tips are here, and what they may touch soon is better fetched now; of one engine of a model
+  /// only. Real-time safe. @param tips at most kMaxStyluses [m], B
+  virtual void prefetch(std::span<const Vector3> tips) noexcept = 0;
+  /// Nodes that forces began to act on while their columns of R were not there.
+  virtual std::uint64_t missed_columns() const noexcept = 0;
+};
+
+/// What nodes will do can be kept ready from step to step.
+class PredictionCaching {
+ public:
+  virtual ~PredictionCaching() = default;
+  /// These nodes were asked for in the coming step, and may well be in the one after it. Before
+  /// advance(); any number of times. Real-time safe.
+  virtual void cache_nodes(std::span<const int> nodes) noexcept = 0;
+};
+
+/// The displacements of several engines are found together.
+class SharedSurface {
+ public:
+  virtual ~SharedSurface() = default;
+  /// What is read once for all engines that have the same.
+  virtual const void* shared_surface() const noexcept = 0;
+  /// ResponseEngine::displacement() of engines with one shared_surface(), to the bit. Uses OpenMP.
+  virtual void displacements(std::span<const SurfaceRequest> requests) const = 0;
+};
+
+/// What only some engines can do; null: this one cannot.
+struct EngineCapabilities {
+  InertialLoading* inertial_loading = nullptr;
+  GravityLoading* gravity = nullptr;
+  MaterialDamping* damping = nullptr;
+  ColumnStreaming* columns = nullptr;
+  PredictionCaching* caching = nullptr;
+};
+
 /// The elastic answer of one object to the history of forces on its surface nodes, equation (10):
 /// u[k] = sum_s R[s] f[k-s]. Everything is in B. An engine has one state and belongs to one thread;
 /// several engines may share the same model. All members but the constructor, displacement() and
-/// displacements() are real-time safe, and what they cost does not depend on the number of nodes.
+/// zero_lag_compliance() are real-time safe, and what they cost does not depend on the number of
+/// nodes.
 class ResponseEngine {
  public:
   virtual ~ResponseEngine() = default;
 
-  /// Whether the model says what its own spin does to it.
-  virtual bool supports_inertial_loading() const noexcept = 0;
-
-  /// The body turns with w [rad/s], B, throughout the coming step: its centrifugal load acts
-  /// besides the forces. Before all else that is asked about the step, at most once a step; without
-  /// it there is no such load. Only where supports_inertial_loading().
-  virtual void set_angular_velocity(const Vector3& w) noexcept = 0;
-
-  /// Whether the model says what gravity does to it: that of a fixed body, which gravity cannot
-  /// move as a whole.
-  virtual bool takes_gravity() const noexcept { return false; }
-
-  /// From the coming step on gravity accelerates every part of the body, in magnitude and direction
-  /// [m/s^2], B; before all else that is asked about the step. It swings to where it is at rest
-  /// under that, or is there at once if there was no step since the start or the last reset(). At
-  /// the start there is none. Only where takes_gravity().
-  virtual void set_gravity(const Vector3& /*gravity*/) noexcept {}
-
-  /// Whether the damping of its material can be changed while it runs.
-  virtual bool takes_damping() const noexcept { return false; }
-
-  /// From the coming step on the material's damping is `factor` > 0 times that of the model; before
-  /// all else that is asked about the step. Only where takes_damping().
-  virtual void scale_damping(double /*factor*/) noexcept {}
-
-  /// Tips are here, and what they may touch soon is better fetched now; of one engine of a model
-  /// only. @param tips at most kMaxStyluses [m], B
-  virtual void prefetch(std::span<const Vector3> /*tips*/) noexcept {}
-  /// Nodes that forces began to act on while their columns of R were not there.
-  virtual std::uint64_t missed_columns() const noexcept { return 0; }
+  /// As long as the engine lives.
+  virtual EngineCapabilities capabilities() noexcept { return {}; }
 
   /// Displacement of a node at the end of the coming step if no force acts during it [m].
   virtual Vector3 free_displacement(int node) const noexcept = 0;
   /// What no component of any node's is larger than in magnitude [m], where that takes no longer
   /// than a node or two; otherwise infinite.
-  virtual double free_displacement_bound() const noexcept {
-    return std::numeric_limits<double>::infinity();
-  }
+  virtual double free_displacement_bound() const noexcept = 0;
 
   /// For contacts a = 0..m-1 (m <= kMaxContacts): their mean free displacement h_a at the end of
   /// the coming step [m], and the compliance between them within it, the blocks sum_ij w_i w_j
@@ -91,10 +130,6 @@ class ResponseEngine {
   /// (0: the last one itself). @param age below kMaxHorizon; what is older is left out
   virtual void add_delayed_force(std::span<const NodalForce> forces, int age) noexcept = 0;
 
-  /// These nodes were asked for in the coming step, and may well be in the one after it: what they
-  /// will do may be kept ready. Before advance(); any number of times.
-  virtual void cache_nodes(std::span<const int> /*nodes*/) noexcept {}
-
   /// Ends the coming step with these forces held during it.
   virtual void advance(std::span<const NodalForce> forces) noexcept = 0;
 
@@ -103,16 +138,6 @@ class ResponseEngine {
   /// @param tolerance by how much each component may be off, so that less has to be read [m], >= 0
   virtual void displacement(Points& u, double tolerance) const = 0;
   void displacement(Points& u) const { displacement(u, 0.0); }
-
-  /// The same of several engines with one shared_surface(), to the bit: what they share is read
-  /// once for all of them. See displacements().
-  virtual void displacements(std::span<const SurfaceRequest> requests) const {
-    for (const SurfaceRequest& request : requests) {
-      request.engine->displacement(*request.u, request.tolerance);
-    }
-  }
-  /// What displacements() can read once for all engines that have the same; null: nothing.
-  virtual const void* shared_surface() const noexcept { return nullptr; }
 
   /// R[0], the displacement within the step of all nodes per force on each: (3n, 3n) [m/N]. Takes
   /// its time; not for the force thread.

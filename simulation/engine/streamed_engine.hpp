@@ -19,13 +19,21 @@ namespace irdm {
 /// vibration to the same lasting displacement. When the columns come, the node's answer goes over
 /// from the one to the other, both to all of its forces.
 template <typename Scalar>
-class StreamedEngine final : public ResponseEngine {
+class StreamedEngine final : public ResponseEngine,
+                             public InertialLoading,
+                             public GravityLoading,
+                             public ColumnStreaming,
+                             public PredictionCaching {
  public:
   /// @param model holds a StreamedResponse of type Scalar, with columns
   explicit StreamedEngine(std::shared_ptr<const Model> model);
 
-  bool supports_inertial_loading() const noexcept override { return spin_.any(); }
-  bool takes_gravity() const noexcept override { return gravity_.any(); }
+  EngineCapabilities capabilities() noexcept override {
+    return {.inertial_loading = spin_.any() ? this : nullptr,
+            .gravity = gravity_.any() ? this : nullptr,
+            .columns = this,
+            .caching = this};
+  }
   void set_angular_velocity(const Vector3& w) noexcept override { spin_.hold(spin_products(w)); }
   void set_gravity(const Vector3& gravity) noexcept override { gravity_.set(gravity); }
   void prefetch(std::span<const Vector3> tips) noexcept override {

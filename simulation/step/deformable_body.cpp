@@ -9,6 +9,7 @@ DeformableBody::DeformableBody(const SimulationObject& object, const Vector3& gr
     : object_(object),
       rigid_(model().body, model().dt),
       engine_(make_engine(object.model)),
+      capabilities_(engine_->capabilities()),
       inertial_loading_(has_inertial_loading(model(), object.inertial_loading)) {
   start_.position = object.position;
   start_.orientation = object.orientation.normalized();
@@ -40,7 +41,8 @@ void DeformableBody::begin_step(ObjectRecord& record) noexcept {
   state_ = past_.replay(rigid_, free_forces_, state_);
   record.start = state_;
   record.spin = inertial_loading_ ? rigid_.mid_step_spin(state_) : Vector3::Zero();
-  if (inertial_loading_) engine_->set_angular_velocity(record.spin);
+  InertialLoading* const loading = capabilities_.inertial_loading;
+  if (inertial_loading_ && loading != nullptr) loading->set_angular_velocity(record.spin);
   motion_ = next_motion();
   record.halfway = motion_.halfway;
 }

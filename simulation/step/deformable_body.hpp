@@ -41,6 +41,7 @@ class DeformableBody {
 
   const Model& model() const noexcept { return *object_.model; }
   ResponseEngine& engine() noexcept { return *engine_; }
+  const EngineCapabilities& capabilities() const noexcept { return capabilities_; }
   const ResponseEngine& engine() const noexcept { return *engine_; }
   const RigidBody& rigid() const noexcept { return rigid_; }
   /// At the end of the last step.
@@ -56,7 +57,8 @@ class DeformableBody {
   SimulationObject object_;
   RigidBody rigid_;
   std::unique_ptr<ResponseEngine> engine_;
-  double material_damping_ = 1.0;  ///< that the engine works with
+  EngineCapabilities capabilities_;  ///< of the engine
+  double material_damping_ = 1.0;    ///< that the engine works with
   bool inertial_loading_;
   FreeForces free_forces_;
   RigidState start_;

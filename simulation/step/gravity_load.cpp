@@ -4,8 +4,9 @@ namespace irdm {
 
 void follow_gravity(ResponseEngine& engine, const SimulationObject& object,
                     const Vector3& gravity) noexcept {
-  if (object.model->body.support == Support::kFloating || !engine.takes_gravity()) return;
-  engine.set_gravity(object.orientation.normalized().conjugate() * gravity);
+  GravityLoading* const loading = engine.capabilities().gravity;
+  if (object.model->body.support == Support::kFloating || loading == nullptr) return;
+  loading->set_gravity(object.orientation.normalized().conjugate() * gravity);
 }
 
 bool takes_gravity(const SimulationObject& object) {

@@ -48,7 +48,9 @@ void follow_settings(ResponseEngine& engine, const ObjectSettings& settings,
                      double& material_damping) noexcept {
   if (settings.material_damping == material_damping) return;
   material_damping = settings.material_damping;
-  engine.scale_damping(material_damping);
+  if (MaterialDamping* const damping = engine.capabilities().damping) {
+    damping->scale_damping(material_damping);
+  }
 }
 
 void check_settings(const SimulationConfig& config, const Settings& settings) {

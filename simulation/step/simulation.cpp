@@ -41,7 +41,7 @@ void Simulation::set(const Settings& settings) noexcept {
 
 std::uint64_t Simulation::missed_columns() const noexcept {
   std::uint64_t sum = 0;
-  for (const auto& object : objects_) sum += object->engine().missed_columns();
+  for (const auto& object : objects_) sum += object->missed_columns();
   return sum;
 }
 

@@ -58,13 +58,14 @@ void SoftObject::step(std::span<const StylusCommand> commands, ObjectRecord& rec
 }
 
 void SoftObject::prefetch_columns(std::span<const StylusCommand> commands) noexcept {
+  if (body_.capabilities().columns == nullptr) return;
   std::array<Vector3, kMaxStyluses> tips;
   std::size_t count = 0;
   for (const StylusCommand& command : commands) {
     if (!command.present || !command.tip.allFinite()) continue;
     tips[count++] = body_.motion().to_body(command.tip);
   }
-  body_.engine().prefetch({tips.data(), count});
+  body_.capabilities().columns->prefetch({tips.data(), count});
 }
 
 // Returns how many of them are the floor's.
@@ -137,10 +138,12 @@ void SoftObject::end_step(ObjectRecord& record) noexcept {
 
 // What this step looked at, the next one will look at again.
 void SoftObject::cache_nodes() noexcept {
-  body_.engine().cache_nodes(surface_.seen());
+  PredictionCaching* const caching = body_.capabilities().caching;
+  if (caching == nullptr) return;
+  caching->cache_nodes(surface_.seen());
   for (int a = 0; a < contacts_.count(); ++a) {
     const ContactPatch& patch = contacts_.patch(a);
-    body_.engine().cache_nodes(std::span(patch.nodes).first(static_cast<std::size_t>(patch.count)));
+    caching->cache_nodes(std::span(patch.nodes).first(static_cast<std::size_t>(patch.count)));
   }
 }
 

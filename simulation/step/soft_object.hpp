@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 
@@ -52,6 +53,11 @@ class SoftObject {
   const Model& model() const noexcept { return body_.model(); }
   const RigidState& state() const noexcept { return body_.state(); }
   const ResponseEngine& engine() const noexcept { return body_.engine(); }
+  /// Nodes that forces began to act on while their columns of R were not there, so far.
+  std::uint64_t missed_columns() const noexcept {
+    const ColumnStreaming* const columns = body_.capabilities().columns;
+    return columns == nullptr ? 0 : columns->missed_columns();
+  }
   const RestSurface& surface() const noexcept { return rest_; }
 
  private:

@@ -56,14 +56,16 @@ TEST_CASE("foresight: path and response are what stepping on brings") {
     const int nodes = cube->mesh.surface_node_count();
     const auto engine = make_engine(cube);
     for (const auto& forces : random_history(nodes, 40, 1)) engine->advance(forces);
-    if (engine->takes_damping()) engine->scale_damping(damping);
+    if (engine->capabilities().damping != nullptr)
+      engine->capabilities().damping->scale_damping(damping);
     const ContactPatch patch = some_patch();
     const std::vector<NodalForce> held{{2, Vector3(0.1, -0.2, 0.3)}, {9, Vector3(-0.4, 0, 0)}};
     std::vector<Vector3> path(kSteps);
     std::vector<Matrix3> response(kSteps);
     engine->predict_horizon(patch, held, path, response);
     const auto other = make_engine(cube);
-    if (other->takes_damping()) other->scale_damping(damping);
+    if (other->capabilities().damping != nullptr)
+      other->capabilities().damping->scale_damping(damping);
     for (int n = 0; n < kSteps; ++n) {
       engine->advance(held);
       const Points u = displacement(*engine);

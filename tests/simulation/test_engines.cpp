@@ -280,7 +280,9 @@ TEST_CASE("no node's free displacement is beyond its bound, where an engine know
     RandomContacts contacts(nodes);
     double largest_share = 0.0;
     for (int k = 0; k < 300; ++k) {
-      if (k > 100 && k < 150) engine->set_angular_velocity(Vector3(0.1 * (k - 100), 2.0, -1.0));
+      if (k > 100 && k < 150)
+        engine->capabilities().inertial_loading->set_angular_velocity(
+            Vector3(0.1 * (k - 100), 2.0, -1.0));
       double largest = 0.0;
       for (int node = 0; node < nodes; ++node) {
         largest = std::max(largest, engine->free_displacement(node).cwiseAbs().maxCoeff());
@@ -335,6 +337,8 @@ TEST_CASE("surfaces of several engines at once are those of each, to the bit") {
     }
   }
   omp_set_num_threads(omp_get_num_procs());
-  CHECK(engines[0]->shared_surface() == engines[3]->shared_surface());
-  CHECK(engines[0]->shared_surface() != engines[2]->shared_surface());
+  CHECK(dynamic_cast<const SharedSurface&>(*engines[0]).shared_surface() ==
+        dynamic_cast<const SharedSurface&>(*engines[3]).shared_surface());
+  CHECK(dynamic_cast<const SharedSurface&>(*engines[0]).shared_surface() !=
+        dynamic_cast<const SharedSurface&>(*engines[2]).shared_surface());
 }

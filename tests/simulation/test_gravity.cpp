@@ -193,7 +193,8 @@ TEST_CASE("gravity: both engines equal the direct sum over the gravity of every 
     if (k >= 23 && k < 35) now = Vector3(0.3 * k, -2, std::sin(0.5 * k));
     if (k >= 140) now.setZero();
     gravity.push_front(now);
-    for (const auto* engine : {&by_modes, &by_history}) (*engine)->set_gravity(now);
+    for (const auto* engine : {&by_modes, &by_history})
+      (*engine)->capabilities().gravity->set_gravity(now);
     const Vector3 free = by_modes->free_displacement(4);
     const Vector3 free_by_history = by_history->free_displacement(4);
     for (const auto* engine : {&by_modes, &by_history}) (*engine)->advance({});
@@ -222,8 +223,9 @@ TEST_CASE("gravity: set before the first step and after a reset nothing rings") 
   const Model without_rest = synthetic_fixed(false);
   for (const Model& model : {modal, with_dense_response<double>(without_rest)}) {
     const auto engine = make_engine(share(model));
-    engine->set_gravity(Vector3(1, 1, 1));
-    engine->set_gravity(kDown);  // no step between: as if the other had never been
+    engine->capabilities().gravity->set_gravity(Vector3(1, 1, 1));
+    engine->capabilities().gravity->set_gravity(
+        kDown);  // no step between: as if the other had never been
     const Points sag = displaced_surface_of(*engine);
     CHECK(sag.norm() > 0.0);
     double moved = 0.0;
@@ -233,7 +235,7 @@ TEST_CASE("gravity: set before the first step and after a reset nothing rings") 
     }
     CHECK(moved < 1e-13 * sag.norm());
     // It swings when it changes; where a reset comes before or after does not matter.
-    engine->set_gravity(2.0 * kDown);
+    engine->capabilities().gravity->set_gravity(2.0 * kDown);
     CHECK(largest_distance(displaced_surface_of(*engine), sag) < 1e-13 * sag.norm());
     engine->advance({});
     CHECK(largest_distance(displaced_surface_of(*engine), 2.0 * sag) > 1e-3 * sag.norm());
@@ -242,7 +244,7 @@ TEST_CASE("gravity: set before the first step and after a reset nothing rings") 
     CHECK(largest_distance(reset_last, 2.0 * sag) < 1e-13 * sag.norm());
     engine->advance({});
     engine->reset();
-    engine->set_gravity(kDown);
+    engine->capabilities().gravity->set_gravity(kDown);
     CHECK(displaced_surface_of(*engine) == sag);
     engine->advance({});
     CHECK(largest_distance(displaced_surface_of(*engine), sag) < 1e-13 * sag.norm());
@@ -256,7 +258,7 @@ TEST_CASE("gravity: no node's free displacement is beyond its bound, where an en
   for (int k = 0; k < 300; ++k) {
     const Vector3 gravity = k < 100 ? Vector3(0.1 * k, -9.81, 3.0) : Vector3::Zero();
     for (const auto* engine : {&modal, &dense}) {
-      (*engine)->set_gravity(gravity);
+      (*engine)->capabilities().gravity->set_gravity(gravity);
       double largest = 0.0;
       for (int node = 0; node < model.mesh.surface_node_count(); ++node) {
         largest = std::max(largest, (*engine)->free_displacement(node).cwiseAbs().maxCoeff());
@@ -274,9 +276,9 @@ TEST_CASE("gravity: path and prediction are what stepping on brings") {
   for (const Model& model : {synthetic_fixed(true), synthetic_fixed(false),
                              with_dense_response<double>(synthetic_fixed(false))}) {
     const auto engine = make_engine(share(model));
-    engine->set_gravity(kDown);
+    engine->capabilities().gravity->set_gravity(kDown);
     for (int k = 0; k < 30; ++k) engine->advance({});
-    if (changes) engine->set_gravity(Vector3(4, 2, -3));
+    if (changes) engine->capabilities().gravity->set_gravity(Vector3(4, 2, -3));
     ContactPatch patch;
     patch.add(3, 0.5);
     patch.add(7, 0.3);
@@ -305,10 +307,12 @@ TEST_CASE("gravity: a force that comes late acts as one in time") {
     const auto in_time = make_engine(share(model));
     const auto late = make_engine(share(model));
     const NodalForce force{5, Vector3(0.3, -0.1, 0.2)};
-    for (const auto* engine : {&in_time, &late}) (*engine)->set_gravity(kDown);
+    for (const auto* engine : {&in_time, &late})
+      (*engine)->capabilities().gravity->set_gravity(kDown);
     for (int k = 0; k < 20; ++k) {
       if (k == 12) {
-        for (const auto* engine : {&in_time, &late}) (*engine)->set_gravity(Vector3(1, 2, 3));
+        for (const auto* engine : {&in_time, &late})
+          (*engine)->capabilities().gravity->set_gravity(Vector3(1, 2, 3));
       }
       in_time->advance({&force, k == 10 ? 1U : 0U});
       late->advance({});

@@ -65,7 +65,7 @@ std::vector<SpinningState> let_go(const std::shared_ptr<const Model>& model, con
 Points turned_with(const std::shared_ptr<const Model>& model, const Vector3& w, int steps) {
   const auto engine = make_engine(model);
   for (int k = 0; k < steps; ++k) {
-    engine->set_angular_velocity(w);
+    engine->capabilities().inertial_loading->set_angular_velocity(w);
     engine->advance({});
   }
   Points u;
@@ -182,7 +182,7 @@ TEST_CASE("inertial loading: both engines equal the direct sum over the products
     loads.push_front(response.centrifugal * spin_products(w) +
                      shapes.middleRows(3 * force.node, 3).transpose() * force.force);
     for (const auto* engine : {&by_modes, &by_history}) {
-      (*engine)->set_angular_velocity(w);
+      (*engine)->capabilities().inertial_loading->set_angular_velocity(w);
       (*engine)->advance({&force, 1});
     }
     const Points all = direct(4 * kSteps);
@@ -200,7 +200,7 @@ TEST_CASE("inertial loading: the predicted displacement has the spin of the comi
   for (const Model& model : {modal, with_dense_response<double>(modal)}) {
     const auto engine = make_engine(share(model));
     for (int k = 0; k < 20; ++k) {
-      engine->set_angular_velocity(Vector3(1.0, -2.0, 0.1 * k));
+      engine->capabilities().inertial_loading->set_angular_velocity(Vector3(1.0, -2.0, 0.1 * k));
       const Vector3 free = engine->free_displacement(5);
       const ContactPatch patch(SurfacePoint{{5, 0, 1}, {1.0, 0.0, 0.0}});
       Vector3 h;
@@ -341,7 +341,7 @@ TEST_CASE("inertial loading: the surface is computed again from what was recorde
       deformation.follow(record);
       const Vector3 spin = body.mid_step_spin(before);
       worst = std::max(worst, (spin - object.spin).norm() / object.spin.norm());
-      engine->set_angular_velocity(spin);
+      engine->capabilities().inertial_loading->set_angular_velocity(spin);
       engine->advance(forces.of(object));
       before.orientation = object.orientation;
       before.angular_momentum = body.angular_momentum(object.orientation, object.angular_velocity);

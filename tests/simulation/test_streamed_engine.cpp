@@ -102,9 +102,9 @@ void check_equal(Model dense) {
       now = {{3, 0.2 * force}, {4, 0.7 * force}, {5, 0.1 * force}};
     }
     for (ResponseEngine* engine : {streamed.get(), whole.get()}) {
-      if (k % 80 < 3) engine->set_gravity(Vector3(0.5 * k, -9.81, k % 160));
-      engine->set_angular_velocity(Vector3(0.1, 0.2, 0.01 * k));
-      engine->cache_nodes(followed);
+      if (k % 80 < 3) engine->capabilities().gravity->set_gravity(Vector3(0.5 * k, -9.81, k % 160));
+      engine->capabilities().inertial_loading->set_angular_velocity(Vector3(0.1, 0.2, 0.01 * k));
+      engine->capabilities().caching->cache_nodes(followed);
       if (k % 40 == 39) engine->add_delayed_force(now, 3);
       engine->advance(now);
     }
@@ -118,10 +118,10 @@ void check_equal(Model dense) {
     CHECK(u == expected);
     check_same_answers(*streamed, *whole, k % 20);
   }
-  CHECK(streamed->missed_columns() == 0);
+  CHECK(streamed->capabilities().columns->missed_columns() == 0);
   for (ResponseEngine* engine : {streamed.get(), whole.get()}) {
     CHECK(std::isinf(engine->free_displacement_bound()));
-    engine->set_gravity(Vector3::Zero());
+    engine->capabilities().gravity->set_gravity(Vector3::Zero());
     for (int k = 0; k <= model.dense->steps; ++k) engine->advance({});
     CHECK(engine->free_displacement_bound() == 0.0);
   }
@@ -240,7 +240,7 @@ TEST_CASE("without columns a force is answered by R[0] at first and settles wher
     if (k > 0) REQUIRE((coming[k - 1] - left).cwiseAbs().maxCoeff() < 1e-6 * size);
   }
   CHECK(settled == Approx(1.0));
-  CHECK(streamed->missed_columns() == 2);
+  CHECK(streamed->capabilities().columns->missed_columns() == 2);
   streamed->reset();
   streamed->displacement(u);
   CHECK(u.isZero(0.0));
@@ -286,7 +286,7 @@ TEST_CASE(
   for (int i = 0; i < nodes; ++i) {
     CHECK(late->free_displacement(i) == whole->free_displacement(i));
   }
-  CHECK(late->missed_columns() == 1);
+  CHECK(late->capabilities().columns->missed_columns() == 1);
 }
 
 TEST_CASE(
@@ -297,7 +297,7 @@ TEST_CASE(
   model.supply->most = 8;
   auto engine = make_engine(model.streamed);
   const std::array<Vector3, 2> tips{Vector3::Zero(), Vector3::Ones()};
-  engine->prefetch(tips);
+  engine->capabilities().columns->prefetch(tips);
   CHECK(model.supply->tips() == 2);
   WanderingForces forces(model.dense->mesh.surface_node_count());
   int most = 0;
@@ -308,7 +308,7 @@ TEST_CASE(
     if (k % 50 == 0) check_same_answers(*engine, *engine, k % 20);
   }
   CHECK(most == 8);
-  CHECK(engine->missed_columns() > 0);
+  CHECK(engine->capabilities().columns->missed_columns() > 0);
   const std::array<NodalForce, 1> force{NodalForce{2, Vector3::Ones()}};
   engine->reset();
   CHECK(model.supply->taken() == 0);

@@ -19,8 +19,6 @@ class FakeEngine final : public ResponseEngine {
   FakeEngine(const ModelMesh& mesh, const Field& field) {
     for (int i = 0; i < mesh.surface_node_count(); ++i) u_.push_back(field(mesh.rest_position(i)));
   }
-  bool supports_inertial_loading() const noexcept override { return false; }
-  void set_angular_velocity(const Vector3&) noexcept override {}
   Vector3 free_displacement(int node) const noexcept override {
     ++evaluations;
     return u_[static_cast<std::size_t>(node)];

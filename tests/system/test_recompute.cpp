@@ -374,7 +374,7 @@ TEST_CASE("the touched point's place is recomputed from a trace, inertial loadin
     for (std::size_t i = 0; i < 3 && !free; ++i) {
       nodal.push_back({point.nodes[i], point.weights[i] * force});
     }
-    with->set_angular_velocity(held_spin(before, *model));
+    with->capabilities().inertial_loading->set_angular_velocity(held_spin(before, *model));
     with->advance(nodal);
     without->advance(nodal);
     if (free) continue;

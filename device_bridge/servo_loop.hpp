@@ -23,6 +23,7 @@ struct DeviceMapping {
 /// One stylus of the servo loop: device (D) through workspace and clutch to sample (W), and force
 /// (W) through workspace, clutch and safety filter to device (D). Knows no thread, clock or socket;
 /// nothing in it allocates or throws.
+/// Large: each stage between device and sample is a member; the order among them is this class.
 class ServoLoop {
  public:
   /// @param limits of the force at the device

@@ -45,6 +45,7 @@ struct ServoReport {
 /// server's simulated clock. Where a device has a tick source, there is no thread of ours: the
 /// ticks of all devices are that source's. Until the first session is welcomed the devices rest
 /// where they begin, without force. When it ends in real time, the force fades first.
+/// Large: each private method is one phase or one duty of a tick, of one thread.
 class ServoThread {
  public:
   /// @param loops one for each stylus of the link, opened devices; used by the thread until stop()

@@ -25,13 +25,14 @@ def tracked(*patterns):
 
 
 def bodies(text):
-    """Name and text of each class or struct that is defined at any depth."""
+    """Name and text of each class or struct that is defined at any depth, and whether its comment says why it is large."""
     for match in re.finditer(r"\b(?:class|struct) (\w+)[^;{()]*\{", text):
+        comment = re.search(r"(?:^ *//[^\n]*\n)*(?:^ *template[^\n]*\n)?[^\n]*\Z", text[: match.start()], re.M)
         depth, end = 1, match.end()
         while depth and end < len(text):
             depth += {"{": 1, "}": -1}.get(text[end], 0)
             end += 1
-        yield match.group(1), text[match.end() : end - 1]
+        yield match.group(1), text[match.end() : end - 1], "/// Large: " in comment.group()
 
 
 def outer(body):
@@ -59,10 +60,11 @@ def main():
     for path in sources:
         if path.suffix != ".hpp":
             continue
-        for name, body in bodies(path.read_text()):
+        for name, body, argued in bodies(path.read_text()):
             members, methods = counted(body)
             if members > MOST_MEMBERS or methods > MOST_METHODS:
-                print(f"  {path.relative_to(ROOT)}: {name}: {members} data members, {methods} private methods")
+                print(f"  {path.relative_to(ROOT)}: {name}: {members} data members, {methods} private methods"
+                      + ("" if argued else "; its comment does not say why"))
     pages = tracked("docs/*.md")
     words = {path: len(re.findall(r"\S*\w\S*", path.read_text())) for path in [*pages, ROOT / "README.md", ROOT / "CHANGELOG.md"]}
     print(f"documents: docs {sum(words[page] for page in pages)} words in {len(pages)} pages,",

@@ -31,6 +31,7 @@ struct TraceHeader {
 };
 
 /// Writes the trace file of one run (HDF5, format "irdm-trace", docs/files.md). One thread.
+/// Large: one private method for each group of datasets.
 class TraceWriter {
  public:
   /// Makes the file; one that exists is not overwritten. Throws Error, and leaves no file then.

@@ -123,6 +123,8 @@ struct SolverLimits {
 /// Between sweeps the forces go on along conjugate directions (nonsmooth nonlinear conjugate
 /// gradients, Silcowitz-Hansen et al. 2010), without which many contacts of a stiff body converge
 /// slowly. Bounded, real-time safe, no exceptions.
+/// Large: the private methods are the pieces of one sweep, and all of them work on the same
+/// iterate.
 class ContactSolver {
  public:
   explicit ContactSolver(int capacity);

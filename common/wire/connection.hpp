@@ -23,6 +23,8 @@ namespace irdm::wire {
 /// Control messages go out in order and all of them; of the messages of one stream (a stylus, say)
 /// only the newest goes out when the peer or the network cannot keep up. Beside it those messages
 /// may go by datagrams. It knows no time-out: its owner looks at the ages.
+/// Large: one state machine from handshake to close; its members are what both directions need to
+/// go on.
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
   /// Called on the thread of the io_context; what they refer to must live until `closed` returns.

@@ -20,6 +20,8 @@ namespace irdm {
 /// for what is held or sticks; a touching contact only pushes, inside its friction cone. During
 /// steps of which nothing is known the object may come anywhere about the tip: a contact of before
 /// then comes back softly, and is whole after kReturn. Pure, real-time safe, one thread.
+/// Large: what it knows of a contact has a meaning on the newest model only, so every piece needs
+/// that.
 class ContactPredictor {
  public:
   static constexpr double kReturn = 0.5;  ///< [s]

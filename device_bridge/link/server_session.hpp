@@ -29,6 +29,8 @@ struct SessionEnd {
 
 /// One connection to the server, from Hello to close: samples out, forces in, time limits. Network
 /// thread only.
+/// Large: the states of one protocol with their time limits; each private method is one message or
+/// limit.
 class ServerSession {
  public:
   /// What all sessions share; outlives them.

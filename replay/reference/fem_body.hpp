@@ -23,6 +23,8 @@ int fem_parts(double dt, double longest);
 /// damping, tether, the couple of a contact's offset) is a field of accelerations here that moves
 /// the mesh as a rigid body, taken in by half kicks before and after each sub-step (Strang: second
 /// order, as the rule itself). A sub-step that cannot be solved is made in halves.
+/// Large: it shares nothing with the force step that it checks, so mesh, motion, contacts and
+/// solver are all here.
 class FemBody final : public ForcedBody {
  public:
   /// Throws Error when the object does not float.

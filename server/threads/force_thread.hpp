@@ -46,6 +46,8 @@ struct ForceHealth {
 
 /// Takes the newest stylus samples, makes the force step and hands on what came of it, once for
 /// every go of the clock. Neither allocates, locks, throws, logs nor touches files while it runs.
+/// Large: most members are hand-overs to other threads and counts; the step itself is in
+/// Simulation.
 class ForceThread {
  public:
   /// All of these must outlive the thread. @param steps how many to make; 0: until the clock stops

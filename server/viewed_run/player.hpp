@@ -29,6 +29,7 @@ struct PlayerStatus {
 /// Shows recorded runs: computes every surface again from the forces of the trace, as the
 /// deformation thread does from those of a live run. A thread of its own under normal scheduling;
 /// the requests are made by one other thread and wait for nothing.
+/// Large: the state of a playback and the hand-over of each request, between two threads.
 class Player {
  public:
   /// @param names of the objects

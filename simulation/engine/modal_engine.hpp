@@ -11,6 +11,7 @@ namespace irdm {
 /// R in modal form: every mode is a damped oscillator whose exact held-force transition is applied
 /// once a step. No history is needed; contacts cost nothing after they end. Modes that the model
 /// leaves out answer without delay, as far as it says how (ResidualPart).
+/// Large: one array for each coefficient of a mode, so that loops over modes run along memory.
 template <typename Scalar>
 class ModalEngine final : public ResponseEngine,
                           public InertialLoading,

@@ -1,5 +1,7 @@
 #include "simulation/engine/dense_engine.hpp"
 
+#include <limits>
+
 #include "simulation/engine/patch_response.hpp"
 
 namespace irdm {
@@ -38,7 +40,7 @@ Vector3 DenseEngine<Scalar>::free_displacement(int node) const noexcept {
 template <typename Scalar>
 double DenseEngine<Scalar>::free_displacement_bound() const noexcept {
   const bool at_rest = past_.history().active().empty() && spin_.at_rest() && gravity_.steady();
-  return at_rest ? gravity_.sag_bound() : ResponseEngine::free_displacement_bound();
+  return at_rest ? gravity_.sag_bound() : std::numeric_limits<double>::infinity();
 }
 
 template <typename Scalar>

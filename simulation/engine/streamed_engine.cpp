@@ -1,6 +1,7 @@
 #include "simulation/engine/streamed_engine.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "simulation/engine/kernels.hpp"
 #include "simulation/engine/nonzero_intervals.hpp"
@@ -106,7 +107,7 @@ Vector3 StreamedEngine<Scalar>::free_displacement(int node) const noexcept {
 template <typename Scalar>
 double StreamedEngine<Scalar>::free_displacement_bound() const noexcept {
   const bool at_rest = past_.history().active().empty() && spin_.at_rest() && gravity_.steady();
-  return at_rest ? gravity_.sag_bound() : ResponseEngine::free_displacement_bound();
+  return at_rest ? gravity_.sag_bound() : std::numeric_limits<double>::infinity();
 }
 
 template <typename Scalar>

@@ -38,10 +38,12 @@ if(IRDM_SANITIZE)
   endif()
 endif()
 
-# Headers that most files of a target need, read once: saves half of the time to compile. Not in the preset `debug`:
-# there every file has to name what it needs.
+# Headers that most files of a target need, read once: saves half of the time to compile where there are several unity
+# batches. Not in the preset `debug`: there every file has to name what it needs.
 function(irdm_precompile name)
-  if(IRDM_PRECOMPILE)
+  get_target_property(sources ${name} SOURCES)
+  list(LENGTH sources count)
+  if(IRDM_PRECOMPILE AND count GREATER 24)
     target_precompile_headers(${name} PRIVATE ${ARGN})
   endif()
 endfunction()

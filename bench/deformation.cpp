@@ -168,9 +168,6 @@ int main(int, char** argv) {
     measure(report, memory, dense_frames<float>("dense, single", cells));
   }
   for (const int cells : {12, 24}) {
-    measure(report, memory, dense_frames<Half>("dense, half", cells));
-  }
-  for (const int cells : {12, 24}) {
     measure(report, memory, modal_frames<float>("modal, single", cells, 4050));
   }
   for (const int cells : {12, 24}) {

@@ -75,7 +75,6 @@ int main(int argc, char** argv) {
           modal(cells, all_modes(cells)));
     }
     add("dense, single", gigabytes(nodes, sizeof(float)), dense<float>(cells, 1));
-    add("dense, half", gigabytes(nodes, sizeof(Half)), dense<Half>(cells, 1));
   }
   constexpr int kPaper = 12;
   constexpr int kNodes = 6 * kPaper * kPaper + 2;
@@ -88,8 +87,6 @@ int main(int argc, char** argv) {
             measure(modal(kPaper, all_modes(kPaper))));
     add_row(report, "dense, single", kPaper, gigabytes(kNodes, sizeof(float)),
             measure(dense<float>(kPaper, points)));
-    add_row(report, "dense, half", kPaper, gigabytes(kNodes, sizeof(Half)),
-            measure(dense<Half>(kPaper, points)));
   };
   measure_several("force step, four held contacts, paper's cube", 4,
                   [](const auto& model) { return bench::held_steps(model, 4, kMeasured); });

@@ -30,8 +30,8 @@ std::string instruction_sets() {
   std::istringstream flags(cpu_line("flags"));
   std::string sets;
   for (std::string flag; flags >> flag;) {
-    for (const char* wanted : {"sse4_2", "avx", "avx2", "fma", "f16c", "avx512f", "avx512bw",
-                               "avx512vl", "avx512_fp16", "asimd", "sve"}) {
+    for (const char* wanted : {"sse4_2", "avx", "avx2", "fma", "avx512f", "avx512bw", "avx512vl",
+                               "avx512_fp16", "asimd", "sve"}) {
       if (flag == wanted) sets += (sets.empty() ? "\"" : ", \"") + flag + "\"";
     }
   }

@@ -66,19 +66,12 @@ DenseResponse sparse_resident(int degrees_of_freedom, int steps, const std::vect
   const auto dof = static_cast<std::size_t>(degrees_of_freedom);
   const auto count = static_cast<std::size_t>(steps);
   std::vector<Scalar> values = sparse_numbers<Scalar>(dof * dof * count);
-  const auto stored = [](double value) {
-    if constexpr (std::is_same_v<Scalar, Half>) {
-      return to_half(static_cast<float>(value));
-    } else {
-      return static_cast<Scalar>(value);
-    }
-  };
   std::vector<Scalar> self(count);
   std::vector<Scalar> other(count);
   for (std::size_t s = 0; s < count; ++s) {
     const double left = std::exp(-0.01 * static_cast<double>(s));
-    self[s] = stored(left);
-    other[s] = stored(1e-3 * left);
+    self[s] = static_cast<Scalar>(1e-3 * left);
+    other[s] = static_cast<Scalar>(1e-6 * left);
   }
   for (const int node : nodes) {
     for (std::size_t b = 3 * static_cast<std::size_t>(node);
@@ -89,14 +82,10 @@ DenseResponse sparse_resident(int degrees_of_freedom, int steps, const std::vect
       }
     }
   }
-  DenseResponse response{degrees_of_freedom, steps, std::move(values)};
-  response.scales.assign(dof, 1e-3);
-  return response;
+  return {degrees_of_freedom, steps, std::move(values)};
 }
 
 template std::vector<float> sparse_numbers(std::size_t);
-template std::vector<Half> sparse_numbers(std::size_t);
 template DenseResponse sparse_resident<float>(int, int, const std::vector<int>&);
-template DenseResponse sparse_resident<Half>(int, int, const std::vector<int>&);
 
 }  // namespace irdm::bench

@@ -57,7 +57,7 @@ set(CPACK_DEBIAN_RUNTIME_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_DEPENDS tetgen)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_RECOMMENDS "gmsh, python3-h5py, python3-matplotlib")
-set(CPACK_DEBIAN_RUNTIME_PACKAGE_SUGGESTS "bash-completion, chromium, ffmpeg, hdf5-filter-plugin-zfp-serial")
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_SUGGESTS "bash-completion, chromium, ffmpeg")
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_CONTROL_EXTRA ${files}/postinst ${files}/prerm ${files}/postrm)
 
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION

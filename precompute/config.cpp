@@ -70,14 +70,15 @@ Material read_material(TomlTable table) {
   return material;
 }
 
-double read_compression(TomlTable& table) {
-  if (table.choice("compression", {"none", "zfp"}, "none") == "zfp") {
-    return table.number("compression_error", between(1e-9, 0.1), 1e-5);
+// The place of half precision and zfp is taken by the compressed form.
+void refuse_removed_forms(TomlTable& table) {
+  const std::string remedy = "irdm-precompute compress makes dense R small";
+  for (const char* key : {"compression", "compression_error"}) {
+    if (table.has(key)) table.fail(key, "is not a key any more", "leave it out; " + remedy);
   }
-  if (table.has("compression_error")) {
-    table.fail("compression_error", "is there without compression", "set compression = \"zfp\"");
+  if (table.text("precision", "single") == "half") {
+    table.fail("precision", "is 'half', which there is not any more", "use \"single\"; " + remedy);
   }
-  return 0.0;
 }
 
 ResponseConfig read_response(TomlTable table) {
@@ -87,14 +88,9 @@ ResponseConfig read_response(TomlTable table) {
   response.method = method_from_word(table.choice("method", {"modal", "time-stepping"}, "modal"));
   response.storage =
       storage_from_word(table.choice("storage", {"modal", "dense", "both"}, "modal"));
-  const std::string precision = table.choice("precision", {"half", "single", "double"}, "single");
+  refuse_removed_forms(table);
+  const std::string precision = table.choice("precision", {"single", "double"}, "single");
   response.precision = precision == "double" ? Precision::kDouble : Precision::kSingle;
-  response.half = precision == "half";
-  response.compression_error = read_compression(table);
-  if (response.half && response.compression_error > 0.0) {
-    table.fail("precision", "is \"half\", which zfp does not compress",
-               "leave compression out or use precision = \"single\"");
-  }
   table.choice("support", {"floating", "fixed"}, "floating");  // see read_support
   table.finish();
   return response;

@@ -42,18 +42,11 @@ enum class Storage { kModal, kDense, kBoth };
 
 /// [response]
 struct ResponseConfig {
-  double dt = 0.002;                  ///< response interval [s], lab::kStepTime
-  int steps = 500;                    ///< T, 1..1 000 000
-  Method method = Method::kModal;     ///< "modal" | "time-stepping"
-  Storage storage = Storage::kModal;  ///< "modal" | "dense" | "both"
-  /// Of stored numbers of R: "single" | "double" | "half", the latter with `half` set, all else
-  /// being done in single precision.
-  Precision precision = Precision::kSingle;
-  bool half = false;
-  /// Error that compression of dense R may make, as a share of the largest |R[s](b, b)| over all b
-  /// and s, 1e-9..0.1; 0: none. `compression = "none" | "zfp"`, "none" unless given, and with "zfp"
-  /// `compression_error`, 1e-5 unless given.
-  double compression_error = 0.0;
+  double dt = 0.002;                         ///< response interval [s], lab::kStepTime
+  int steps = 500;                           ///< T, 1..1 000 000
+  Method method = Method::kModal;            ///< "modal" | "time-stepping"
+  Storage storage = Storage::kModal;         ///< "modal" | "dense" | "both"
+  Precision precision = Precision::kSingle;  ///< of stored numbers of R: "single" | "double"
 };
 
 /// A configuration file of irdm-precompute.

@@ -118,7 +118,6 @@ void check_modes(const PrecomputeConfig& config) {
 // Says early that the work cannot be done here, instead of dying of it later.
 void check_resources(const PrecomputeConfig& config, const TetMesh& mesh, const Model& model,
                      int columns, const std::filesystem::path& output) {
-  check_compression(config.response.compression_error, output);
   const double memory =
       static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
   const Eigen::Index unknowns = 3 * static_cast<Eigen::Index>(mesh.node_count());
@@ -134,10 +133,9 @@ void check_resources(const PrecomputeConfig& config, const TetMesh& mesh, const 
                     " nodes); of a surface, with a larger mesh.edge_length");
   }
   if (config.response.storage == Storage::kModal) return;
-  const double size = static_cast<double>(columns) * model.degrees_of_freedom() * model.steps *
-                      (config.response.half                              ? sizeof(Half)
-                       : config.response.precision == Precision::kSingle ? sizeof(float)
-                                                                         : sizeof(double));
+  const double size =
+      static_cast<double>(columns) * model.degrees_of_freedom() * model.steps *
+      (config.response.precision == Precision::kSingle ? sizeof(float) : sizeof(double));
   std::error_code error;
   const auto space = std::filesystem::space(std::filesystem::absolute(output).parent_path(), error);
   if (!error && static_cast<double>(space.available) < size) {
@@ -155,9 +153,7 @@ ColumnFileHeader column_header(const PrecomputeConfig& config, const Model& mode
           model.degrees_of_freedom(),
           model.steps,
           config.response.precision,
-          config.response.compression_error,
           source.has_centrifugal(),
-          config.response.half,
           source.has_gravity(),
           settings_text(config, clamped),
           description_of(model)};

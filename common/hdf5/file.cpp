@@ -7,7 +7,6 @@
 #include <system_error>
 
 #include "common/error.hpp"
-#include "common/half.hpp"
 
 namespace irdm::hdf5 {
 
@@ -34,19 +33,6 @@ hid_t native_type<std::uint8_t>() {
 template <>
 hid_t native_type<std::uint64_t>() {
   return H5T_NATIVE_UINT64;
-}
-
-// IEEE 754 binary16, which HDF5 1.10 has no name for.
-template <>
-hid_t native_type<Half>() {
-  static const hid_t type = [] {
-    const hid_t half = H5Tcopy(H5T_NATIVE_FLOAT);
-    H5Tset_fields(half, 15, 10, 5, 0, 10);
-    H5Tset_size(half, 2);
-    H5Tset_ebias(half, 15);
-    return half;
-  }();
-  return type;
 }
 
 namespace {
@@ -367,17 +353,25 @@ std::size_t File::element_size(const std::string& dataset) const {
 
 template <typename T>
 void File::create_dataset(const std::string& dataset, const Shape& shape, const Layout& layout) {
-  make_dataset(dataset, native_type<T>(), make_space(shape).get(),
-               dataset_properties(layout, name_));
+  make_dataset(dataset, native_type<T>(), make_space(shape).get(), dataset_properties(layout));
 }
 
 template <typename T>
 void File::write(const std::string& dataset, const Shape& shape, const T* values) {
-  const Handle set = make_dataset(dataset, native_type<T>(), make_space(shape).get(),
-                                  dataset_properties({}, name_));
+  const Handle set =
+      make_dataset(dataset, native_type<T>(), make_space(shape).get(), dataset_properties({}));
   if (H5Dwrite(set.get(), native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0) {
     fail_write("cannot write " + dataset);
   }
+}
+
+bool File::has_filter(const std::string& dataset, H5Z_filter_t filter) const {
+  const Handle set = open_dataset(dataset);
+  const Handle creation(H5Dget_create_plist(set.get()), H5Pclose);
+  unsigned int flags = 0;
+  std::size_t values = 0;
+  return H5Pget_filter_by_id2(creation.get(), filter, &flags, &values, nullptr, 0, nullptr,
+                              nullptr) >= 0;
 }
 
 bool File::stores_integers(const std::string& dataset) const {
@@ -400,7 +394,6 @@ std::vector<T> File::read(const std::string& dataset, const Shape& expected) con
   std::vector<T> values(product(found));
   const Handle set = open_dataset(dataset);
   if (H5Dread(set.get(), native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) {
-    check_filters(set, name_, dataset);
     fail_read("dataset " + dataset + " cannot be read");
   }
   return values;
@@ -422,7 +415,6 @@ void File::transfer_slab(const std::string& dataset, const Shape& start, const S
       fail_write("cannot write into " + dataset);
     }
   } else if (H5Dread(set.get(), type, memory.get(), space.get(), H5P_DEFAULT, target) < 0) {
-    check_filters(set, name_, dataset);
     fail_read("dataset " + dataset + " cannot be read, or its checksum is wrong");
   }
 }
@@ -449,7 +441,7 @@ void File::create_growing(const std::string& dataset, const Shape& row, hsize_t 
     maximum.push_back(extent);
     chunk.push_back(extent);
   }
-  const Handle creation = dataset_properties({.chunk = chunk}, name_);
+  const Handle creation = dataset_properties({.chunk = chunk});
   // All that a dataset takes in the file it takes when it is extended.
   H5Pset_alloc_time(creation.get(), H5D_ALLOC_TIME_EARLY);
   make_dataset(dataset, native_type<T>(), make_space(shape, maximum.data()).get(), creation);
@@ -489,7 +481,6 @@ void File::append(const std::string& dataset, hsize_t rows, const T* values) {
   template void File::append<T>(const std::string&, hsize_t, const T*);
 IRDM_HDF5_INSTANTIATE(double)
 IRDM_HDF5_INSTANTIATE(float)
-IRDM_HDF5_INSTANTIATE(Half)
 IRDM_HDF5_INSTANTIATE(std::int16_t)
 IRDM_HDF5_INSTANTIATE(std::int32_t)
 IRDM_HDF5_INSTANTIATE(std::uint8_t)

@@ -19,7 +19,7 @@
 /// each process calls it from one thread at a time (library_lock.hpp).
 namespace irdm::hdf5 {
 
-/// HDF5's name for a C++ number type: double, float, Half, std::int16_t, std::int32_t, std::uint8_t
+/// HDF5's name for a C++ number type: double, float, std::int16_t, std::int32_t, std::uint8_t
 /// or std::uint64_t.
 template <typename T>
 hid_t native_type();
@@ -77,8 +77,10 @@ class File {
   Shape stored_shape(const std::string& dataset) const;
   /// Whether its numbers are integers in the file.
   bool stores_integers(const std::string& dataset) const;
-  /// Bytes of one floating-point number of the dataset in the file: 2, 4 or 8.
+  /// Bytes of one number of the dataset in the file.
   std::size_t element_size(const std::string& dataset) const;
+  /// Whether its chunks go through a filter of HDF5.
+  bool has_filter(const std::string& dataset, H5Z_filter_t filter) const;
 
   template <typename T>
   void write(const std::string& dataset, const Shape& shape, const T* values);
@@ -86,8 +88,7 @@ class File {
   template <typename T>
   std::vector<T> read(const std::string& dataset, const Shape& expected) const;
 
-  /// Makes a dataset of fixed shape without data, to be filled by write_slab. Throws Error when a
-  /// filter of the layout is missing.
+  /// Makes a dataset of fixed shape without data, to be filled by write_slab.
   template <typename T>
   void create_dataset(const std::string& dataset, const Shape& shape, const Layout& layout = {});
   /// Writes or reads the box [start, start + count) of a dataset.

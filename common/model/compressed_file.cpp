@@ -66,7 +66,7 @@ void check_own_responses(const hdf5::File& file, const CompressedResponse& respo
       for (int b = 0; b < 3; ++b) {
         sum(a, b) = with_early(response, i, a, i, b, [&](const auto* numbers, double scale) {
           double total = 0.0;
-          for (int s = 0; s < response.fir_steps; ++s) total += to_double(numbers[s]);
+          for (int s = 0; s < response.fir_steps; ++s) total += static_cast<double>(numbers[s]);
           return scale * total;
         });
       }

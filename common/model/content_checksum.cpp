@@ -77,7 +77,6 @@ std::string content_checksum(const hdf5::File& file) {
   add_dataset<double>(sha, file, "/response/modal/decay_rate");
   add_reals(sha, file, "/response/modal/shapes");
   add_dataset<double>(sha, file, kModalCentrifugal);
-  add_dataset<double>(sha, file, kDenseScale);
   add_reals(sha, file, kDenseCentrifugal);
   add_dataset<double>(sha, file, kModalGravity);
   add_dataset<double>(sha, file, kModalGravityRest);

@@ -8,8 +8,8 @@ namespace {
 
 constexpr int kDegreesOfFreedom = 16;
 constexpr int kSteps = 32;
-/// Of R(a, b) less R(b, a), as a share of the largest R(b, b): what stepping in time and 16 bits
-/// leave is far below.
+/// Of R(a, b) less R(b, a), as a share of the largest R(b, b): what stepping in time leaves is
+/// far below.
 constexpr double kDenseAsymmetry = 0.02;
 
 // Evenly spread over [0, count).
@@ -37,9 +37,9 @@ DenseSamples::DenseSamples(int degrees_of_freedom, int steps)
 }
 
 template <typename Scalar>
-void DenseSamples::add(int b, const Scalar* column, double scale) {
+void DenseSamples::add(int b, const Scalar* column) {
   const auto at = [&](int s, int a) {
-    return scale * to_double(column[static_cast<std::ptrdiff_t>(s) * degrees_of_freedom_ + a]);
+    return static_cast<double>(column[static_cast<std::ptrdiff_t>(s) * degrees_of_freedom_ + a]);
   };
   auto& peak = peak_[static_cast<std::size_t>(b)];
   auto& sum = sum_[static_cast<std::size_t>(b)];
@@ -59,21 +59,19 @@ void DenseSamples::add(int b, const Scalar* column, double scale) {
   }
 }
 
-std::optional<std::string> DenseSamples::fault(double error) const {
+std::optional<std::string> DenseSamples::fault() const {
   const double largest = *std::ranges::max_element(peak_);
   for (std::size_t b = 0; b < peak_.size(); ++b) {
-    if (sum_[b] > 0.0 || peak_[b] <= error * largest) continue;
+    if (sum_[b] > 0.0 || peak_[b] <= 0.0) continue;
     return "gives way against the force on degree of freedom " + std::to_string(b);
   }
-  // Each of the two may be off.
-  if (!((columns_ - rows_).cwiseAbs().maxCoeff() <= (2.0 * error + kDenseAsymmetry) * largest)) {
+  if (!((columns_ - rows_).cwiseAbs().maxCoeff() <= kDenseAsymmetry * largest)) {
     return "is not symmetric: a on b is not what b is on a";
   }
   return {};
 }
 
-template void DenseSamples::add(int, const float*, double);
-template void DenseSamples::add(int, const double*, double);
-template void DenseSamples::add(int, const Half*, double);
+template void DenseSamples::add(int, const float*);
+template void DenseSamples::add(int, const double*);
 
 }  // namespace irdm

@@ -16,14 +16,12 @@ class DenseSamples {
   DenseSamples(int degrees_of_freedom, int steps);
 
   /// @param column [s][a] of column b, as in the file
-  /// @param scale what its numbers are to be multiplied by
   template <typename Scalar>
-  void add(int b, const Scalar* column, double scale);
+  void add(int b, const Scalar* column);
 
   /// After all columns: R(a, b) is R(b, a) in the samples, and what a lasting force does to the
   /// place where it acts is along the force. Nothing when that holds.
-  /// @param error of R's numbers, as a share of the largest R(b, b)
-  std::optional<std::string> fault(double error) const;
+  std::optional<std::string> fault() const;
 
  private:
   int degrees_of_freedom_;

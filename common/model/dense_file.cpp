@@ -8,7 +8,6 @@
 
 #include "common/config/lab_ranges.hpp"
 #include "common/hdf5/library_lock.hpp"
-#include "common/hdf5/zfp.hpp"
 #include "common/model/dense_check.hpp"
 #include "common/model/model_fault.hpp"
 #include "common/model/model_writer.hpp"
@@ -17,17 +16,6 @@
 
 namespace irdm {
 namespace {
-
-// Of zfp, at most: the range of response.compression_error.
-constexpr double kCompressionError = 0.1;
-constexpr double kLargestHalf = 65504.0;
-
-bool is_possible(double value) {
-  return lab::kCompliance.contains(value);
-}
-bool is_possible(Half value) {
-  return (value.bits & 0x7C00U) != 0x7C00U;
-}
 
 void require_dense(const hdf5::File& file, bool holds, const std::string& what) {
   if (!holds) refuse_model(file.name(), what);
@@ -38,11 +26,13 @@ template <typename Scalar>
 void read_column(const hdf5::File& file, const std::string& dataset, hsize_t b, hsize_t steps,
                  hsize_t dof, Scalar* column) {
   file.read_slab<Scalar>(dataset, {b, 0, 0}, {1, steps, dof}, column);
-  require_dense(
-      file,
-      std::all_of(column, column + steps * dof, [](Scalar value) { return is_possible(value); }),
-      dataset + " has numbers that are not finite or beyond " +
-          number_text(lab::kCompliance.highest));
+  require_dense(file,
+                std::all_of(column, column + steps * dof,
+                            [](Scalar value) {
+                              return lab::kCompliance.contains(static_cast<double>(value));
+                            }),
+                dataset + " has numbers that are not finite or beyond " +
+                    number_text(lab::kCompliance.highest));
 }
 
 // Tells, at the speed of memory, whether a column is what it was (FNV-1a, by words).
@@ -125,7 +115,6 @@ void read_frame(const hdf5::File& file, const Model& model, Response& response) 
                 "/response/dense/R must have the shape (3n, steps, 3n)");
   response.degrees_of_freedom = model.degrees_of_freedom();
   response.steps = model.steps;
-  response.scales = read_dense_scales(file, model);
   if (file.element_size(kDenseR) == sizeof(double)) {
     read_loads<double>(file, response);
   } else {
@@ -134,22 +123,15 @@ void read_frame(const hdf5::File& file, const Model& model, Response& response) 
 }
 
 void require_sound(const hdf5::File& file, const DenseSamples& samples) {
-  const auto fault =
-      samples.fault(hdf5::compressed_by_zfp(file, kDenseR) ? kCompressionError : 0.0);
-  if (fault) refuse_model(file.name(), std::string(kDenseR) + " " + *fault);
-}
-
-template <typename Response>
-double scale_of(const Response& response, std::size_t b) {
-  return response.scales.empty() ? 1.0 : response.scales[b];
+  if (const auto fault = samples.fault()) {
+    refuse_model(file.name(), std::string(kDenseR) + " " + *fault);
+  }
 }
 
 // Calls with a number of the kind that the file has.
 template <typename Function>
 void with_number(std::size_t size, const Function& function) {
-  if (size == sizeof(Half)) {
-    function(Half{});
-  } else if (size == sizeof(float)) {
+  if (size == sizeof(float)) {
     function(0.0F);
   } else {
     function(0.0);
@@ -161,12 +143,11 @@ template <typename Scalar>
 void keep(const std::vector<Scalar>& column, std::size_t b, StreamedResponse& response,
           std::vector<Scalar>& first) {
   const auto dof = static_cast<std::size_t>(response.degrees_of_freedom);
-  const double scale = scale_of(response, b);
   std::copy_n(column.begin(), dof, first.begin() + static_cast<std::ptrdiff_t>(b * dof));
   std::vector<double> sum(dof, 0.0);
-  for (std::size_t i = dof; i < column.size(); ++i) sum[i % dof] += to_double(column[i]);
+  for (std::size_t i = dof; i < column.size(); ++i) sum[i % dof] += static_cast<double>(column[i]);
   std::ranges::transform(sum, response.rest.begin() + static_cast<std::ptrdiff_t>(b * dof),
-                         [scale](double value) { return static_cast<float>(scale * value); });
+                         [](double value) { return static_cast<float>(value); });
 }
 
 template <typename Scalar>
@@ -174,10 +155,8 @@ Eigen::MatrixXf as_single(const std::vector<Scalar>& first, const StreamedRespon
   const Eigen::Index dof = response.degrees_of_freedom;
   Eigen::MatrixXf matrix(dof, dof);
   for (Eigen::Index b = 0; b < dof; ++b) {
-    const double scale = scale_of(response, static_cast<std::size_t>(b));
     for (Eigen::Index a = 0; a < dof; ++a) {
-      matrix(a, b) =
-          static_cast<float>(scale * to_double(first[static_cast<std::size_t>(b * dof + a)]));
+      matrix(a, b) = static_cast<float>(first[static_cast<std::size_t>(b * dof + a)]);
     }
   }
   return matrix;
@@ -185,14 +164,15 @@ Eigen::MatrixXf as_single(const std::vector<Scalar>& first, const StreamedRespon
 
 }  // namespace
 
-std::vector<double> read_dense_scales(const hdf5::File& file, const Model& model) {
-  if (file.element_size(kDenseR) != sizeof(Half)) return {};
-  static constexpr Range kRange{0.0, lab::kCompliance.highest / kLargestHalf, false};
-  std::vector<double> scales =
-      file.read<double>(kDenseScale, {static_cast<hsize_t>(model.degrees_of_freedom())});
-  require_dense(file, std::ranges::all_of(scales, [](double x) { return kRange.contains(x); }),
-                std::string(kDenseScale) + " must be " + describe(kRange));
-  return scales;
+void check_dense_form(const hdf5::File& file) {
+  constexpr H5Z_filter_t kZfp = 32013;  // registered at the HDF Group
+  if (!file.exists(kDenseR)) return;
+  const bool half = file.element_size(kDenseR) < sizeof(float);
+  if (!half && !file.has_filter(kDenseR, kZfp)) return;
+  throw Error(file.name(),
+              std::string(kDenseR) + (half ? " is in half precision" : " is compressed by zfp") +
+                  ", which is not read",
+              "compute the model again; irdm-precompute compress makes dense R small");
 }
 
 DenseResponse read_dense(const hdf5::File& file, const Model& model) {
@@ -202,10 +182,9 @@ DenseResponse read_dense(const hdf5::File& file, const Model& model) {
   const auto steps = static_cast<hsize_t>(response.steps);
   DenseSamples samples(response.degrees_of_freedom, response.steps);
   with_number(file.element_size(kDenseR), [&]<typename Scalar>(Scalar) {
-    response.values =
-        read_columns<Scalar>(file, kDenseR, dof, steps, dof, [&](hsize_t b, const Scalar* column) {
-          samples.add(static_cast<int>(b), column, scale_of(response, b));
-        });
+    response.values = read_columns<Scalar>(
+        file, kDenseR, dof, steps, dof,
+        [&](hsize_t b, const Scalar* column) { samples.add(static_cast<int>(b), column); });
   });
   require_sound(file, samples);
   return response;
@@ -223,7 +202,7 @@ StreamedResponse read_streamed(const hdf5::File& file, const Model& model) {
     std::vector<Scalar> column(steps * dof);
     for (std::size_t b = 0; b < dof; ++b) {
       read_column(file, kDenseR, b, steps, dof, column.data());
-      samples.add(static_cast<int>(b), column.data(), scale_of(response, b));
+      samples.add(static_cast<int>(b), column.data());
       keep(column, b, response, first);
       response.fingerprints.push_back(fingerprint(column.data(), column.size()));
     }
@@ -248,7 +227,7 @@ std::size_t resident_bytes(const StreamedResponse& response) {
   return bytes(response.fingerprints) + std::visit(bytes, response.first) +
          std::visit(bytes, response.centrifugal) + std::visit(bytes, response.gravity.approach) +
          static_cast<std::size_t>(response.gravity.sag.size()) * sizeof(double) +
-         bytes(response.rest) + bytes(response.scales) + bytes(response.settling);
+         bytes(response.rest) + bytes(response.settling);
 }
 
 DenseColumnFile::DenseColumnFile(const std::filesystem::path& path,

@@ -18,9 +18,9 @@ DenseResponse read_dense(const hdf5::File& file, const Model& model);
 /// empty. Throws Error.
 StreamedResponse read_streamed(const hdf5::File& file, const Model& model);
 
-/// What the columns of R are to be multiplied by; none unless they are in half precision. Throws
-/// Error.
-std::vector<double> read_dense_scales(const hdf5::File& file, const Model& model);
+/// Throws Error where the file has R in a form that is not read: half precision, or compressed by
+/// zfp.
+void check_dense_form(const hdf5::File& file);
 
 /// Bytes of one number of R, and of what read_streamed() keeps.
 std::size_t number_size(const StreamedResponse& response);

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "common/geometry.hpp"
-#include "common/half.hpp"
 #include "common/model/column_supply.hpp"
 
 namespace irdm {
@@ -132,14 +131,11 @@ GravityResponse gravity_response(std::vector<Number> displacement, int degrees_o
 struct DenseResponse {
   int degrees_of_freedom = 0;  ///< 3n
   int steps = 0;               ///< T
-  std::variant<std::vector<float>, std::vector<double>, std::vector<Half>> values;
+  std::variant<std::vector<float>, std::vector<double>> values;
   /// Displacement after a product of angular velocity components held during one step (see
   /// SpinProducts), numbers and order as above: entry (a, p) of step s stands at
   /// (p * dof + a) * steps + s [m s^2]. Empty: the model has none.
   std::variant<std::vector<float>, std::vector<double>> centrifugal{};
-  /// Of half precision only: what the numbers of column b are multiplied with (3n) [m/N]. Else
-  /// empty.
-  std::vector<double> scales{};
   GravityResponse gravity{};
 };
 
@@ -149,14 +145,13 @@ struct StreamedResponse {
   int degrees_of_freedom = 0;  ///< 3n
   int steps = 0;               ///< T
   /// R[0](a, b) at b * dof + a, in the numbers of R.
-  std::variant<std::vector<float>, std::vector<double>, std::vector<Half>> first;
+  std::variant<std::vector<float>, std::vector<double>> first;
   /// sum_{s>=1} R[s](a, b) at b * dof + a: what a lasting force still adds after its first step
   /// [m/N].
   std::vector<float> rest;
   /// How that comes about without the column (T): settling_profile().
   std::vector<double> settling;
   std::variant<std::vector<float>, std::vector<double>> centrifugal{};  ///< as in DenseResponse
-  std::vector<double> scales{};                                         ///< as in DenseResponse
   std::vector<std::uint64_t> fingerprints{};  ///< of the columns as they are in the file (3n)
   std::shared_ptr<ColumnSupply> columns{};    ///< never null where there is an engine
   GravityResponse gravity{};

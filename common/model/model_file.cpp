@@ -63,6 +63,7 @@ class ModelReader {
       damaged("has version " + std::to_string(version) + " and this program reads version " +
               std::to_string(kModelVersion));
     }
+    check_dense_form(file_);
   }
 
   void read_mesh() {

@@ -25,7 +25,7 @@ constexpr Unit kDatasetUnits[] = {
     {kModalGravity, "kg^1/2"},
     {kModalGravityRest, "s^2"},
     {kDenseGravity, "s^2"},
-    {kDenseScale, "m/N"},
+    {kDenseR, "m/N"},
     {kCompressedEarlyScale, "m/N"},
     {kCompressedShapes, "1"},
     {kCompressedPole, "1"},
@@ -51,7 +51,6 @@ void write_model_units(hdf5::File& file) {
   };
   for (const auto& [object, unit] : kDatasetUnits) write(object, "unit", unit);
   for (const auto& [object, unit] : kGroupUnits) write(object, "units", unit);
-  write(kDenseR, "unit", file.exists(kDenseScale) ? "1" : "m/N");
   write(kCompressedEarly, "unit", file.exists(kCompressedEarlyScale) ? "1" : "m/N");
 }
 

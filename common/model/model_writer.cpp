@@ -8,7 +8,6 @@
 
 #include "common/error.hpp"
 #include "common/model/content_checksum.hpp"
-#include "common/model/half_column.hpp"
 #include "common/model/model_units.hpp"
 #include "common/model/residual_file.hpp"
 #include "common/process/part_name.hpp"
@@ -128,16 +127,14 @@ void ModelFileWriter::write_compressed(const CompressedResponse& response,
   irdm::write_compressed(*file_, response, error);
 }
 
-void ModelFileWriter::begin_dense(int degrees_of_freedom, int steps, Precision precision,
-                                  double zfp_accuracy) {
+void ModelFileWriter::begin_dense(int degrees_of_freedom, int steps, Precision precision) {
   dense_dof_ = static_cast<hsize_t>(degrees_of_freedom);
   dense_steps_ = static_cast<hsize_t>(steps);
   const hdf5::Shape shape{dense_dof_, dense_steps_, dense_dof_};
   const bool single = precision == Precision::kSingle;
   const hdf5::Layout layout{
       .chunk = {1, chunk_steps(dense_steps_, dense_dof_ * (single ? 4 : 8)), dense_dof_},
-      .fletcher32 = true,
-      .zfp_accuracy = zfp_accuracy};
+      .fletcher32 = true};
   if (single) {
     file_->create_dataset<float>(kDenseR, shape, layout);
   } else {
@@ -145,38 +142,8 @@ void ModelFileWriter::begin_dense(int degrees_of_freedom, int steps, Precision p
   }
 }
 
-void ModelFileWriter::begin_dense_half(int degrees_of_freedom, int steps) {
-  dense_dof_ = static_cast<hsize_t>(degrees_of_freedom);
-  dense_steps_ = static_cast<hsize_t>(steps);
-  scales_.assign(dense_dof_, 1.0);
-  file_->create_dataset<Half>(
-      kDenseR, {dense_dof_, dense_steps_, dense_dof_},
-      {.chunk = {1, chunk_steps(dense_steps_, dense_dof_ * sizeof(Half)), dense_dof_},
-       .fletcher32 = true});
-}
-
-template <typename Scalar>
-void ModelFileWriter::write_half_column(int b, const Scalar* values) {
-  const auto dof = static_cast<Eigen::Index>(dense_dof_);
-  const auto steps = static_cast<Eigen::Index>(dense_steps_);
-  HalfColumn column =
-      half_column(Eigen::Map<const RowMatrix<Scalar>>(values, steps, dof).template cast<double>());
-  scales_[static_cast<std::size_t>(b)] = column.scale;
-  half_error_.entry = std::max(half_error_.entry, column.error.entry);
-  half_error_.compliance = std::max(half_error_.compliance, column.error.compliance);
-  file_->write_slab<Half>(kDenseR, {static_cast<hsize_t>(b), 0, 0}, {1, dense_steps_, dense_dof_},
-                          column.numbers.data());
-}
-
-void ModelFileWriter::finish_half() {
-  file_->write<double>(kDenseScale, {dense_dof_}, scales_.data());
-  file_->write_attribute(kDenseR, "largest_error", half_error_.entry);
-  file_->write_attribute(kDenseR, "compliance_error", half_error_.compliance);
-}
-
 template <typename Scalar>
 void ModelFileWriter::write_column(int b, const Scalar* values) {
-  if (!scales_.empty()) return write_half_column(b, values);
   file_->write_slab<Scalar>(kDenseR, {static_cast<hsize_t>(b), 0, 0}, {1, dense_steps_, dense_dof_},
                             values);
 }
@@ -214,7 +181,6 @@ void ModelFileWriter::write_dense_gravity(const double* values) {
 }
 
 void ModelFileWriter::commit() {
-  if (!scales_.empty()) finish_half();
   write_model_units(*file_);
   store_content_checksum(*file_);
   file_->close();

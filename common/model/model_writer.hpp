@@ -26,15 +26,6 @@ inline constexpr const char* kModalGravityRest = "/response/modal/gravity_rest";
 /// Of the numbers of R in a file.
 enum class Precision { kSingle, kDouble };
 
-/// Of half precision: what the numbers of each column of R are multiplied with (3n) [m/N].
-inline constexpr const char* kDenseScale = "/response/dense/scale";
-
-/// What storing R in half precision changes.
-struct HalfError {
-  double entry = 0.0;       ///< largest error of an R[s](a, b), as a share of column b's largest
-  double compliance = 0.0;  ///< the same of sum_s R[s](a, b): of what a lasting force does
-};
-
 /// Mesh, body, material, dt and steps into a new file; the model's response is ignored.
 void write_description(hdf5::File& file, const Model& model);
 
@@ -57,12 +48,7 @@ class ModelFileWriter {
 
   /// Makes room for R; then each column b is written once: (T, 3n) numbers, [s][a displacement].
   /// A chunk is a part of one column, of about 1 MB, with a Fletcher32 checksum.
-  /// @param zfp_accuracy above 0: compressed by zfp, with at most this error of an entry [m/N]
-  void begin_dense(int degrees_of_freedom, int steps, Precision precision,
-                   double zfp_accuracy = 0.0);
-  /// The same in half precision: each column is scaled by a power of two that puts its largest
-  /// entry between 2^14 and 2^15, so that all down to 2^-29 of it keep 11 significant bits.
-  void begin_dense_half(int degrees_of_freedom, int steps);
+  void begin_dense(int degrees_of_freedom, int steps, Precision precision);
   void write_dense_column(int b, const float* values);
   void write_dense_column(int b, const double* values);
   /// After begin_dense(): (6, T, 3n) numbers, [product][s][a displacement].
@@ -72,9 +58,6 @@ class ModelFileWriter {
   /// displacement].
   void write_dense_gravity(const float* values);
   void write_dense_gravity(const double* values);
-
-  /// Of the columns written so far in half precision.
-  const HalfError& half_error() const { return half_error_; }
 
   /// Where the file is until commit: for a signal handler that tidies up.
   const std::filesystem::path& temporary_path() const { return temporary_; }
@@ -87,9 +70,6 @@ class ModelFileWriter {
   template <typename Scalar>
   void write_column(int b, const Scalar* values);
   template <typename Scalar>
-  void write_half_column(int b, const Scalar* values);
-  void finish_half();
-  template <typename Scalar>
   void write_centrifugal(const Scalar* values);
   template <typename Scalar>
   void write_gravity(const Scalar* values);
@@ -99,8 +79,6 @@ class ModelFileWriter {
   std::optional<hdf5::File> file_;
   hsize_t dense_dof_ = 0;
   hsize_t dense_steps_ = 0;
-  std::vector<double> scales_ = {};  ///< of half precision; else empty
-  HalfError half_error_ = {};
 };
 
 }  // namespace irdm

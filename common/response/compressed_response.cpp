@@ -31,7 +31,7 @@ RowMatrix<double> compressed_column(const CompressedResponse& response,
   const int early = std::min(response.fir_steps, steps);
   for (int a = 0; a < dof; ++a) {
     with_early(response, a / 3, a % 3, b / 3, b % 3, [&](const auto* numbers, double scale) {
-      for (int s = 0; s < early; ++s) column(s, a) = scale * to_double(numbers[s]);
+      for (int s = 0; s < early; ++s) column(s, a) = scale * static_cast<double>(numbers[s]);
     });
   }
   if (steps > early) {

@@ -37,7 +37,7 @@ auto with_early(const CompressedResponse& response, int i, int a, int j, int b,
 inline double early_response(const CompressedResponse& response, int i, int a, int j, int b,
                              int s) noexcept {
   return with_early(response, i, a, j, b, [s](const auto* numbers, double scale) {
-    return scale * to_double(numbers[s]);
+    return scale * static_cast<double>(numbers[s]);
   });
 }
 

@@ -85,7 +85,6 @@ StoredColumns::StoredColumns(const std::filesystem::path& path, int degrees_of_f
     throw Error(path.string(), "/response/dense/R must have the shape (3n, steps, 3n)",
                 "make the model again with irdm-precompute");
   }
-  if (file_.element_size(kDenseR) == sizeof(Half)) scales_ = file_.read<double>(kDenseScale, {dof});
 }
 
 RowMatrix<double> StoredColumns::column(int b, int steps) const {
@@ -93,7 +92,6 @@ RowMatrix<double> StoredColumns::column(int b, int steps) const {
   file_.read_slab<double>(
       kDenseR, {static_cast<hsize_t>(b), 0, 0},
       {1, static_cast<hsize_t>(steps), static_cast<hsize_t>(degrees_of_freedom_)}, values.data());
-  if (!scales_.empty()) values *= scales_[static_cast<std::size_t>(b)];
   return values;
 }
 
@@ -102,12 +100,7 @@ Eigen::VectorXd StoredColumns::settled(int b) const {
 }
 
 bool StoredColumns::has_checksums() const {
-  const hdf5::Handle set(H5Dopen2(file_.id(), kDenseR, H5P_DEFAULT), H5Dclose);
-  const hdf5::Handle creation(H5Dget_create_plist(set.get()), H5Pclose);
-  unsigned int flags = 0;
-  std::size_t values = 0;
-  return H5Pget_filter_by_id2(creation.get(), H5Z_FILTER_FLETCHER32, &flags, &values, nullptr, 0,
-                              nullptr, nullptr) >= 0;
+  return file_.has_filter(kDenseR, H5Z_FILTER_FLETCHER32);
 }
 
 RowMatrix<double> CompressedColumns::column(int b, int steps) const {

@@ -50,7 +50,6 @@ class StoredColumns : public ResponseColumns {
   hdf5::File file_;
   int degrees_of_freedom_;
   int steps_;
-  std::vector<double> scales_ = {};  ///< of half precision; else empty
 };
 
 /// Out of a compressed response: settled() is the limit for all time.

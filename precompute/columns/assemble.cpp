@@ -1,9 +1,7 @@
 #include "precompute/columns/assemble.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <memory>
 
@@ -24,11 +22,10 @@ void check_same(const ColumnFileReader& first, const ColumnFileReader& part) {
                 "give parts that were made from one configuration by one version of the program");
   };
   if (a.description != b.description) differs("another mesh, material or time axis");
-  if (a.settings != b.settings || a.compression_error != b.compression_error ||
-      a.centrifugal != b.centrifugal || a.gravity != b.gravity) {
+  if (a.settings != b.settings || a.centrifugal != b.centrifugal || a.gravity != b.gravity) {
     differs("other settings");
   }
-  if (a.precision != b.precision || a.half != b.half || a.steps != b.steps ||
+  if (a.precision != b.precision || a.steps != b.steps ||
       a.degrees_of_freedom != b.degrees_of_freedom) {
     differs("other numbers");
   }
@@ -131,56 +128,21 @@ void copy_loads(ColumnFileReader& part, ModelFileWriter& writer) {
   }
 }
 
-double peak_of(const ColumnFiles& parts, const ColumnFileHeader& header) {
-  double peak = 0.0;
-  for_each_column(parts, [&](int b, const auto* values) {
-    peak = std::max(peak, driving_point(b, values, header).peak);
-  });
-  return peak;
-}
-
 }  // namespace
-
-double zfp_accuracy(double share, double peak) {
-  return share > 0.0 && peak > 0.0 ? std::exp2(std::floor(std::log2(share * peak))) : 0.0;
-}
-
-std::string half_error_text(const HalfError& error) {
-  std::array<char, 160> text{};
-  std::snprintf(text.data(), text.size(),
-                "half precision: entries of R are off by %.2g of their column's largest at most, "
-                "the answer to a lasting force by %.2g",
-                error.entry, error.compliance);
-  return text.data();
-}
-
-void check_compression(double share, const std::filesystem::path& output) {
-  if (share <= 0.0 || hdf5::zfp_available()) return;
-  throw Error(output.string(), "compression = \"zfp\" is asked for and HDF5 has no zfp filter here",
-              "install HDF5's zfp plugin (hdf5-filter-plugin-zfp-serial) or leave compression out");
-}
 
 double assemble(const std::vector<std::filesystem::path>& paths,
                 const std::filesystem::path& output, const std::filesystem::path& temporary,
                 const Console& console) {
   const ColumnFiles parts = open_parts(paths);
   const ColumnFileHeader& header = parts.front()->header();
-  check_compression(header.compression_error, output);
   const Model model = read_description(
       hdf5::File::from_image(header.description, parts.front()->name() + " (description)"));
   if (model.degrees_of_freedom() != header.degrees_of_freedom || model.steps != header.steps) {
     throw Error(parts.front()->name(), "does not fit its own description", "make it again");
   }
-  const double accuracy = header.compression_error > 0.0
-                              ? zfp_accuracy(header.compression_error, peak_of(parts, header))
-                              : 0.0;
   ModelFileWriter writer(output, temporary);
   writer.write_description(model);
-  if (header.half) {
-    writer.begin_dense_half(header.degrees_of_freedom, header.steps);
-  } else {
-    writer.begin_dense(header.degrees_of_freedom, header.steps, header.precision, accuracy);
-  }
+  writer.begin_dense(header.degrees_of_freedom, header.steps, header.precision);
   Progress progress(console, "writing R", header.degrees_of_freedom);
   double left = 0.0;
   for_each_column(parts, [&](int b, const auto* values) {
@@ -194,7 +156,6 @@ double assemble(const std::vector<std::filesystem::path>& paths,
   } else {
     copy_loads<double>(*parts.front(), writer);
   }
-  if (header.half) console.line(half_error_text(writer.half_error()));
   writer.commit();
   return left;
 }

@@ -20,14 +20,4 @@ double assemble(const std::vector<std::filesystem::path>& parts,
                 const std::filesystem::path& output, const std::filesystem::path& temporary,
                 const Console& console);
 
-/// The error that zfp may make [m/N]: `share` of the peak of R, rounded down to a power of two as
-/// zfp itself does, so that it does not hang on the last digits of the peak. 0 for share 0.
-double zfp_accuracy(double share, double peak);
-
-/// For who waits for it.
-std::string half_error_text(const HalfError& error);
-
-/// zfp_accuracy() that needs no knowledge of R: says early that a filter is missing. Throws Error.
-void check_compression(double share, const std::filesystem::path& output);
-
 }  // namespace irdm::precompute

@@ -19,7 +19,7 @@ bool read_word(std::istream& text, const char* word) {
   return text >> found && found == word;
 }
 
-// Reads "centrifugal 6", "gravity 3" and "half 1", all of which may be missing, and "settings".
+// Reads "centrifugal 6" and "gravity 3", both of which may be missing, and "settings".
 bool parse_options(std::istream& text, ColumnFileHeader& header) {
   for (std::string word; text >> word;) {
     int value = 0;
@@ -28,8 +28,6 @@ bool parse_options(std::istream& text, ColumnFileHeader& header) {
       header.centrifugal = true;
     } else if (word == "gravity" && text >> value && value == kGravityColumns) {
       header.gravity = true;
-    } else if (word == "half" && text >> value && value == 1) {
-      header.half = true;
     } else {
       return false;
     }
@@ -53,7 +51,6 @@ bool parse_text(std::istream& text, ColumnFileHeader& header, Lengths& lengths) 
       magic == kMagic && read_word(text, "columns") &&
       text >> header.range.begin >> header.range.end && read_word(text, "shape") &&
       text >> header.degrees_of_freedom >> header.steps >> number_bytes &&
-      read_word(text, "compression_error") && text >> header.compression_error &&
       parse_options(text, header) && text >> lengths.settings && read_word(text, "description") &&
       text >> lengths.description && text.get() == '\n' &&
       (number_bytes == 4 || number_bytes == 8) && header.steps > 0 && header.range.begin >= 0 &&
@@ -86,12 +83,9 @@ std::string encode_header(const ColumnFileHeader& header) {
   std::ostringstream text;
   text << kMagic << "\ncolumns " << header.range.begin << ' ' << header.range.end << "\nshape "
        << header.degrees_of_freedom << ' ' << header.steps << ' '
-       << (header.precision == Precision::kSingle ? 4 : 8) << "\ncompression_error ";
-  text.precision(17);
-  text << header.compression_error;
+       << (header.precision == Precision::kSingle ? 4 : 8);
   if (header.centrifugal) text << "\ncentrifugal " << kSpinProducts;
   if (header.gravity) text << "\ngravity " << kGravityColumns;
-  if (header.half) text << "\nhalf 1";
   text << "\nsettings " << header.settings.size() << "\ndescription " << header.description.size()
        << '\n'
        << header.settings << header.description;

@@ -17,10 +17,8 @@
 ///     irdm-columns 1
 ///     columns A B
 ///     shape 3n T BYTES           of one number: 4 or 8
-///     compression_error E        of the model file to come, as a share; 0: none
 ///     centrifugal 6              only where such columns follow those of R
 ///     gravity 3                  the same of gravity
-///     half 1                     only where the model file to come is of half precision
 ///     settings LENGTH
 ///     description LENGTH
 ///     (settings) (description: mesh, body and material as an HDF5 file) (CRC32C of all so far)
@@ -37,12 +35,10 @@ struct ColumnFileHeader {
   int degrees_of_freedom = 0;  ///< 3n
   int steps = 0;               ///< T
   Precision precision = Precision::kSingle;
-  double compression_error = 0.0;  ///< see ResponseConfig
-  bool centrifugal = false;        ///< six columns more, for the SpinProducts
-  bool half = false;               ///< of the model file to come
-  bool gravity = false;            ///< three columns more, for the axes
-  std::string settings;            ///< all else that R depends on, see settings_text()
-  std::string description;         ///< see description_of()
+  bool centrifugal = false;  ///< six columns more, for the SpinProducts
+  bool gravity = false;      ///< three columns more, for the axes
+  std::string settings;      ///< all else that R depends on, see settings_text()
+  std::string description;   ///< see description_of()
 
   std::size_t column_bytes() const;
   /// Columns of a complete file: those of R, the centrifugal ones and those of gravity.

@@ -18,7 +18,6 @@ DenseInput::DenseInput(const std::filesystem::path& path)
     throw Error(name(), "/response/dense/R must have the shape (3n, steps, 3n)",
                 "make the model again with irdm-precompute");
   }
-  scales_ = read_dense_scales(file_, model_);
 }
 
 double DenseInput::bytes() const {
@@ -32,7 +31,6 @@ RowMatrix<float> DenseInput::column(int b) const {
       kDenseR, {static_cast<hsize_t>(b), 0, 0},
       {1, static_cast<hsize_t>(steps()), static_cast<hsize_t>(degrees_of_freedom())},
       values.data());
-  if (!scales_.empty()) values *= static_cast<float>(scales_[static_cast<std::size_t>(b)]);
   if (!values.allFinite() ||
       values.cwiseAbs().maxCoeff() > static_cast<float>(lab::kCompliance.highest)) {
     throw Error(name(), "/response/dense/R has numbers that are not finite or out of range",

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <vector>
 
 #include "common/hdf5/file.hpp"
 #include "common/model/model.hpp"
@@ -27,7 +26,6 @@ class DenseInput {
  private:
   hdf5::File file_;
   Model model_;
-  std::vector<double> scales_;  ///< of the columns, where R is in half precision
 };
 
 }  // namespace irdm::precompute

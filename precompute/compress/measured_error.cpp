@@ -56,7 +56,8 @@ RowMatrix<float> column(const CompressedResponse& response, const RowMatrix<floa
   RowMatrix<float> values(m + late.rows(), response.shapes.rows());
   for (int a = 0; a < values.cols(); ++a) {
     with_early(response, a / 3, a % 3, b / 3, b % 3, [&](const auto* numbers, double scale) {
-      for (int s = 0; s < m; ++s) values(s, a) = static_cast<float>(scale * to_double(numbers[s]));
+      for (int s = 0; s < m; ++s)
+        values(s, a) = static_cast<float>(scale * static_cast<double>(numbers[s]));
     });
   }
   values.bottomRows(late.rows()) = late_column(response, late, b);

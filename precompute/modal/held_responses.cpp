@@ -36,10 +36,6 @@ RowMatrix<double> held_responses(const ModalResponse& response, double dt, int s
   return h;
 }
 
-double driving_peak(const ModalResponse& response, double dt, int steps) {
-  return driving_points(response, dt, steps).cwiseAbs().maxCoeff();
-}
-
 double decay_left(const ModalResponse& response, double dt, int steps) {
   const auto& shapes = std::get<RowMatrix<double>>(response.shapes);
   const RowMatrix<double> squares = shapes.array().square();

@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "precompute/columns/assemble.hpp"
 #include "precompute/columns/compute_columns.hpp"
 #include "precompute/fem/assembly.hpp"
 #include "precompute/modal/body_loads.hpp"
@@ -32,15 +31,7 @@ class ModelStore final : public ColumnStore {
 void write_dense(ModelFileWriter& writer, const ModalResponse& response, const Model& model,
                  const ResponseConfig& config, int threads, const Console& console) {
   const auto columns = modal_columns(response, model, config.precision);
-  const double accuracy =
-      config.compression_error > 0.0
-          ? zfp_accuracy(config.compression_error, driving_peak(response, model.dt, model.steps))
-          : 0.0;
-  if (config.half) {
-    writer.begin_dense_half(columns->columns(), model.steps);
-  } else {
-    writer.begin_dense(columns->columns(), model.steps, config.precision, accuracy);
-  }
+  writer.begin_dense(columns->columns(), model.steps, config.precision);
   Progress progress(console, "columns of R", columns->columns());
   ModelStore store(writer, progress);
   compute_columns(*columns, {0, columns->columns()}, threads, store);
@@ -54,7 +45,6 @@ void write_dense(ModelFileWriter& writer, const ModalResponse& response, const M
         if (values.rows() > 0) writer.write_dense_gravity(values.data());
       },
       columns->gravity());
-  if (config.half) console.line(half_error_text(writer.half_error()));
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ int slots_within(const std::filesystem::path& path, const StreamedResponse& resp
                 "memory_budget of " + in_mebibytes(budget) +
                     " MiB is too small: what is always in memory and the columns of " +
                     std::to_string(fewest) + " nodes need " + in_mebibytes(least) + " MiB",
-                "raise it, or precompute with precision = \"half\"");
+                "raise it, or make R small with irdm-precompute compress");
   }
   return static_cast<int>(std::min(nodes, (budget - resident) / slot_bytes));
 }

@@ -61,10 +61,8 @@ void CachedConvolution<Columns>::keep_nothing() noexcept {
   horizon_cache_.clear();
 }
 
-template class CachedConvolution<ResidentColumns<Half>>;
 template class CachedConvolution<ResidentColumns<float>>;
 template class CachedConvolution<ResidentColumns<double>>;
-template class CachedConvolution<PinnedColumns<Half>>;
 template class CachedConvolution<PinnedColumns<float>>;
 template class CachedConvolution<PinnedColumns<double>>;
 

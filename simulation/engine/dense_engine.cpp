@@ -10,7 +10,6 @@ namespace {
 template <typename Scalar>
 ResidentColumns<Scalar> columns_of(const DenseResponse& response) {
   return {std::get<std::vector<Scalar>>(response.values).data(),
-          response.scales.empty() ? nullptr : response.scales.data(),
           static_cast<std::size_t>(response.degrees_of_freedom),
           static_cast<std::size_t>(response.steps)};
 }
@@ -45,7 +44,7 @@ double DenseEngine<Scalar>::free_displacement_bound() const noexcept {
 
 template <typename Scalar>
 double DenseEngine<Scalar>::entry(std::size_t step, int a, int b) const noexcept {
-  return R_.scale(static_cast<std::size_t>(b)) * to_double(R_.row(a, b)[step]);
+  return static_cast<double>(R_.row(a, b)[step]);
 }
 
 template <typename Scalar>
@@ -133,7 +132,6 @@ void DenseEngine<Scalar>::reset() noexcept {
   gravity_.reset();
 }
 
-template class DenseEngine<Half>;
 template class DenseEngine<float>;
 template class DenseEngine<double>;
 

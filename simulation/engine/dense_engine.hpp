@@ -50,8 +50,8 @@ class DenseEngine final : public ResponseEngine,
   std::shared_ptr<const Model> model_;
   ResidentColumns<Scalar> R_;
   CachedConvolution<ResidentColumns<Scalar>> past_;
-  DenseSpin<LoadNumber<Scalar>> spin_;
-  DenseGravity<LoadNumber<Scalar>> gravity_;
+  DenseSpin<Scalar> spin_;
+  DenseGravity<Scalar> gravity_;
 };
 
 }  // namespace irdm

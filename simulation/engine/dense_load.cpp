@@ -10,7 +10,7 @@ ResidentColumns<Number> columns_of(
     const std::variant<std::vector<float>, std::vector<double>>& values, int dof, int steps) {
   const auto* numbers = std::get_if<std::vector<Number>>(&values);
   const bool any = numbers != nullptr && !numbers->empty();
-  return {any ? numbers->data() : nullptr, nullptr, any ? static_cast<std::size_t>(dof) : 0,
+  return {any ? numbers->data() : nullptr, any ? static_cast<std::size_t>(dof) : 0,
           static_cast<std::size_t>(steps)};
 }
 

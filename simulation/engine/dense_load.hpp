@@ -1,6 +1,5 @@
 #pragma once
 
-#include <type_traits>
 #include <variant>
 #include <vector>
 
@@ -56,9 +55,5 @@ class DenseLoad {
 /// The products of the components of the body's own spin.
 template <typename Number>
 using DenseSpin = DenseLoad<Number, kSpinProducts>;
-
-/// The numbers of responses to such loads beside R of these: never of half precision.
-template <typename Scalar>
-using LoadNumber = std::conditional_t<std::is_same_v<Scalar, Half>, float, Scalar>;
 
 }  // namespace irdm

@@ -35,7 +35,8 @@ template <std::size_t K, typename Scalar>
 [[gnu::always_inline]] inline void add_lanes(double (&lanes)[K][kLanes], const Scalar* rows,
                                              std::size_t stride, const double* x) noexcept {
   for (std::size_t k = 0; k < K; ++k) {
-    for (std::size_t l = 0; l < kLanes; ++l) lanes[k][l] += to_double(rows[k * stride + l]) * x[l];
+    for (std::size_t l = 0; l < kLanes; ++l)
+      lanes[k][l] += static_cast<double>(rows[k * stride + l]) * x[l];
   }
 }
 
@@ -58,7 +59,8 @@ template <std::size_t K, bool kMany, typename Scalar>
   for (; i + kLanes <= n; i += kLanes) add_lanes(lanes, rows + i, stride, x + i);
   for (std::size_t k = 0; k < K; ++k) {
     products[k] = sum_of(lanes[k]);
-    for (std::size_t j = i; j < n; ++j) products[k] += to_double(rows[k * stride + j]) * x[j];
+    for (std::size_t j = i; j < n; ++j)
+      products[k] += static_cast<double>(rows[k * stride + j]) * x[j];
   }
 }
 

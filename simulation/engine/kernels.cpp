@@ -22,9 +22,12 @@ template <typename Scalar>
   const auto [w0, w1, w2, w3, w4, w5, w6, w7, w8] = w;
 #pragma GCC ivdep
   for (std::size_t i = 0; i < n; ++i) {
-    const double x = w0 * to_double(a0[i]) + w1 * to_double(a1[i]) + w2 * to_double(a2[i]);
-    const double z = w3 * to_double(a3[i]) + w4 * to_double(a4[i]) + w5 * to_double(a5[i]);
-    const double t = w6 * to_double(a6[i]) + w7 * to_double(a7[i]) + w8 * to_double(a8[i]);
+    const double x = w0 * static_cast<double>(a0[i]) + w1 * static_cast<double>(a1[i]) +
+                     w2 * static_cast<double>(a2[i]);
+    const double z = w3 * static_cast<double>(a3[i]) + w4 * static_cast<double>(a4[i]) +
+                     w5 * static_cast<double>(a5[i]);
+    const double t = w6 * static_cast<double>(a6[i]) + w7 * static_cast<double>(a7[i]) +
+                     w8 * static_cast<double>(a8[i]);
     y[i] += (x + z) + t;
   }
 }

@@ -5,8 +5,6 @@
 #include <cstdint>
 #include <span>
 
-#include "common/half.hpp"
-
 /// Inner loops of the response engines, compiled for several instruction sets of which the best is
 /// chosen at start-up. Sums run over eight lanes in a fixed order and products are never
 /// contracted, so that equal inputs give equal bits on every processor and with any number of
@@ -17,8 +15,6 @@ namespace irdm {
 double dot(const float* a, const double* b, std::size_t n) noexcept;
 double dot(const double* a, const double* b, std::size_t n) noexcept;
 double dot(const std::int16_t* a, const double* b, std::size_t n) noexcept;
-/// The products and their sums of half precision are single ones.
-double dot(const Half* a, const double* b, std::size_t n) noexcept;
 
 /// sum_i |a[i]| |b[i]|.
 double dot_magnitudes(const double* a, const double* b, std::size_t n) noexcept;
@@ -36,8 +32,6 @@ void add_products(const Rows<float>& rows, const double* x, std::size_t n, doubl
                   double* y) noexcept;
 void add_products(const Rows<double>& rows, const double* x, std::size_t n, double weight,
                   double* y) noexcept;
-void add_products(const Rows<Half>& rows, const double* x, std::size_t n, double weight,
-                  double* y) noexcept;
 
 /// What forces of before do to a node over some steps: for its rows r = 0..2 and m = 0 to
 /// kStepsAhead - 1, y[r][m] += weight sum_i row_r[m + i] x[i], rows being 0 beyond the numbers that
@@ -53,8 +47,6 @@ void add_ahead(const NodeRows<float>& rows, std::span<const double> x, double we
                const std::array<double*, 3>& y) noexcept;
 void add_ahead(const NodeRows<double>& rows, std::span<const double> x, double weight,
                const std::array<double*, 3>& y) noexcept;
-void add_ahead(const NodeRows<Half>& rows, std::span<const double> x, double weight,
-               const std::array<double*, 3>& y) noexcept;
 
 /// What a force on a node does to another, or to itself, over some steps: y[r][i] += sum over axes
 /// c of force[c] a[r][c][i], i < n, a being 0 beyond the numbers that are known. Up to the next
@@ -69,8 +61,6 @@ struct NodeColumns {
 void add_effect(const NodeColumns<float>& columns, const std::array<double, 3>& force,
                 const std::array<double*, 3>& y, std::size_t n) noexcept;
 void add_effect(const NodeColumns<double>& columns, const std::array<double, 3>& force,
-                const std::array<double*, 3>& y, std::size_t n) noexcept;
-void add_effect(const NodeColumns<Half>& columns, const std::array<double, 3>& force,
                 const std::array<double*, 3>& y, std::size_t n) noexcept;
 
 template <std::size_t K>
@@ -101,8 +91,6 @@ void combine(const std::array<double, 3>& w, const double* a, const double* b, c
 void accumulate(const std::array<double, 3>& w, const float* a, const float* b, const float* c,
                 double* y, std::size_t n) noexcept;
 void accumulate(const std::array<double, 3>& w, const double* a, const double* b, const double* c,
-                double* y, std::size_t n) noexcept;
-void accumulate(const std::array<double, 3>& w, const Half* a, const Half* b, const Half* c,
                 double* y, std::size_t n) noexcept;
 
 /// Whether a[i] = factor b[i] for all i, but for a few roundings (2^-50) of the largest |a[i]|.

@@ -10,8 +10,7 @@ namespace irdm {
 template <typename Scalar>
 PinnedColumns<Scalar>::PinnedColumns(const StreamedResponse& response, int nodes, double dt)
     : supply_(*response.columns),
-      frame_{nullptr, response.scales.empty() ? nullptr : response.scales.data(),
-             static_cast<std::size_t>(response.degrees_of_freedom),
+      frame_{nullptr, static_cast<std::size_t>(response.degrees_of_freedom),
              static_cast<std::size_t>(response.steps)},
       blend_step_(std::min(1.0, dt / kBlendTime)),
       columns_(static_cast<std::size_t>(nodes)) {
@@ -85,7 +84,7 @@ void PinnedColumns<Scalar>::convolve(const ForceHistory& history, int node, int 
   for (const int source : history.active()) {
     if (!whole(source)) continue;
     for (int b = 3 * source; b < 3 * source + 3; ++b) {
-      add_convolution(*this, history, b, frame_.scale(static_cast<std::size_t>(b)), node, shift, u);
+      add_convolution(*this, history, b, 1.0, node, shift, u);
     }
   }
 }
@@ -110,7 +109,6 @@ void PinnedColumns<Scalar>::clear() noexcept {
   pinned_.clear();
 }
 
-template class PinnedColumns<Half>;
 template class PinnedColumns<float>;
 template class PinnedColumns<double>;
 

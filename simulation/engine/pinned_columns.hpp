@@ -25,12 +25,11 @@ class PinnedColumns {
   PinnedColumns(const PinnedColumns&) = delete;
   PinnedColumns& operator=(const PinnedColumns&) = delete;
 
-  /// Sizes and scales of R.
+  /// Sizes of R.
   const ResidentColumns<Scalar>& frame() const noexcept { return frame_; }
   /// As ResidentColumns'; only of a node with a share.
   const Scalar* row(int a, int b) const noexcept {
-    return ResidentColumns<Scalar>{of(b / 3).values, nullptr, frame_.dof, frame_.steps}.row(a,
-                                                                                            b % 3);
+    return ResidentColumns<Scalar>{of(b / 3).values, frame_.dof, frame_.steps}.row(a, b % 3);
   }
   /// Of R in a node's answer, 0 to 1.
   double share(int node) const noexcept { return of(node).share; }
@@ -68,7 +67,7 @@ class PinnedColumns {
   void release(int node) noexcept;
 
   ColumnSupply& supply_;
-  ResidentColumns<Scalar> frame_;  ///< sizes and scales of R, no values
+  ResidentColumns<Scalar> frame_;  ///< sizes of R, no values
   double blend_step_;
   std::vector<Columns> columns_;  ///< of each node
   std::vector<int> pinned_;

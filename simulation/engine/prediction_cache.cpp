@@ -106,12 +106,9 @@ void PredictionCache<Columns>::add_ahead_of(const ForceHistory& history, const T
     const auto row = [&](std::size_t source) {
       return columns_.row(3 * cached.node, 3 * sources.nodes[source] + axis) + first;
     };
-    const auto weight = [&](std::size_t source) {
-      const int b = 3 * sources.nodes[source] + axis;
-      return sources.factors[source] * frame.scale(static_cast<std::size_t>(b));
-    };
+    const auto& weights = sources.factors;
     if (sources.count == 1) {
-      add_ahead(NodeRows<Number>{row(0), frame.steps, known}, forces, weight(0), to);
+      add_ahead(NodeRows<Number>{row(0), frame.steps, known}, forces, weights[0], to);
       continue;
     }
     const std::size_t count = std::min(known, forces.size() + kStepsAhead - 1);
@@ -119,10 +116,10 @@ void PredictionCache<Columns>::add_ahead_of(const ForceHistory& history, const T
     for (std::size_t s = 0; s < sources.count; s += 3) {
       const std::size_t t = std::min(s + 1, sources.count - 1);
       const std::size_t u = std::min(s + 2, sources.count - 1);
-      const std::array weights{weight(s), t > s ? weight(t) : 0.0, u > t ? weight(u) : 0.0};
+      const std::array three{weights[s], t > s ? weights[t] : 0.0, u > t ? weights[u] : 0.0};
       for (std::size_t r = 0; r < 3; ++r) {
         const std::size_t at = r * frame.steps;
-        accumulate(weights, row(s) + at, row(t) + at, row(u) + at, summed_.data() + at, count);
+        accumulate(three, row(s) + at, row(t) + at, row(u) + at, summed_.data() + at, count);
       }
     }
     add_ahead(NodeRows<double>{summed_.data(), frame.steps, count}, forces, 1.0, to);
@@ -155,11 +152,7 @@ void PredictionCache<Columns>::add(std::span<const NodalForce> forces, int age) 
   if (first >= frame.steps) return;
   for (const NodalForce& nodal : forces) {
     if (!columns_.whole(nodal.node)) continue;
-    std::array<double, 3> weights{};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const auto b = 3 * static_cast<std::size_t>(nodal.node) + axis;
-      weights[axis] = frame.scale(b) * nodal.force[static_cast<Eigen::Index>(axis)];
-    }
+    const std::array<double, 3> force{nodal.force.x(), nodal.force.y(), nodal.force.z()};
     for (int i = 0; i < count_; ++i) {
       Cached& cached = cached_[static_cast<std::size_t>(i)];
       if (cached.length == 0) continue;
@@ -168,7 +161,7 @@ void PredictionCache<Columns>::add(std::span<const NodalForce> forces, int age) 
                                       cached.coming[2].data() + cached.begin};
       add_effect(NodeColumns<Number>{columns_.row(3 * cached.node, 3 * nodal.node) + first,
                                      frame.steps, frame.dof * frame.steps, frame.steps - first},
-                 weights, to, static_cast<std::size_t>(cached.length));
+                 force, to, static_cast<std::size_t>(cached.length));
     }
   }
 }
@@ -196,10 +189,8 @@ void PredictionCache<Columns>::clear() noexcept {
   turn_ = 0;
 }
 
-template class PredictionCache<ResidentColumns<Half>>;
 template class PredictionCache<ResidentColumns<float>>;
 template class PredictionCache<ResidentColumns<double>>;
-template class PredictionCache<PinnedColumns<Half>>;
 template class PredictionCache<PinnedColumns<float>>;
 template class PredictionCache<PinnedColumns<double>>;
 

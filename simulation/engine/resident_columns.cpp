@@ -18,7 +18,7 @@ void ResidentColumns<Number>::convolve(const ForceHistory& history, int node, in
                                        Vector3& u) const noexcept {
   for (const int source : history.active()) {
     for (int b = 3 * source; b < 3 * source + 3; ++b) {
-      add_convolution(*this, history, b, scale(static_cast<std::size_t>(b)), node, shift, u);
+      add_convolution(*this, history, b, 1.0, node, shift, u);
     }
   }
 }
@@ -36,13 +36,11 @@ void ResidentColumns<Number>::add_all(const ForceHistory& history, Points& u) co
     const std::size_t count = std::min(rows_at_once, dof - first);
     for (const NonzeroInterval& push : stretches) {
       const Number* rows = values + (push.column * dof + first) * steps + push.first_age;
-      add_products({rows, steps, count}, push.force, push.count, scale(push.column),
-                   u.data() + first);
+      add_products({rows, steps, count}, push.force, push.count, 1.0, u.data() + first);
     }
   }
 }
 
-template struct ResidentColumns<Half>;
 template struct ResidentColumns<float>;
 template struct ResidentColumns<double>;
 

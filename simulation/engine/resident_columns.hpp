@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "common/half.hpp"
 #include "simulation/engine/force_history.hpp"
 #include "simulation/engine/kernels.hpp"
 
@@ -14,20 +13,18 @@ namespace irdm {
 std::size_t row_block(std::size_t dof);
 
 /// Columns of a response that all are in memory: entry (a, b) of step s at (b * dof + a) * steps +
-/// s, times the scale of column b. Points to them.
+/// s. Points to them.
 template <typename Number>
 struct ResidentColumns {
   using Value = Number;
 
   const Number* values = nullptr;  ///< null: there is no such response
-  const double* scales = nullptr;  ///< of the columns; null: all 1
   std::size_t dof = 0;
   std::size_t steps = 0;
 
   const Number* row(int a, int b) const noexcept {
     return values + (static_cast<std::size_t>(b) * dof + static_cast<std::size_t>(a)) * steps;
   }
-  double scale(std::size_t b) const noexcept { return scales == nullptr ? 1.0 : scales[b]; }
 
   const ResidentColumns& frame() const noexcept { return *this; }
   /// All are there, always: see PinnedColumns.

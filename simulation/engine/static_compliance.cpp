@@ -30,8 +30,7 @@ double of_history(const DenseResponse& response, const std::vector<Scalar>& valu
     for (std::size_t a = 0; a < 3; ++a) {
       const Scalar* entry = values.data() + ((3 * node + b) * dof + 3 * node + a) * steps;
       double total = 0.0;
-      for (std::size_t s = 0; s < steps; ++s) total += to_double(entry[s]);
-      if (!response.scales.empty()) total *= response.scales[3 * node + b];
+      for (std::size_t s = 0; s < steps; ++s) total += static_cast<double>(entry[s]);
       sum += total * d[static_cast<Eigen::Index>(a)] * d[static_cast<Eigen::Index>(b)];
     }
   }
@@ -44,10 +43,9 @@ double of_sums(const StreamedResponse& response, const std::vector<Scalar>& firs
   const auto dof = static_cast<std::size_t>(response.degrees_of_freedom);
   double sum = 0.0;
   for (std::size_t b = 0; b < 3; ++b) {
-    const double scale = response.scales.empty() ? 1.0 : response.scales[3 * node + b];
     for (std::size_t a = 0; a < 3; ++a) {
       const std::size_t at = (3 * node + b) * dof + 3 * node + a;
-      const double total = scale * to_double(first[at]) + static_cast<double>(response.rest[at]);
+      const double total = static_cast<double>(first[at]) + static_cast<double>(response.rest[at]);
       sum += total * d[static_cast<Eigen::Index>(a)] * d[static_cast<Eigen::Index>(b)];
     }
   }

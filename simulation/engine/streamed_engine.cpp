@@ -33,9 +33,8 @@ void StreamedEngine<Scalar>::settle() noexcept {
 
 template <typename Scalar>
 double StreamedEngine<Scalar>::first(int a, int b) const noexcept {
-  const auto column = static_cast<std::size_t>(b);
-  const ResidentColumns<Scalar>& frame = columns_.frame();
-  return frame.scale(column) * to_double(first_[column * frame.dof + static_cast<std::size_t>(a)]);
+  return static_cast<double>(
+      first_[static_cast<std::size_t>(b) * columns_.frame().dof + static_cast<std::size_t>(a)]);
 }
 
 template <typename Scalar>
@@ -49,10 +48,7 @@ double StreamedEngine<Scalar>::entry(std::size_t step, int a, int b) const noexc
   if (step == 0) return first(a, b);
   const double share = columns_.share(b / 3);
   double sum = 0.0;
-  if (share > 0.0) {
-    sum += columns_.frame().scale(static_cast<std::size_t>(b)) * share *
-           to_double(columns_.row(a, b)[step]);
-  }
+  if (share > 0.0) sum += share * static_cast<double>(columns_.row(a, b)[step]);
   if (share < 1.0) sum += (1.0 - share) * response_.settling[step] * rest(a, b);
   return sum;
 }
@@ -80,9 +76,7 @@ void StreamedEngine<Scalar>::add_lacking(int node, int shift, Vector3& u) const 
     const double share = columns_.share(source);
     for (int b = 3 * source; b < 3 * source + 3; ++b) {
       if (share > 0.0) {
-        add_convolution(columns_, past_.history(), b,
-                        columns_.frame().scale(static_cast<std::size_t>(b)) * share, node, shift,
-                        u);
+        add_convolution(columns_, past_.history(), b, share, node, shift, u);
       }
       const Settled part =
           shift == 1 ? coming_[static_cast<std::size_t>(b)] : settled(source, b % 3, shift);
@@ -202,8 +196,8 @@ void StreamedEngine<Scalar>::add_columns(Points& u) const {
       const double share = columns_.share(static_cast<int>(push.column / 3));
       if (share == 0.0) continue;
       const Scalar* rows = columns_.row(static_cast<int>(begin), static_cast<int>(push.column));
-      add_products({rows + push.first_age, frame.steps, count}, push.force, push.count,
-                   frame.scale(push.column) * share, u.data() + begin);
+      add_products({rows + push.first_age, frame.steps, count}, push.force, push.count, share,
+                   u.data() + begin);
     }
     for (const Settled& part : missing) {
       const int b = static_cast<int>(part.column);
@@ -236,7 +230,6 @@ void StreamedEngine<Scalar>::reset() noexcept {
   gravity_.reset();
 }
 
-template class StreamedEngine<Half>;
 template class StreamedEngine<float>;
 template class StreamedEngine<double>;
 

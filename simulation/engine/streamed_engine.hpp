@@ -76,8 +76,8 @@ class StreamedEngine final : public ResponseEngine,
   const Scalar* first_;  ///< R[0]
   PinnedColumns<Scalar> columns_;
   CachedConvolution<PinnedColumns<Scalar>> past_;
-  DenseSpin<LoadNumber<Scalar>> spin_;
-  DenseGravity<LoadNumber<Scalar>> gravity_;
+  DenseSpin<Scalar> spin_;
+  DenseGravity<Scalar> gravity_;
   std::vector<Settled> coming_;  ///< settled(node, axis, 1), of nodes with a past that lack a share
 };
 

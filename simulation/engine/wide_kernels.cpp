@@ -131,8 +131,9 @@ template <std::size_t kBytes, typename Scalar>
   for (; i < std::min(n, columns.known); ++i) {
     for (std::size_t r = 0; r < 3; ++r) {
       const Scalar* at = columns.first + r * columns.row + i;
-      y[r][i] += force[0] * to_double(at[0]) + force[1] * to_double(at[columns.column]) +
-                 force[2] * to_double(at[2 * columns.column]);
+      y[r][i] += force[0] * static_cast<double>(at[0]) +
+                 force[1] * static_cast<double>(at[columns.column]) +
+                 force[2] * static_cast<double>(at[2 * columns.column]);
     }
   }
 }
@@ -247,7 +248,7 @@ template <std::size_t kBytes, typename Scalar>
     const std::size_t width = (count + kLanes - 1) / kLanes * kLanes;
     for (std::size_t r = 0; r < 3; ++r) {
       const Scalar* row = rows.first + r * rows.stride + begin;
-      for (std::size_t j = 0; j < count; ++j) numbers[r][j] = to_double(row[j]);
+      for (std::size_t j = 0; j < count; ++j) numbers[r][j] = static_cast<double>(row[j]);
       std::fill(numbers[r] + count, numbers[r] + width, 0.0);
     }
     if (begin > 0) std::copy_n(forces + kAheadPart, kStepsAhead, forces);

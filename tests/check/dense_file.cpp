@@ -22,26 +22,17 @@ double& DenseCube::at(int s, int a, int b) {
   return values_[static_cast<std::size_t>((b * model.degrees_of_freedom() + a) * model.steps + s)];
 }
 
-void DenseCube::write(const std::filesystem::path& path, bool half) const {
+void DenseCube::write(const std::filesystem::path& path) const {
   const int dof = model.degrees_of_freedom();
   ModelFileWriter writer(path);
   writer.write_description(model);
-  if (half) {
-    writer.begin_dense_half(dof, model.steps);
-  } else {
-    writer.begin_dense(dof, model.steps, Precision::kDouble);
-  }
+  writer.begin_dense(dof, model.steps, Precision::kDouble);
   for (int b = 0; b < dof; ++b) {
     const RowMatrix<double> column =
         Eigen::Map<const RowMatrix<double>>(
             values_.data() + static_cast<std::ptrdiff_t>(b) * dof * model.steps, dof, model.steps)
             .transpose();
-    if (half) {
-      const RowMatrix<float> single = column.cast<float>();
-      writer.write_dense_column(b, single.data());
-    } else {
-      writer.write_dense_column(b, column.data());
-    }
+    writer.write_dense_column(b, column.data());
   }
   writer.commit();
 }

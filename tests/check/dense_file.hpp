@@ -12,8 +12,8 @@ struct DenseCube {
 
   explicit DenseCube(int steps = 500);
   double& at(int s, int a, int b);
-  /// Writes the model with R alone, in double or half precision.
-  void write(const std::filesystem::path& path, bool half = false) const;
+  /// Writes the model with R alone, in double precision.
+  void write(const std::filesystem::path& path) const;
 
  private:
   std::vector<double> values_;

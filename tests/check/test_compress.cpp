@@ -110,24 +110,6 @@ TEST_CASE("compress: the stated errors are those of the file, twice to the same 
   CHECK(largest > 0.2 * summary.error.displacement);
 }
 
-TEST_CASE("compress reads R in half precision with its scales") {
-  Workshop work;
-  DenseCube cube(60);
-  cube.write(work.file("dense.h5"), true);
-  const DenseInput input(work.file("dense.h5"));
-  const RowMatrix<float> column = input.column(7);
-  double largest = 0.0;
-  double difference = 0.0;
-  for (int s = 0; s < 60; ++s) {
-    for (int a = 0; a < cube.model.degrees_of_freedom(); ++a) {
-      const double expected = cube.at(s, a, 7);
-      largest = std::max(largest, std::abs(expected));
-      difference = std::max(difference, std::abs(static_cast<double>(column(s, a)) - expected));
-    }
-  }
-  CHECK(difference < 1e-3 * largest);
-}
-
 TEST_CASE("compress keeps as few early steps as shapes and poles can make up for") {
   const auto [shaken, error, kept] =
       GENERATE(std::tuple(false, 0.05, 16), std::tuple(true, 0.03, 32));

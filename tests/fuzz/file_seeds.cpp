@@ -41,9 +41,8 @@ void write_column_files(const Seeds& seeds) {
   other_column.resize(other_column.size() + 100);
   write("damaged_column", other_column);
   header.precision = Precision::kDouble;
-  header.centrifugal = header.half = true;
-  header.compression_error = 1e-5;
-  write("all_options", column_file(header, 9));
+  header.centrifugal = header.gravity = true;
+  write("all_options", column_file(header, 12));
   header.degrees_of_freedom = header.steps = std::numeric_limits<int>::max();
   header.settings.clear();
   write("impossible", column_file(header, 0));

@@ -56,8 +56,8 @@ std::filesystem::path valid_model() {
   return path;
 }
 
-/// What takes less room: half precision, modes in single precision and what others add, and the
-/// compressed response.
+/// What takes less room: single precision, what modes that are left out add, and the compressed
+/// response.
 std::filesystem::path packed_model() {
   Model model = test::synthetic_cube(1, kModes, kResponseSteps);
   test::add_centrifugal(model);
@@ -72,7 +72,7 @@ std::filesystem::path packed_model() {
   ModelFileWriter writer(path);
   writer.write_description(model);
   writer.write_modal(modal);
-  writer.begin_dense_half(response.degrees_of_freedom, response.steps);
+  writer.begin_dense(response.degrees_of_freedom, response.steps, Precision::kSingle);
   write_columns<float>(response, writer);
   writer.write_compressed(test::compressed_response(model), {0.01, 0.01, 0.005, 0.01, 24});
   writer.commit();

@@ -84,8 +84,7 @@ int columns_kept(const std::string& out) {
 }  // namespace
 
 TEST_CASE("slices join to the file of a whole run, bit for bit, by both methods", "[slow]") {
-  for (const std::string& config :
-       {kStepping, modal(), fixed_modal(), kStepping + "precision = \"half\"\n"}) {
+  for (const std::string& config : {kStepping, modal(), fixed_modal()}) {
     Run run(config);
     const bool fixed = config == fixed_modal();
     const bool stepping = config != modal() && !fixed;
@@ -112,7 +111,6 @@ TEST_CASE("merge refuses slices that do not fit together, one by one", "[slow]")
   run.write("other.toml", std::string(kStepping).replace(kStepping.find("2000"), 4, "2001"));
   run.write("linear.toml", kStepping + "[time_stepping]\nmodel = \"linear\"\n");
   run.write("double.toml", kStepping + "precision = \"double\"\n");
-  run.write("half.toml", kStepping + "precision = \"half\"\n");
   run.good("c.toml -o a.part --columns 0:20");
   run.good("c.toml -o b.part --columns 20:54");
   run.good("c.toml -o tail.part --columns 21:54");
@@ -120,7 +118,6 @@ TEST_CASE("merge refuses slices that do not fit together, one by one", "[slow]")
   run.good("other.toml -o stiffer.part --columns 20:54");
   run.good("linear.toml -o linear.part --columns 20:54");
   run.good("double.toml -o double.part --columns 20:54");
-  run.good("half.toml -o half.part --columns 20:54");
   run.refused("merge a.part -o m.h5", "columns 20:54 are in no part");
   run.refused("merge b.part -o m.h5", "columns 0:20 are in no part");
   run.refused("merge a.part tail.part -o m.h5", "columns 20:21 are in no part");
@@ -129,7 +126,6 @@ TEST_CASE("merge refuses slices that do not fit together, one by one", "[slow]")
   run.refused("merge a.part stiffer.part -o m.h5", "another mesh, material or time axis");
   run.refused("merge a.part linear.part -o m.h5", "other settings");
   run.refused("merge a.part double.part -o m.h5", "other numbers");
-  run.refused("merge a.part half.part -o m.h5", "other numbers");
   run.refused("merge a.part missing.part -o m.h5", "missing.part: cannot be read");
   run.refused("merge a.part c.toml -o m.h5", "c.toml: is not a part of R");
   std::string bytes = run.content("b.part");
@@ -140,41 +136,6 @@ TEST_CASE("merge refuses slices that do not fit together, one by one", "[slow]")
   run.refused("merge a.part flipped.part -o m.h5", "flipped.part: has a damaged column");
   CHECK_FALSE(run.has("m.h5"));
   run.good("merge a.part b.part -o m.h5");
-}
-
-TEST_CASE("compression keeps to its error, of the whole file and of joined slices alike",
-          "[slow]") {
-  const std::string zfp = "compression = \"zfp\"\ncompression_error = 1e-4\n";
-  for (const std::string& config : {kStepping, modal()}) {
-    Run run(config + zfp);
-    if (!hdf5::zfp_available()) {
-      run.refused("c.toml -o m.h5", "install HDF5's zfp plugin");
-      CHECK_FALSE(run.has("m.h5.columns"));
-      return;
-    }
-    run.write("plain.toml", config);
-    run.good("c.toml -o m.h5");
-    run.good("plain.toml -o plain.h5");
-    run.good("c.toml -o a.part --columns 0:20");
-    run.good("c.toml -o b.part --columns 20:54");
-    run.good("merge a.part b.part -o joined.h5");
-    CHECK((run.content("joined.h5") == run.content("m.h5")));
-    CHECK(run.content("m.h5").size() < 0.9 * static_cast<double>(run.content("plain.h5").size()));
-    const auto numbers = [&](const std::string& name) {
-      const Model model = read_model(run.path() / name, ResponseKind::kDense);
-      return std::get<std::vector<float>>(std::get<DenseResponse>(model.response).values);
-    };
-    const std::vector<float> exact = numbers("plain.h5");
-    const std::vector<float> lossy = numbers("m.h5");
-    float error = 0.0F;
-    float largest = 0.0F;
-    for (std::size_t i = 0; i < exact.size(); ++i) {
-      error = std::max(error, std::abs(lossy[i] - exact[i]));
-      largest = std::max(largest, std::abs(exact[i]));
-    }
-    CHECK(error > 0.0F);
-    CHECK(error <= 1e-4F * largest);
-  }
 }
 
 TEST_CASE("option --columns takes A:B within R, of dense R only") {

@@ -103,14 +103,8 @@ TEST_CASE("configuration takes every documented word") {
   CHECK(response("storage = \"dense\"").storage == Storage::kDense);
   CHECK(response("storage = \"both\"").storage == Storage::kBoth);
   CHECK(response("precision = \"double\"").precision == Precision::kDouble);
-  CHECK_FALSE(response("precision = \"double\"").half);
-  CHECK(response("precision = \"half\"").half);
-  CHECK(response("precision = \"half\"").precision == Precision::kSingle);
+  CHECK(response("precision = \"single\"").precision == Precision::kSingle);
   CHECK(response("method = \"time-stepping\"").method == Method::kTimeStepping);
-  CHECK(response("").compression_error == 0.0);
-  CHECK(response("compression = \"none\"").compression_error == 0.0);
-  CHECK(response("compression = \"zfp\"").compression_error == 1e-5);
-  CHECK(response("compression = \"zfp\"\ncompression_error = 1e-3").compression_error == 1e-3);
   CHECK(response("method = \"modal\"\nsupport = \"floating\"\ndt = 0.001").dt == 0.001);
 }
 
@@ -185,12 +179,16 @@ TEST_CASE("configuration refuses each bad response entry") {
   refused("steps = 1.5", "response.steps is not a whole number");
   refused("method = \"magic\"", "modal | time-stepping");
   refused("storage = \"sparse\"", "modal | dense | both");
-  refused("precision = \"quarter\"", "half | single | double");
-  refused("precision = \"half\"\ncompression = \"zfp\"", "which zfp does not compress");
-  refused("compression = \"gzip\"", "none | zfp");
-  refused("compression_error = 1e-5", "compression_error is there without compression");
-  refused("compression = \"zfp\"\ncompression_error = 0.5", "compression_error is 0.5");
-  refused("compression = \"zfp\"\ncompression_error = 0", "compression_error is 0");
+  refused("precision = \"quarter\"", "give one of: single | double");
+  refused("precision = \"half\"",
+          "response.precision is 'half', which there is not any more; use \"single\"; "
+          "irdm-precompute compress makes dense R small");
+  for (const char* key : {"compression", "compression_error"}) {
+    refused(
+        std::string(key) + " = \"zfp\"",
+        "response." + std::string(key) +
+            " is not a key any more; leave it out; irdm-precompute compress makes dense R small");
+  }
   refused("support = \"fixed\"", "support is missing");
   refused("support = \"nailed\"", "floating | fixed");
   refused("typo = 1", "response.typo is not a known key");

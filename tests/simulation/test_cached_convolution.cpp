@@ -13,15 +13,6 @@ namespace {
 
 constexpr int kSources = 6;
 
-template <typename Number>
-Number number_of(double value) {
-  if constexpr (std::is_same_v<Number, Half>) {
-    return to_half(static_cast<float>(value));
-  } else {
-    return static_cast<Number>(value);
-  }
-}
-
 /// Any response, and every force there was: the sum as it is written.
 template <typename Number>
 struct PlainConvolution {
@@ -29,13 +20,11 @@ struct PlainConvolution {
     Random random(5);
     std::uniform_real_distribution<double> uniform(-1.0, 1.0);
     for (int i = 0; i < dof * 3 * sources * steps; ++i) {
-      values.push_back(number_of<Number>(uniform(random)));
+      values.push_back(static_cast<Number>(uniform(random)));
     }
-    for (int b = 0; b < 3 * sources; ++b) scales.push_back(1.0 + 0.1 * b);
   }
   ResidentColumns<Number> columns() const {
-    return {values.data(), scales.data(), static_cast<std::size_t>(dof),
-            static_cast<std::size_t>(steps)};
+    return {values.data(), static_cast<std::size_t>(dof), static_cast<std::size_t>(steps)};
   }
   Vector3 coming(int node, int n) const {
     Vector3 u = Vector3::Zero();
@@ -46,8 +35,8 @@ struct PlainConvolution {
         for (int row = 0; row < 3; ++row) {
           for (int axis = 0; axis < 3; ++axis) {
             const int b = 3 * nodal.node + axis;
-            u[row] += scales[static_cast<std::size_t>(b)] * nodal.force[axis] *
-                      to_double(columns().row(3 * node + row, b)[age]);
+            u[row] +=
+                nodal.force[axis] * static_cast<double>(columns().row(3 * node + row, b)[age]);
           }
         }
       }
@@ -58,7 +47,6 @@ struct PlainConvolution {
   int dof;
   int steps;
   std::vector<Number> values;
-  std::vector<double> scales;
   std::vector<std::vector<NodalForce>> past;
 };
 
@@ -73,7 +61,7 @@ std::vector<NodalForce> some_forces(Random& random) {
 }  // namespace
 
 TEMPLATE_TEST_CASE("what is kept ahead is the convolution, whoever asks when, late forces included",
-                   "", float, double, Half) {
+                   "", float, double) {
   constexpr int kNodes = 40;
   const int steps = GENERATE(3, 16, 40, 150);
   PlainConvolution<TestType> plain(kNodes, steps);
@@ -115,14 +103,13 @@ TEMPLATE_TEST_CASE("what is kept ahead is the convolution, whoever asks when, la
       largest = std::max(largest, expected.norm());
     }
   }
-  // ResidentColumns::convolve() sums up halves in single precision.
-  CHECK(worst < (std::is_same_v<TestType, Half> ? 2e-7 : 1e-14) * largest);
+  CHECK(worst < 1e-14 * largest);
 }
 
 // Contacts that stick: their nodes' forces keep in proportion, and are convolved together; one
 // slips for a while, and late forces come that keep the proportion, and that do not.
 TEMPLATE_TEST_CASE("forces that keep in proportion are convolved together, with the same result",
-                   "", float, double, Half) {
+                   "", float, double) {
   constexpr int kNodes = 10;
   const int steps = GENERATE(20, 120);
   PlainConvolution<TestType> plain(kNodes, steps);
@@ -163,13 +150,13 @@ TEMPLATE_TEST_CASE("forces that keep in proportion are convolved together, with 
       largest = std::max(largest, expected.norm());
     }
   }
-  CHECK(worst < (std::is_same_v<TestType, Half> ? 2e-7 : 1e-14) * largest);
+  CHECK(worst < 1e-14 * largest);
   // Slipping from step 201 to 209, and late forces from step 504 on that last changed step 515, are
   // seen until they are forgotten.
   CHECK(together == 2 * 700 - (209 + steps - 201) - (515 + steps - 504));
 }
 
-TEMPLATE_TEST_CASE("patches of any size are convolved together", "", float, double, Half) {
+TEMPLATE_TEST_CASE("patches of any size are convolved together", "", float, double) {
   constexpr int kPause = 40;  // longer than the response
   const int size = GENERATE(1, 2, 4, 5, 7, 32, 33, 40);
   PlainConvolution<TestType> plain(size, 30, size);
@@ -199,7 +186,7 @@ TEMPLATE_TEST_CASE("patches of any size are convolved together", "", float, doub
       largest = std::max(largest, expected.norm());
     }
   }
-  CHECK(worst < (std::is_same_v<TestType, Half> ? 2e-7 : 1e-14) * largest);
+  CHECK(worst < 1e-14 * largest);
 }
 
 TEST_CASE("what a step sees has the same bits whether somebody looks ahead or not") {

@@ -4,7 +4,6 @@
 #include <deque>
 #include <random>
 
-#include "common/model/half_column.hpp"
 #include "common/response/oscillator.hpp"
 #include "simulation/engine/response_engine.hpp"
 #include "tests/support/shared_model.hpp"
@@ -17,23 +16,6 @@ using irdm::test::synthetic_cube;
 using irdm::test::with_dense_response;
 
 namespace {
-
-// As a file of half precision would give it.
-Model in_half_precision(const Model& modal) {
-  Model model = with_dense_response<double>(modal);
-  const auto& wide = std::get<std::vector<double>>(std::get<DenseResponse>(model.response).values);
-  const Eigen::Index dof = model.degrees_of_freedom();
-  DenseResponse response{static_cast<int>(dof), model.steps, std::vector<Half>()};
-  auto& numbers = std::get<std::vector<Half>>(response.values);
-  for (Eigen::Index b = 0; b < dof; ++b) {
-    const HalfColumn column = half_column(
-        Eigen::Map<const RowMatrix<double>>(wide.data() + b * dof * model.steps, dof, model.steps));
-    numbers.insert(numbers.end(), column.numbers.begin(), column.numbers.end());
-    response.scales.push_back(column.scale);
-  }
-  model.response = std::move(response);
-  return model;
-}
 
 // Contacts that come, move from node to node and go, with silences.
 class RandomContacts {
@@ -177,7 +159,7 @@ TEST_CASE("engines predict the coming step: free displacement, and R[0] between 
 
 TEST_CASE("engine's surface is the same to the bit with one, two and three OpenMP threads") {
   const Model modal = synthetic_cube(5, 200, 50);
-  for (const Model& model : {modal, with_dense_response<float>(modal), in_half_precision(modal)}) {
+  for (const Model& model : {modal, with_dense_response<float>(modal)}) {
     const auto engine = make_engine(share(model));
     RandomContacts contacts(modal.mesh.surface_node_count());
     for (int k = 0; k < 70; ++k) engine->advance(contacts.next());
@@ -210,28 +192,6 @@ TEST_CASE("modal surface is within the tolerance of the whole one, with fewer mo
     CHECK((whole - less).cwiseAbs().maxCoeff() <= tolerance);
   }
   CHECK((whole - less).norm() > 0.0);
-}
-
-TEST_CASE("dense engine of half precision is off by what its numbers are rounded by") {
-  const Model modal = synthetic_cube(3, 40, 60);
-  const auto exact = make_engine(share(with_dense_response<double>(modal)));
-  const auto half = make_engine(share(in_half_precision(modal)));
-  RandomContacts contacts(modal.mesh.surface_node_count());
-  Points u, v;
-  double peak = 0.0;
-  for (int k = 0; k < 100; ++k) {
-    const std::vector<NodalForce> forces = contacts.next();
-    for (const auto* engine : {&exact, &half}) (*engine)->advance(forces);
-    exact->displacement(u);
-    half->displacement(v);
-    peak = std::max(peak, u.cwiseAbs().maxCoeff());
-    REQUIRE((u - v).cwiseAbs().maxCoeff() <= 1e-3 * peak);
-    REQUIRE((exact->free_displacement(5) - half->free_displacement(5)).norm() <=
-            1e-3 * peak + 1e-30);
-  }
-  CHECK((u - v).norm() > 0.0);
-  CHECK((exact->zero_lag_compliance() - half->zero_lag_compliance()).norm() <
-        1e-3 * exact->zero_lag_compliance().norm());
 }
 
 TEST_CASE("engine forgets everything on reset") {

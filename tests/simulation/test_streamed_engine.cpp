@@ -127,19 +127,6 @@ void check_equal(Model dense) {
   }
 }
 
-Model halved(const Model& dense) {
-  const TemporaryFolder folder;
-  Model half = dense;
-  DenseResponse& response = std::get<DenseResponse>(half.response);
-  const auto& wide = std::get<std::vector<float>>(response.values);
-  std::vector<Half> numbers;
-  for (const float value : wide) numbers.push_back(to_half(value * 1024.0F));
-  response.values = std::move(numbers);
-  response.scales.assign(static_cast<std::size_t>(response.degrees_of_freedom), 1.0 / 1024.0);
-  write_dense_model(half, folder.path() / "half.h5");
-  return read_model(folder.path() / "half.h5", ResponseKind::kDense);
-}
-
 }  // namespace
 
 TEST_CASE(
@@ -194,9 +181,6 @@ TEST_CASE("streamed equals dense to the bit while all columns are there") {
   }
   SECTION("double") {
     check_equal<double>(with_dense_response<double>(modal));
-  }
-  SECTION("half") {
-    check_equal<Half>(halved(with_dense_response<float>(modal)));
   }
 }
 

@@ -9,25 +9,24 @@ namespace irdm::test {
 namespace {
 
 // [s][a] of column b, as the writer wants it.
-template <typename Number, typename Scalar>
-RowMatrix<Number> file_column(const DenseResponse& response, const std::vector<Scalar>& values,
+template <typename Number>
+RowMatrix<Number> file_column(const DenseResponse& response, const std::vector<Number>& values,
                               int b) {
   RowMatrix<Number> column(response.steps, response.degrees_of_freedom);
-  const double scale = response.scales.empty() ? 1.0 : response.scales[static_cast<std::size_t>(b)];
   std::size_t at = static_cast<std::size_t>(b) * static_cast<std::size_t>(column.size());
   for (Eigen::Index a = 0; a < column.cols(); ++a) {
     for (Eigen::Index s = 0; s < column.rows(); ++s) {
-      column(s, a) = static_cast<Number>(scale * to_double(values[at++]));
+      column(s, a) = values[at++];
     }
   }
   return column;
 }
 
-template <typename Number, typename Scalar>
-void write_columns(const DenseResponse& response, const std::vector<Scalar>& values,
+template <typename Number>
+void write_columns(const DenseResponse& response, const std::vector<Number>& values,
                    ModelFileWriter& writer) {
   for (int b = 0; b < response.degrees_of_freedom; ++b) {
-    writer.write_dense_column(b, file_column<Number>(response, values, b).data());
+    writer.write_dense_column(b, file_column(response, values, b).data());
   }
 }
 
@@ -36,9 +35,8 @@ template <typename Number>
 std::vector<Number> file_columns(const DenseResponse& response, const std::vector<Number>& values,
                                  int count) {
   std::vector<Number> all;
-  DenseResponse unscaled{response.degrees_of_freedom, response.steps, {}};
   for (int p = 0; p < count; ++p) {
-    const RowMatrix<Number> column = file_column<Number>(unscaled, values, p);
+    const RowMatrix<Number> column = file_column(response, values, p);
     all.insert(all.end(), column.data(), column.data() + column.size());
   }
   return all;
@@ -71,16 +69,10 @@ void write_dense_model(const Model& dense, const std::filesystem::path& path) {
   const auto& response = std::get<DenseResponse>(dense.response);
   ModelFileWriter writer(path);
   writer.write_description(dense);
-  if (const auto* half = std::get_if<std::vector<Half>>(&response.values)) {
-    writer.begin_dense_half(response.degrees_of_freedom, response.steps);
-    write_columns<double>(response, *half, writer);
-  } else if (const auto* single = std::get_if<std::vector<float>>(&response.values)) {
-    writer.begin_dense(response.degrees_of_freedom, response.steps, Precision::kSingle);
-    write_columns<float>(response, *single, writer);
-  } else {
-    writer.begin_dense(response.degrees_of_freedom, response.steps, Precision::kDouble);
-    write_columns<double>(response, std::get<std::vector<double>>(response.values), writer);
-  }
+  const bool single = std::holds_alternative<std::vector<float>>(response.values);
+  writer.begin_dense(response.degrees_of_freedom, response.steps,
+                     single ? Precision::kSingle : Precision::kDouble);
+  std::visit([&](const auto& values) { write_columns(response, values, writer); }, response.values);
   std::visit([&](const auto& values) { write_spin(response, values, writer); },
              response.centrifugal);
   std::visit([&](const auto& values) { write_gravity(response, values, writer); },

@@ -31,7 +31,7 @@ class ScriptedSupply final : public ColumnSupply {
   std::size_t tips() const { return tips_; }
 
  private:
-  std::variant<std::vector<float>, std::vector<double>, std::vector<Half>> values_;
+  std::variant<std::vector<float>, std::vector<double>> values_;
   std::size_t node_numbers_;
   std::vector<int> taken_;
   std::size_t tips_ = 0;

@@ -13,8 +13,8 @@
 #include "precompute/fem/assembly.hpp"
 #include "precompute/fem/rigid_motions.hpp"
 #include "precompute/mesh/box_mesh.hpp"
-#include "precompute/mesh/quadratic_mesh.hpp"
 #include "precompute/mesh/surface.hpp"
+#include "precompute/mesh/tet_mesh.hpp"
 #include "precompute/mesh/tetgen_program.hpp"
 
 using namespace irdm;

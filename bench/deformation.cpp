@@ -13,7 +13,7 @@
 #include "bench/report.hpp"
 #include "bench/sparse_resident.hpp"
 #include "bench/statistics.hpp"
-#include "common/program/passive_openmp.hpp"
+#include "common/program/program.hpp"
 #include "simulation/engine/response_engine.hpp"
 #include "tests/support/synthetic_model.hpp"
 

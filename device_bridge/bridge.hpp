@@ -1,13 +1,28 @@
 #pragma once
 
+#include <cstdint>
 #include <limits>
+#include <string>
 
-#include "common/program/stop_signal.hpp"
+#include "common/program/program.hpp"
 #include "device_bridge/bridge_config.hpp"
-#include "device_bridge/bridge_report.hpp"
-#include "device_bridge/link/client_settings.hpp"
+#include "device_bridge/network_client.hpp"
+#include "device_bridge/servo_thread.hpp"
 
 namespace irdm {
+
+/// What a bridge tells at its end.
+struct BridgeReport {
+  ServoReport servo;
+  ClientReport client;
+  std::string scheduling;  ///< of the servo thread, and whether memory is locked
+  int styluses = 0;
+  double peak_force = 0.0;   ///< shown on any stylus [N]
+  FilterCounts filter = {};  ///< of all styluses
+};
+
+/// A few lines for a person, each `name: values`.
+std::string to_text(const BridgeReport& report);
 
 /// How a bridge of this configuration connects. Throws Error about its key file.
 /// @param config with a server

@@ -5,7 +5,7 @@
 #include <set>
 #include <utility>
 
-#include "common/blackbox/read_black_box.hpp"
+#include "common/blackbox/black_box_file.hpp"
 #include "common/error.hpp"
 #include "common/quoted.hpp"
 #include "device_bridge/device_registry.hpp"

@@ -10,9 +10,7 @@
 #include "common/config/toml_reader.hpp"
 #include "common/realtime/scheduling.hpp"
 #include "device_bridge/servo_loop.hpp"
-#include "device_bridge/virtual_hand.hpp"
-#include "device_bridge/virtual_motors.hpp"
-#include "device_bridge/virtual_sensor.hpp"
+#include "device_bridge/virtual_stylus.hpp"
 
 namespace irdm {
 

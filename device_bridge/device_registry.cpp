@@ -1,6 +1,8 @@
 #include "device_bridge/device_registry.hpp"
 
+#include <spdlog/spdlog.h>
 #include <array>
+#include <utility>
 
 #include "common/error.hpp"
 #include "common/quoted.hpp"
@@ -9,6 +11,24 @@
 #include "device_bridge/virtual_stylus.hpp"
 
 namespace irdm {
+
+void DeviceWatch::look() {
+  for (std::size_t i = 0; i < devices_.size(); ++i) {
+    const std::string trouble = devices_[i]->trouble();
+    if (trouble != said_[i] && !trouble.empty()) spdlog::error("{}", trouble);
+    said_[i] = trouble;
+  }
+}
+
+std::string DeviceWatch::troubles() const {
+  std::string all;
+  for (const auto& device : devices_) {
+    const std::string trouble = device->trouble();
+    if (!trouble.empty()) all += (all.empty() ? "" : "; ") + trouble;
+  }
+  return all;
+}
+
 namespace {
 
 struct Entry {

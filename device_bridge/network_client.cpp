@@ -3,7 +3,6 @@
 #include <pthread.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
-
 #include <algorithm>
 #include <chrono>
 #include <exception>

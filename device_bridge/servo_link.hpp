@@ -10,9 +10,15 @@
 #include "common/realtime/event_fd.hpp"
 #include "common/realtime/triple_buffer.hpp"
 #include "common/stylus.hpp"
-#include "device_bridge/servo_input.hpp"
 
 namespace irdm {
+
+/// What the servo loop knows of the server's forces for one stylus.
+struct ServoInput {
+  bool linked = false;     ///< a session is on
+  bool any_force = false;  ///< `force` is of this session (or of the last one, when not linked)
+  StylusForce force = {};  ///< the newest
+};
 
 /// What the servo thread knows of the connection.
 struct LinkState {

@@ -4,12 +4,10 @@
 #include <optional>
 
 #include "common/stylus.hpp"
-#include "device_bridge/button_map.hpp"
-#include "device_bridge/clutch.hpp"
 #include "device_bridge/contact/bridge_contact.hpp"
 #include "device_bridge/haptic_device.hpp"
 #include "device_bridge/safety/safety_filter.hpp"
-#include "device_bridge/servo_input.hpp"
+#include "device_bridge/servo_link.hpp"
 #include "device_bridge/workspace.hpp"
 
 namespace irdm {

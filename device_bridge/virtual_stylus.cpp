@@ -1,11 +1,116 @@
 #include "device_bridge/virtual_stylus.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "device_bridge/bridge_config.hpp"
 
 namespace irdm {
+namespace {
+
+/// exp(-a t) cos(w t) and exp(-a t) sin(w t) / w for w^2 = `discriminant` of either sign.
+struct Decay {
+  double cosine;
+  double sine;
+};
+
+Decay decay(double a, double discriminant, double t) noexcept {
+  const double w = std::sqrt(std::abs(discriminant));
+  if (w * t < 1e-6) return {std::exp(-a * t), t * std::exp(-a * t)};
+  if (discriminant > 0.0) {
+    return {std::exp(-a * t) * std::cos(w * t), std::exp(-a * t) * std::sin(w * t) / w};
+  }
+  // Two exponentials that both decay: cosh alone would overflow for a strong damper.
+  const double slow = std::exp((w - a) * t);
+  const double fast = std::exp((-w - a) * t);
+  return {0.5 * (slow + fast), 0.5 * (slow - fast) / w};
+}
+
+}  // namespace
+
+VirtualHand::VirtualHand(const HandParameters& parameters, const Vector3& start)
+    : parameters_(parameters), target_(start), position_(start) {}
+
+void VirtualHand::advance(double dt, const Vector3& target, const Vector3& force) noexcept {
+  if (!(dt > 0.0)) return;
+  const auto& [mass, damping, stiffness] = parameters_;
+  const double a = 0.5 * damping / mass;
+  const double square = stiffness / mass;  // of the undamped angular frequency
+  const Decay d = decay(a, square - a * a, dt);
+  // Relative to the moving target, and to where the force would hold it for good.
+  const Vector3 target_velocity = (target - target_) / dt;
+  const Vector3 sag = force / stiffness;
+  const Vector3 y = position_ - target_ - sag;
+  const Vector3 u = velocity_ - target_velocity;
+  position_ = target + sag + (d.cosine + a * d.sine) * y + d.sine * u;
+  velocity_ = target_velocity + (d.cosine - a * d.sine) * u - square * d.sine * y;
+  target_ = target;
+}
+
+void VirtualMotors::set(const Vector3& force) noexcept {
+  age_ = 0.0;
+  force_ = force.allFinite() ? force : Vector3(Vector3::Zero());
+  const double magnitude = force_.norm();
+  if (magnitude > parameters_.max_force) force_ *= parameters_.max_force / magnitude;
+}
+
+double VirtualMotors::on_for(double seconds) const noexcept {
+  return std::clamp(parameters_.watchdog - age_, 0.0, seconds);
+}
+
+void VirtualMotors::advance(double seconds) noexcept {
+  const double on = on_for(seconds);
+  const double load = force_.norm() / parameters_.continuous_force;
+  const auto settle = [&](double towards, double time) {
+    warmth_ += (towards - warmth_) * -std::expm1(-time / parameters_.time_constant);
+  };
+  settle(load * load, on);
+  settle(0.0, seconds - on);
+  age_ += seconds;
+}
+
+namespace {
+
+// A well-mixed function of its argument (splitmix64): numbers in a row give numbers at random.
+std::uint64_t mix(std::uint64_t x) noexcept {
+  x += 0x9E3779B97F4A7C15;
+  x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9;
+  x = (x ^ (x >> 27)) * 0x94D049BB133111EB;
+  return x ^ (x >> 31);
+}
+
+// Evenly in (0, 1].
+double uniform(std::uint64_t x) noexcept {
+  constexpr double kUnit = 0x1p-53;
+  return kUnit * static_cast<double>((mix(x) >> 11) + 1);
+}
+
+}  // namespace
+
+// Box and Muller's pair, of which one is enough.
+double VirtualSensor::next_normal() noexcept {
+  const std::uint64_t stream = std::uint64_t{parameters_.seed} << 32;
+  const double radius = std::sqrt(-2.0 * std::log(uniform(mix(stream) + drawn_)));
+  const double angle = 2.0 * std::numbers::pi * uniform(mix(stream) + drawn_ + 1);
+  drawn_ += 2;
+  return radius * std::cos(angle);
+}
+
+Vector3 VirtualSensor::measure(const Vector3& tip) noexcept {
+  const auto& [resolution, noise, seed] = parameters_;
+  Vector3 measured = tip;
+  if (noise > 0.0) {
+    for (double& coordinate : measured) coordinate += noise * next_normal();
+  }
+  if (resolution > 0.0) {
+    for (double& coordinate : measured) {
+      coordinate = resolution * std::round(coordinate / resolution);
+    }
+  }
+  return measured;
+}
 
 VirtualStylus::VirtualStylus(StylusScript script, const std::optional<HandParameters>& hand,
                              const SensorParameters& sensor, const MotorParameters& motors)

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <map>
 
-#include "common/config/lab_ranges.hpp"
+#include "common/config/range.hpp"
 #include "common/error.hpp"
 #include "precompute/mesh/mesh_file.hpp"
 

@@ -8,10 +8,10 @@
 #include <numbers>
 
 #include "common/error.hpp"
-#include "common/model/description_check.hpp"
+#include "common/model/model_check.hpp"
 #include "precompute/blas_kernel.hpp"
 #include "precompute/columns/assemble.hpp"
-#include "precompute/columns/settings.hpp"
+#include "precompute/columns/compute_columns.hpp"
 #include "precompute/columns/work_file.hpp"
 #include "precompute/dynamics/stepping_method.hpp"
 #include "precompute/fem/assembly.hpp"
@@ -19,16 +19,15 @@
 #include "precompute/mesh/box_mesh.hpp"
 #include "precompute/mesh/mesh_check.hpp"
 #include "precompute/mesh/mesh_file.hpp"
-#include "precompute/mesh/mesh_report.hpp"
-#include "precompute/mesh/quadratic_mesh.hpp"
 #include "precompute/mesh/region.hpp"
 #include "precompute/mesh/surface.hpp"
+#include "precompute/mesh/tet_mesh.hpp"
 #include "precompute/mesh/tetgen_program.hpp"
-#include "precompute/modal/held_responses.hpp"
+#include "precompute/modal/elastic_statics.hpp"
+#include "precompute/modal/lowest_modes.hpp"
 #include "precompute/modal/modal_method.hpp"
 #include "precompute/modal/reduced_modes.hpp"
 #include "precompute/modal/shared_modes.hpp"
-#include "precompute/modal/symmetric_eigen.hpp"
 #include "precompute/process/signal_cleanup.hpp"
 
 namespace irdm::precompute {

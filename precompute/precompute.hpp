@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "precompute/columns/column_range.hpp"
+#include "precompute/columns/column_file.hpp"
 #include "precompute/config.hpp"
 #include "precompute/parallel/ranks.hpp"
 #include "precompute/progress.hpp"

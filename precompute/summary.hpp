@@ -5,7 +5,7 @@
 #include <string>
 
 #include "common/model/model.hpp"
-#include "precompute/mesh/mesh_report.hpp"
+#include "precompute/mesh/mesh_check.hpp"
 
 namespace irdm::precompute {
 

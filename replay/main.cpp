@@ -1,7 +1,6 @@
 #include <cstdlib>
 #include <map>
 
-#include "common/program/passive_openmp.hpp"
 #include "common/program/program.hpp"
 #include "replay/command/command.hpp"
 

@@ -1,30 +1,91 @@
 #include "replay/replay.hpp"
 
 #include <unistd.h>
-
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <csignal>
 #include <iostream>
 #include <memory>
 #include <sstream>
+#include <string>
 
 #include "common/checksum.hpp"
 #include "common/error.hpp"
 #include "precompute/progress.hpp"
-#include "replay/frame_steps.hpp"
-#include "replay/interruption.hpp"
 #include "replay/output/csv_output.hpp"
 #include "replay/output/picture_output.hpp"
 #include "replay/output/run_output.hpp"
 #include "replay/output/vtk_output.hpp"
 #include "replay/reference/fem_reference.hpp"
-#include "replay/rerun/delayed_forces.hpp"
 #include "replay/rerun/deviation.hpp"
-#include "replay/rerun/finite_step.hpp"
-#include "replay/rerun/force_rerun.hpp"
-#include "replay/rerun/input_rerun.hpp"
+#include "replay/rerun/rerun.hpp"
 #include "replay/traced_scene.hpp"
 #include "trace/recording.hpp"
 
 namespace irdm::replay {
+namespace {
+
+constexpr std::array<int, 2> kInterrupting{SIGINT, SIGTERM};
+
+volatile std::sig_atomic_t interrupted = 0;
+
+void remember(int /*signal*/) {
+  interrupted = 1;
+}
+
+}  // namespace
+
+Interruption::Interruption() {
+  interrupted = 0;
+  for (const int signal : kInterrupting) {
+    if (std::signal(signal, remember) == SIG_IGN) std::signal(signal, SIG_IGN);
+  }
+}
+
+Interruption::~Interruption() {
+  for (const int signal : kInterrupting) {
+    if (std::signal(signal, SIG_DFL) == SIG_IGN) std::signal(signal, SIG_IGN);
+  }
+}
+
+bool Interruption::came() const noexcept {
+  return interrupted != 0;
+}
+
+FrameSteps::FrameSteps(std::size_t steps, double dt, std::optional<double> rate,
+                       const RunPart& part)
+    : frames_in_step_(rate ? *rate * dt : 1.0) {
+  constexpr double kRounding = 1e-9;
+  if (frames_in_step_ > 1.0 + kRounding) {
+    throw Error("--rate", "is above the rate of the steps",
+                "use at most " + std::to_string(1.0 / dt) + " Hz, or leave it out for every step");
+  }
+  const double length = static_cast<double>(steps);
+  first_ = static_cast<std::size_t>(
+      std::clamp(std::ceil(part.begin / dt - kRounding) - 1.0, 0.0, length));
+  end_ = static_cast<std::size_t>(std::min(std::floor(part.end / dt + kRounding), length));
+  if (steps == 0 || first_ < end_) return;
+  throw Error("--begin, --end",
+              "leave out all of the run, which is " + std::to_string(length * dt) + " s long",
+              "give times within it, the first below the second");
+}
+
+// Frame j = 1, 2, ... is in step k = 0, 1, ... when k < j / frames_in_step <= k + 1.
+std::size_t FrameSteps::frames_up_to(std::size_t steps) const noexcept {
+  constexpr double kRounding = 1e-6;
+  return static_cast<std::size_t>(
+      std::floor(static_cast<double>(steps) * frames_in_step_ + kRounding));
+}
+
+bool FrameSteps::has(std::size_t step) const noexcept {
+  return step >= first_ && step < end_ && frames_up_to(step + 1) > frames_up_to(step);
+}
+
+std::size_t FrameSteps::count() const noexcept {
+  return frames_up_to(end_) - frames_up_to(first_);
+}
+
 namespace {
 
 using Outputs = std::vector<std::unique_ptr<FrameOutput>>;

@@ -1,17 +1,59 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "common/model/model_file.hpp"
 #include "precompute/dynamics/soft_body.hpp"
-#include "replay/frame_steps.hpp"
-#include "replay/pictures/picture_look.hpp"
+#include "replay/pictures/drawn_page.hpp"
 #include "simulation/engine/response_engine.hpp"
 
 namespace irdm::replay {
+
+/// While it lives, SIGINT and SIGTERM do not end the process but are remembered, so that a long
+/// computation can stop in order and leave no half-written file. A handler and not a waiting
+/// thread: the threads of the BLAS start before main and may be the ones that a signal is delivered
+/// to. One at a time.
+class Interruption {
+ public:
+  Interruption();
+  Interruption(const Interruption&) = delete;
+  Interruption& operator=(const Interruption&) = delete;
+  ~Interruption();
+
+  /// Whether one has come.
+  bool came() const noexcept;
+};
+
+/// A part of a run, the ends included [s].
+struct RunPart {
+  double begin = 0.0;
+  double end = std::numeric_limits<double>::infinity();
+};
+
+/// At the end of which steps of a run there is a frame: those that the times 1/rate, 2/rate, ...
+/// fall into, up to the end of the run, as far as these steps end in a part of it.
+class FrameSteps {
+ public:
+  /// @param dt of a step [s], > 0
+  /// @param rate frames a second [Hz], at most 1/dt; none: every step. Throws Error.
+  FrameSteps(std::size_t steps, double dt, std::optional<double> rate, const RunPart& part = {});
+
+  bool has(std::size_t step) const noexcept;
+  /// All of them.
+  std::size_t count() const noexcept;
+
+ private:
+  std::size_t frames_up_to(std::size_t steps) const noexcept;
+
+  double frames_in_step_;
+  std::size_t first_;  // step of the part
+  std::size_t end_;    // one behind its last
+};
 
 /// What is to be made again, and what is to be written of it.
 struct ReplayOptions {

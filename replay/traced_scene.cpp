@@ -11,7 +11,7 @@
 #include "scene/scene.hpp"
 #include "scene/scene_simulation.hpp"
 #include "trace/recording.hpp"
-#include "trace/trace_header.hpp"
+#include "trace/trace_layout.hpp"
 
 namespace irdm {
 

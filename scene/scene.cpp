@@ -5,8 +5,8 @@
 #include <set>
 #include <sstream>
 
-#include "common/blackbox/read_black_box.hpp"
-#include "common/config/lab_ranges.hpp"
+#include "common/blackbox/black_box_file.hpp"
+#include "common/config/range.hpp"
 #include "common/error.hpp"
 #include "common/quoted.hpp"
 

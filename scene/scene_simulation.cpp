@@ -6,7 +6,7 @@
 
 #include "common/error.hpp"
 #include "common/model/model_file.hpp"
-#include "simulation/step/inertial_loading.hpp"
+#include "simulation/step/settings.hpp"
 
 namespace irdm {
 namespace {

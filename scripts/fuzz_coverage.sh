@@ -8,15 +8,15 @@ needed=95
 # What makes something of bytes that come from elsewhere.
 decoders=(
   common/wire/frame.cpp common/wire/payload.cpp common/wire/contact_payload.cpp common/wire/secret_key.cpp
-  common/wire/datagram_channel.cpp common/wire/frame_parts.cpp common/wire/stream_order.cpp
-  common/wire/connection.cpp common/wire/datagram_link.cpp
-  common/contact/contact_model.cpp common/config/toml_reader.cpp common/blackbox/read_black_box.cpp
-  common/model/model_file.cpp common/model/dense_file.cpp common/model/residual_file.cpp
+  common/wire/datagram_channel.cpp common/wire/frame.cpp common/wire/stream.cpp
+  common/wire/connection.cpp common/wire/datagram_socket.cpp
+  common/contact/contact_model.cpp common/config/toml_reader.cpp common/blackbox/black_box_file.cpp
+  common/model/model_file.cpp common/model/dense_file.cpp common/model/compressed_file.cpp
   common/model/compressed_file.cpp
-  server/network/session.cpp scene/scene.cpp trace/trace_header.cpp trace/trace_rows.cpp trace/trace_sets.hpp
+  server/network/session.cpp scene/scene.cpp trace/trace_layout.cpp trace/trace_rows.cpp trace/trace_layout.hpp
   trace/recording.cpp
   viewer/message_parts.cpp viewer/client_message.cpp viewer/scene_message.cpp
-  viewer/health_message.cpp viewer/state_message.cpp viewer/frame_message.cpp
+  viewer/state_message.cpp viewer/state_message.cpp viewer/frame_message.cpp
   viewer/request_rules.cpp viewer/connection.cpp
   device_bridge/link/server_session.cpp device_bridge/link/force_receiver.cpp
   device_bridge/bridge_config.cpp device_bridge/stylus_script.cpp

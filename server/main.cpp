@@ -1,6 +1,4 @@
-#include "common/program/passive_openmp.hpp"
 #include "common/program/program.hpp"
-#include "server/run_playback.hpp"
 #include "server/run_server.hpp"
 
 int main(int argc, char** argv) {

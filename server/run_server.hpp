@@ -21,4 +21,8 @@ struct ServerOptions {
 /// Throws Error.
 int run_server(const ServerOptions& options);
 
+/// Shows the recorded run `options.play` to browsers until a signal asks it to stop. Returns the
+/// exit status. Throws Error.
+int run_playback(const ServerOptions& options);
+
 }  // namespace irdm

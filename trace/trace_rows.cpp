@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "common/error.hpp"
-#include "simulation/step/restraints.hpp"
+#include "simulation/step/settings.hpp"
 
 namespace irdm::trace {
 namespace {

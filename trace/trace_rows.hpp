@@ -6,8 +6,8 @@
 
 #include "simulation/step/simulation_config.hpp"
 #include "simulation/step/step_record.hpp"
-#include "trace/trace_check.hpp"
-#include "trace/trace_sets.hpp"
+#include "trace/recording.hpp"
+#include "trace/trace_layout.hpp"
 
 /// The sets of a trace file (docs/files.md), read whole and checked: against the scene and its
 /// models, and for numbers that no run has. All of these throw Error.

@@ -6,8 +6,7 @@
 
 #include "common/contact/contact_model.hpp"
 #include "common/error.hpp"
-#include "trace/trace_paths.hpp"
-#include "trace/trace_units.hpp"
+#include "trace/trace_layout.hpp"
 
 namespace irdm {
 

@@ -1,6 +1,6 @@
 #include "viewer/message_parts.hpp"
 
-#include "common/config/lab_ranges.hpp"
+#include "common/config/range.hpp"
 
 namespace irdm::viewer {
 namespace {

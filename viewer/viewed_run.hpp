@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "common/realtime/event_fd.hpp"
@@ -35,6 +36,45 @@ class ViewedRun {
   /// @param request of as many objects as the scene has
   virtual void carry_out(const SettingsRequest& request) = 0;
   virtual void carry_out(const StylusRequest& request) = 0;
+};
+
+/// Who of the viewers has their one stylus: the first one to press, until it lets go or falls
+/// silent. Pure but for what it asks of the run; viewer's thread.
+class StylusHolder {
+ public:
+  StylusHolder(ViewedRun& run, std::int64_t timeout_ns) : run_(run), timeout_ns_(timeout_ns) {}
+
+  bool free() const noexcept { return holder_ == nullptr; }
+  bool held_by(const void* viewer) const noexcept {
+    return holder_ != nullptr && holder_ == viewer;
+  }
+
+  /// True when the stylus has changed hands.
+  bool take(const StylusRequest& request, const void* viewer, std::int64_t now_ns) {
+    if (holder_ != nullptr && holder_ != viewer) return false;
+    if (holder_ == nullptr && !request.present) return false;
+    run_.carry_out(request);
+    heard_ns_ = now_ns;
+    const void* before = holder_;
+    holder_ = request.present ? viewer : nullptr;
+    return holder_ != before;
+  }
+
+  /// Takes it from a viewer that has fallen silent or is gone.
+  /// @param there bool(const void* viewer): it is still connected
+  template <typename There>
+  void expire(std::int64_t now_ns, const There& there) {
+    if (holder_ == nullptr) return;
+    if (now_ns - heard_ns_ <= timeout_ns_ && there(holder_)) return;
+    holder_ = nullptr;
+    run_.carry_out(StylusRequest{});
+  }
+
+ private:
+  ViewedRun& run_;
+  std::int64_t timeout_ns_;
+  const void* holder_ = nullptr;  ///< compared only
+  std::int64_t heard_ns_ = 0;
 };
 
 }  // namespace irdm::viewer

@@ -16,7 +16,7 @@
 #include "common/realtime/clock.hpp"
 #include "common/wire/token_bucket.hpp"
 #include "viewer/connection.hpp"
-#include "viewer/stylus_holder.hpp"
+#include "viewer/viewed_run.hpp"
 
 namespace irdm::viewer {
 

@@ -2,7 +2,6 @@
 
 #include <pthread.h>
 #include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <exception>
 #include <utility>

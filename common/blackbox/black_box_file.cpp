@@ -1,17 +1,28 @@
 #include "common/blackbox/black_box_file.hpp"
 
 #include <unistd.h>
-
 #include <algorithm>
 #include <chrono>
 #include <ctime>
 #include <mutex>
 
 #include "common/error.hpp"
-#include "common/hdf5/library_lock.hpp"
+#include "common/hdf5/handle.hpp"
 #include "common/realtime/clock.hpp"
 
 namespace irdm {
+
+BlackBoxSettings read_black_box(TomlTable& table) {
+  constexpr int kMostFiles = 1000;
+  BlackBoxSettings settings;
+  if (table.has("black_box")) {
+    const bool none = table.text("black_box").empty();
+    settings.folder = none ? std::filesystem::path() : table.path("black_box");
+  }
+  settings.files = table.integer("black_box_files", 1, kMostFiles, settings.files);
+  return settings;
+}
+
 namespace {
 
 namespace fs = std::filesystem;

@@ -4,7 +4,7 @@
 #include <array>
 #include <bit>
 
-#include "common/blackbox/columns.hpp"
+#include "common/blackbox/row_log.hpp"
 #include "common/realtime/clock.hpp"
 #include "common/wire/bytes.hpp"
 #include "common/wire/message.hpp"

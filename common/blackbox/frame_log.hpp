@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "common/blackbox/black_box_part.hpp"
-#include "common/wire/frame_tap.hpp"
+#include "common/blackbox/black_box.hpp"
+#include "common/wire/frame.hpp"
 
 namespace irdm {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "common/config/lab_ranges.hpp"
+#include "common/config/range.hpp"
 #include "common/error.hpp"
 #include "common/quoted.hpp"
 

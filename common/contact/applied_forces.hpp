@@ -1,8 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
+#include "common/contact/contact_model.hpp"
 #include "common/geometry.hpp"
 
 namespace irdm {
@@ -32,6 +34,48 @@ struct AppliedForces {
   std::uint64_t base = 0;                 ///< step of the contact model that the newest rests on
   int count = 0;                          ///< how many there are, 0 to kSteps, at most step + 1
   std::array<AppliedForce, kSteps> past;  ///< past[i] of step - i; the first `count`
+};
+
+/// What a bridge has told of the last steps of a stylus, put together from messages that overlap.
+class AppliedHistory {
+ public:
+  static constexpr std::uint64_t kKept = 64;  ///< [steps]
+
+  /// @param session of the bridge, as StylusInput::session
+  explicit AppliedHistory(std::uint64_t session = 0) : session_(session) {}
+  std::uint64_t session() const noexcept { return session_; }
+
+  void take(const AppliedForces& applied) noexcept {
+    for (int i = applied.count - 1; i >= 0; --i) {
+      const std::uint64_t step = applied.step - static_cast<std::uint64_t>(i);
+      Entry& entry = entries_[step % kKept];
+      if (entry.step != kNoStep && entry.step > step) continue;
+      entry = {step, applied.past[static_cast<std::size_t>(i)]};
+    }
+    if (applied.count == 0) return;
+    if (newest_ == kNoStep || applied.step > newest_) newest_ = applied.step;
+    base_ = std::max(base_, applied.base);
+  }
+
+  /// The newest step that anything is known of; kNoStep: none.
+  std::uint64_t newest() const noexcept { return newest_; }
+  /// The newest contact model that anything of it rests on, by its step.
+  std::uint64_t base() const noexcept { return base_; }
+  /// What was done in a step; null when it is not known, or not any more.
+  const AppliedForce* find(std::uint64_t step) const noexcept {
+    const Entry& entry = entries_[step % kKept];
+    return entry.step == step ? &entry.applied : nullptr;
+  }
+
+ private:
+  struct Entry {
+    std::uint64_t step = kNoStep;
+    AppliedForce applied;
+  };
+  std::array<Entry, kKept> entries_;
+  std::uint64_t newest_ = kNoStep;
+  std::uint64_t base_ = 0;
+  std::uint64_t session_;
 };
 
 }  // namespace irdm

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <hdf5.h>
-
 #include <cstdint>
 #include <filesystem>
 #include <initializer_list>
@@ -11,13 +10,25 @@
 #include <vector>
 
 #include "common/hdf5/handle.hpp"
-#include "common/hdf5/layout.hpp"
 #include "common/hdf5/room.hpp"
 
-/// Thin RAII over HDF5's C interface: what the model and the trace file need, nothing more. Every
-/// failure is an irdm::Error that names the file and the object. The library is not thread safe:
-/// each process calls it from one thread at a time (library_lock.hpp).
 namespace irdm::hdf5 {
+
+using Shape = std::vector<hsize_t>;
+
+/// How a dataset of fixed shape lies in the file.
+struct Layout {
+  Shape chunk = {};         ///< of the dataset's rank; empty: contiguous, without filters
+  bool fletcher32 = false;  ///< a checksum a chunk, compared on every read
+};
+
+/// Creation properties of a dataset of that layout. Nothing in a file tells when it was made: the
+/// same content gives the same bytes.
+Handle dataset_properties(const Layout& layout);
+
+// Thin RAII over HDF5's C interface: what the model and the trace file need, nothing more. Every
+// failure is an irdm::Error that names the file and the object. The library is not thread safe:
+// each process calls it from one thread at a time (handle.hpp).
 
 /// HDF5's name for a C++ number type: double, float, std::int16_t, std::int32_t, std::uint8_t
 /// or std::uint64_t.

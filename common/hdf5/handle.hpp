@@ -1,10 +1,17 @@
 #pragma once
 
 #include <hdf5.h>
-
+#include <mutex>
 #include <utility>
 
 namespace irdm::hdf5 {
+
+/// Held by whoever uses the library while other threads may: it is not thread safe. Never by a
+/// real-time thread.
+inline std::mutex& library_mutex() {
+  static std::mutex mutex;
+  return mutex;
+}
 
 /// Keeps HDF5 from printing errors of its own, in the calling thread only, and from closing files
 /// at the end of the program. File::create() and File::open() do it for theirs; another thread that

@@ -3,8 +3,8 @@
 #include <cstdint>
 
 #include "common/checksum.hpp"
+#include "common/model/compressed_file.hpp"
 #include "common/model/model_writer.hpp"
-#include "common/model/residual_file.hpp"
 
 namespace irdm {
 namespace {

@@ -6,8 +6,13 @@
 #include "common/model/model.hpp"
 #include "common/model/model_writer.hpp"
 
-/// The model file (HDF5, format "irdm-model", docs/files.md).
 namespace irdm {
+
+/// Writes beside what a model file has what unit it is in (docs/files.md): attribute `unit` of
+/// datasets, `units` of groups for their attributes. Once, when all is there.
+void write_model_units(hdf5::File& file);
+
+// The model file (HDF5, format "irdm-model", docs/files.md).
 
 enum class ResponseKind { kModal, kDense, kCompressed };
 

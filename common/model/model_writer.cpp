@@ -7,11 +7,11 @@
 #include <utility>
 
 #include "common/error.hpp"
+#include "common/model/compressed_file.hpp"
 #include "common/model/content_checksum.hpp"
-#include "common/model/model_units.hpp"
-#include "common/model/residual_file.hpp"
-#include "common/process/part_name.hpp"
-#include "common/response/spin_products.hpp"
+#include "common/model/model_file.hpp"
+#include "common/process/temporary_files.hpp"
+#include "common/response/modal_response.hpp"
 
 namespace irdm {
 namespace {

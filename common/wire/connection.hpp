@@ -10,12 +10,10 @@
 #include <vector>
 
 #include "common/wire/asio.hpp"
-#include "common/wire/datagram_link.hpp"
+#include "common/wire/datagram_socket.hpp"
 #include "common/wire/frame.hpp"
-#include "common/wire/frame_tap.hpp"
 #include "common/wire/protocol_error.hpp"
 #include "common/wire/stream.hpp"
-#include "common/wire/stream_order.hpp"
 
 namespace irdm::wire {
 

@@ -1,13 +1,33 @@
 #include "common/wire/secret_key.hpp"
 
+#include <openssl/rand.h>
+#include <algorithm>
 #include <charconv>
 #include <fstream>
 #include <iterator>
+#include <stdexcept>
 #include <string>
 
 #include "common/error.hpp"
 
 namespace irdm::wire {
+
+KeyMaterial random_material() {
+  KeyMaterial material;
+  if (RAND_bytes(material.data(), static_cast<int>(material.size())) != 1) {
+    throw std::runtime_error("OpenSSL has no random bytes");
+  }
+  return material;
+}
+
+DatagramKeys keys_of(const KeyMaterial& material) noexcept {
+  DatagramKeys keys;
+  const auto half = material.begin() + AesGcm::kKeySize;
+  std::copy(material.begin(), half, keys.to_server.begin());
+  std::copy(half, material.end(), keys.to_bridge.begin());
+  return keys;
+}
+
 namespace {
 
 namespace fs = std::filesystem;

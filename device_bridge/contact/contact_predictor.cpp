@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "common/contact/applied_forces.hpp"
-#include "common/contact/single_contact.hpp"
+#include "common/contact/contact_problem.hpp"
 
 namespace irdm {
 namespace {

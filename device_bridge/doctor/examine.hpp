@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "device_bridge/bridge_config.hpp"
-#include "device_bridge/doctor/finding.hpp"
+#include "device_bridge/doctor/judgements.hpp"
 
 namespace irdm::doctor {
 

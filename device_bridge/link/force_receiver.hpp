@@ -5,8 +5,8 @@
 
 #include "common/realtime/histogram.hpp"
 #include "common/wire/message.hpp"
-#include "device_bridge/link/client_report.hpp"
-#include "device_bridge/servo_input.hpp"
+#include "device_bridge/network_client.hpp"
+#include "device_bridge/servo_link.hpp"
 
 namespace irdm {
 

@@ -5,7 +5,7 @@
 #include <iomanip>
 #include <sstream>
 
-#include "device_bridge/safety/link_gate.hpp"
+#include "device_bridge/safety/arming.hpp"
 
 namespace irdm {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "device_bridge/link/link_measurement.hpp"
+#include "device_bridge/link/link_probe.hpp"
 
 namespace irdm {
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "common/wire/connection.hpp"
-#include "device_bridge/link/client_report.hpp"
+#include "device_bridge/network_client.hpp"
 
 namespace irdm {
 

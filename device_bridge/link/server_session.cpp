@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "common/realtime/clock.hpp"
-#include "device_bridge/safety/link_gate.hpp"
+#include "device_bridge/safety/arming.hpp"
 
 namespace irdm {
 namespace {

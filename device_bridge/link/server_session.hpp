@@ -8,11 +8,10 @@
 #include <vector>
 
 #include "common/wire/connection.hpp"
-#include "device_bridge/link/arming_patience.hpp"
-#include "device_bridge/link/client_report.hpp"
-#include "device_bridge/link/client_settings.hpp"
 #include "device_bridge/link/force_receiver.hpp"
 #include "device_bridge/link/server_datagrams.hpp"
+#include "device_bridge/network_client.hpp"
+#include "device_bridge/safety/arming.hpp"
 #include "device_bridge/servo_link.hpp"
 
 namespace irdm {

@@ -2,7 +2,8 @@
 
 #include <string>
 
-#include "device_bridge/openhaptics/hd_api.hpp"
+#include "device_bridge/openhaptics/hd_library.hpp"
+#include "device_bridge/openhaptics/touch_system.hpp"
 
 namespace irdm::hd {
 
@@ -36,5 +37,29 @@ inline constexpr Code kCommunicationConfig = 0x0303;
 
 /// "NAME 0x0302, internal 5: WHAT".
 std::string to_text(const ErrorInfo& error);
+
+}  // namespace irdm::hd
+
+namespace irdm::hd {
+
+/// What is wrong, and what to do about it.
+struct Advice {
+  std::string what;
+  std::string remedy;
+};
+
+/// Why the driver does not start a device: its error says little, so what the system knows is
+/// looked at first. Pure.
+/// @param name as configured; empty: the driver's default device
+Advice start_advice(const std::string& name, const ErrorInfo& error, const TouchSystem& system);
+
+/// The setup of a device of this name; nullptr: none. An empty name: none either. Pure.
+const DeviceSetup* find_setup(const TouchSystem& system, const std::string& name);
+
+/// "A, B" of all setups. Pure.
+std::string setup_names(const TouchSystem& system);
+
+extern const char* const kPermissionRemedy;
+extern const char* const kCommaRemedy;
 
 }  // namespace irdm::hd

@@ -10,8 +10,8 @@
 
 #include "common/error.hpp"
 #include "device_bridge/bridge_config.hpp"
+#include "device_bridge/openhaptics/hd_error.hpp"
 #include "device_bridge/openhaptics/hd_library.hpp"
-#include "device_bridge/openhaptics/start_advice.hpp"
 
 namespace irdm {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "device_bridge/openhaptics/hd_api.hpp"
-#include "device_bridge/tick_source.hpp"
+#include "device_bridge/haptic_device.hpp"
+#include "device_bridge/openhaptics/hd_library.hpp"
 
 namespace irdm {
 

@@ -2,8 +2,38 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace irdm {
+
+void WorldWork::observe(std::int64_t now_ns, const Vector3& tip) noexcept {
+  tips_[count_ % kKept] = {now_ns, tip};
+  ++count_;
+}
+
+double WorldWork::answer(std::int64_t time_ns, const Vector3& force) noexcept {
+  const Tip* tip = at(time_ns);
+  if (tip == nullptr || (any_ && time_ns <= answered_.time_ns)) return 0.0;
+  const Tip before = std::exchange(answered_, *tip);
+  const bool follows = std::exchange(any_, true) && tip->time_ns - before.time_ns <= kLongest;
+  if (!follows) return 0.0;
+  // As the step has it: the force is the one at its end.
+  const double given = force.dot(tip->place - before.place);
+  if (!std::isfinite(given)) return 0.0;
+  taken_ -= given;
+  const double beyond = std::max(0.0, -taken_);
+  taken_ = std::clamp(taken_, 0.0, kMost);
+  return beyond;
+}
+
+// The newest that is not later; null where that is forgotten.
+const WorldWork::Tip* WorldWork::at(std::int64_t time_ns) const noexcept {
+  for (std::size_t back = 1; back <= std::min(count_, kKept); ++back) {
+    const Tip& tip = tips_[(count_ - back) % kKept];
+    if (tip.time_ns <= time_ns) return &tip;
+  }
+  return nullptr;
+}
 
 void Passivity::observe(const Vector3& displacement, const Vector3& force) noexcept {
   before_ = last_;

@@ -7,13 +7,9 @@
 #include "common/stylus.hpp"
 #include "device_bridge/safety/arming.hpp"
 #include "device_bridge/safety/guards.hpp"
-#include "device_bridge/safety/link_gate.hpp"
 #include "device_bridge/safety/oscillation_detector.hpp"
 #include "device_bridge/safety/passivity.hpp"
-#include "device_bridge/safety/rate_limit.hpp"
 #include "device_bridge/safety/sensor_plausibility.hpp"
-#include "device_bridge/safety/thermal_derating.hpp"
-#include "device_bridge/safety/world_work.hpp"
 
 namespace irdm {
 

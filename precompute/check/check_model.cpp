@@ -8,8 +8,8 @@
 #include "common/model/model_file.hpp"
 #include "common/response/compressed_response.hpp"
 #include "precompute/check/lines.hpp"
-#include "precompute/check/rigid_answer.hpp"
-#include "precompute/modal/held_responses.hpp"
+#include "precompute/check/static_reference.hpp"
+#include "precompute/modal/elastic_statics.hpp"
 
 namespace irdm::precompute {
 namespace {

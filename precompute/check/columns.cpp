@@ -9,7 +9,7 @@
 #include "common/error.hpp"
 #include "common/model/model_writer.hpp"
 #include "common/response/compressed_response.hpp"
-#include "precompute/modal/held_responses.hpp"
+#include "precompute/modal/elastic_statics.hpp"
 
 namespace irdm::precompute {
 namespace {

@@ -4,8 +4,8 @@
 
 #include "precompute/check/check_model.hpp"
 #include "precompute/check/columns.hpp"
-#include "precompute/check/node_findings.hpp"
 #include "precompute/check/reciprocity.hpp"
+#include "precompute/check/report.hpp"
 
 /// The lines of the table, each from what was measured; the limits stand in docs/check.md.
 namespace irdm::precompute {

@@ -1,10 +1,14 @@
 #include "precompute/check/static_reference.hpp"
 
 #include "common/error.hpp"
-#include "precompute/fem/determinate_support.hpp"
 #include "precompute/fem/rigid_motions.hpp"
 
 namespace irdm::precompute {
+
+Matrix3 rigid_mobility(const BodyProperties& body, const Vector3& at, const Vector3& from) {
+  if (body.support == Support::kFixed) return Matrix3::Zero();
+  return Matrix3::Identity() / body.mass - skew(at) * body.inertia.inverse() * skew(from);
+}
 
 StaticReference::StaticReference(const Model& model)
     : mass_(model.mesh.node_mass.replicate(1, 3).transpose().reshaped()),

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "precompute/check/rigid_answer.hpp"
+#include "precompute/check/static_reference.hpp"
 #include "precompute/fem/material.hpp"
 
 namespace irdm::precompute {

@@ -7,7 +7,7 @@
 
 #include "common/error.hpp"
 #include "common/model/model_file.hpp"
-#include "common/response/spin_products.hpp"
+#include "common/response/modal_response.hpp"
 
 namespace irdm::precompute {
 namespace {

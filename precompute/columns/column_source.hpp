@@ -5,7 +5,7 @@
 #include <variant>
 
 #include "common/model/model.hpp"
-#include "precompute/columns/column_range.hpp"
+#include "precompute/columns/column_file.hpp"
 
 namespace irdm::precompute {
 

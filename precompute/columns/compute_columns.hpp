@@ -1,8 +1,16 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "precompute/columns/column_source.hpp"
+#include "precompute/config.hpp"
 
 namespace irdm::precompute {
+
+/// All that R depends on beside mesh, material, time axis and precision, one "name value" a line:
+/// method, clamped nodes, time stepping. Slices of R fit together only where this is the same.
+std::string settings_text(const PrecomputeConfig& config, const std::vector<int>& clamped);
 
 /// Where finished columns go: (T, 3n) numbers each, in the order of the columns, by one thread at a
 /// time.

@@ -3,9 +3,9 @@
 #include <exception>
 
 #include "common/error.hpp"
-#include "common/response/spin_products.hpp"
+#include "common/response/modal_response.hpp"
 #include "precompute/columns/assemble.hpp"
-#include "precompute/columns/column_file_writer.hpp"
+#include "precompute/columns/column_file.hpp"
 #include "precompute/columns/compute_columns.hpp"
 #include "precompute/process/signal_cleanup.hpp"
 

@@ -13,7 +13,6 @@
 #include "precompute/compress/joint_shapes.hpp"
 #include "precompute/compress/measured_error.hpp"
 #include "precompute/compress/pole_fit.hpp"
-#include "precompute/compress/products.hpp"
 
 namespace irdm::precompute {
 namespace {

@@ -1,6 +1,6 @@
 #include "precompute/compress/dense_input.hpp"
 
-#include "common/config/lab_ranges.hpp"
+#include "common/config/range.hpp"
 #include "common/error.hpp"
 #include "common/model/dense_file.hpp"
 #include "common/model/model_file.hpp"

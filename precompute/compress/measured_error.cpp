@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "common/response/compressed_response.hpp"
-#include "precompute/check/rigid_answer.hpp"
-#include "precompute/compress/products.hpp"
+#include "precompute/check/static_reference.hpp"
+#include "precompute/compress/joint_shapes.hpp"
 
 namespace irdm::precompute {
 namespace {

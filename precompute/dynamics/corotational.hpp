@@ -3,6 +3,16 @@
 #include "common/geometry.hpp"
 #include "precompute/fem/material.hpp"
 
+namespace irdm::precompute {
+
+/// The rotation Q nearest to F, which maximises tr(Q^T F): the orthogonal factor of the polar
+/// decomposition F = Q S where det F > 0, by Newton's iteration Q <- (Q + Q^-T) / 2 with scaling
+/// (Higham, Computing the polar decomposition, SIAM J. Sci. Stat. Comput. 7, 1986). Where F is
+/// singular or turned inside out, from its singular values; det Q = 1 always.
+Matrix3 polar_rotation(const Matrix3& F);
+
+}  // namespace irdm::precompute
+
 /// The corotational material of one point: F = Id + du_dX = R S by polar decomposition, strain
 /// e = S - Id, energy density mu |e|^2 + lambda/2 tr(e)^2, stress T(e) = 2 mu e + lambda tr(e) Id.
 /// Stresses P are first Piola-Kirchhoff [Pa]: a nodal force is -volume P grad(shape function).

@@ -1,6 +1,6 @@
 #include "precompute/dynamics/rigid_extraction.hpp"
 
-#include "precompute/dynamics/polar_rotation.hpp"
+#include "precompute/dynamics/corotational.hpp"
 
 namespace irdm::precompute {
 namespace {

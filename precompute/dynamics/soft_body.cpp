@@ -2,10 +2,9 @@
 
 #include "precompute/dynamics/corotational.hpp"
 #include "precompute/dynamics/neo_hookean.hpp"
-#include "precompute/dynamics/polar_rotation.hpp"
 #include "precompute/fem/assembly.hpp"
 #include "precompute/fem/mass_properties.hpp"
-#include "precompute/fem/tet10.hpp"
+#include "precompute/fem/tetrahedra.hpp"
 
 namespace irdm::precompute {
 SoftBody::SoftBody(const TetMesh& mesh, const Material& material, Elasticity elasticity)

@@ -6,7 +6,6 @@
 #include "common/model/model_writer.hpp"
 #include "precompute/columns/column_source.hpp"
 #include "precompute/dynamics/implicit_midpoint.hpp"
-#include "precompute/dynamics/linear_midpoint.hpp"
 #include "precompute/dynamics/time_stepping_config.hpp"
 
 namespace irdm::precompute {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/config/lab_ranges.hpp"
+#include "common/config/range.hpp"
 
 namespace irdm::precompute {
 namespace {

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "precompute/fem/tet10.hpp"
-#include "precompute/fem/tet4.hpp"
+#include "precompute/fem/tetrahedra.hpp"
 
 namespace irdm::precompute {
 namespace {

@@ -6,9 +6,9 @@
 
 #include "common/error.hpp"
 #include "common/process/child_program.hpp"
-#include "common/process/temporary_folder.hpp"
+#include "common/process/temporary_files.hpp"
 #include "precompute/mesh/format/gmsh_reader.hpp"
-#include "precompute/mesh/mesh_report.hpp"
+#include "precompute/mesh/mesh_check.hpp"
 
 namespace irdm::precompute {
 namespace {

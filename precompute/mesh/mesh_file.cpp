@@ -17,7 +17,7 @@
 #include "precompute/mesh/format/vtk_reader.hpp"
 #include "precompute/mesh/format/vtu_reader.hpp"
 #include "precompute/mesh/gmsh_program.hpp"
-#include "precompute/mesh/surface_check.hpp"
+#include "precompute/mesh/mesh_check.hpp"
 #include "precompute/mesh/tetgen_program.hpp"
 
 namespace irdm::precompute {

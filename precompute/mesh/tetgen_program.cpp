@@ -10,7 +10,7 @@
 
 #include "common/error.hpp"
 #include "common/process/child_program.hpp"
-#include "common/process/temporary_folder.hpp"
+#include "common/process/temporary_files.hpp"
 #include "precompute/mesh/format/tetgen_reader.hpp"
 #include "precompute/mesh/surface.hpp"
 

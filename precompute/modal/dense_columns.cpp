@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "precompute/modal/held_responses.hpp"
+#include "precompute/modal/elastic_statics.hpp"
 
 namespace irdm::precompute {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "common/error.hpp"
 #include "precompute/fem/rigid_motions.hpp"
-#include "precompute/modal/symmetric_eigen.hpp"
+#include "precompute/modal/lowest_modes.hpp"
 
 namespace irdm::precompute {
 namespace {

@@ -5,10 +5,23 @@
 #include <vector>
 
 #include "common/geometry.hpp"
+#include "common/model/model.hpp"
 #include "precompute/dynamics/sparse_solver.hpp"
 #include "precompute/fem/assembly.hpp"
+#include "precompute/modal/elastic_modes.hpp"
 
 namespace irdm::precompute {
+
+/// h_i[s] of all modes: shape (T, r), row s. R[s] = Phi diag(h[s]) Phi^T (design of equation (10):
+/// force held during one step). [m/N kg]
+RowMatrix<double> held_responses(const ModalResponse& response, double dt, int steps);
+
+/// How much of R is left where it is cut off: over all surface degrees of freedom a, the largest
+/// ratio of a bound of |R[s](a, a)| for all s >= T-1 to the peak of |R[s](a, a)| over s < T. The
+/// bound sums sqrt(q^2 + v^2 / omega^2) at step T-1 over the modes: the energy of a mode never
+/// grows, so that its displacement never exceeds that later, whatever its phase is at T-1.
+/// @param response with shapes in double precision
+double decay_left(const ModalResponse& response, double dt, int steps);
 
 /// The whole mesh under loads that stay, from one sparse Cholesky factorisation: what the modes of
 /// large objects and all that they are compared with come from. N nodes.
@@ -55,5 +68,16 @@ class ElasticStatics {
   double largest_square_;
   std::unique_ptr<SparseSolver> solver_;
 };
+
+// What loads on the whole body do to its modes. They are found offline, because such a load acts
+// on the nodes inside as well.
+
+/// Of a floating body the centrifugal forces of its modes: a fixed one does not spin. Of a fixed
+/// body the forces of gravity: no elastic mode of a floating one takes a uniform acceleration.
+/// @param modes with their shapes at all nodes, those of `response`
+void add_body_loads(const ElasticModes& modes, const Model& model, ModalResponse& response);
+
+/// What some of the modes of a fixed body lack of its static displacement under gravity.
+void add_gravity_rest(const ElasticStatics& statics, const Model& model, ModalResponse& response);
 
 }  // namespace irdm::precompute

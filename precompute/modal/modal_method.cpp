@@ -4,10 +4,9 @@
 
 #include "precompute/columns/compute_columns.hpp"
 #include "precompute/fem/assembly.hpp"
-#include "precompute/modal/body_loads.hpp"
 #include "precompute/modal/dense_columns.hpp"
 #include "precompute/modal/elastic_modes.hpp"
-#include "precompute/modal/held_responses.hpp"
+#include "precompute/modal/elastic_statics.hpp"
 
 namespace irdm::precompute {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <map>
 
-#include "common/config/lab_ranges.hpp"
+#include "common/config/range.hpp"
 
 namespace irdm::precompute {
 namespace {

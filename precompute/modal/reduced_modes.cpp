@@ -7,12 +7,11 @@
 
 #include "common/error.hpp"
 #include "precompute/blas_kernel.hpp"
-#include "precompute/modal/body_loads.hpp"
-#include "precompute/modal/fingertip_reference.hpp"
+#include "precompute/modal/driving_spectrum.hpp"
+#include "precompute/modal/elastic_statics.hpp"
+#include "precompute/modal/fingertip.hpp"
 #include "precompute/modal/lowest_modes.hpp"
-#include "precompute/modal/press.hpp"
 #include "precompute/modal/residual_compliance.hpp"
-#include "precompute/modal/smooth_cut.hpp"
 
 namespace irdm::precompute {
 namespace {

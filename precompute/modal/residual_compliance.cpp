@@ -6,7 +6,7 @@
 #include <exception>
 
 #include "common/error.hpp"
-#include "common/model/upper_blocks.hpp"
+#include "common/model/dense_file.hpp"
 #include "precompute/blas_kernel.hpp"
 
 namespace irdm::precompute {

@@ -4,13 +4,10 @@
 #include <vector>
 
 #include "replay/compare/compare_runs.hpp"
-#include "replay/compare/time_interval.hpp"
-#include "replay/measures/compliance.hpp"
+#include "replay/compare/run_reader.hpp"
 #include "replay/measures/force_difference.hpp"
-#include "replay/measures/onsets.hpp"
 #include "replay/measures/ringing.hpp"
 #include "replay/measures/spectrum.hpp"
-#include "replay/measures/vibration.hpp"
 
 namespace irdm::replay {
 

@@ -1,13 +1,35 @@
 #include "replay/compare/run_reader.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "common/error.hpp"
-#include "replay/output/run_paths.hpp"
+#include "replay/output/run_output.hpp"
 #include "simulation/step/settings.hpp"
 #include "simulation/step/step_record.hpp"
 
 namespace irdm::replay {
+
+TimeInterval longest_stretch(const std::vector<bool>& marked) {
+  TimeInterval longest;
+  TimeInterval now;
+  for (std::size_t k = 0; k < marked.size(); ++k) {
+    now = marked[k] ? TimeInterval{now.count > 0 ? now.first : k, now.count + 1} : TimeInterval{};
+    if (now.count > longest.count) longest = now;
+  }
+  return longest;
+}
+
+bool evenly_spaced(const std::vector<double>& times) {
+  constexpr double kWithin = 0.01;
+  if (times.size() < 2) return false;
+  const double mean = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
+  for (std::size_t k = 1; k < times.size(); ++k) {
+    if (std::abs(times[k] - times[k - 1] - mean) > kWithin * mean) return false;
+  }
+  return true;
+}
+
 namespace {
 
 hdf5::File open_run(const std::filesystem::path& path) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -8,6 +9,18 @@
 #include "common/hdf5/file.hpp"
 
 namespace irdm::replay {
+
+/// Frames that follow each other.
+struct TimeInterval {
+  std::size_t first = 0;
+  std::size_t count = 0;
+};
+
+/// The longest one in which all frames are marked; the first of equal ones.
+TimeInterval longest_stretch(const std::vector<bool>& marked);
+
+/// Whether times are as far from each other everywhere, within a hundredth.
+bool evenly_spaced(const std::vector<double>& times);
 
 /// One object of a run at one frame.
 struct RunPose {

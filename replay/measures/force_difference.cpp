@@ -7,6 +7,17 @@
 
 namespace irdm::replay {
 
+void Compliance::add(double along, double force) noexcept {
+  constexpr double kLeast = 0.05;
+  if (!(force >= kLeast)) return;
+  product_ += along * force;
+  force_ += force * force;
+}
+
+double largest_along(const Points& u, const Vector3& direction) {
+  return (u * direction.normalized()).maxCoeff();
+}
+
 Points smoothed(const Points& signal, double dt, double time) {
   if (!(dt > 0.0)) return signal;
   const auto reach = static_cast<Eigen::Index>(std::floor(0.5 * time / dt * (1 + 1e-9)));

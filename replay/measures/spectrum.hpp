@@ -1,8 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "common/geometry.hpp"
+#include "replay/measures/perception.hpp"
 
 namespace irdm::replay {
 
@@ -20,5 +22,19 @@ enum class Hold { kMean, kLargest };
 /// A sine wave whose period divides the segment has its amplitude at its frequency. Empty for
 /// fewer than 8 rows.
 Spectrum amplitude_spectrum(const Points& signal, double dt, double segment, Hold hold);
+
+/// A force as the vibration that it makes of a hand.
+struct Vibration {
+  Spectrum spectrum;       ///< motion of the hand [m]: the largest in any half second
+  double level = 0.0;      ///< amplitude over threshold, where that is most; 0: none is known
+  double frequency = 0.0;  ///< where that is [Hz]
+
+  /// Nothing where the rows are too few a second for such frequencies.
+  std::optional<bool> noticeable() const;
+};
+
+/// Of a force with a row every dt [s] [N]. Looks at perception::kLowestVibration and above, and up
+/// to half the rate of the rows.
+Vibration vibration_of(const Points& force, double dt, const perception::Hand& hand);
 
 }  // namespace irdm::replay

@@ -3,7 +3,7 @@
 #include <charconv>
 
 #include "common/error.hpp"
-#include "replay/output/plain_names.hpp"
+#include "replay/output/output_file.hpp"
 
 namespace irdm::replay {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <fstream>
 
-#include "replay/output/frame_output.hpp"
-#include "replay/output/part_file.hpp"
+#include "replay/output/output_file.hpp"
+#include "replay/output/run_output.hpp"
 #include "replay/traced_scene.hpp"
 
 namespace irdm::replay {

@@ -7,11 +7,10 @@
 
 #include "common/error.hpp"
 #include "common/process/child_program.hpp"
-#include "common/process/temporary_folder.hpp"
-#include "replay/output/new_folder.hpp"
-#include "replay/output/part_file.hpp"
+#include "common/process/temporary_files.hpp"
+#include "replay/output/output_file.hpp"
 #include "simulation/step/settings.hpp"
-#include "viewer/viewer_scene.hpp"
+#include "viewer/scene_message.hpp"
 
 namespace irdm::replay {
 namespace {

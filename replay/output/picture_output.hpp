@@ -4,9 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "replay/output/frame_output.hpp"
+#include "replay/output/run_output.hpp"
 #include "replay/pictures/drawn_page.hpp"
-#include "replay/pictures/drawn_run.hpp"
 #include "replay/traced_scene.hpp"
 #include "viewer/viewer_server.hpp"
 

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "replay/output/run_paths.hpp"
-
 namespace irdm::replay {
 namespace {
 

@@ -1,14 +1,28 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "replay/output/frame_output.hpp"
+#include "replay/output/run_output.hpp"
 #include "replay/traced_scene.hpp"
-#include "simulation/step/recorded_forces.hpp"
+#include "simulation/step/nodal_forces.hpp"
 
 namespace irdm::replay {
+
+/// Parts of VTK's XML files, with numbers in base64 as they are in memory (format="binary",
+/// header_type="UInt64", not compressed).
+
+/// <VTKFile> up to its end. @param type "PolyData", "Collection"
+std::string vtk_file(const std::string& type, const std::string& content);
+
+/// A <DataArray> of as many components a row. @param more further attributes
+std::string vtk_array(const std::string& name, std::span<const double> values, int components,
+                      const std::string& more = "");
+std::string vtk_array(const std::string& name, std::span<const std::int32_t> values, int components,
+                      const std::string& more = "");
 
 /// The deformed surfaces and the styluses as a time series for ParaView: a folder with run.pvd,
 /// which is written last, and for each frame a NAME_NUMBER.vtp for each object and one for the

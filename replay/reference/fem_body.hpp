@@ -7,9 +7,9 @@
 #include "precompute/dynamics/rigid_extraction.hpp"
 #include "replay/reference/broyden_solver.hpp"
 #include "replay/reference/step_journal.hpp"
-#include "replay/rerun/delayed_forces.hpp"
 #include "replay/rerun/forced_body.hpp"
-#include "simulation/step/recorded_forces.hpp"
+#include "replay/rerun/rerun.hpp"
+#include "simulation/step/nodal_forces.hpp"
 #include "simulation/step/simulation_config.hpp"
 
 namespace irdm::replay {

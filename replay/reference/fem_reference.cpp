@@ -3,7 +3,7 @@
 #include "common/error.hpp"
 #include "precompute/fem/assembly.hpp"
 #include "replay/reference/fem_body.hpp"
-#include "replay/rerun/force_rerun.hpp"
+#include "replay/rerun/rerun.hpp"
 
 namespace irdm::replay {
 namespace {

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "common/error.hpp"
-#include "common/wire/crc32c.hpp"
+#include "common/wire/frame.hpp"
 
 namespace irdm::replay {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "replay/rerun/forced_body.hpp"
 #include "simulation/step/deformable_body.hpp"
-#include "simulation/step/recorded_forces.hpp"
+#include "simulation/step/nodal_forces.hpp"
 
 namespace irdm::replay {
 

@@ -8,7 +8,7 @@
 
 #include "common/error.hpp"
 #include "common/realtime/clock.hpp"
-#include "common/realtime/spared_cpu.hpp"
+#include "common/realtime/scheduling.hpp"
 
 namespace irdm {
 namespace {

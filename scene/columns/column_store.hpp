@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "common/model/column_supply.hpp"
+#include "common/model/model.hpp"
 #include "common/realtime/event_fd.hpp"
 #include "common/realtime/triple_buffer.hpp"
 #include "simulation/step/step_record.hpp"

@@ -19,7 +19,7 @@ import numpy as np
 HEADER = struct.Struct("<4sHHIIQq")
 HELLO, WELCOME, GOODBYE, SAMPLE, FORCE = 1, 2, 4, 5, 6
 SERVO = 0.001  # s, of irdm-bridge
-RISE, FALL = 300.0, 1200.0 - 20.0  # N/s; device_bridge/safety/rate_limit.hpp, less the slew of the thermal limit
+RISE, FALL = 300.0, 1200.0 - 20.0  # N/s; device_bridge/safety/guards.hpp, less the slew of the thermal limit
 
 
 def checksum(data):
@@ -80,7 +80,7 @@ class Hand:
 
 
 def limit_rate(shown, wanted):
-    """The next force shown, SERVO later (device_bridge/safety/rate_limit.cpp)."""
+    """The next force shown, SERVO later (device_bridge/safety/guards.cpp)."""
     way = wanted - shown
     length = np.linalg.norm(way)
     if length == 0:

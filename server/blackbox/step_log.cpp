@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/blackbox/columns.hpp"
+#include "common/blackbox/row_log.hpp"
 
 namespace irdm {
 namespace {

@@ -5,7 +5,6 @@
 #include <memory>
 #include <span>
 
-#include "common/wire/datagram_link.hpp"
 #include "common/wire/datagram_socket.hpp"
 
 namespace irdm {

@@ -8,9 +8,9 @@
 
 #include "common/realtime/event_fd.hpp"
 #include "common/realtime/scheduling.hpp"
-#include "common/wire/frame_tap.hpp"
+#include "common/wire/frame.hpp"
 #include "common/wire/secret_key.hpp"
-#include "server/network/stylus_port.hpp"
+#include "server/network/stylus_slots.hpp"
 
 namespace irdm {
 

@@ -4,7 +4,7 @@
 #include <pthread.h>
 
 #include "common/realtime/clock.hpp"
-#include "common/realtime/spared_cpu.hpp"
+#include "common/realtime/scheduling.hpp"
 
 namespace irdm {
 namespace {

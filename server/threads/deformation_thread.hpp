@@ -8,7 +8,7 @@
 #include "common/realtime/event_fd.hpp"
 #include "common/realtime/histogram.hpp"
 #include "common/realtime/triple_buffer.hpp"
-#include "server/threads/step_sink.hpp"
+#include "server/threads/run_control.hpp"
 #include "simulation/deformation/deformation.hpp"
 
 namespace irdm {

@@ -14,7 +14,6 @@
 #include "server/network/network_server.hpp"
 #include "server/threads/run_control.hpp"
 #include "server/threads/step_clock.hpp"
-#include "server/threads/step_sink.hpp"
 #include "server/threads/viewer_stylus.hpp"
 #include "simulation/step/bridged_stylus.hpp"
 #include "simulation/step/simulation.hpp"

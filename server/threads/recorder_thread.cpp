@@ -3,7 +3,7 @@
 #include <exception>
 #include <mutex>
 
-#include "common/hdf5/library_lock.hpp"
+#include "common/hdf5/handle.hpp"
 
 namespace irdm {
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "common/realtime/event_fd.hpp"
-#include "server/threads/step_sink.hpp"
+#include "server/threads/run_control.hpp"
 #include "trace/trace_writer.hpp"
 
 namespace irdm {

@@ -7,7 +7,7 @@
 #include "common/realtime/clock.hpp"
 #include "common/realtime/histogram.hpp"
 #include "server/network/network_server.hpp"
-#include "server/threads/step_sink.hpp"
+#include "server/threads/run_control.hpp"
 
 namespace irdm {
 

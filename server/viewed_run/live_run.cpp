@@ -2,7 +2,7 @@
 
 #include "common/error.hpp"
 #include "common/realtime/clock.hpp"
-#include "viewer/viewer_scene.hpp"
+#include "viewer/scene_message.hpp"
 
 namespace irdm {
 namespace {

@@ -1,13 +1,33 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
-#include "simulation/collision/surface_topology.hpp"
+#include "common/model/model.hpp"
 #include "simulation/collision/surface_tree.hpp"
-#include "simulation/collision/triangle.hpp"
 
 namespace irdm {
+
+/// Which triangles meet at a node. Built once, read only.
+class SurfaceTopology {
+ public:
+  explicit SurfaceTopology(const ModelMesh& mesh);
+
+  std::span<const int> triangles_around(int node) const noexcept {
+    const auto begin = static_cast<std::size_t>(offsets_[static_cast<std::size_t>(node)]);
+    const auto end = static_cast<std::size_t>(offsets_[static_cast<std::size_t>(node) + 1]);
+    return {triangles_.data() + begin, end - begin};
+  }
+  const std::array<int, 3>& corners(int triangle) const noexcept {
+    return corners_[static_cast<std::size_t>(triangle)];
+  }
+
+ private:
+  std::vector<std::array<int, 3>> corners_;
+  std::vector<int> offsets_;
+  std::vector<int> triangles_;
+};
 
 /// A point of the surface at rest.
 struct SurfaceLocation {
@@ -71,6 +91,38 @@ class RestSurface {
   std::vector<Plane> planes_;     ///< of the triangles
   double mean_edge_ = 0.0;
   double mean_square_edge_ = 0.0;
+};
+
+/// A straight way along the surface at rest: within each triangle a straight line, over an edge as
+/// if the two triangles were unfolded into a plane. Leg by leg, one triangle each. Real-time safe.
+class GeodesicStep {
+ public:
+  /// @param direction of the first leg, as far as it lies in the plane of the triangle [m, B]
+  /// @param surface must outlive this object
+  GeodesicStep(const RestSurface& surface, const SurfaceLocation& from,
+               const Vector3& direction) noexcept;
+
+  /// False: the direction was normal to the triangle, and there is nowhere to go.
+  bool moves() const noexcept { return moves_; }
+  /// Goes on to the next edge, and over it, but not farther than `length`. Returns how far [m].
+  double leg(double length) noexcept;
+
+  const SurfaceLocation& here() const noexcept { return here_; }
+  /// Where the last leg began, its direction and its triangle's outward normal (units, B).
+  const Vector3& start() const noexcept { return start_; }
+  const Vector3& heading() const noexcept { return heading_; }
+  const Vector3& normal() const noexcept { return normal_; }
+
+ private:
+  void enter(int triangle) noexcept;
+  void cross(std::size_t corner) noexcept;
+
+  const RestSurface& surface_;
+  SurfaceLocation here_;
+  Vector3 start_, heading_, normal_;
+  const RestSurface::Plane* plane_ = nullptr;  ///< of the leg to come ...
+  Vector3 ahead_;                              ///< ... and its direction
+  bool moves_ = true;
 };
 
 }  // namespace irdm

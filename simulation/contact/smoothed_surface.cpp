@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "simulation/collision/geodesic_step.hpp"
+#include "simulation/collision/rest_surface.hpp"
 
 namespace irdm {
 namespace {

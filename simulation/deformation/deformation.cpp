@@ -2,8 +2,7 @@
 
 #include <algorithm>
 
-#include "simulation/step/gravity_load.hpp"
-#include "simulation/step/inertial_loading.hpp"
+#include "simulation/step/settings.hpp"
 
 namespace irdm {
 

@@ -1,8 +1,7 @@
 #pragma once
 
-#include "simulation/engine/cached_convolution.hpp"
-#include "simulation/engine/dense_gravity.hpp"
 #include "simulation/engine/dense_load.hpp"
+#include "simulation/engine/prediction_cache.hpp"
 #include "simulation/engine/response_engine.hpp"
 
 namespace irdm {

@@ -1,15 +1,23 @@
 #pragma once
 
 #include <array>
+#include <boost/align/aligned_allocator.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
-/// Inner loops of the response engines, compiled for several instruction sets of which the best is
-/// chosen at start-up. Sums run over eight lanes in a fixed order and products are never
-/// contracted, so that equal inputs give equal bits on every processor and with any number of
-/// threads. Real-time safe. Not for initialisers of static objects: the choice is one itself.
 namespace irdm {
+
+/// Numbers of which the first begins a line of the cache, so that no wide register has to be filled
+/// from two of them: that is up to half of the time of a kernel. (Of several rows the others begin
+/// one, too, if a row has a multiple of eight numbers.)
+using AlignedNumbers = std::vector<double, boost::alignment::aligned_allocator<double, 64>>;
+
+// Inner loops of the response engines, compiled for several instruction sets of which the best is
+// chosen at start-up. Sums run over eight lanes in a fixed order and products are never
+// contracted, so that equal inputs give equal bits on every processor and with any number of
+// threads. Real-time safe. Not for initialisers of static objects: the choice is one itself.
 
 /// sum_i a[i] b[i], in double precision.
 double dot(const float* a, const double* b, std::size_t n) noexcept;

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "common/response/oscillator.hpp"
-#include "common/response/spin_products.hpp"
+#include "common/response/modal_response.hpp"
 #include "simulation/engine/kernels.hpp"
 
 namespace irdm {

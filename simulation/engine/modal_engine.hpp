@@ -1,7 +1,7 @@
 #pragma once
 
 #include "simulation/engine/active_modes.hpp"
-#include "simulation/engine/aligned_numbers.hpp"
+#include "simulation/engine/kernels.hpp"
 #include "simulation/engine/modal_gravity.hpp"
 #include "simulation/engine/residual_part.hpp"
 #include "simulation/engine/response_engine.hpp"

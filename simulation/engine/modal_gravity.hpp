@@ -2,7 +2,7 @@
 
 #include "common/model/model.hpp"
 #include "simulation/contact/contact_patch.hpp"
-#include "simulation/engine/aligned_numbers.hpp"
+#include "simulation/engine/kernels.hpp"
 
 namespace irdm {
 

@@ -10,6 +10,12 @@
 
 namespace irdm {
 
+/// How far each surface node yields along a direction of its own to a force along it that lasts,
+/// without rigid motion [m/N]: d^T (sum_s R_ii[s]) d. Of a dense response as far as it was
+/// recorded.
+/// @param directions unit vectors, one a surface node, B
+std::vector<float> static_compliance(const Model& model, const std::vector<Vector3>& directions);
+
 /// What modes that a model leaves out would add: a compliance without delay, so that it belongs to
 /// R[0] alone and to the forces of the last step. Costs what the nodes in contact and their
 /// neighbours are, whatever the size of the object. One thread; real-time safe after construction.

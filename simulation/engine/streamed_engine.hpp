@@ -3,10 +3,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "simulation/engine/cached_convolution.hpp"
-#include "simulation/engine/dense_gravity.hpp"
 #include "simulation/engine/dense_load.hpp"
 #include "simulation/engine/pinned_columns.hpp"
+#include "simulation/engine/prediction_cache.hpp"
 #include "simulation/engine/response_engine.hpp"
 
 namespace irdm {
@@ -15,9 +14,9 @@ namespace irdm {
 /// all of them there in time it equals DenseEngine to the bit.
 ///
 /// Where they are not, forces on the node are answered by the static answer
-/// (common/response/settling.hpp) in place of R: R[0] in their own step, then a settling without
-/// vibration to the same lasting displacement. When the columns come, the node's answer goes over
-/// from the one to the other, both to all of its forces.
+/// (common/response/modal_response.hpp) in place of R: R[0] in their own step, then a settling
+/// without vibration to the same lasting displacement. When the columns come, the node's answer
+/// goes over from the one to the other, both to all of its forces.
 template <typename Scalar>
 class StreamedEngine final : public ResponseEngine,
                              public InertialLoading,

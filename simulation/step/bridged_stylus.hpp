@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "simulation/step/applied_history.hpp"
+#include "common/contact/applied_forces.hpp"
 #include "simulation/step/simulation.hpp"
 
 namespace irdm {

@@ -1,7 +1,6 @@
 #include "simulation/step/deformable_body.hpp"
 
-#include "simulation/step/gravity_load.hpp"
-#include "simulation/step/inertial_loading.hpp"
+#include "simulation/step/settings.hpp"
 
 namespace irdm {
 

@@ -5,7 +5,6 @@
 
 #include "common/motion/free_motion.hpp"
 #include "common/motion/rigid_body.hpp"
-#include "common/motion/rigid_state_history.hpp"
 #include "simulation/engine/response_engine.hpp"
 #include "simulation/step/settings.hpp"
 #include "simulation/step/simulation_config.hpp"

@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "simulation/contact/contact_patch.hpp"
+#include "simulation/contact/pressure_mask.hpp"
 #include "simulation/engine/response_engine.hpp"
+#include "simulation/step/step_record.hpp"
 
 namespace irdm {
 
@@ -30,6 +32,25 @@ class NodalForces {
  private:
   std::vector<NodalForce> forces_;
   std::size_t count_ = 0;
+};
+
+/// The nodal forces of recorded steps: what the force step gave to its engine, to the bit. One
+/// thread; real-time safe after construction.
+class RecordedForces {
+ public:
+  /// @param surface must outlive this object
+  /// @param radii of the styluses' fingertips [m]; kMaxStyluses at most
+  RecordedForces(const RestSurface& surface, const std::vector<double>& radii);
+
+  /// Valid until the next call.
+  std::span<const NodalForce> of(const ObjectRecord& record) noexcept;
+  /// The same for one that was entered late.
+  std::span<const NodalForce> of(const LateForce& late) noexcept;
+
+ private:
+  std::vector<PressureMask> masks_;
+  ContactPatch patch_;
+  NodalForces forces_;
 };
 
 }  // namespace irdm

@@ -1,10 +1,31 @@
 #pragma once
 
 #include <array>
+#include <string>
 
+#include "common/model/model.hpp"
 #include "simulation/step/simulation_config.hpp"
 
 namespace irdm {
+
+/// Makes gravity bend an object as it is set [m/s^2], W. Only a fixed one, which stays as it stood
+/// at the start: gravity alone does not bend what floats, and what it rests on or hangs from does
+/// so by its force. Real-time safe.
+/// @param engine of the object
+void follow_gravity(ResponseEngine& engine, const SimulationObject& object,
+                    const Vector3& gravity) noexcept;
+
+/// Whether gravity can bend the object as far as that is up to it: it floats, or its response says
+/// what gravity does to it.
+bool takes_gravity(const SimulationObject& object);
+
+/// Whether the body's own spin is to load its elastic part. A fixed body has none.
+inline bool has_inertial_loading(const Model& model, bool inertial_loading) {
+  return inertial_loading && model.body.support == Support::kFloating;
+}
+
+/// Throws Error, naming `where` (the model file), when the model cannot say what its spin does.
+void check_inertial_loading(const Model& model, bool inertial_loading, const std::string& where);
 
 inline constexpr int kMaxObjects = 4;
 
@@ -49,5 +70,9 @@ void follow_settings(ResponseEngine& engine, const ObjectSettings& settings,
 /// Throws Error when the step of the scene cannot bear these settings: something that cannot be
 /// chosen differs from the beginning, or a damping or tether is too strong for dt.
 void check_settings(const SimulationConfig& config, const Settings& settings);
+
+/// Throws Error when a damping or tether is too strong for the step's dt: both act as they were at
+/// its start.
+void check_restraints(const SimulationConfig& config, const Settings& settings);
 
 }  // namespace irdm

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "simulation/step/inertial_loading.hpp"
+#include "simulation/step/settings.hpp"
 
 namespace irdm {
 namespace {

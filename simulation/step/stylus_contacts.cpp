@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/contact/single_contact.hpp"
+#include "common/contact/contact_problem.hpp"
 #include "common/error.hpp"
 
 namespace irdm {

@@ -8,7 +8,6 @@
 #include "common/contact/contact_model.hpp"
 #include "common/contact/persistent_contact.hpp"
 #include "common/motion/free_motion.hpp"
-#include "common/motion/rigid_state_history.hpp"
 #include "simulation/collision/deformed_surface.hpp"
 #include "simulation/contact/pressure_mask.hpp"
 #include "simulation/contact/smoothed_surface.hpp"

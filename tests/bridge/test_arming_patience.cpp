@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "device_bridge/link/arming_patience.hpp"
+#include "device_bridge/safety/arming.hpp"
 #include "tests/bridge/milliseconds.hpp"
 
 using irdm::ArmingPatience;

@@ -1,8 +1,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "device_bridge/button_map.hpp"
-#include "device_bridge/clutch.hpp"
+#include "device_bridge/workspace.hpp"
 
 using namespace irdm;
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <set>
 
-#include "device_bridge/virtual_hand.hpp"
+#include "device_bridge/virtual_stylus.hpp"
 #include "tests/bridge/filter_rig.hpp"
 
 // What each guard of the safety filter is there for, as something that holds with it and does not

@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "device_bridge/safety/link_gate.hpp"
+#include "device_bridge/safety/arming.hpp"
 #include "tests/bridge/filter_rig.hpp"
 
 using namespace irdm;

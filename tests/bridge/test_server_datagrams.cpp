@@ -3,7 +3,7 @@
 #include <memory>
 #include <optional>
 
-#include "common/wire/key_material.hpp"
+#include "common/wire/secret_key.hpp"
 #include "device_bridge/network_client.hpp"
 #include "server/network/network_server.hpp"
 #include "tests/support/eventually.hpp"

@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "device_bridge/safety/thermal_derating.hpp"
+#include "device_bridge/safety/guards.hpp"
 
 using namespace irdm;
 

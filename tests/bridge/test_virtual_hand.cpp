@@ -2,7 +2,7 @@
 #include <cmath>
 #include <random>
 
-#include "device_bridge/virtual_hand.hpp"
+#include "device_bridge/virtual_stylus.hpp"
 
 using irdm::HandParameters;
 using irdm::Vector3;

@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "device_bridge/virtual_motors.hpp"
+#include "device_bridge/virtual_stylus.hpp"
 
 using namespace irdm;
 

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <vector>
 
-#include "device_bridge/virtual_sensor.hpp"
+#include "device_bridge/virtual_stylus.hpp"
 
 using namespace irdm;
 

@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "device_bridge/safety/world_work.hpp"
+#include "device_bridge/safety/passivity.hpp"
 #include "tests/bridge/milliseconds.hpp"
 
 using namespace irdm;

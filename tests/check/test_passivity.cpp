@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "precompute/check/passivity.hpp"
+#include "precompute/check/reciprocity.hpp"
 #include "tests/check/oscillators.hpp"
 
 using namespace irdm;

@@ -9,9 +9,7 @@
 
 #include "common/blackbox/black_box.hpp"
 #include "common/blackbox/black_box_file.hpp"
-#include "common/blackbox/columns.hpp"
 #include "common/blackbox/frame_log.hpp"
-#include "common/blackbox/read_black_box.hpp"
 #include "common/blackbox/row_log.hpp"
 #include "common/error.hpp"
 #include "common/realtime/clock.hpp"

@@ -5,9 +5,9 @@
 #include <functional>
 
 #include "common/error.hpp"
+#include "common/model/compressed_file.hpp"
+#include "common/model/dense_file.hpp"
 #include "common/model/model_file.hpp"
-#include "common/model/residual_file.hpp"
-#include "common/model/upper_blocks.hpp"
 #include "tests/common/one_tet_model.hpp"
 #include "tests/support/sparse_dataset.hpp"
 

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "common/response/oscillator.hpp"
+#include "common/response/modal_response.hpp"
 
 using irdm::held_force_oscillator;
 using irdm::held_force_response;

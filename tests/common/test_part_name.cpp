@@ -4,7 +4,7 @@
 #include <fstream>
 #include <string>
 
-#include "common/process/part_name.hpp"
+#include "common/process/temporary_files.hpp"
 #include "tests/support/child_process.hpp"
 
 using namespace irdm;

@@ -5,10 +5,9 @@
 #include <string>
 #include <thread>
 
-#include "common/realtime/memory_lock.hpp"
 #include "common/realtime/no_denormals.hpp"
 #include "common/realtime/real_time_scope.hpp"
-#include "common/realtime/spared_cpu.hpp"
+#include "common/realtime/scheduling.hpp"
 
 using namespace irdm;
 

@@ -1,7 +1,6 @@
 #include <catch2/catch.hpp>
 
 #include "precompute/dynamics/implicit_midpoint.hpp"
-#include "precompute/dynamics/linear_midpoint.hpp"
 #include "tests/precompute/meshes.hpp"
 
 using namespace irdm;

@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "precompute/dynamics/polar_rotation.hpp"
+#include "precompute/dynamics/corotational.hpp"
 
 using namespace irdm;
 using namespace irdm::precompute;

@@ -2,7 +2,7 @@
 
 #include "precompute/dynamics/soft_body.hpp"
 #include "precompute/fem/assembly.hpp"
-#include "precompute/mesh/quadratic_mesh.hpp"
+#include "precompute/mesh/tet_mesh.hpp"
 #include "tests/precompute/meshes.hpp"
 
 using namespace irdm;

@@ -2,7 +2,6 @@
 #include <thread>
 
 #include "precompute/dynamics/sparse_solver.hpp"
-#include "precompute/dynamics/step_matrix.hpp"
 #include "tests/precompute/meshes.hpp"
 
 using Catch::Matchers::Contains;

@@ -2,10 +2,10 @@
 #include <optional>
 #include <vector>
 
-#include "common/wire/frame_parts.hpp"
-#include "common/wire/key_material.hpp"
+#include "common/wire/frame.hpp"
 #include "common/wire/protocol_error.hpp"
-#include "common/wire/stream_order.hpp"
+#include "common/wire/secret_key.hpp"
+#include "common/wire/stream.hpp"
 #include "tests/fuzz/far_end.hpp"
 #include "tests/fuzz/harness.hpp"
 #include "tests/fuzz/mended_frames.hpp"

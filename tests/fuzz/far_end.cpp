@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "common/wire/frame_parts.hpp"
+#include "common/wire/frame.hpp"
 #include "common/wire/protocol_error.hpp"
 #include "tests/fuzz/line.hpp"
 

@@ -5,7 +5,7 @@
 #include <memory>
 #include <utility>
 
-#include "replay/rerun/finite_step.hpp"
+#include "replay/rerun/deviation.hpp"
 #include "simulation/step/simulation.hpp"
 #include "tests/fuzz/harness.hpp"
 

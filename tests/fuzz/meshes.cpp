@@ -14,7 +14,6 @@
 #include "precompute/mesh/format/vtk_reader.hpp"
 #include "precompute/mesh/format/vtu_reader.hpp"
 #include "precompute/mesh/mesh_check.hpp"
-#include "precompute/mesh/surface_check.hpp"
 #include "tests/fuzz/harness.hpp"
 #include "tests/fuzz/scratch_file.hpp"
 

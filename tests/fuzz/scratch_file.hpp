@@ -4,7 +4,7 @@
 #include <fstream>
 #include <string_view>
 
-#include "common/process/temporary_folder.hpp"
+#include "common/process/temporary_files.hpp"
 
 namespace irdm::fuzz {
 

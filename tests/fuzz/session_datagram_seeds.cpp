@@ -1,6 +1,5 @@
 // What happens in sessions with datagrams.
 #include "common/wire/frame.hpp"
-#include "common/wire/frame_parts.hpp"
 #include "tests/fuzz/mended_frames.hpp"
 #include "tests/fuzz/seed_folder.hpp"
 

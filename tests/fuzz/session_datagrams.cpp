@@ -6,7 +6,7 @@
 #include <string>
 
 #include "common/realtime/clock.hpp"
-#include "common/wire/frame_parts.hpp"
+#include "common/wire/frame.hpp"
 #include "device_bridge/link/server_session.hpp"
 #include "server/network/session.hpp"
 #include "tests/fuzz/far_end.hpp"

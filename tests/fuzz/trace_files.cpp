@@ -1,14 +1,13 @@
 // Traces of two objects and two styluses, with edits of the fuzzer's choice.
 #include "common/error.hpp"
-#include "replay/rerun/finite_step.hpp"
-#include "replay/rerun/force_rerun.hpp"
-#include "replay/rerun/input_rerun.hpp"
+#include "replay/rerun/deviation.hpp"
+#include "replay/rerun/rerun.hpp"
 #include "tests/fuzz/edited_file.hpp"
 #include "tests/fuzz/harness.hpp"
 #include "tests/fuzz/scratch_file.hpp"
 #include "tests/server/two_cubes.hpp"
 #include "trace/recording.hpp"
-#include "trace/trace_header.hpp"
+#include "trace/trace_layout.hpp"
 
 namespace irdm::fuzz {
 namespace {

@@ -2,7 +2,6 @@
 #include <vector>
 
 #include "common/wire/bytes.hpp"
-#include "common/wire/crc32c.hpp"
 #include "common/wire/frame.hpp"
 #include "common/wire/protocol_error.hpp"
 #include "tests/fuzz/harness.hpp"

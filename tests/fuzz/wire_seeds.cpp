@@ -2,7 +2,6 @@
 #include <limits>
 
 #include "common/wire/frame.hpp"
-#include "common/wire/frame_parts.hpp"
 #include "tests/fuzz/mended_frames.hpp"
 #include "tests/fuzz/seed_folder.hpp"
 

@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "device_bridge/openhaptics/start_advice.hpp"
+#include "device_bridge/openhaptics/hd_error.hpp"
 
 using Catch::Matchers::Contains;
 using namespace irdm::hd;

@@ -7,7 +7,7 @@
 #include <iterator>
 #include <string>
 
-#include "common/process/temporary_folder.hpp"
+#include "common/process/temporary_files.hpp"
 #include "precompute/mesh/tet_mesh.hpp"
 
 namespace irdm::precompute::test {

@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 #include <map>
 
-#include "common/process/temporary_folder.hpp"
+#include "common/process/temporary_files.hpp"
 #include "precompute/mesh/box_mesh.hpp"
 #include "precompute/mesh/mesh_check.hpp"
 #include "precompute/mesh/surface.hpp"

@@ -4,9 +4,8 @@
 #include "precompute/config.hpp"
 #include "precompute/mesh/mesh_check.hpp"
 #include "precompute/mesh/mesh_file.hpp"
-#include "precompute/mesh/mesh_report.hpp"
-#include "precompute/mesh/quadratic_mesh.hpp"
 #include "precompute/mesh/surface.hpp"
+#include "precompute/mesh/tet_mesh.hpp"
 
 using Catch::Matchers::Contains;
 using namespace irdm;

@@ -3,7 +3,7 @@
 #include "common/error.hpp"
 #include "precompute/mesh/surface.hpp"
 #include "precompute/modal/elastic_modes.hpp"
-#include "precompute/modal/symmetric_eigen.hpp"
+#include "precompute/modal/lowest_modes.hpp"
 #include "tests/precompute/discrete.hpp"
 #include "tests/precompute/meshes.hpp"
 

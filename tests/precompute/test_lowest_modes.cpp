@@ -5,8 +5,8 @@
 #include "common/error.hpp"
 #include "precompute/mesh/region.hpp"
 #include "precompute/modal/driving_spectrum.hpp"
+#include "precompute/modal/fingertip.hpp"
 #include "precompute/modal/lowest_modes.hpp"
-#include "precompute/modal/press.hpp"
 #include "tests/precompute/discrete.hpp"
 #include "tests/precompute/meshes.hpp"
 

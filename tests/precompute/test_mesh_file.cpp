@@ -1,7 +1,7 @@
 #include "precompute/mesh/mesh_check.hpp"
 #include "precompute/mesh/mesh_file.hpp"
-#include "precompute/mesh/quadratic_mesh.hpp"
 #include "precompute/mesh/region.hpp"
+#include "precompute/mesh/tet_mesh.hpp"
 #include "tests/precompute/mesh_files.hpp"
 
 using Catch::Matchers::Contains;

@@ -1,8 +1,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "precompute/mesh/mesh_report.hpp"
-#include "precompute/mesh/quadratic_mesh.hpp"
+#include "precompute/mesh/mesh_check.hpp"
+#include "precompute/mesh/tet_mesh.hpp"
 #include "tests/precompute/meshes.hpp"
 
 using Catch::Matchers::Contains;

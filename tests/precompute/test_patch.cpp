@@ -3,7 +3,7 @@
 
 #include "precompute/fem/assembly.hpp"
 #include "precompute/fem/rigid_motions.hpp"
-#include "precompute/fem/tet4.hpp"
+#include "precompute/fem/tetrahedra.hpp"
 #include "precompute/mesh/surface.hpp"
 #include "tests/precompute/meshes.hpp"
 

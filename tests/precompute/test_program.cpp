@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "common/model/model_file.hpp"
-#include "precompute/modal/held_responses.hpp"
+#include "precompute/modal/elastic_statics.hpp"
 #include "tests/support/child_process.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/file_size_limit.hpp"

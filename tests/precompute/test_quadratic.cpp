@@ -4,10 +4,10 @@
 #include <random>
 
 #include "precompute/fem/mass_properties.hpp"
-#include "precompute/fem/tet10.hpp"
+#include "precompute/fem/tetrahedra.hpp"
 #include "precompute/mesh/mesh_check.hpp"
-#include "precompute/mesh/quadratic_mesh.hpp"
 #include "precompute/mesh/surface.hpp"
+#include "precompute/mesh/tet_mesh.hpp"
 #include "precompute/modal/elastic_modes.hpp"
 #include "tests/precompute/discrete.hpp"
 #include "tests/precompute/meshes.hpp"

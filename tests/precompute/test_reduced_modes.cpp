@@ -5,12 +5,11 @@
 #include <sstream>
 
 #include "precompute/mesh/surface.hpp"
-#include "precompute/modal/fingertip_reference.hpp"
+#include "precompute/modal/driving_spectrum.hpp"
+#include "precompute/modal/fingertip.hpp"
 #include "precompute/modal/modal_method.hpp"
-#include "precompute/modal/press.hpp"
 #include "precompute/modal/reduced_modes.hpp"
 #include "precompute/modal/residual_compliance.hpp"
-#include "precompute/modal/smooth_cut.hpp"
 #include "tests/precompute/discrete.hpp"
 #include "tests/precompute/meshes.hpp"
 

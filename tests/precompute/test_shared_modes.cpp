@@ -6,8 +6,8 @@
 
 #include "common/error.hpp"
 #include "common/model/model_file.hpp"
-#include "precompute/mesh/quadratic_mesh.hpp"
 #include "precompute/mesh/region.hpp"
+#include "precompute/mesh/tet_mesh.hpp"
 #include "precompute/modal/lowest_modes.hpp"
 #include "precompute/modal/shared_modes.hpp"
 #include "precompute/parallel/bisection_order.hpp"

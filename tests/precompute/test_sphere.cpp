@@ -5,7 +5,7 @@
 
 #include "precompute/fem/mass_properties.hpp"
 #include "precompute/mesh/mesh_file.hpp"
-#include "precompute/mesh/quadratic_mesh.hpp"
+#include "precompute/mesh/tet_mesh.hpp"
 #include "precompute/modal/elastic_modes.hpp"
 #include "tests/precompute/discrete.hpp"
 #include "tests/support/temporary_folder.hpp"

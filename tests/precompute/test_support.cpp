@@ -2,11 +2,11 @@
 #include <catch2/catch.hpp>
 #include <numbers>
 
-#include "precompute/mesh/quadratic_mesh.hpp"
 #include "precompute/mesh/region.hpp"
 #include "precompute/mesh/surface.hpp"
+#include "precompute/mesh/tet_mesh.hpp"
 #include "precompute/modal/elastic_modes.hpp"
-#include "precompute/modal/held_responses.hpp"
+#include "precompute/modal/elastic_statics.hpp"
 #include "tests/precompute/discrete.hpp"
 #include "tests/precompute/meshes.hpp"
 

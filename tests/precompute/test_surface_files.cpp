@@ -4,9 +4,7 @@
 #include "precompute/mesh/gmsh_program.hpp"
 #include "precompute/mesh/mesh_check.hpp"
 #include "precompute/mesh/mesh_file.hpp"
-#include "precompute/mesh/mesh_report.hpp"
 #include "precompute/mesh/surface.hpp"
-#include "precompute/mesh/surface_check.hpp"
 #include "precompute/mesh/tetgen_program.hpp"
 #include "tests/precompute/mesh_files.hpp"
 

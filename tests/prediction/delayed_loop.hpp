@@ -6,7 +6,7 @@
 #include "common/contact/applied_forces.hpp"
 #include "device_bridge/safety/guards.hpp"
 #include "device_bridge/safety/safety_filter.hpp"
-#include "device_bridge/virtual_hand.hpp"
+#include "device_bridge/virtual_stylus.hpp"
 #include "simulation/step/simulation.hpp"
 
 namespace irdm::test {

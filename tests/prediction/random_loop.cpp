@@ -8,7 +8,7 @@
 #include <random>
 #include <sstream>
 
-#include "device_bridge/safety/link_gate.hpp"
+#include "device_bridge/safety/arming.hpp"
 #include "tests/support/fem_cube.hpp"
 
 namespace irdm::test {

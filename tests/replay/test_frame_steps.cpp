@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include "common/error.hpp"
-#include "replay/frame_steps.hpp"
+#include "replay/replay.hpp"
 
 using Catch::Matchers::Contains;
 using namespace irdm;

@@ -4,12 +4,10 @@
 #include <numbers>
 #include <random>
 
-#include "replay/compare/time_interval.hpp"
-#include "replay/measures/compliance.hpp"
+#include "replay/compare/run_reader.hpp"
 #include "replay/measures/force_difference.hpp"
-#include "replay/measures/onsets.hpp"
 #include "replay/measures/ringing.hpp"
-#include "replay/measures/vibration.hpp"
+#include "replay/measures/spectrum.hpp"
 #include "simulation/engine/response_engine.hpp"
 #include "tests/support/synthetic_model.hpp"
 

@@ -3,8 +3,7 @@
 #include <numbers>
 
 #include "replay/rerun/deviation.hpp"
-#include "replay/rerun/force_rerun.hpp"
-#include "replay/rerun/input_rerun.hpp"
+#include "replay/rerun/rerun.hpp"
 #include "tests/replay/kept_run.hpp"
 #include "tests/support/fem_cube.hpp"
 

@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include "common/error.hpp"
-#include "replay/pictures/picture_look.hpp"
+#include "replay/pictures/drawn_page.hpp"
 
 using Catch::Matchers::Contains;
 using namespace irdm;

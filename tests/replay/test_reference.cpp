@@ -5,7 +5,7 @@
 
 #include "replay/reference/fem_body.hpp"
 #include "replay/reference/fem_reference.hpp"
-#include "replay/rerun/force_rerun.hpp"
+#include "replay/rerun/rerun.hpp"
 #include "tests/replay/kept_run.hpp"
 #include "tests/support/fem_cube.hpp"
 #include "tests/support/temporary_folder.hpp"

@@ -1,10 +1,8 @@
 // Runs that are made again from their traces, against what they were.
 #include <catch2/catch.hpp>
 
-#include "replay/rerun/delayed_forces.hpp"
 #include "replay/rerun/deviation.hpp"
-#include "replay/rerun/force_rerun.hpp"
-#include "replay/rerun/input_rerun.hpp"
+#include "replay/rerun/rerun.hpp"
 #include "simulation/step/bridged_stylus.hpp"
 #include "tests/replay/kept_run.hpp"
 #include "tests/server/two_cubes.hpp"

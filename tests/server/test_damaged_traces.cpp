@@ -7,7 +7,7 @@
 #include "tests/support/edited_numbers.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "trace/recording.hpp"
-#include "trace/trace_header.hpp"
+#include "trace/trace_layout.hpp"
 #include "trace/trace_writer.hpp"
 
 using Catch::Matchers::Contains;

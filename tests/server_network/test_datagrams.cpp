@@ -4,7 +4,7 @@
 #include <memory>
 #include <random>
 
-#include "common/wire/key_material.hpp"
+#include "common/wire/secret_key.hpp"
 #include "tests/server_network/running_server.hpp"
 #include "tests/support/raw_datagrams.hpp"
 

@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "simulation/engine/cached_convolution.hpp"
+#include "simulation/engine/prediction_cache.hpp"
 #include "tests/simulation/random_numbers.hpp"
 #include "tests/support/allocation_guard.hpp"
 #include "tests/support/left_out.hpp"

@@ -6,8 +6,8 @@
 #include <random>
 
 #include "common/response/compressed_response.hpp"
+#include "simulation/engine/residual_part.hpp"
 #include "simulation/engine/response_engine.hpp"
-#include "simulation/engine/static_compliance.hpp"
 #include "tests/support/fem_cube.hpp"
 #include "tests/support/interaction_suite.hpp"
 #include "tests/support/synthetic_model.hpp"

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "common/contact/contact_problem.hpp"
-#include "common/contact/single_contact.hpp"
 
 using namespace irdm;
 

@@ -4,7 +4,7 @@
 #include <deque>
 #include <random>
 
-#include "common/response/oscillator.hpp"
+#include "common/response/modal_response.hpp"
 #include "simulation/engine/response_engine.hpp"
 #include "tests/support/shared_model.hpp"
 #include "tests/support/synthetic_model.hpp"

@@ -4,10 +4,10 @@
 #include <deque>
 #include <iostream>
 
-#include "common/response/oscillator.hpp"
+#include "common/response/modal_response.hpp"
 #include "simulation/contact/pressure_mask.hpp"
 #include "simulation/deformation/deformation.hpp"
-#include "simulation/step/gravity_load.hpp"
+#include "simulation/step/settings.hpp"
 #include "simulation/step/simulation.hpp"
 #include "tests/simulation/pressed_cube.hpp"
 #include "tests/support/allocation_guard.hpp"

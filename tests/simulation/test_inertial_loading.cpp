@@ -4,10 +4,9 @@
 #include <iostream>
 
 #include "common/error.hpp"
-#include "common/response/oscillator.hpp"
-#include "common/response/spin_products.hpp"
+#include "common/response/modal_response.hpp"
 #include "simulation/deformation/deformation.hpp"
-#include "simulation/step/inertial_loading.hpp"
+#include "simulation/step/settings.hpp"
 #include "simulation/step/simulation.hpp"
 #include "tests/simulation/pressed_cube.hpp"
 #include "tests/support/fem_cube.hpp"

@@ -2,7 +2,7 @@
 #include <random>
 #include <vector>
 
-#include "common/motion/rigid_state_history.hpp"
+#include "common/motion/free_motion.hpp"
 
 using namespace irdm;
 

@@ -3,7 +3,7 @@
 
 #include "common/error.hpp"
 #include "simulation/deformation/deformation.hpp"
-#include "simulation/engine/static_compliance.hpp"
+#include "simulation/engine/residual_part.hpp"
 #include "simulation/step/simulation.hpp"
 #include "tests/support/shared_model.hpp"
 #include "tests/support/synthetic_model.hpp"

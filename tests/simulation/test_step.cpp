@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "simulation/deformation/deformation.hpp"
-#include "simulation/step/recorded_forces.hpp"
+#include "simulation/step/nodal_forces.hpp"
 #include "tests/simulation/pressed_cube.hpp"
 #include "tests/support/fem_cube.hpp"
 

@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "common/model/model_file.hpp"
-#include "common/response/settling.hpp"
+#include "common/response/modal_response.hpp"
 #include "simulation/engine/response_engine.hpp"
 #include "simulation/engine/streamed_engine.hpp"
 #include "tests/simulation/pressed_cube.hpp"

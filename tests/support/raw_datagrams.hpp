@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/wire/datagram_channel.hpp"
-#include "common/wire/frame_parts.hpp"
+#include "common/wire/frame.hpp"
 
 namespace irdm::test {
 

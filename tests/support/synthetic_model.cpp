@@ -5,9 +5,9 @@
 #include <map>
 #include <random>
 
-#include "common/model/upper_blocks.hpp"
+#include "common/model/dense_file.hpp"
 #include "common/response/compressed_response.hpp"
-#include "common/response/oscillator.hpp"
+#include "common/response/modal_response.hpp"
 
 namespace irdm::test {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "common/process/temporary_folder.hpp"
+#include "common/process/temporary_files.hpp"
 
 namespace irdm::test {
 

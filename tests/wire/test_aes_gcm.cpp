@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/wire/aes_gcm.hpp"
+#include "common/wire/datagram_channel.hpp"
 #include "tests/support/allocation_guard.hpp"
 #include "tests/wire/from_hex.hpp"
 

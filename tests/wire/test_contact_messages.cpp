@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "common/wire/contact_payload.hpp"
-#include "common/wire/crc32c.hpp"
 #include "common/wire/frame.hpp"
 #include "common/wire/protocol_error.hpp"
 

@@ -3,7 +3,7 @@
 #include <string_view>
 #include <vector>
 
-#include "common/wire/crc32c.hpp"
+#include "common/wire/frame.hpp"
 
 using irdm::wire::crc32c;
 

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "common/wire/datagram_channel.hpp"
-#include "common/wire/frame_parts.hpp"
-#include "common/wire/key_material.hpp"
+#include "common/wire/frame.hpp"
+#include "common/wire/secret_key.hpp"
 #include "tests/support/allocation_guard.hpp"
 #include "tests/wire/from_hex.hpp"
 

@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "common/wire/frame_parts.hpp"
+#include "common/wire/frame.hpp"
 #include "common/wire/protocol_error.hpp"
 
 using namespace irdm;

@@ -5,7 +5,6 @@
 #include <random>
 #include <vector>
 
-#include "common/wire/crc32c.hpp"
 #include "common/wire/frame.hpp"
 #include "common/wire/protocol_error.hpp"
 

@@ -5,7 +5,7 @@
 #include <random>
 #include <set>
 
-#include "common/wire/replay_window.hpp"
+#include "common/wire/datagram_channel.hpp"
 
 using irdm::wire::ReplayWindow;
 

@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "common/wire/stream_order.hpp"
+#include "common/wire/stream.hpp"
 
 using namespace irdm::wire;
 

@@ -30,28 +30,16 @@ struct LinkState {
   double dt = 0.0;             ///< force step of the newest session [s]
 };
 
-/// A contact model, and the session that it is of.
-struct LinkedModel {
-  std::uint64_t session = 0;  ///< as LinkState::sessions
-  ContactModel model;
-};
-
-/// What is told of the last steps, and the session that it is for.
-struct LinkedForces {
-  std::uint64_t session = 0;
-  AppliedForces applied;
-};
-
 /// Hand-over between servo thread and network thread. Neither ever waits for the other.
 struct ServoLink {
   struct Stylus {
-    TripleBuffer<StylusSample> sample;      ///< servo writes
-    TripleBuffer<ServoInput> input;         ///< network writes
-    TripleBuffer<LinkedModel> model;        ///< network writes, where the contact is solved here
-    TripleBuffer<LinkedForces> applied;     ///< servo writes, then
-    std::atomic<bool> armed{false};         ///< servo writes; and the next
-    std::atomic<double> success_rate{0.0};  ///< LinkGate's
-    std::atomic<double> gain{1.0};          ///< Oscillation's
+    TripleBuffer<StylusSample> sample;               ///< servo writes
+    TripleBuffer<ServoInput> input;                  ///< network writes
+    TripleBuffer<OfSession<ContactModel>> model;     ///< network writes, in `predict`
+    TripleBuffer<OfSession<AppliedForces>> applied;  ///< servo writes, then
+    std::atomic<bool> armed{false};                  ///< servo writes; and the next
+    std::atomic<double> success_rate{0.0};           ///< LinkGate's
+    std::atomic<double> gain{1.0};                   ///< Oscillation's
   };
   explicit ServoLink(std::size_t count) : styluses(count) {}
 

@@ -217,12 +217,12 @@ void ServoThread::begin_session(const LinkState& state) noexcept {
 void ServoThread::end_steps(std::size_t i, std::int64_t now_ns) noexcept {
   ServoLink::Stylus& stylus = link_.styluses[i];
   if (stylus.model.receive() && stylus.model.front().session == session_) {
-    loops_[i].receive(stylus.model.front().model, now_ns);
+    loops_[i].receive(stylus.model.front().value, now_ns);
   }
   const AppliedForces* applied = loops_[i].end_steps(now_ns);
   if (applied == nullptr) return;
   stylus.applied.back().session = session_;
-  stylus.applied.back().applied = *applied;
+  stylus.applied.back().value = *applied;
   stylus.applied.publish();
 }
 

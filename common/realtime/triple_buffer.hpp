@@ -6,6 +6,13 @@
 
 namespace irdm {
 
+/// A value and the session that it is of: who has another session by now leaves it aside.
+template <typename T>
+struct OfSession {
+  std::uint64_t session = 0;
+  T value;
+};
+
 /// Newest value wins: one writer thread, one reader thread, neither ever waits for the other.
 ///
 /// Three slots: the writer fills one, the reader holds one, the third is exchanged in one atomic

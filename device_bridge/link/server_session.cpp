@@ -189,10 +189,10 @@ void ServerSession::send_samples() {
     ++shared_.report.samples;
   }
   for (std::size_t i = 0; i < intakes_.size(); ++i) {
-    TripleBuffer<LinkedForces>& box = shared_.link.styluses[i].applied;
+    TripleBuffer<OfSession<AppliedForces>>& box = shared_.link.styluses[i].applied;
     if (!box.receive() || state_ != State::kLinked || !link_state_.predict) continue;
     if (box.front().session != link_state_.sessions) continue;
-    wire::AppliedForcesMessage message{slot(i), box.front().applied};
+    wire::AppliedForcesMessage message{slot(i), box.front().value};
     if (connection_->by_datagrams()) {
       message.applied.count = std::min(message.applied.count, wire::kForcesInDatagram);
     }

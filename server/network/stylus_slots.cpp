@@ -48,10 +48,10 @@ void StylusSlots::put(int slot, const AppliedForces& applied) {
 }
 
 const ContactModel* StylusSlots::take_model(int slot) {
-  TripleBuffer<ServedModel>& box = port(slot).model;
+  TripleBuffer<OfSession<ContactModel>>& box = port(slot).model;
   const Owner& owner = owners_[static_cast<std::size_t>(slot)];
   const bool usable = box.receive() && owner.predicts && box.front().session == owner.session;
-  return usable ? &box.front().model : nullptr;
+  return usable ? &box.front().value : nullptr;
 }
 
 void StylusSlots::expire(std::int64_t now_ns, std::int64_t limit_ns) {

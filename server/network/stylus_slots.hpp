@@ -26,21 +26,15 @@ struct LinkReport {
   wire::Report report = {};
 };
 
-/// A contact model for the bridge of a session.
-struct ServedModel {
-  std::uint64_t session = 0;
-  ContactModel model;
-};
-
 /// Hand-over between network thread and force thread for one stylus: the network thread writes `in`
 /// and reads `out`, the force thread the other way round. Neither ever waits.
 struct StylusPort {
   TripleBuffer<StylusInput> in;
   TripleBuffer<StylusForce> out;
   // Where the bridge solves the contact:
-  TripleBuffer<AppliedHistory> applied;  ///< from the network thread
-  TripleBuffer<ServedModel> model;       ///< from the force thread
-  TripleBuffer<LinkReport> link;         ///< from the network thread to a viewer's thread
+  TripleBuffer<AppliedHistory> applied;         ///< from the network thread
+  TripleBuffer<OfSession<ContactModel>> model;  ///< from the force thread
+  TripleBuffer<LinkReport> link;                ///< from the network thread to a viewer's thread
 };
 
 /// Which session owns which stylus, and what goes through the ports. Network thread only, except

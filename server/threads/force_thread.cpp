@@ -154,8 +154,8 @@ void ForceThread::stand_still() noexcept {
     port.out.put(to_answer(record_, fading, port.in.front().sample));
     if (!port.in.front().predicts) continue;
     port.model.back().session = port.in.front().session;
-    port.model.back().model.valid = false;
-    port.model.back().model.paused = true;
+    port.model.back().value.valid = false;
+    port.model.back().value.paused = true;
     port.model.publish();
   }
   network_.forces_ready().signal();
@@ -209,7 +209,7 @@ void ForceThread::predict_horizon() noexcept {
     StylusPort& port = network_.port(static_cast<int>(s));
     if (!commands_[s].present || !port.in.front().predicts) continue;
     port.model.back().session = port.in.front().session;
-    bridged_[s].predict_horizon(port.model.back().model);
+    bridged_[s].predict_horizon(port.model.back().value);
     port.model.publish();
     any = true;
   }

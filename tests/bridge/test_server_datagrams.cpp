@@ -278,10 +278,10 @@ TEST_CASE("applied forces by datagram are cut to what one of them holds") {
   server.await_probe(udp);
   udp.send(server.channel->probe(), udp.sender());
   server.await_sample(udp);
-  LinkedForces forces{server.link.state.front().sessions, {}};
-  forces.applied.count = AppliedForces::kSteps;
-  forces.applied.step = 50;
-  for (AppliedForce& each : forces.applied.past) each.force = each.tip = each.arm = Vector3::Ones();
+  OfSession<AppliedForces> forces{server.link.state.front().sessions, {}};
+  forces.value.count = AppliedForces::kSteps;
+  forces.value.step = 50;
+  for (AppliedForce& each : forces.value.past) each.force = each.tip = each.arm = Vector3::Ones();
   server.link.styluses[0].applied.put(forces);
   server.link.samples_ready.signal();
   const std::optional<Frame> frame = server.channel->receive(udp);

@@ -192,7 +192,7 @@ class JoinedServer {
       stylus.input.receive();
       expect(stylus.input.front().force.force.allFinite(), "a force is finite");
       if (stylus.model.receive()) {
-        expect(check(stylus.model.front().model) == ContactModelFault::kNone,
+        expect(check(stylus.model.front().value) == ContactModelFault::kNone,
                "a model that is handed on can be true");
       }
     }

@@ -78,7 +78,7 @@ void server_session(Input input) {
     stylus.input.receive();
     expect(stylus.input.front().force.force.allFinite(), "a force is finite");
     if (stylus.model.receive()) {
-      expect(check(stylus.model.front().model) == ContactModelFault::kNone,
+      expect(check(stylus.model.front().value) == ContactModelFault::kNone,
              "a model that is handed on can be true");
     }
   }

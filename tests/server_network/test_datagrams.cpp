@@ -99,12 +99,12 @@ TEST_CASE("a contact model comes in parts, and applied forces go in one") {
   DatagramBridge bridge(running, kCapabilityDatagrams | kCapabilityContactModel);
   bridge.say(1);
   const std::uint64_t session = running.server.port(0).in.front().session;
-  ServedModel served{session, {}};
-  served.model.valid = true;
-  served.model.horizon = kMaxHorizon;
-  served.model.step = 9;
-  served.model.dt = 0.002;
-  for (auto& response : served.model.response) response.setIdentity();
+  OfSession<ContactModel> served{session, {}};
+  served.value.valid = true;
+  served.value.horizon = kMaxHorizon;
+  served.value.step = 9;
+  served.value.dt = 0.002;
+  for (auto& response : served.value.response) response.setIdentity();
   running.server.port(0).model.put(served);
   running.server.forces_ready().signal();
   const std::optional<Frame> frame = bridge.channel->receive(bridge.udp);

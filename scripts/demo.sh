@@ -30,7 +30,7 @@ fail() {
 stop_server() { [ -z "$server" ] || kill "$server" 2>/dev/null || true; }
 trap stop_server EXIT
 
-scripts/setup.sh
+scripts/setup.sh --run
 scripts/build.sh release irdm-precompute irdm-server irdm-bridge
 
 # The model is made again when its configuration is newer.

@@ -1,12 +1,19 @@
 #!/usr/bin/env bash
 # Installs what irdm needs: Debian's packages (scripts/packages.txt), and the npm packages that the viewer's page
 # is built from, as its lock file says. Does nothing when all is there.
+#   scripts/setup.sh [--run]    --run: without what only the tests need
 set -euo pipefail
 cd "$(dirname "$0")"
 
+case "${1:-}" in
+  "") unwanted='^(#|$)' ;;
+  --run) unwanted='^(#|$)| tests$' ;;
+  *) echo "usage: scripts/setup.sh [--run]" >&2; exit 2 ;;
+esac
+
 install_packages() {
   local packages missing=() as_root=() package status
-  mapfile -t packages < <(grep -Ev '^(#|$)' packages.txt)
+  mapfile -t packages < <(grep -Ev "$unwanted" packages.txt | cut -d ' ' -f 1)
   for package in "${packages[@]}"; do
     # A nodejs that is not Debian's brings its own npm, and Debian's cannot be installed beside it.
     [ "$package" = npm ] && command -v npm >/dev/null && continue

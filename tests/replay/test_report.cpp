@@ -13,7 +13,7 @@ using namespace irdm::replay;
 TEST_CASE("ticks are round, within the axis, and as many as can be read") {
   CHECK(Axis{0.0, 1.0}.ticks() == std::vector<double>{0.0, 0.2, 0.4, 3 * 0.2, 0.8, 1.0});
   CHECK(Axis{-0.3, 0.31}.ticks().size() == 7);
-  CHECK(number_text(Axis{-0.3, 0.31}.ticks()[3]) == "0");
+  CHECK(replay::number_text(Axis{-0.3, 0.31}.ticks()[3]) == "0");
   CHECK(Axis{1.0, 100.0, true}.ticks() == std::vector<double>{1, 2, 5, 10, 20, 50, 100});
   const std::vector<double> decades = Axis{2e-4, 3.0, true}.ticks();
   REQUIRE(decades.size() == 4);

@@ -11,7 +11,7 @@ using namespace irdm::test;
 
 namespace {
 
-constexpr int kSteps = 250'000;  // of each engine with one and two styluses: a million
+constexpr int kStepsOfEach = 250'000;  // of each engine with one and two styluses: a million
 
 }  // namespace
 
@@ -34,7 +34,7 @@ TEST_CASE("a million force steps touch neither heap, locks, exceptions nor files
   std::uint64_t foreseen = 0;
   std::uint64_t late = 0;
   const RealTimeGuard guard;
-  for (int k = 0; k < kSteps; ++k) {
+  for (int k = 0; k < kStepsOfEach; ++k) {
     const double t = 0.002 * (k % 2000);
     const double depth = 0.004 * std::sin(12.0 * t);
     std::array<StylusCommand, 2> commands{
@@ -60,8 +60,8 @@ TEST_CASE("a million force steps touch neither heap, locks, exceptions nor files
   const std::string violations = guard.violations();
   INFO(violations);
   CHECK(violations.empty());
-  CHECK(late > kSteps / 200);
-  CHECK(touching > kSteps / 20);
-  CHECK(held > kSteps / 3);
-  CHECK(foreseen > kSteps / 20);
+  CHECK(late > kStepsOfEach / 200);
+  CHECK(touching > kStepsOfEach / 20);
+  CHECK(held > kStepsOfEach / 3);
+  CHECK(foreseen > kStepsOfEach / 20);
 }

@@ -128,7 +128,7 @@ class ServedBridge {
                     .sample_sequence = sample.sequence,
                     .sample_time_ns = sample.time_ns,
                     .force = Vector3::Constant(number_of(finite))});
-      port.model.put({.session = port.in.front().session, .model = {}});
+      port.model.put({.session = port.in.front().session, .value = {}});
     }
     session_.send_forces();
     session_.send_status({.steps = step_});
@@ -222,7 +222,7 @@ class JoinedServer {
       stylus.sample.put({.sequence = ++sequence_});
       stylus.applied.put(
           {.session = number % 4,
-           .applied = {.step = 20, .count = static_cast<int>(1 + number % 16), .past = {}}});
+           .value = {.step = 20, .count = static_cast<int>(1 + number % 16), .past = {}}});
       stylus.armed = number % 2 == 0;
     }
     session_.send_samples();

@@ -46,7 +46,7 @@ struct Errors {
   double displacement = 0.0;  ///< as a share of the largest
 };
 
-Errors make_again(Rerun& made, const KeptRun& run) {
+Errors errors_of_rerun(Rerun& made, const KeptRun& run) {
   const Recording recording = run.recording();
   Errors errors;
   double largest = 0.0;
@@ -75,7 +75,7 @@ TEST_CASE("dense makes a run of modal again within the end of its responses and 
   InputRerun from_inputs(dense);
   ForceRerun from_forces(dense);
   Rerun& made = GENERATE(true, false) ? static_cast<Rerun&>(from_inputs) : from_forces;
-  const Errors errors = make_again(made, run);
+  const Errors errors = errors_of_rerun(made, run);
   INFO(errors.deviation.text() << "displacement " << errors.displacement);
   CHECK(errors.deviation.peak_force() > 0.2);
   CHECK(errors.deviation.force() < 1e-5 * errors.deviation.peak_force());
@@ -87,7 +87,7 @@ TEST_CASE("a compressed response makes a run again within its error") {
   const KeptRun run = swing();
   const SimulationConfig compressed = scene(ResponseKind::kCompressed);
   ForceRerun made(compressed);
-  const Errors errors = make_again(made, run);
+  const Errors errors = errors_of_rerun(made, run);
   INFO(errors.deviation.text() << "displacement " << errors.displacement);
   CHECK(errors.displacement < 0.05);  // what fem_cube() asks for
   CHECK(errors.displacement > 1e-7);  // and it is another engine

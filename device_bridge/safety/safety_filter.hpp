@@ -63,8 +63,7 @@ struct FilterCounts {
 /// The observer of passivity is told the force that was really sent. Whatever comes in, no force
 /// that goes out is beyond the limits of magnitude and rate. Pure: knows no clock, thread or file;
 /// what it does depends on its arguments alone. Real-time safe. One thread.
-/// Large: each guard is a member of a class of its own; the order among them is what this class is
-/// for.
+/// Large: each guard is a member of a class of its own; their order is the purpose of it.
 class SafetyFilter {
  public:
   /// @param guards all but in tests

@@ -23,7 +23,7 @@ struct ChildOptions {
 class ChildProcess {
  public:
   /// Generous: it only says when a test that hangs gives up.
-  static constexpr int kDeadlineMs = 120'000;
+  static constexpr int kDeadlineMs = 400'000;
 
   /// Starts `command`, its first word being the program's path. Throws when it cannot.
   explicit ChildProcess(const std::vector<std::string>& command, const ChildOptions& options = {});

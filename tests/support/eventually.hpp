@@ -6,7 +6,7 @@
 namespace irdm::test {
 
 /// Generous: it only says when a test that hangs gives up.
-inline constexpr int kDeadlineMs = 60'000;
+inline constexpr int kDeadlineMs = 120'000;
 
 /// Waits until `condition()` holds; false when it still does not at the deadline.
 /// @param deadline_ms [ms]; longer for what real programs have to work for

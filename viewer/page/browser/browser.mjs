@@ -3,7 +3,8 @@ import assert from "node:assert/strict";
 import { after, before } from "node:test";
 import { chromium } from "playwright-core";
 
-export const DEADLINE_MS = 30_000;
+/** Generous: it only says when a test that hangs gives up. */
+export const DEADLINE_MS = 120_000;
 
 let browser;
 before(async () => {
@@ -25,6 +26,7 @@ export async function until(condition, what) {
 /** A context of its own, which ends with the test. */
 export async function newContext(test, options = {}) {
   const context = await browser.newContext({ viewport: { width: 1000, height: 700 }, ...options });
+  context.setDefaultTimeout(DEADLINE_MS);
   test.after(() => context.close());
   return context;
 }
@@ -49,7 +51,7 @@ export async function visit(page, url) {
   await page.goto(url);
 }
 
-export const frames = (page) => page.waitForFunction(() => window.irdm?.frame() != null, null, { timeout: DEADLINE_MS });
+export const frames = (page) => page.waitForFunction(() => window.irdm?.frame() != null);
 
 /** Where a point of an object's frame B is on the screen [CSS px]. */
 export function onScreen(page, point, object = 0) {

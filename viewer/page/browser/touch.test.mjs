@@ -5,7 +5,7 @@ import { execFileSync } from "node:child_process";
 import { readdirSync } from "node:fs";
 import path from "node:path";
 import { test } from "node:test";
-import { DEADLINE_MS, frames, onScreen, open, until } from "./browser.mjs";
+import { frames, onScreen, open, until } from "./browser.mjs";
 import { Stage } from "./stage.mjs";
 
 const TETHERED = "tether = { stiffness = 100, angular_stiffness = 0.1 }\ndamping = { linear = 5, angular = 5 }\n";
@@ -26,7 +26,7 @@ function watch(page) {
 /** Waits until the page has seen something; what it saw instead is in the error. */
 async function sees(page, condition) {
   try {
-    await page.waitForFunction(condition, null, { timeout: DEADLINE_MS, polling: 50 });
+    await page.waitForFunction(condition, null, { polling: 50 });
   } catch (error) {
     const last = await page.evaluate(() => JSON.stringify([window.irdm.state(), window.seen.slice(-40)]));
     throw new Error(`${error.message}\n${condition}\n${await page.locator("#notices").innerText()}\n${last}`);

@@ -27,7 +27,7 @@ struct ClientReport {
   std::uint64_t samples = 0;       ///< given to a connection
   std::uint64_t protocol_errors = 0;
   std::uint64_t models = 0;          ///< contact models received and taken
-  std::uint64_t models_refused = 0;  ///< contact models that could not be true
+  std::uint64_t models_refused = 0;  ///< invalid contact models
   std::uint64_t stalls = 0;  ///< connections closed because samples were not answered any more
   std::uint64_t datagram_sessions = 0;  ///< sessions whose stream went by datagrams
   std::uint64_t datagrams = 0;          ///< received, and the server's

@@ -39,7 +39,7 @@ struct ServoLink {
     TripleBuffer<OfSession<AppliedForces>> applied;  ///< servo writes, then
     std::atomic<bool> armed{false};                  ///< servo writes; and the next
     std::atomic<double> success_rate{0.0};           ///< LinkGate's
-    std::atomic<double> gain{1.0};                   ///< Oscillation's
+    std::atomic<double> gain{1.0};                   ///< of the OscillationDetector
   };
   explicit ServoLink(std::size_t count) : styluses(count) {}
 

@@ -60,7 +60,7 @@ struct ReplayOptions {
   std::filesystem::path trace;
   std::vector<std::string> models;     ///< FILE or NAME=FILE
   bool from_inputs = false;            ///< the whole step, not only what its forces do
-  bool solve_bridged = false;          ///< from tips: what bridges solved, too
+  bool solve_bridged = false;          ///< from inputs: what bridges solved, too
   std::optional<ResponseKind> engine;  ///< none: the run's own
   /// By finite elements of this kind instead of an engine.
   std::optional<precompute::Elasticity> reference;

@@ -123,7 +123,7 @@ ResidualCompliance read_residual(const hdf5::File& file, int surface_nodes) {
 
 namespace {
 
-constexpr int kMostEarlySteps = 1024;
+constexpr int kMostFirSteps = 1024;
 constexpr double kOwnAsymmetry = 0.1;  // of a node's own response, as a share of its largest
 constexpr float kLongestShape = 2.0F;  // rightly 1
 
@@ -158,11 +158,11 @@ bool all_within(const std::vector<float>& values, double lowest, double highest)
 void check_numbers(const hdf5::File& file, const CompressedResponse& response) {
   constexpr double kMost = lab::kCompliance.highest;
   constexpr double kLargestInteger = 32768.0;
-  require(file, all_within(response.early_scale, 0.0, kMost / kLargestInteger),
+  require(file, all_within(response.fir_scale, 0.0, kMost / kLargestInteger),
           "has an early_scale that is negative, not finite or out of range");
-  const auto* early = std::get_if<std::vector<float>>(&response.early);
-  require(file, early == nullptr || all_within(*early, -kMost, kMost),
-          "has an early part that is not finite or out of range");
+  const auto* fir = std::get_if<std::vector<float>>(&response.fir);
+  require(file, fir == nullptr || all_within(*fir, -kMost, kMost),
+          "has an FIR part that is not finite or out of range");
   require(file, response.shapes.allFinite(), "has shapes that are not finite");
   require(
       file,
@@ -173,10 +173,10 @@ void check_numbers(const hdf5::File& file, const CompressedResponse& response) {
 // What a node does at its own place: symmetric, and along the force.
 void check_own_responses(const hdf5::File& file, const CompressedResponse& response, int nodes) {
   for (int i = 0; i < nodes; ++i) {
-    Matrix3 sum;  // over the early steps
+    Matrix3 sum;  // over the FIR steps
     for (int a = 0; a < 3; ++a) {
       for (int b = 0; b < 3; ++b) {
-        sum(a, b) = with_early(response, i, a, i, b, [&](const auto* numbers, double scale) {
+        sum(a, b) = with_fir(response, i, a, i, b, [&](const auto* numbers, double scale) {
           double total = 0.0;
           for (int s = 0; s < response.fir_steps; ++s) total += static_cast<double>(numbers[s]);
           return scale * total;
@@ -212,13 +212,13 @@ void write_compressed(hdf5::File& file, const CompressedResponse& response,
   const auto dof = static_cast<hsize_t>(response.shapes.rows());
   const auto steps = static_cast<hsize_t>(response.fir_steps);
   std::visit(
-      [&]<typename Scalar>(const std::vector<Scalar>& early) {
-        file.write<Scalar>(kCompressedEarly, {early.size() / 9 / steps, 9, steps}, early.data());
+      [&]<typename Scalar>(const std::vector<Scalar>& fir) {
+        file.write<Scalar>(kCompressedFir, {fir.size() / 9 / steps, 9, steps}, fir.data());
       },
-      response.early);
-  if (!response.early_scale.empty()) {
-    file.write<float>(kCompressedEarlyScale, {response.early_scale.size() / 9, 9},
-                      response.early_scale.data());
+      response.fir);
+  if (!response.fir_scale.empty()) {
+    file.write<float>(kCompressedFirScale, {response.fir_scale.size() / 9, 9},
+                      response.fir_scale.data());
   }
   file.write<float>(kCompressedShapes, {dof, static_cast<hsize_t>(response.shapes.cols())},
                     response.shapes.data());
@@ -241,21 +241,21 @@ CompressedResponse read_compressed(const hdf5::File& file, const Model& model) {
                 "use another engine, or make one with irdm-precompute compress");
   }
   CompressedResponse response;
-  const std::int64_t early = file.read_integer_attribute(kCompressedGroup, "early_steps");
-  require(file, early >= 1 && early <= kMostEarlySteps, "has fir_steps out of range");
-  response.fir_steps = static_cast<int>(early);
+  const std::int64_t fir = file.read_integer_attribute(kCompressedGroup, "early_steps");
+  require(file, fir >= 1 && fir <= kMostFirSteps, "has early_steps out of range");
+  response.fir_steps = static_cast<int>(fir);
   const auto nodes = static_cast<std::size_t>(model.mesh.surface_node_count());
-  const hdf5::Shape shape{early_entries(nodes) / 9, 9, static_cast<hsize_t>(early)};
-  require(file, file.stored_shape(kCompressedEarly) == shape, "has an early part of another shape");
-  const bool integers = file.stores_integers(kCompressedEarly);
-  require(file, integers == file.exists(kCompressedEarlyScale),
-          integers ? "has an early part in 16 bits without its early_scale"
-                   : "has an early_scale for an early part that is not in 16 bits");
+  const hdf5::Shape shape{fir_entries(nodes) / 9, 9, static_cast<hsize_t>(fir)};
+  require(file, file.stored_shape(kCompressedFir) == shape, "has an FIR part of another shape");
+  const bool integers = file.stores_integers(kCompressedFir);
+  require(file, integers == file.exists(kCompressedFirScale),
+          integers ? "has an FIR part in 16 bits without its early_scale"
+                   : "has an early_scale for an FIR part that is not in 16 bits");
   if (integers) {
-    response.early = file.read<std::int16_t>(kCompressedEarly, shape);
-    response.early_scale = file.read<float>(kCompressedEarlyScale, {shape[0], shape[1]});
+    response.fir = file.read<std::int16_t>(kCompressedFir, shape);
+    response.fir_scale = file.read<float>(kCompressedFirScale, {shape[0], shape[1]});
   } else {
-    response.early = file.read<float>(kCompressedEarly, shape);
+    response.fir = file.read<float>(kCompressedFir, shape);
   }
   const auto dof = static_cast<hsize_t>(model.degrees_of_freedom());
   const auto shapes = file.read<float>(kCompressedShapes, {dof, 0});

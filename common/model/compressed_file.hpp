@@ -21,8 +21,8 @@ ResidualCompliance read_residual(const hdf5::File& file, int surface_nodes);
 // The compressed response in a model file (docs/files.md).
 
 inline constexpr const char* kCompressedGroup = "/response/compressed";
-inline constexpr const char* kCompressedEarly = "/response/compressed/early";
-inline constexpr const char* kCompressedEarlyScale = "/response/compressed/early_scale";
+inline constexpr const char* kCompressedFir = "/response/compressed/early";
+inline constexpr const char* kCompressedFirScale = "/response/compressed/early_scale";
 inline constexpr const char* kCompressedShapes = "/response/compressed/shapes";
 inline constexpr const char* kCompressedPoleShape = "/response/compressed/pole_shape";
 inline constexpr const char* kCompressedPole = "/response/compressed/pole";

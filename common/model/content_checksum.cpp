@@ -84,11 +84,11 @@ std::string content_checksum(const hdf5::File& file) {
   add_dataset<std::int32_t>(sha, file, kResidualRowStart);
   add_dataset<std::int32_t>(sha, file, kResidualNodes);
   add_dataset<float>(sha, file, kResidualBlocks);
-  if (file.exists(kCompressedEarlyScale)) {
-    add_dataset<float>(sha, file, kCompressedEarlyScale);
-    add_dataset<std::int16_t>(sha, file, kCompressedEarly);
+  if (file.exists(kCompressedFirScale)) {
+    add_dataset<float>(sha, file, kCompressedFirScale);
+    add_dataset<std::int16_t>(sha, file, kCompressedFir);
   } else {
-    add_dataset<float>(sha, file, kCompressedEarly);
+    add_dataset<float>(sha, file, kCompressedFir);
   }
   add_dataset<float>(sha, file, kCompressedShapes);
   add_dataset<std::int32_t>(sha, file, kCompressedPoleShape);

@@ -190,12 +190,12 @@ struct CompressedResponse {
   /// R[s] for s < m, of pairs of surface nodes i >= j: entry ((i (i + 1) / 2 + j) * 9 + 3 a + b) *
   /// m + s is the displacement of i along a after 1 N on j along b [m/N].
   /// Of 16 bits: times the entry's scale, which is not there for single precision.
-  std::variant<std::vector<float>, std::vector<std::int16_t>> early;
-  std::vector<float> early_scale;  ///< m numbers each have one [m/N]
-  RowMatrix<float> shapes;         ///< B (3n, r), columns of length 1
-  std::vector<int> pole_shape;     ///< (p) to which shape a pole belongs, not decreasing
-  Eigen::VectorXcd pole;           ///< z (p), |z| < 1, those of a pair once
-  Eigen::VectorXcd amplitude;      ///< a (p) [m/N]
+  std::variant<std::vector<float>, std::vector<std::int16_t>> fir;
+  std::vector<float> fir_scale;  ///< m numbers each have one [m/N]
+  RowMatrix<float> shapes;       ///< B (3n, r), columns of length 1
+  std::vector<int> pole_shape;   ///< (p) to which shape a pole belongs, not decreasing
+  Eigen::VectorXcd pole;         ///< z (p), |z| < 1, those of a pair once
+  Eigen::VectorXcd amplitude;    ///< a (p) [m/N]
 
   int shape_count() const { return static_cast<int>(shapes.cols()); }
   int pole_count() const { return static_cast<int>(pole.size()); }

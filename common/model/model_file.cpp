@@ -33,7 +33,7 @@ constexpr Unit kDatasetUnits[] = {
     {kModalGravityRest, "s^2"},
     {kDenseGravity, "s^2"},
     {kDenseR, "m/N"},
-    {kCompressedEarlyScale, "m/N"},
+    {kCompressedFirScale, "m/N"},
     {kCompressedShapes, "1"},
     {kCompressedPole, "1"},
     {kCompressedAmplitude, "m/N"},
@@ -58,7 +58,7 @@ void write_model_units(hdf5::File& file) {
   };
   for (const auto& [object, unit] : kDatasetUnits) write(object, "unit", unit);
   for (const auto& [object, unit] : kGroupUnits) write(object, "units", unit);
-  write(kCompressedEarly, "unit", file.exists(kCompressedEarlyScale) ? "1" : "m/N");
+  write(kCompressedFir, "unit", file.exists(kCompressedFirScale) ? "1" : "m/N");
 }
 
 namespace {

@@ -32,7 +32,7 @@ struct TickRow {
   FilterCounts counts;
   double success_rate = 0.0;
   double port_energy = 0.0;         ///< see Passivity [J]
-  double gain = 1.0;                ///< see Oscillation
+  double gain = 1.0;                ///< see OscillationDetector
   double warmth = 0.0;              ///< of the motors, 0 to 1
   Vector3 force = Vector3::Zero();  ///< that was shown [N], D
 };

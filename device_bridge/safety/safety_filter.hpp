@@ -87,7 +87,7 @@ class SafetyFilter {
   const FilterCounts& counts() const noexcept { return counts_; }
   double success_rate() const noexcept { return gate_.success_rate(); }
   double port_energy() const noexcept { return passivity_.energy(); }  ///< see Passivity [J]
-  double gain() const noexcept { return oscillation_.gain(); }         ///< see Oscillation
+  double gain() const noexcept { return oscillation_.gain(); }         ///< see OscillationDetector
   double warmth() const noexcept { return thermal_.warmth(); }
 
  private:

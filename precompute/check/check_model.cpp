@@ -142,14 +142,14 @@ Report check_compressed(const std::filesystem::path& path, const CheckOptions& o
   append(report, static_lines(model, columns));
 
   const RecordLength length = record_length(response);
-  const RowMatrix<double> late = late_responses(response, length.steps - response.fir_steps);
+  const RowMatrix<double> tail = tail_responses(response, length.steps - response.fir_steps);
   const int nodes = model.mesh.surface_node_count();
   std::vector<NodeFindings> findings(static_cast<std::size_t>(nodes));
   Progress progress(console, "nodes (compressed)", nodes);
   for (int first = 0; first < nodes; first += kNodesAtOnce) {
     std::vector<DrivingPoint> records;
     for (int node = first; node < std::min(first + kNodesAtOnce, nodes); ++node) {
-      records.push_back(columns.driving_point(node, late));
+      records.push_back(columns.driving_point(node, tail));
     }
     analyse(model, {loop, length.radius}, records, first, findings);
     progress.update(first + static_cast<int>(records.size()));

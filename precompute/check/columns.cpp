@@ -104,29 +104,29 @@ bool StoredColumns::has_checksums() const {
 }
 
 RowMatrix<double> CompressedColumns::column(int b, int steps) const {
-  const int late = std::max(0, steps - response_.fir_steps);
-  return compressed_column(response_, late_responses(response_, late), b, steps);
+  const int tail = std::max(0, steps - response_.fir_steps);
+  return compressed_column(response_, tail_responses(response_, tail), b, steps);
 }
 
 Eigen::VectorXd CompressedColumns::settled(int b) const {
   const RowMatrix<double> none(0, response_.shape_count());
-  const Eigen::VectorXd early =
+  const Eigen::VectorXd fir =
       compressed_column(response_, none, b, response_.fir_steps).colwise().sum().transpose();
-  const Eigen::VectorXd weighted = settled_late_responses(response_).cwiseProduct(
+  const Eigen::VectorXd weighted = settled_tail_responses(response_).cwiseProduct(
       response_.shapes.row(b).cast<double>().transpose());
-  return early + response_.shapes.cast<double>() * weighted;
+  return fir + response_.shapes.cast<double>() * weighted;
 }
 
-DrivingPoint CompressedColumns::driving_point(int node, const RowMatrix<double>& late) const {
+DrivingPoint CompressedColumns::driving_point(int node, const RowMatrix<double>& tail) const {
   const int m = response_.fir_steps;
-  DrivingPoint record(9, m + late.rows());
+  DrivingPoint record(9, m + tail.rows());
   const RowMatrix<double> rows = response_.shapes.middleRows(3 * node, 3).cast<double>();
   for (int entry = 0; entry < 9; ++entry) {
     const int a = entry % 3;
     const int b = entry / 3;
-    for (int s = 0; s < m; ++s) record(entry, s) = early_response(response_, node, a, node, b, s);
+    for (int s = 0; s < m; ++s) record(entry, s) = fir_response(response_, node, a, node, b, s);
     const Eigen::VectorXd product = rows.row(a).cwiseProduct(rows.row(b)).transpose();
-    record.row(entry).tail(late.rows()) = (late * product).transpose();
+    record.row(entry).tail(tail.rows()) = (tail * product).transpose();
   }
   return record;
 }

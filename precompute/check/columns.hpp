@@ -60,8 +60,8 @@ class CompressedColumns : public ResponseColumns {
   RowMatrix<double> column(int b, int steps) const override;
   Eigen::VectorXd settled(int b) const override;
   /// R_ii[s] of one node.
-  /// @param late steps - m rows of late_responses()
-  DrivingPoint driving_point(int node, const RowMatrix<double>& late) const;
+  /// @param tail steps - m rows of tail_responses()
+  DrivingPoint driving_point(int node, const RowMatrix<double>& tail) const;
 
  private:
   const CompressedResponse& response_;

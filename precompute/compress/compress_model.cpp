@@ -18,7 +18,7 @@ namespace irdm::precompute {
 namespace {
 
 constexpr int kMostAttempts = 6;
-constexpr int kFirstEarlySteps = 16;
+constexpr int kFirstFirSteps = 16;
 
 // Shares of the allowed error, root mean square over the columns; the largest column's is about
 // twice that.
@@ -31,23 +31,23 @@ constexpr float kLargestInteger = 32767.0F;
 
 struct Parts {
   RowMatrix<double> shapes;  // (3n, r)
-  RowMatrix<double> late;    // (L, r)
+  RowMatrix<double> tail;    // (L, r)
 };
 
 Parts identify(const DenseInput& input, const Survey& found, double error, const Console& console) {
   const int r = directions_for(found.space_values, kOfSpace * error);
   const int K = directions_for(found.time_values, kOfTime * error);
   const Core core = project(input, found, r, K, console);
-  const double late = core.matrices.cast<double>().norm();
-  const JointShapes joint = joint_shapes(core, kOfShapes * error * found.norm / late, console);
+  const double tail = core.matrices.cast<double>().norm();
+  const JointShapes joint = joint_shapes(core, kOfShapes * error * found.norm / tail, console);
   Parts parts;
   product(core.space.cast<double>(), Of::kItself, joint.shapes, Of::kItself, parts.shapes);
-  product(core.time, Of::kItself, joint.responses, Of::kItself, parts.late);
+  product(core.time, Of::kItself, joint.responses, Of::kItself, parts.tail);
   return parts;
 }
 
 std::vector<PoleFit> fit_all(const Parts& parts, double error, const Console& console) {
-  const auto count = static_cast<int>(parts.late.cols());
+  const auto count = static_cast<int>(parts.tail.cols());
   std::vector<PoleFit> fits(static_cast<std::size_t>(count));
   const double each = error / std::sqrt(static_cast<double>(count));
   constexpr int kAtOnce = 32;
@@ -56,7 +56,7 @@ std::vector<PoleFit> fit_all(const Parts& parts, double error, const Console& co
     const int last = std::min(first + kAtOnce, count);
 #pragma omp parallel for schedule(dynamic)
     for (int i = first; i < last; ++i) {
-      fits[static_cast<std::size_t>(i)] = fit_poles(parts.late.col(i), each);
+      fits[static_cast<std::size_t>(i)] = fit_poles(parts.tail.col(i), each);
     }
     progress.update(last);
   }
@@ -64,15 +64,15 @@ std::vector<PoleFit> fit_all(const Parts& parts, double error, const Console& co
 }
 
 // The numbers of each entry in 32767ths of its largest.
-void set_integers(const std::vector<float>& early, CompressedResponse& response) {
+void set_integers(const std::vector<float>& fir, CompressedResponse& response) {
   const auto steps = static_cast<std::size_t>(response.fir_steps);
-  std::vector<std::int16_t> integers(early.size());
-  for (std::size_t first = 0; first < early.size(); first += steps) {
-    const std::span<const float> entry(early.data() + first, steps);
+  std::vector<std::int16_t> integers(fir.size());
+  for (std::size_t first = 0; first < fir.size(); first += steps) {
+    const std::span<const float> entry(fir.data() + first, steps);
     float largest = 0.0F;
     for (const float value : entry) largest = std::max(largest, std::abs(value));
     const float scale = largest / kLargestInteger;
-    response.early_scale.push_back(scale);
+    response.fir_scale.push_back(scale);
     if (!(scale > 0.0F)) continue;
     std::ranges::transform(
         entry, integers.begin() + static_cast<std::ptrdiff_t>(first), [scale](float value) {
@@ -80,7 +80,7 @@ void set_integers(const std::vector<float>& early, CompressedResponse& response)
           return static_cast<std::int16_t>(std::clamp(share, -kLargestInteger, kLargestInteger));
         });
   }
-  response.early = std::move(integers);
+  response.fir = std::move(integers);
 }
 
 // Shapes that need no pole are left out.
@@ -88,7 +88,7 @@ CompressedResponse assemble(const Survey& found, const Parts& parts,
                             const std::vector<PoleFit>& fits) {
   CompressedResponse response;
   response.fir_steps = found.fir_steps;
-  set_integers(found.early, response);
+  set_integers(found.fir, response);
   std::vector<Eigen::Index> used;
   std::vector<std::complex<double>> poles, amplitudes;
   for (std::size_t i = 0; i < fits.size(); ++i) {
@@ -108,13 +108,13 @@ CompressedResponse assemble(const Survey& found, const Parts& parts,
 }
 
 double bytes(const CompressedResponse& response) {
-  const double early = std::visit(
+  const double fir = std::visit(
       [](const auto& numbers) {
         return static_cast<double>(numbers.size() * sizeof(numbers.front()));
       },
-      response.early);
-  const double scales = 4.0 * static_cast<double>(response.early_scale.size());
-  return early + scales + 4.0 * static_cast<double>(response.shapes.size()) +
+      response.fir);
+  const double scales = 4.0 * static_cast<double>(response.fir_scale.size());
+  return fir + scales + 4.0 * static_cast<double>(response.shapes.size()) +
          36.0 * response.pole_count();
 }
 
@@ -133,11 +133,11 @@ std::string percent(double share) {
               "is not reciprocal or not linear cannot be compressed (irdm-precompute check)");
 }
 
-void check_early_steps(const DenseInput& input, int early) {
-  if (early >= 1 && 4 * early < input.steps()) return;
+void check_fir_steps(const DenseInput& input, int fir) {
+  if (fir >= 1 && 4 * fir < input.steps()) return;
   throw Error(input.name(),
               "has " + std::to_string(input.steps()) + " steps, too few to keep " +
-                  std::to_string(early) + " of them and compress the rest",
+                  std::to_string(fir) + " of them and compress the rest",
               "use fewer --fir-steps, or precompute more steps");
 }
 
@@ -153,16 +153,16 @@ CompressionSummary compress_model(const std::filesystem::path& input,
                                   const CompressSettings& settings, const Console& console) {
   const DenseInput dense(input);
   const bool automatic = settings.fir_steps == 0;
-  const int most_early = (dense.steps() - 1) / 4;
-  const int early =
-      automatic ? std::min(kFirstEarlySteps, std::max(1, most_early)) : settings.fir_steps;
-  check_early_steps(dense, early);
-  Survey found = survey(dense, early, console);
+  const int most_fir_steps = (dense.steps() - 1) / 4;
+  const int fir =
+      automatic ? std::min(kFirstFirSteps, std::max(1, most_fir_steps)) : settings.fir_steps;
+  check_fir_steps(dense, fir);
+  Survey found = survey(dense, fir, console);
   double finer = 1.0;
   CompressionError best;
   best.requested = settings.error;
   best.displacement = best.force = 1e300;
-  int attempts = 0;  // with as many early steps
+  int attempts = 0;  // with as many FIR steps
   int in_vain = 0;
   double previous = std::numeric_limits<double>::infinity();
   while (true) {
@@ -172,8 +172,8 @@ CompressionSummary compress_model(const std::filesystem::path& input,
         assemble(found, parts, fit_all(parts, kOfPoles * aim * found.norm, console));
     CompressionError error = measure_error(response, dense, console);
     if (larger(error) > settings.error) {  // perhaps by what 16 bits leave out
-      response.early = found.early;
-      response.early_scale.clear();
+      response.fir = found.fir;
+      response.fir_scale.clear();
       error = measure_error(response, dense, console);
     }
     error.requested = settings.error;
@@ -189,7 +189,7 @@ CompressionSummary compress_model(const std::filesystem::path& input,
       return {error,         found.fir_steps, response.shape_count(), response.pole_count(),
               dense.bytes(), bytes(response)};
     }
-    // Shapes and poles take little room beside early steps: more of them as long as they help as
+    // Shapes and poles take little room beside FIR steps: more of them as long as they help as
     // much as they have to.
     ++attempts;
     const double expected =
@@ -197,7 +197,7 @@ CompressionSummary compress_model(const std::filesystem::path& input,
     previous = larger(error);
     in_vain = larger(error) < 0.95 * larger(best) ? 0 : in_vain + 1;
     if (larger(error) < larger(best)) best = error;
-    if (automatic && 2 * found.fir_steps <= most_early && expected > settings.error) {
+    if (automatic && 2 * found.fir_steps <= most_fir_steps && expected > settings.error) {
       found = survey(dense, 2 * found.fir_steps, console);
       attempts = in_vain = 0;
       previous = std::numeric_limits<double>::infinity();

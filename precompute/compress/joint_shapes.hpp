@@ -1,7 +1,7 @@
 #pragma once
 
 #include "common/model/model.hpp"
-#include "precompute/compress/late_space.hpp"
+#include "precompute/compress/tail_space.hpp"
 
 /// Products of large matrices by the BLAS. Results are made as large as they must be.
 namespace irdm::precompute {
@@ -21,7 +21,7 @@ struct JointShapes {
   double error = 1.0;           ///< share of the matrices' norm that is left
 };
 
-/// First guess by a second-order recursion: late displacements y follow y[l+1] = A y[l] - D y[l-1]
+/// First guess by a second-order recursion: displacements y follow y[l+1] = A y[l] - D y[l-1]
 /// with A and D of the same eigenvectors, which are the shapes (dynamic mode decomposition); then
 /// the symmetric canonical polyadic decomposition is improved by alternating least squares: h from
 /// B, B from h and B. The same core gives the same shapes.

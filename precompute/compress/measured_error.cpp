@@ -42,25 +42,25 @@ std::vector<Vector3> holding_force(const RowMatrix<double>& record, const Matrix
   return force;
 }
 
-// Columns of the late part by one product.
-RowMatrix<float> late_column(const CompressedResponse& response, const RowMatrix<float>& late,
+// Columns of the tail by one product.
+RowMatrix<float> tail_column(const CompressedResponse& response, const RowMatrix<float>& tail,
                              int b) {
-  const RowMatrix<float> weighted = late.array().rowwise() * response.shapes.row(b).array();
+  const RowMatrix<float> weighted = tail.array().rowwise() * response.shapes.row(b).array();
   RowMatrix<float> column;
   product(weighted, Of::kItself, response.shapes, Of::kTransposed, column);
   return column;
 }
 
-RowMatrix<float> column(const CompressedResponse& response, const RowMatrix<float>& late, int b) {
+RowMatrix<float> column(const CompressedResponse& response, const RowMatrix<float>& tail, int b) {
   const int m = response.fir_steps;
-  RowMatrix<float> values(m + late.rows(), response.shapes.rows());
+  RowMatrix<float> values(m + tail.rows(), response.shapes.rows());
   for (int a = 0; a < values.cols(); ++a) {
-    with_early(response, a / 3, a % 3, b / 3, b % 3, [&](const auto* numbers, double scale) {
+    with_fir(response, a / 3, a % 3, b / 3, b % 3, [&](const auto* numbers, double scale) {
       for (int s = 0; s < m; ++s)
         values(s, a) = static_cast<float>(scale * static_cast<double>(numbers[s]));
     });
   }
-  values.bottomRows(late.rows()) = late_column(response, late, b);
+  values.bottomRows(tail.rows()) = tail_column(response, tail, b);
   return values;
 }
 
@@ -84,8 +84,8 @@ CompressionError measure_error(const CompressedResponse& response, const DenseIn
                                const Console& console) {
   const int nodes = input.degrees_of_freedom() / 3;
   const int stride = (nodes + kMeasuredNodes - 1) / kMeasuredNodes;
-  const RowMatrix<float> late =
-      late_responses(response, input.steps() - response.fir_steps).cast<float>();
+  const RowMatrix<float> tail =
+      tail_responses(response, input.steps() - response.fir_steps).cast<float>();
   CompressionError error;
   double squares = 0.0;
   Progress progress(console, "measuring", nodes);
@@ -94,7 +94,7 @@ CompressionError measure_error(const CompressedResponse& response, const DenseIn
     RowMatrix<double> actual(input.steps(), 9);
     for (int b = 0; b < 3; ++b) {
       const RowMatrix<float> R = input.column(3 * node + b);
-      const RowMatrix<float> C = column(response, late, 3 * node + b);
+      const RowMatrix<float> C = column(response, tail, 3 * node + b);
       const double size = R.cast<double>().norm();
       const double share = size > 0.0 ? (C - R).cast<double>().norm() / size : 0.0;
       error.displacement = std::max(error.displacement, share);

@@ -28,10 +28,10 @@ void act_and_die(int signal) {
 
 }  // namespace
 
-SignalCleanup::SignalCleanup(const CleanupAction& wish) {
+SignalCleanup::SignalCleanup(const CleanupAction& action) {
   assert(file_to_remove.empty() && last_words.empty());
-  file_to_remove = wish.remove.string();
-  last_words = wish.say;
+  file_to_remove = action.remove.string();
+  last_words = action.say;
   for (const int signal : kSignals) {
     if (std::signal(signal, act_and_die) == SIG_IGN) std::signal(signal, SIG_IGN);
   }

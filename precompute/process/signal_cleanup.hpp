@@ -17,7 +17,7 @@ struct CleanupAction {
 /// delivered to. One at a time.
 class SignalCleanup {
  public:
-  explicit SignalCleanup(const CleanupAction& wish);
+  explicit SignalCleanup(const CleanupAction& action);
   SignalCleanup(const SignalCleanup&) = delete;
   SignalCleanup& operator=(const SignalCleanup&) = delete;
   ~SignalCleanup();

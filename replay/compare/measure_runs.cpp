@@ -113,7 +113,7 @@ StylusMeasures measure_stylus(const Points& a, const Points& b, const std::vecto
   StylusMeasures found;
   found.difference = force_difference(a, b, all.interval);
   found.onsets = onset_delays(onsets_of(a, times), onsets_of(b, times));
-  found.force = pair_of(a, b, all, longest_stretch(frames_in_contact(a, b)));
+  found.force = pair_of(a, b, all, longest_interval(frames_in_contact(a, b)));
   if (!all.evenly_spaced) return found;
   found.vibration_a = vibration_of(a, all.interval, all.hand);
   found.vibration_b = vibration_of(b, all.interval, all.hand);
@@ -157,7 +157,7 @@ Measures measure_runs(const RunReader& a, const RunReader& b, const Comparison& 
   if (times.size() > 1) {
     found.interval = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
   }
-  const TimeInterval free = longest_stretch(free_frames(side_a, side_b));
+  const TimeInterval free = longest_interval(free_frames(side_a, side_b));
   for (std::size_t i = 0; i < comparison.objects.size(); ++i) {
     const ObjectComparison& object = comparison.objects[i];
     SignalPair& pair = found.nodes.emplace_back();

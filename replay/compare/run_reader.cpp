@@ -10,7 +10,7 @@
 
 namespace irdm::replay {
 
-TimeInterval longest_stretch(const std::vector<bool>& marked) {
+TimeInterval longest_interval(const std::vector<bool>& marked) {
   TimeInterval longest;
   TimeInterval now;
   for (std::size_t k = 0; k < marked.size(); ++k) {

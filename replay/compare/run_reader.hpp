@@ -17,7 +17,7 @@ struct TimeInterval {
 };
 
 /// The longest one in which all frames are marked; the first of equal ones.
-TimeInterval longest_stretch(const std::vector<bool>& marked);
+TimeInterval longest_interval(const std::vector<bool>& marked);
 
 /// Whether times are as far from each other everywhere, within a hundredth.
 bool evenly_spaced(const std::vector<double>& times);

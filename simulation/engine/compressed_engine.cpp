@@ -16,7 +16,7 @@ Matrix3 block(const CompressedResponse& response, int i, int j, std::size_t s) n
   Matrix3 R;
   for (int a = 0; a < 3; ++a) {
     for (int b = 0; b < 3; ++b) {
-      R(a, b) = early_response(response, i, a, j, b, static_cast<int>(s));
+      R(a, b) = fir_response(response, i, a, j, b, static_cast<int>(s));
     }
   }
   return R;
@@ -39,13 +39,13 @@ CompressedEngine::CompressedEngine(std::shared_ptr<const Model> model)
     : model_(std::move(model)),
       response_(&std::get<CompressedResponse>(model_->response)),
       history_(model_->mesh.surface_node_count(), response_->fir_steps),
-      late_(*response_) {
-  contact_shapes_.assign(3 * late_.shape_count(), 0.0);
-  products_.assign(6 * late_.shape_count(), 0.0);
-  held_force_.assign(late_.shape_count(), 0.0);
+      tail_(*response_) {
+  contact_shapes_.assign(3 * tail_.shape_count(), 0.0);
+  products_.assign(6 * tail_.shape_count(), 0.0);
+  held_force_.assign(tail_.shape_count(), 0.0);
 }
 
-Vector3 CompressedEngine::early(int node, int shift) const noexcept {
+Vector3 CompressedEngine::fir(int node, int shift) const noexcept {
   Vector3 u = Vector3::Zero();
   for (const int from : history_.active()) {
     for (int b = 0; b < 3; ++b) {
@@ -54,7 +54,7 @@ Vector3 CompressedEngine::early(int node, int shift) const noexcept {
       const int count = std::min(series.count, response_->fir_steps - first);
       if (count <= 0) continue;
       for (int a = 0; a < 3; ++a) {
-        u[a] += with_early(*response_, node, a, from, b, [&](const auto* numbers, double scale) {
+        u[a] += with_fir(*response_, node, a, from, b, [&](const auto* numbers, double scale) {
           return scale * dot(numbers + first, series.force, static_cast<std::size_t>(count));
         });
       }
@@ -63,16 +63,16 @@ Vector3 CompressedEngine::early(int node, int shift) const noexcept {
   return u;
 }
 
-Vector3 CompressedEngine::late(int node, const double* coordinate) const noexcept {
+Vector3 CompressedEngine::tail(int node, const double* coordinate) const noexcept {
   Vector3 u;
   for (int axis = 0; axis < 3; ++axis) {
-    u[axis] = dot(late_.shape_row(3 * node + axis), coordinate, late_.shape_count());
+    u[axis] = dot(tail_.shape_row(3 * node + axis), coordinate, tail_.shape_count());
   }
   return u;
 }
 
 Vector3 CompressedEngine::free_displacement(int node) const noexcept {
-  return early(node, 1) + late(node, late_.coming());
+  return fir(node, 1) + tail(node, tail_.coming());
 }
 
 void CompressedEngine::predict(std::span<const ContactPatch> patches, std::span<Vector3> h,
@@ -93,11 +93,11 @@ void CompressedEngine::predict(std::span<const ContactPatch> patches, std::span<
 }
 
 void CompressedEngine::mean_shapes(const ContactPatch& patch) noexcept {
-  const std::size_t shapes = late_.shape_count();
+  const std::size_t shapes = tail_.shape_count();
   std::fill(contact_shapes_.begin(), contact_shapes_.end(), 0.0);
   for (std::size_t i = 0; i < static_cast<std::size_t>(patch.count); ++i) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const float* row = late_.shape_row(3 * patch.nodes[i] + static_cast<int>(axis));
+      const float* row = tail_.shape_row(3 * patch.nodes[i] + static_cast<int>(axis));
       accumulate({patch.weights[i], 0.0, 0.0}, row, row, row,
                  contact_shapes_.data() + axis * shapes, shapes);
     }
@@ -107,14 +107,14 @@ void CompressedEngine::mean_shapes(const ContactPatch& patch) noexcept {
 void CompressedEngine::predict_horizon(const ContactPatch& patch, std::span<const NodalForce> held,
                                        std::span<Vector3> path,
                                        std::span<Matrix3> response) noexcept {
-  const std::size_t shapes = late_.shape_count();
+  const std::size_t shapes = tail_.shape_count();
   const auto fir_steps = static_cast<std::size_t>(response_->fir_steps);
   mean_shapes(patch);
-  late_.collect(held, held_force_.data());
+  tail_.collect(held, held_force_.data());
   Vector3 by_held = Vector3::Zero();
-  late_.begin_path();
+  tail_.begin_path();
   for (std::size_t n = 0; n < path.size(); ++n) {
-    if (n > 0) late_.continue_path(held_force_.data());
+    if (n > 0) tail_.continue_path(held_force_.data());
     if (n < fir_steps) {
       for (const NodalForce& force : held) {
         by_held += mean(patch, [&](int node) -> Vector3 {
@@ -122,10 +122,10 @@ void CompressedEngine::predict_horizon(const ContactPatch& patch, std::span<cons
         });
       }
     }
-    path[n] = by_held + mean(patch, [&](int node) { return early(node, static_cast<int>(n) + 1); });
+    path[n] = by_held + mean(patch, [&](int node) { return fir(node, static_cast<int>(n) + 1); });
     for (std::size_t axis = 0; axis < 3; ++axis) {
       path[n][static_cast<Eigen::Index>(axis)] +=
-          dot(contact_shapes_.data() + axis * shapes, late_.path(), shapes);
+          dot(contact_shapes_.data() + axis * shapes, tail_.path(), shapes);
     }
   }
   for (std::size_t k = 0; k < kCompressedPairs.size(); ++k) {
@@ -137,7 +137,7 @@ void CompressedEngine::predict_horizon(const ContactPatch& patch, std::span<cons
     if (n < fir_steps) {
       response[n] = block(*response_, patch, patch, n);
     } else {
-      const Sums<6> r = dot_six(late_.after(n), products_.data(), shapes);
+      const Sums<6> r = dot_six(tail_.after(n), products_.data(), shapes);
       response[n] << r[0], r[1], r[3], r[1], r[2], r[4], r[3], r[4], r[5];
     }
   }
@@ -146,12 +146,12 @@ void CompressedEngine::predict_horizon(const ContactPatch& patch, std::span<cons
 void CompressedEngine::add_delayed_force(std::span<const NodalForce> forces, int age) noexcept {
   if (age >= kMaxHorizon) return;
   history_.add_delayed_force(forces, age);
-  late_.add_delayed_force(forces, age);
+  tail_.add_delayed_force(forces, age);
 }
 
 void CompressedEngine::advance(std::span<const NodalForce> forces) noexcept {
   history_.push(forces);
-  late_.advance(forces);
+  tail_.advance(forces);
 }
 
 void CompressedEngine::displacement(Points& u, double /*tolerance*/) const {
@@ -159,7 +159,7 @@ void CompressedEngine::displacement(Points& u, double /*tolerance*/) const {
   u.resize(nodes, 3);
 #pragma omp parallel for schedule(static)
   for (int node = 0; node < nodes; ++node) {
-    u.row(node) = (early(node, 0) + late(node, late_.coordinate())).transpose();
+    u.row(node) = (fir(node, 0) + tail(node, tail_.coordinate())).transpose();
   }
 }
 
@@ -174,7 +174,7 @@ Eigen::MatrixXd CompressedEngine::zero_lag_compliance() const {
 
 void CompressedEngine::reset() noexcept {
   history_.clear();
-  late_.reset();
+  tail_.reset();
 }
 
 }  // namespace irdm

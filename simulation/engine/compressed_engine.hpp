@@ -34,15 +34,15 @@ class CompressedEngine final : public ResponseEngine {
  private:
   /// What the last m steps of forces do to a node: shift 0 at the end of the last step, n at that
   /// of the n-th coming one.
-  Vector3 early(int node, int shift) const noexcept;
-  Vector3 late(int node, const double* coordinate) const noexcept;
+  Vector3 fir(int node, int shift) const noexcept;
+  Vector3 tail(int node, const double* coordinate) const noexcept;
   /// Rows sum_i w_i B_i of the patch's three axes, (3, r).
   void mean_shapes(const ContactPatch& patch) noexcept;
 
   std::shared_ptr<const Model> model_;
   const CompressedResponse* response_;
   ForceHistory history_;  ///< of m steps
-  RecursiveTail late_;
+  RecursiveTail tail_;
   std::vector<double> contact_shapes_;  ///< (3, r)
   std::vector<double> products_;        ///< (6, r)
   std::vector<double> held_force_;      ///< (r)

@@ -28,14 +28,14 @@ void ResidentColumns<Number>::convolve(const ForceHistory& history, int node, in
 // to the other. Each degree of freedom gets its sums in the same order, whichever thread adds them.
 template <typename Number>
 void ResidentColumns<Number>::add_all(const ForceHistory& history, Points& u) const {
-  const std::vector<NonzeroInterval> stretches = nonzero_intervals(history);
+  const std::vector<NonzeroInterval> intervals = nonzero_intervals(history);
   const std::size_t rows_at_once = row_block(dof);
   const auto blocks = static_cast<int>((dof + rows_at_once - 1) / rows_at_once);
 #pragma omp parallel for schedule(dynamic)
   for (int block = 0; block < blocks; ++block) {
     const std::size_t first = static_cast<std::size_t>(block) * rows_at_once;
     const std::size_t count = std::min(rows_at_once, dof - first);
-    for (const NonzeroInterval& push : stretches) {
+    for (const NonzeroInterval& push : intervals) {
       const Number* rows = values + (push.column * dof + first) * steps + push.first_age;
       add_products({rows, steps, count}, push.force, push.count, 1.0, u.data() + first);
     }

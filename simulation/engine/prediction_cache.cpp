@@ -37,7 +37,7 @@ void CachedConvolution<Columns>::add_ahead(int node, int n, Vector3& u) const no
 template <typename Columns>
 void CachedConvolution<Columns>::push(std::span<const NodalForce> forces) noexcept {
   history_.push(forces);
-  if (columns_.update(history_)) keep_nothing();
+  if (columns_.update(history_)) clear_cache();
   stepped_.push(forces);
   horizon_cache_.push(forces);
 }
@@ -46,7 +46,7 @@ template <typename Columns>
 void CachedConvolution<Columns>::add_delayed_force(std::span<const NodalForce> forces,
                                                    int age) noexcept {
   if (!history_.add_delayed_force(forces, age)) return;
-  if (columns_.update(history_)) keep_nothing();
+  if (columns_.update(history_)) clear_cache();
   stepped_.add_delayed_force(forces, age);
   horizon_cache_.add_delayed_force(forces, age);
 }
@@ -54,11 +54,11 @@ void CachedConvolution<Columns>::add_delayed_force(std::span<const NodalForce> f
 template <typename Columns>
 void CachedConvolution<Columns>::clear() noexcept {
   history_.clear();
-  keep_nothing();
+  clear_cache();
 }
 
 template <typename Columns>
-void CachedConvolution<Columns>::keep_nothing() noexcept {
+void CachedConvolution<Columns>::clear_cache() noexcept {
   stepped_.clear();
   horizon_cache_.clear();
 }

@@ -108,7 +108,7 @@ class CachedConvolution {
   void clear() noexcept;
   const ForceHistory& history() const noexcept { return history_; }
   /// Columns became whole of a node with a past: what was kept lacks it.
-  void keep_nothing() noexcept;
+  void clear_cache() noexcept;
 
  private:
   Columns& columns_;

@@ -40,9 +40,9 @@ RecursiveTail::RecursiveTail(const CompressedResponse& response)
   }
   ring_.assign(static_cast<std::size_t>(delay_) * shapes_, 0.0);
   after_.assign((kMaxHorizon + 1) * shapes_, 0.0);
-  const int late = kMaxHorizon + 1 - response.fir_steps;
-  if (late <= 0) return;
-  const RowMatrix<double> h = late_responses(response, late);
+  const int tail = kMaxHorizon + 1 - response.fir_steps;
+  if (tail <= 0) return;
+  const RowMatrix<double> h = tail_responses(response, tail);
   std::copy_n(h.data(), h.size(), after_.end() - h.size());
 }
 

@@ -61,7 +61,7 @@ double of_compressed(const CompressedResponse& response, const Eigen::VectorXd& 
     for (int b = 0; b < 3; ++b) {
       double entry = 0.0;
       for (int s = 0; s < response.fir_steps; ++s) {
-        entry += early_response(response, i, a, i, b, s);
+        entry += fir_response(response, i, a, i, b, s);
       }
       sum += entry * d[a] * d[b];
     }
@@ -91,7 +91,7 @@ double compliance(const Model& model, std::size_t node, const Vector3& d) {
 std::vector<float> static_compliance(const Model& model, const std::vector<Vector3>& directions) {
   std::vector<float> values;
   if (const auto* compressed = std::get_if<CompressedResponse>(&model.response)) {
-    const Eigen::VectorXd settled = settled_late_responses(*compressed);
+    const Eigen::VectorXd settled = settled_tail_responses(*compressed);
     for (std::size_t node = 0; node < directions.size(); ++node) {
       const double value = of_compressed(*compressed, settled, node, directions[node]);
       values.push_back(static_cast<float>(value));

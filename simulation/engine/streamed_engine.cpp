@@ -169,7 +169,7 @@ void StreamedEngine<Scalar>::cache_nodes(std::span<const int> nodes) noexcept {
 
 template <typename Scalar>
 void StreamedEngine<Scalar>::advance(std::span<const NodalForce> forces) noexcept {
-  if (columns_.blend()) past_.keep_nothing();
+  if (columns_.blend()) past_.clear_cache();
   past_.push(forces);
   settle();
   spin_.advance();
@@ -179,7 +179,7 @@ void StreamedEngine<Scalar>::advance(std::span<const NodalForce> forces) noexcep
 // As ResidentColumns::add_all(), and then what is missing.
 template <typename Scalar>
 void StreamedEngine<Scalar>::add_columns(Points& u) const {
-  const std::vector<NonzeroInterval> stretches = nonzero_intervals(past_.history());
+  const std::vector<NonzeroInterval> intervals = nonzero_intervals(past_.history());
   std::vector<Settled> missing;
   for (const int node : past_.history().active()) {
     if (columns_.whole(node)) continue;
@@ -192,7 +192,7 @@ void StreamedEngine<Scalar>::add_columns(Points& u) const {
   for (int block = 0; block < blocks; ++block) {
     const std::size_t begin = static_cast<std::size_t>(block) * rows_at_once;
     const std::size_t count = std::min(rows_at_once, frame.dof - begin);
-    for (const NonzeroInterval& push : stretches) {
+    for (const NonzeroInterval& push : intervals) {
       const double share = columns_.share(static_cast<int>(push.column / 3));
       if (share == 0.0) continue;
       const Scalar* rows = columns_.row(static_cast<int>(begin), static_cast<int>(push.column));

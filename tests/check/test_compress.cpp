@@ -83,34 +83,34 @@ TEST_CASE("compress: the stated errors are those of the file, twice to the same 
 
   const Model model = read_model(work.file("small.h5"), ResponseKind::kCompressed);
   const auto& response = std::get<CompressedResponse>(model.response);
-  const bool integers = !response.early_scale.empty();
+  const bool integers = !response.fir_scale.empty();
   CHECK(integers == (allowed > 1e-3));
-  const RowMatrix<double> late = late_responses(response, 200 - response.fir_steps);
+  const RowMatrix<double> tail = tail_responses(response, 200 - response.fir_steps);
   double largest = 0.0;
   for (int b = 0; b < model.degrees_of_freedom(); b += 5) {
-    const RowMatrix<double> column = compressed_column(response, late, b, 200);
+    const RowMatrix<double> column = compressed_column(response, tail, b, 200);
     double difference = 0.0;
     double size = 0.0;
-    double early = 0.0;
+    double fir = 0.0;
     double peak = 0.0;
     for (int s = 0; s < 200; ++s) {
       for (int a = 0; a < model.degrees_of_freedom(); ++a) {
         size += cube.at(s, a, b) * cube.at(s, a, b);
         difference += std::pow(column(s, a) - cube.at(s, a, b), 2);
-        early = std::max(early,
-                         s < response.fir_steps ? std::abs(column(s, a) - cube.at(s, a, b)) : 0.0);
+        fir =
+            std::max(fir, s < response.fir_steps ? std::abs(column(s, a) - cube.at(s, a, b)) : 0.0);
         peak = std::max(peak, std::abs(cube.at(s, a, b)));
       }
     }
-    CHECK(early < (integers ? 2e-5 : 1e-6) * peak);
-    if (integers) CHECK(early > 1e-6 * peak);
+    CHECK(fir < (integers ? 2e-5 : 1e-6) * peak);
+    if (integers) CHECK(fir > 1e-6 * peak);
     largest = std::max(largest, std::sqrt(difference / size));
   }
   CHECK(largest <= summary.error.displacement * (1.0 + 1e-4));
   CHECK(largest > 0.2 * summary.error.displacement);
 }
 
-TEST_CASE("compress keeps as few early steps as shapes and poles can make up for") {
+TEST_CASE("compress keeps as few FIR steps as shapes and poles can make up for") {
   const auto [shaken, error, kept] =
       GENERATE(std::tuple(false, 0.05, 16), std::tuple(true, 0.03, 32));
   Workshop work;
@@ -138,15 +138,15 @@ TEST_CASE("a compressed response needs the scales that it was written with") {
   work.compress("small.h5", {.error = 0.1});
   Model model = read_model(work.file("small.h5"), ResponseKind::kCompressed);
   auto& response = std::get<CompressedResponse>(model.response);
-  REQUIRE_FALSE(response.early_scale.empty());
-  const auto early = std::get<std::vector<std::int16_t>>(response.early);
+  REQUIRE_FALSE(response.fir_scale.empty());
+  const auto fir = std::get<std::vector<std::int16_t>>(response.fir);
   const auto m = static_cast<std::size_t>(response.fir_steps);
   // Of nodes 2 and 1: entry (2 3 / 2 + 1) 9 + 3 a + b.
   const std::size_t entry = 4 * 9 + 3 * 2 + 0;
-  const double expected = static_cast<double>(response.early_scale[entry]) * early[entry * m + 1];
+  const double expected = static_cast<double>(response.fir_scale[entry]) * fir[entry * m + 1];
   CHECK(expected != 0.0);
-  CHECK(early_response(response, 2, 2, 1, 0, 1) == expected);
-  CHECK(early_response(response, 1, 0, 2, 2, 1) == expected);
+  CHECK(fir_response(response, 2, 2, 1, 0, 1) == expected);
+  CHECK(fir_response(response, 1, 0, 2, 2, 1) == expected);
 
   const auto write = [&](const std::string& name) {
     ModelFileWriter writer(work.file(name));
@@ -155,19 +155,19 @@ TEST_CASE("a compressed response needs the scales that it was written with") {
     writer.commit();
     return work.file(name);
   };
-  response.early_scale[entry] = std::numeric_limits<float>::quiet_NaN();
+  response.fir_scale[entry] = std::numeric_limits<float>::quiet_NaN();
   CHECK_THROWS_WITH(read_model(write("nan.h5"), ResponseKind::kCompressed),
-                    Contains("an early_scale that is negative, not finite"));
-  response.early_scale.resize(9);
+                    Contains("an fir_scale that is negative, not finite"));
+  response.fir_scale.resize(9);
   CHECK_THROWS_WITH(read_model(write("few.h5"), ResponseKind::kCompressed),
                     Contains("early_scale has shape"));
-  response.early_scale.clear();
+  response.fir_scale.clear();
   CHECK_THROWS_WITH(read_model(write("none.h5"), ResponseKind::kCompressed),
-                    Contains("in 16 bits without its early_scale"));
-  response.early_scale.assign(early.size() / m, 1.0F);
-  response.early = std::vector<float>(early.size(), 1e-3F);
+                    Contains("in 16 bits without its fir_scale"));
+  response.fir_scale.assign(fir.size() / m, 1.0F);
+  response.fir = std::vector<float>(fir.size(), 1e-3F);
   CHECK_THROWS_WITH(read_model(write("single.h5"), ResponseKind::kCompressed),
-                    Contains("early_scale for an early part that is not in 16 bits"));
+                    Contains("early_scale for an FIR part that is not in 16 bits"));
 }
 
 TEST_CASE("compress refuses what cannot be reached, and leaves nothing behind") {

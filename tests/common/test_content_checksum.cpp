@@ -110,10 +110,10 @@ TEST_CASE("every part of a compressed response has its share in the checksum") {
   };
   CompressedResponse other = original;
   SECTION("early part") {
-    std::get<std::vector<std::int16_t>>(other.early)[7] += 1;
+    std::get<std::vector<std::int16_t>>(other.fir)[7] += 1;
   }
   SECTION("scales") {
-    other.early_scale[3] *= 2.0F;
+    other.fir_scale[3] *= 2.0F;
   }
   SECTION("shapes") {
     other.shapes(1, 1) += 1e-3F;

@@ -38,7 +38,7 @@ std::filesystem::path valid_trace() {
 }
 
 /// What comes out need not be what was recorded; it is finite, or irdm-replay refuses the trace.
-void make_again(replay::Rerun& made, const Recording& recording) {
+void rerun_all(replay::Rerun& made, const Recording& recording) {
   constexpr std::size_t kMost = 60;
   StepRecord recorded;
   StepRecord again;
@@ -72,9 +72,9 @@ void trace_file(Input input) {
       }
     }
     replay::ForceRerun from_forces(scene());
-    make_again(from_forces, recording);
+    rerun_all(from_forces, recording);
     replay::InputRerun from_inputs(scene());
-    make_again(from_inputs, recording);
+    rerun_all(from_inputs, recording);
   } catch (const Error&) {
     expect(!input.empty(), "a trace can be read as it was written");
   }

@@ -28,8 +28,8 @@ TEST_CASE(
   }
 }
 
-// Younger forces are not watched, see Oscillation. Without it a third of these hands shake; with it
-// some in a thousand, and which ones rounding decides, so two of all are let pass.
+// Younger forces are not watched, see OscillationDetector. Without it a third of these hands shake;
+// with it some in a thousand, and which ones rounding decides, so two of all are let pass.
 TEST_CASE("random loops: forces that are held over a delay hardly ever shake a hand for long") {
   constexpr double kWatched = 0.002;  // one way [s]
   int shaking = 0;

@@ -291,11 +291,11 @@ TEST_CASE("compliance is that of the line through zero, and along the force") {
   CHECK(found.value() == Approx(0.006));
 }
 
-TEST_CASE("stretches and spacing of frames") {
-  const TimeInterval found = longest_stretch({true, false, true, true, false, true, true, false});
+TEST_CASE("intervals and spacing of frames") {
+  const TimeInterval found = longest_interval({true, false, true, true, false, true, true, false});
   CHECK(found.first == 2);
   CHECK(found.count == 2);
-  CHECK(longest_stretch({false}).count == 0);
+  CHECK(longest_interval({false}).count == 0);
   CHECK(evenly_spaced({0.1, 0.2, 0.3001}));
   CHECK_FALSE(evenly_spaced({0.016, 0.034, 0.05}));
   CHECK_FALSE(evenly_spaced({1.0}));

@@ -22,7 +22,7 @@ struct Found {
   double displacement = 0.0;  ///< of a component [m]
 };
 
-Found make_again(Rerun& made, const KeptRun& run) {
+Found run_again(Rerun& made, const KeptRun& run) {
   const Recording recording = run.recording();
   REQUIRE(recording.steps() == run.records.size());
   REQUIRE(recording.lost_steps() == 0);
@@ -45,7 +45,7 @@ Found make_again(Rerun& made, const KeptRun& run) {
 
 void check_to_the_bit(const KeptRun& run) {
   InputRerun made(run.config);
-  const Found found = make_again(made, run);
+  const Found found = run_again(made, run);
   INFO(found.deviation.text());
   CHECK(found.deviation.force() == 0.0);
   CHECK(found.deviation.position() == 0.0);
@@ -56,7 +56,7 @@ void check_to_the_bit(const KeptRun& run) {
 
 void check_from_forces(const KeptRun& run) {
   ForceRerun made(run.config);
-  const Found found = make_again(made, run);
+  const Found found = run_again(made, run);
   INFO(found.deviation.text());
   CHECK(found.deviation.peak_force() > 0.1);
   CHECK(found.deviation.force() < 1e-12);

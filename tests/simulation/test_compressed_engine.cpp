@@ -17,7 +17,7 @@ using namespace irdm::test;
 
 namespace {
 
-constexpr int kEarly = 3;
+constexpr int kFir = 3;
 constexpr int kRecord = 200;
 
 // A cube with a made-up compressed response: anything that the format can hold.
@@ -26,35 +26,35 @@ std::shared_ptr<const Model> made_up(bool integers = false) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   CompressedResponse response;
-  response.fir_steps = kEarly;
+  response.fir_steps = kFir;
   const int nodes = model.mesh.surface_node_count();
-  std::vector<float> early(early_entries(static_cast<std::size_t>(nodes)) * kEarly);
-  for (float& value : early) value = static_cast<float>(uniform(random));
+  std::vector<float> fir(fir_entries(static_cast<std::size_t>(nodes)) * kFir);
+  for (float& value : fir) value = static_cast<float>(uniform(random));
   // A node's own block is symmetric.
   for (int i = 0; i < nodes; ++i) {
     for (int entry = 0; entry < 9; ++entry) {
       const int other = 3 * (entry % 3) + entry / 3;
       const auto at = [&](int e) {
         return (static_cast<std::size_t>(i * (i + 1) / 2 + i) * 9 + static_cast<std::size_t>(e)) *
-               kEarly;
+               kFir;
       };
-      for (std::size_t s = 0; s < kEarly; ++s) {
-        early[at(entry) + s] = early[at(std::min(entry, other)) + s];
+      for (std::size_t s = 0; s < kFir; ++s) {
+        fir[at(entry) + s] = fir[at(std::min(entry, other)) + s];
       }
     }
   }
-  response.early = early;
+  response.fir = fir;
   if (integers) {
-    response.early_scale.resize(early.size() / kEarly);
-    for (std::size_t i = 0; i < response.early_scale.size(); ++i) {
+    response.fir_scale.resize(fir.size() / kFir);
+    for (std::size_t i = 0; i < response.fir_scale.size(); ++i) {
       const std::size_t axes = i % 9 / 3 + i % 3;  // the same both ways round
-      response.early_scale[i] = 1e-4F * static_cast<float>(1 + i / 9 % 3 + axes);
+      response.fir_scale[i] = 1e-4F * static_cast<float>(1 + i / 9 % 3 + axes);
     }
-    std::vector<std::int16_t> numbers(early.size());
-    std::ranges::transform(early, numbers.begin(), [](float value) {
+    std::vector<std::int16_t> numbers(fir.size());
+    std::ranges::transform(fir, numbers.begin(), [](float value) {
       return static_cast<std::int16_t>(10'000.0F * value);
     });
-    response.early = std::move(numbers);
+    response.fir = std::move(numbers);
   }
   constexpr int kShapes = 7;
   response.shapes.resize(3 * nodes, kShapes);
@@ -90,12 +90,12 @@ std::vector<std::vector<NodalForce>> random_forces(int nodes, int steps) {
 // Equation (10) with the columns as they are defined.
 Points direct_sum(const Model& model, const std::vector<std::vector<NodalForce>>& history, int k) {
   const auto& response = std::get<CompressedResponse>(model.response);
-  const RowMatrix<double> late = late_responses(response, kRecord - kEarly);
+  const RowMatrix<double> tail = tail_responses(response, kRecord - kFir);
   Eigen::VectorXd u = Eigen::VectorXd::Zero(model.degrees_of_freedom());
   for (int age = 0; age <= k; ++age) {
     for (const NodalForce& force : history[static_cast<std::size_t>(k - age)]) {
       for (int b = 0; b < 3; ++b) {
-        u += compressed_column(response, late, 3 * force.node + b, age + 1).row(age).transpose() *
+        u += compressed_column(response, tail, 3 * force.node + b, age + 1).row(age).transpose() *
              force.force[b];
       }
     }
@@ -111,7 +111,7 @@ Points displacement(const ResponseEngine& engine) {
 
 }  // namespace
 
-TEST_CASE("compressed engine equals the sum of equation (10) over early steps and poles") {
+TEST_CASE("compressed engine equals the sum of equation (10) over FIR steps and poles") {
   const bool integers = GENERATE(false, true);
   const auto model = made_up(integers);
   const auto engine = make_engine(model);
@@ -158,24 +158,24 @@ TEST_CASE("compressed engine predicts the coming step, and R[0] between the cont
 }
 
 // Some are told again and again of the steps since, as a bridge behind a bad link does.
-TEST_CASE("compressed engine: forces that come late are those of equation (10), on and on") {
+TEST_CASE("compressed engine: delayed forces are those of equation (10), on and on") {
   const auto model = made_up(GENERATE(false, true));
   const auto engine = make_engine(model);
   const int nodes = model->mesh.surface_node_count();
   auto history = random_forces(nodes, 60);
   const auto enter = [&](int k, int age) {
-    const std::vector<NodalForce> late{{(3 * k + age) % nodes, Vector3(0.1 * age, 1.0, -0.5)},
+    const std::vector<NodalForce> tail{{(3 * k + age) % nodes, Vector3(0.1 * age, 1.0, -0.5)},
                                        {(k + 7 * age) % nodes, Vector3(-0.3, 0.0, 0.02 * k)}};
-    engine->add_delayed_force(late, age);
+    engine->add_delayed_force(tail, age);
     auto& told = history[static_cast<std::size_t>(k - age)];
-    told.insert(told.end(), late.begin(), late.end());
+    told.insert(told.end(), tail.begin(), tail.end());
   };
   for (int k = 0; k < 45; ++k) {
     engine->advance(history[static_cast<std::size_t>(k)]);
     if (k == 20) {  // those of which some act in the coming step, and others after it
       for (int age = 0; age <= 20; ++age) enter(k, age);
     }
-    if (k > 40) enter(k, kEarly - 1);
+    if (k > 40) enter(k, kFir - 1);
     if (k == 44) {
       for (int age = 0; age < std::min(k, kMaxHorizon); ++age) enter(k, age);
     }

@@ -148,8 +148,8 @@ CompressedResponse compressed_response(const Model& model) {
   CompressedResponse response;
   response.fir_steps = 2;
   const auto nodes = static_cast<std::size_t>(model.mesh.surface_node_count());
-  response.early = std::vector<std::int16_t>(early_entries(nodes) * 2, 1000);
-  response.early_scale.assign(early_entries(nodes), 1e-6F);
+  response.fir = std::vector<std::int16_t>(fir_entries(nodes) * 2, 1000);
+  response.fir_scale.assign(fir_entries(nodes), 1e-6F);
   response.shapes = RowMatrix<float>::Identity(model.degrees_of_freedom(), 2);
   response.pole_shape = {0, 1};
   using Number = std::complex<double>;

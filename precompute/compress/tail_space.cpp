@@ -1,4 +1,4 @@
-#include "precompute/compress/late_space.hpp"
+#include "precompute/compress/tail_space.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -77,11 +77,11 @@ int sample_stride(int dof) {
 }
 
 // Half of R and half of its transpose: reciprocity.
-void add_early(const RowMatrix<float>& column, int b, Survey& survey) {
+void add_fir(const RowMatrix<float>& column, int b, Survey& survey) {
   const int m = survey.fir_steps;
   const int j = b / 3;
   const auto add = [&](int row, int first, int other, int second, int a) {
-    float* entry = survey.early.data() +
+    float* entry = survey.fir.data() +
                    ((static_cast<std::size_t>(row) * (static_cast<std::size_t>(row) + 1) / 2 +
                      static_cast<std::size_t>(other)) *
                         9 +
@@ -109,22 +109,22 @@ void directions(RowMatrix<double>& covariance, double norm, Eigen::VectorXd& val
 
 Survey survey(const DenseInput& input, int fir_steps, const Console& console) {
   const int dof = input.degrees_of_freedom();
-  const int late = input.steps() - fir_steps;
+  const int tail = input.steps() - fir_steps;
   Survey result;
   result.fir_steps = fir_steps;
-  result.early.assign(
-      early_entries(static_cast<std::size_t>(dof / 3)) * static_cast<std::size_t>(fir_steps), 0.0F);
+  result.fir.assign(
+      fir_entries(static_cast<std::size_t>(dof / 3)) * static_cast<std::size_t>(fir_steps), 0.0F);
   RowMatrix<double> space = RowMatrix<double>::Zero(dof, dof);
-  RowMatrix<double> time = RowMatrix<double>::Zero(late, late);
+  RowMatrix<double> time = RowMatrix<double>::Zero(tail, tail);
   double energy = 0.0;
   int sampled = 0;
   const int stride = sample_stride(dof);
   Progress progress(console, "reading R", dof);
   for (int b = 0; b < dof; ++b) {
     const RowMatrix<float> column = input.column(b);
-    add_early(column, b, result);
+    add_fir(column, b, result);
     if (b % stride == 0) {
-      const RowMatrix<double> later = column.bottomRows(late).cast<double>();
+      const RowMatrix<double> later = column.bottomRows(tail).cast<double>();
       product(later, Of::kTransposed, later, Of::kItself, space, true);
       product(later, Of::kItself, later, Of::kTransposed, time, true);
       energy += column.cast<double>().squaredNorm();

@@ -9,10 +9,10 @@
 /// columns share.
 namespace irdm::precompute {
 
-/// What one pass over R finds. m early steps, L = T - m late ones.
+/// What one pass over R finds. m FIR steps, L = T - m of the tail.
 struct Survey {
   int fir_steps = 0;              ///< m
-  std::vector<float> early;       ///< as in CompressedResponse: the mean of R and its transpose
+  std::vector<float> fir;         ///< as in CompressedResponse: the mean of R and its transpose
   double norm = 0.0;              ///< Frobenius, of R; estimated from the sampled columns
   Eigen::VectorXd space_values;   ///< (3n) share of the norm that each direction carries
   Eigen::MatrixXd space_vectors;  ///< (3n, 3n) most important ones first, orthonormal
@@ -20,7 +20,7 @@ struct Survey {
   Eigen::MatrixXd time_vectors;   ///< (L, L)
 };
 
-/// All columns are read for the early part; the directions are those of some 250 columns, always
+/// All columns are read for the FIR part; the directions are those of some 250 columns, always
 /// the same ones. Throws Error, as where R is zero.
 Survey survey(const DenseInput& input, int fir_steps, const Console& console);
 

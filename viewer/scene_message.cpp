@@ -1,7 +1,7 @@
 #include "viewer/scene_message.hpp"
 
+#include "common/response/stored_response.hpp"
 #include "simulation/collision/rest_surface.hpp"
-#include "simulation/engine/residual_part.hpp"
 #include "viewer/message_parts.hpp"
 
 namespace irdm {

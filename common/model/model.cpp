@@ -5,11 +5,9 @@
 namespace irdm {
 
 Matrix3 ResidualCompliance::diagonal(int node) const {
-  const int begin = row_start[static_cast<std::size_t>(node)];
-  const int end = row_start[static_cast<std::size_t>(node) + 1];
-  const auto found = std::lower_bound(nodes.begin() + begin, nodes.begin() + end, node);
-  const float* block = blocks.data() + 9 * (found - nodes.begin());
-  return Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(block).cast<double>();
+  const auto found =
+      std::lower_bound(nodes.begin() + begin_of(node), nodes.begin() + end_of(node), node);
+  return block(static_cast<int>(found - nodes.begin())).cast<double>();
 }
 
 bool has_centrifugal(const Model& model) {

@@ -105,7 +105,15 @@ struct ResidualCompliance {
   std::vector<float> blocks;  ///< 9 a block, rows first: displacement per force on `nodes` [m/N]
   ModeReduction reduction;
 
+  using Block = Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>;
+
   bool empty() const { return row_start.empty(); }
+  /// The blocks of a surface node's row are those from begin_of() up to end_of().
+  int begin_of(int node) const noexcept { return row_start[static_cast<std::size_t>(node)]; }
+  int end_of(int node) const noexcept { return row_start[static_cast<std::size_t>(node) + 1]; }
+  Block block(int k) const noexcept {
+    return Block(blocks.data() + 9 * static_cast<std::size_t>(k));
+  }
   /// The block of a node with itself [m/N].
   Matrix3 diagonal(int node) const;
 };

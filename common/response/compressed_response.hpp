@@ -47,9 +47,4 @@ RowMatrix<double> tail_responses(const CompressedResponse& response, int steps);
 /// sum over all s >= m of h_i[s], (r) [m/N].
 Eigen::VectorXd settled_tail_responses(const CompressedResponse& response);
 
-/// R[0..steps-1](:, b), (steps, 3n) [m/N].
-/// @param tail at least steps - m rows of tail_responses()
-RowMatrix<double> compressed_column(const CompressedResponse& response,
-                                    const RowMatrix<double>& tail, int b, int steps);
-
 }  // namespace irdm

@@ -84,6 +84,15 @@ Eigen::VectorXd held_force_response(const HeldForceOscillator& oscillator, int s
   return h;
 }
 
+RowMatrix<double> held_responses(const ModalResponse& response, double dt, int steps) {
+  RowMatrix<double> h(steps, response.mode_count());
+  for (Eigen::Index i = 0; i < h.cols(); ++i) {
+    h.col(i) = held_force_response(
+        held_force_oscillator(response.angular_frequency(i), response.decay_rate(i), dt), steps);
+  }
+  return h;
+}
+
 namespace {
 
 constexpr int kPowerRounds = 40;  // of the power iteration

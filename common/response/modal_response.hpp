@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "common/geometry.hpp"
+#include "common/model/model.hpp"
 
 namespace irdm {
 
@@ -28,6 +29,10 @@ HeldForceOscillator held_force_oscillator(double omega, double sigma, double dt)
 /// h[0 .. steps-1]: q at the end of step s after f = 1 during step 0 and none afterwards, from rest
 /// (equation (10): R[s] = Phi diag(h[s]) Phi^T). Its sum over all s is 1 / omega^2.
 Eigen::VectorXd held_force_response(const HeldForceOscillator& oscillator, int steps);
+
+/// h_i[s] of all modes: (steps, r). R[s] = Phi diag(h[s]) Phi^T. [m/N kg]
+/// @param dt [s]
+RowMatrix<double> held_responses(const ModalResponse& response, double dt, int steps);
 
 // The static answer that stands in for columns of R that are not there: R[0], and after it what a
 // lasting force still adds, sum_{s>=1} R[s], at once for all pairs of nodes and along one curve,

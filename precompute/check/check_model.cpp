@@ -6,8 +6,9 @@
 
 #include "common/error.hpp"
 #include "common/model/model_file.hpp"
-#include "common/response/compressed_response.hpp"
+#include "precompute/blas_product.hpp"
 #include "precompute/check/lines.hpp"
+#include "precompute/check/record_length.hpp"
 #include "precompute/check/static_reference.hpp"
 #include "precompute/modal/elastic_statics.hpp"
 
@@ -46,24 +47,23 @@ Report check_modes(const std::filesystem::path& path, const CheckOptions& option
     const RowMatrix<double> shapes = single->cast<double>();
     response.shapes = shapes;
   }
-  const ModalColumns columns(response, model.dt);
+  const auto R = stored_response(model, transposed_blas_product);
   Report report{modes_line(response, model.material)};
   if (response.residual.empty()) {
-    append(report, static_lines(model, columns));
+    append(report, static_lines(model, *R));
   } else {
     report.push_back(residual_line(response));
-    report.push_back(static_line_of_some_modes(model, columns));
+    report.push_back(static_line_of_some_modes(model, *R));
   }
   report.push_back(decay_line(decay_left(response, model.dt, model.steps), false));
 
   const RecordLength length = record_length(response, model.dt);
-  const RowMatrix<double> held = held_responses(response, model.dt, length.steps);
   const int nodes = model.mesh.surface_node_count();
   std::vector<NodeFindings> findings(static_cast<std::size_t>(nodes));
   Progress progress(console, "nodes (modal)", nodes);
   for (int first = 0; first < nodes; first += kNodesAtOnce) {
     const int count = std::min(kNodesAtOnce, nodes - first);
-    analyse(model, {loop, length.radius}, modal_driving_points(response, held, first, count), first,
+    analyse(model, {loop, length.radius}, R->driving_points(first, count, length.steps), first,
             findings);
     progress.update(first + count);
   }
@@ -75,25 +75,25 @@ Report check_modes(const std::filesystem::path& path, const CheckOptions& option
   }
   report.push_back(step_line(model));
   const double interval = wave_interval(model);
-  report.push_back(wave_line(model, ModalColumns(response, interval), interval,
-                             std::numeric_limits<int>::max()));
+  report.push_back(wave_line(model, *stored_response(response, interval, transposed_blas_product),
+                             interval, std::numeric_limits<int>::max()));
   return report;
 }
 
-Reciprocity sampled_reciprocity(const StoredColumns& columns, const Model& model) {
+Reciprocity sampled_reciprocity(const StoredResponse& R, const Model& model) {
   const std::vector<int> sample = fixed_sample(model.degrees_of_freedom(), kSampledColumns);
   Reciprocity reciprocity;
-  for (const int a : sample) reciprocity.remember(a, columns.column(a, model.steps));
+  for (const int a : sample) reciprocity.remember(a, R.column(a, model.steps));
   return reciprocity;
 }
 
 Report check_dense(const std::filesystem::path& path, const CheckOptions& options,
                    const HandLoop& loop, const Console& console) {
   const Model model = read_description(hdf5::File::open(path));
-  const StoredColumns columns(path, model.degrees_of_freedom(), model.steps);
-  Report report{chunk_checksum_line(columns)};
+  const auto R = stored_response(path, model.degrees_of_freedom(), model.steps);
+  Report report{chunk_checksum_line(hdf5::File::open(path))};
 
-  Reciprocity reciprocity = sampled_reciprocity(columns, model);
+  Reciprocity reciprocity = sampled_reciprocity(*R, model);
   const int nodes = model.mesh.surface_node_count();
   std::vector<NodeFindings> findings(static_cast<std::size_t>(nodes));
   Progress progress(console, "nodes (dense)", nodes);
@@ -104,7 +104,7 @@ Report check_dense(const std::filesystem::path& path, const CheckOptions& option
     for (std::size_t i = 0; i < records.size(); ++i) {
       const int node = first + static_cast<int>(i);
       for (int axis = 0; axis < 3; ++axis) {
-        const RowMatrix<double> column = columns.column(3 * node + axis, model.steps);
+        const RowMatrix<double> column = R->column(3 * node + axis, model.steps);
         reciprocity.add(3 * node + axis, column);
         records[i].middleRows<3>(3 * axis) = column.middleCols<3>(3 * node).transpose();
       }
@@ -113,14 +113,14 @@ Report check_dense(const std::filesystem::path& path, const CheckOptions& option
     progress.update(first + static_cast<int>(records.size()));
   }
   report.push_back(reciprocity_line(reciprocity));
-  append(report, static_lines(model, columns));
+  append(report, static_lines(model, *R));
   double left = 0.0;
   for (const NodeFindings& node : findings) {
     if (!(node.left <= left)) left = node.left;  // also what is not a number
   }
   report.push_back(decay_line(left, true));
   append(report, node_lines(findings, loop, options.coupling));
-  report.push_back(wave_line(model, columns, model.dt, model.steps));
+  report.push_back(wave_line(model, *R, model.dt, model.steps));
   return report;
 }
 
@@ -137,25 +137,22 @@ Report check_compressed(const std::filesystem::path& path, const CheckOptions& o
                         const HandLoop& loop, const Console& console) {
   const Model model = read_model(path, ResponseKind::kCompressed);
   const auto& response = std::get<CompressedResponse>(model.response);
-  const CompressedColumns columns(response);
+  const auto R = stored_response(response, transposed_blas_product);
   Report report{compression_line(read_compression_error(hdf5::File::open(path)))};
-  append(report, static_lines(model, columns));
+  append(report, static_lines(model, *R));
 
   const RecordLength length = record_length(response);
-  const RowMatrix<double> tail = tail_responses(response, length.steps - response.fir_steps);
   const int nodes = model.mesh.surface_node_count();
   std::vector<NodeFindings> findings(static_cast<std::size_t>(nodes));
   Progress progress(console, "nodes (compressed)", nodes);
   for (int first = 0; first < nodes; first += kNodesAtOnce) {
-    std::vector<DrivingPoint> records;
-    for (int node = first; node < std::min(first + kNodesAtOnce, nodes); ++node) {
-      records.push_back(columns.driving_point(node, tail));
-    }
-    analyse(model, {loop, length.radius}, records, first, findings);
-    progress.update(first + static_cast<int>(records.size()));
+    const int count = std::min(kNodesAtOnce, nodes - first);
+    analyse(model, {loop, length.radius}, R->driving_points(first, count, length.steps), first,
+            findings);
+    progress.update(first + count);
   }
   append(report, node_lines(findings, loop, options.coupling));
-  report.push_back(wave_line(model, columns, model.dt, model.steps));
+  report.push_back(wave_line(model, *R, model.dt, model.steps));
   return report;
 }
 

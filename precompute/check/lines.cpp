@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "common/model/content_checksum.hpp"
+#include "common/model/model_writer.hpp"
 #include "precompute/check/static_reference.hpp"
 #include "precompute/check/wave_speed.hpp"
 #include "precompute/modal/residual_compliance.hpp"
@@ -120,8 +121,8 @@ Line checksum_line(const hdf5::File& file) {
   return {"checksum", Verdict::kOk, "SHA-256 of mesh, body, material and modes matches"};
 }
 
-Line chunk_checksum_line(const StoredColumns& columns) {
-  if (!columns.has_checksums()) {
+Line chunk_checksum_line(const hdf5::File& file) {
+  if (!file.has_filter(kDenseR, H5Z_FILTER_FLETCHER32)) {
     return {"dense checksums", Verdict::kWarn, "/response/dense/R carries none"};
   }
   return {"dense checksums", Verdict::kOk, "Fletcher32 of every column matches"};
@@ -163,7 +164,7 @@ Line reciprocity_line(const Reciprocity& reciprocity) {
                share, reciprocity.column_of_largest(), reciprocity.sample_size())};
 }
 
-Report static_lines(const Model& model, const ResponseColumns& columns) {
+Report static_lines(const Model& model, const StoredResponse& R) {
   if (model.body.support == Support::kFixed) {
     return {{"momentum", Verdict::kNone, "a fixed body may have it"},
             {"static compliance", Verdict::kNone, "the file does not say which nodes are clamped"}};
@@ -173,7 +174,7 @@ Report static_lines(const Model& model, const ResponseColumns& columns) {
   StaticComparison worst{0.0, 0.0};
   for (const int b : sample) {
     const StaticComparison one =
-        compare_static(columns.settled(b), reference.displacement(b), reference.surface_rigid());
+        compare_static(R.static_column(b), reference.displacement(b), reference.surface_rigid());
     // fmax would hide what is not a number.
     if (!(one.rigid <= worst.rigid)) worst.rigid = one.rigid;
     if (!(one.mismatch <= worst.mismatch)) worst.mismatch = one.mismatch;
@@ -187,14 +188,24 @@ Report static_lines(const Model& model, const ResponseColumns& columns) {
             worst.mismatch, count)}};
 }
 
-Line static_line_of_some_modes(const Model& model, const ModalColumns& columns) {
+namespace {
+
+// Surface nodes where the columns of a node have what modes that are left out do.
+std::vector<int> complete_nodes(const Model& model, int node) {
+  const ResidualCompliance& g = std::get<ModalResponse>(model.response).residual;
+  return {g.nodes.begin() + g.begin_of(node), g.nodes.begin() + g.end_of(node)};
+}
+
+}  // namespace
+
+Line static_line_of_some_modes(const Model& model, const StoredResponse& R) {
   const StaticReference reference(model);
   const std::vector<int> sample = fixed_sample(model.degrees_of_freedom(), kStaticColumns);
   double worst = 0.0;
   for (const int b : sample) {
     const Eigen::VectorXd expected = reference.displacement(b);
-    const Eigen::VectorXd difference = columns.settled(b) - expected;
-    for (const int node : columns.complete_nodes(b)) {
+    const Eigen::VectorXd difference = R.static_column(b) - expected;
+    for (const int node : complete_nodes(model, b / 3)) {
       const double one = difference.segment<3>(3 * node).cwiseAbs().maxCoeff();
       if (!(one <= worst * expected.cwiseAbs().maxCoeff())) {
         worst = one / expected.cwiseAbs().maxCoeff();
@@ -225,13 +236,13 @@ double wave_interval(const Model& model) {
   return std::min(model.dt, reach / theoretical_speeds(model.material).dilatational / kSamples);
 }
 
-Line wave_line(const Model& model, const ResponseColumns& columns, double dt, int steps) {
+Line wave_line(const Model& model, const StoredResponse& R, double dt, int steps) {
   const WaveSpeeds theory = theoretical_speeds(model.material);
   const int b = wave_source(model);
   const double reach = model.mesh.rest_position(b / 3).norm();
   const int wanted = static_cast<int>(kWatchedCrossings * reach / theory.rayleigh / dt) + 3;
   steps = std::min(steps, wanted);
-  const MeasuredWave wave = measure_wave(model, b, columns.column(b, steps), dt);
+  const MeasuredWave wave = measure_wave(model, b, R.column(b, steps), dt);
   const std::string expected = text("theory: Rayleigh %.3g, shear %.3g, dilatational %.3g m/s",
                                     theory.rayleigh, theory.shear, theory.dilatational);
   if (wave.nodes < kFewestNodes)

@@ -2,8 +2,9 @@
 
 #include <vector>
 
+#include "common/hdf5/file.hpp"
+#include "common/response/stored_response.hpp"
 #include "precompute/check/check_model.hpp"
-#include "precompute/check/columns.hpp"
 #include "precompute/check/reciprocity.hpp"
 #include "precompute/check/report.hpp"
 
@@ -12,7 +13,7 @@ namespace irdm::precompute {
 
 /// What the file says of its content; dense R is not part of it.
 Line checksum_line(const hdf5::File& file);
-Line chunk_checksum_line(const StoredColumns& columns);
+Line chunk_checksum_line(const hdf5::File& file);
 /// Modes are read only when they are finite, with positive frequencies and no negative decay rates;
 /// here: whether they decay as the material says.
 Line modes_line(const ModalResponse& response, const Material& material);
@@ -20,10 +21,10 @@ Line modes_line(const ModalResponse& response, const Material& material);
 Line residual_line(const ModalResponse& response);
 Line reciprocity_line(const Reciprocity& reciprocity);
 /// Static compliance and momentum of some columns against finite elements assembled again.
-Report static_lines(const Model& model, const ResponseColumns& columns);
+Report static_lines(const Model& model, const StoredResponse& R);
 /// The same where modes are left out: compliance alone, and at the nodes alone where what they do
 /// is kept.
-Line static_line_of_some_modes(const Model& model, const ModalColumns& columns);
+Line static_line_of_some_modes(const Model& model, const StoredResponse& R);
 /// From what was found at every node: passivity, stable inverse, stiffness, coupling.
 /// @param coupling that is going to be used [N/m]; 0: not said
 Report node_lines(const std::vector<NodeFindings>& nodes, const HandLoop& loop, double coupling);
@@ -37,6 +38,6 @@ Line step_line(const Model& model);
 /// Interval at which a wave is watched where R can be had at any time [s]: at most dt.
 double wave_interval(const Model& model);
 /// @param columns sampled every `dt` [s], `steps` of them at most
-Line wave_line(const Model& model, const ResponseColumns& columns, double dt, int steps);
+Line wave_line(const Model& model, const StoredResponse& R, double dt, int steps);
 
 }  // namespace irdm::precompute

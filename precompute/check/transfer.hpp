@@ -5,15 +5,12 @@
 #include <functional>
 #include <vector>
 
-#include "common/geometry.hpp"
+#include "common/response/stored_response.hpp"
 
 /// The z-transform of a node's own response on circles about the origin, and what can be read from
 /// it. w = 1/z throughout: X(w) = sum_s x[s] w^s is analytic inside the unit circle, and a pole or
 /// a zero there, |w| < 1, is one that grows by 1/|w| a step.
 namespace irdm::precompute {
-
-/// R_ii[s] of one node, (9, L): column s holds the nine entries column by column [m/N].
-using DrivingPoint = Eigen::Matrix<double, 9, Eigen::Dynamic>;
 
 /// Values of a function of w at w_j = radius exp(-i pi j / half), j = 0..half: half a circle, the
 /// other half is its complex conjugate.

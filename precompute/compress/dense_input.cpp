@@ -13,11 +13,7 @@ DenseInput::DenseInput(const std::filesystem::path& path)
     throw Error(name(), "has no dense response to compress",
                 "precompute with storage = \"dense\" or \"both\"");
   }
-  const auto dof = static_cast<hsize_t>(degrees_of_freedom());
-  if (file_.stored_shape(kDenseR) != hdf5::Shape({dof, static_cast<hsize_t>(steps()), dof})) {
-    throw Error(name(), "/response/dense/R must have the shape (3n, steps, 3n)",
-                "make the model again with irdm-precompute");
-  }
+  R_ = stored_response(path, degrees_of_freedom(), steps());
 }
 
 double DenseInput::bytes() const {
@@ -26,11 +22,7 @@ double DenseInput::bytes() const {
 }
 
 RowMatrix<float> DenseInput::column(int b) const {
-  RowMatrix<float> values(steps(), degrees_of_freedom());
-  file_.read_slab<float>(
-      kDenseR, {static_cast<hsize_t>(b), 0, 0},
-      {1, static_cast<hsize_t>(steps()), static_cast<hsize_t>(degrees_of_freedom())},
-      values.data());
+  const RowMatrix<float> values = R_->column(b, steps()).cast<float>();
   if (!values.allFinite() ||
       values.cwiseAbs().maxCoeff() > static_cast<float>(lab::kCompliance.highest)) {
     throw Error(name(), "/response/dense/R has numbers that are not finite or out of range",

@@ -1,9 +1,10 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 
 #include "common/hdf5/file.hpp"
-#include "common/model/model.hpp"
+#include "common/response/stored_response.hpp"
 
 namespace irdm::precompute {
 
@@ -26,6 +27,7 @@ class DenseInput {
  private:
   hdf5::File file_;
   Model model_;
+  std::unique_ptr<StoredResponse> R_;
 };
 
 }  // namespace irdm::precompute

@@ -3,16 +3,7 @@
 #include "common/model/model.hpp"
 #include "precompute/compress/tail_space.hpp"
 
-/// Products of large matrices by the BLAS. Results are made as large as they must be.
 namespace irdm::precompute {
-
-enum class Of { kItself, kTransposed };
-
-/// C = A B, each of A and B itself or transposed; or added to C, which has its size then.
-void product(const RowMatrix<float>& A, Of a, const RowMatrix<float>& B, Of b, RowMatrix<float>& C,
-             bool add = false);
-void product(const RowMatrix<double>& A, Of a, const RowMatrix<double>& B, Of b,
-             RowMatrix<double>& C, bool add = false);
 
 /// Shapes that all matrices of a core share: M_k is about B diag(h_k) B^T.
 struct JointShapes {

@@ -5,9 +5,9 @@
 #include <numbers>
 #include <vector>
 
-#include "common/response/compressed_response.hpp"
+#include "common/response/stored_response.hpp"
+#include "precompute/blas_product.hpp"
 #include "precompute/check/static_reference.hpp"
-#include "precompute/compress/joint_shapes.hpp"
 
 namespace irdm::precompute {
 namespace {
@@ -42,28 +42,6 @@ std::vector<Vector3> holding_force(const RowMatrix<double>& record, const Matrix
   return force;
 }
 
-// Columns of the tail by one product.
-RowMatrix<float> tail_column(const CompressedResponse& response, const RowMatrix<float>& tail,
-                             int b) {
-  const RowMatrix<float> weighted = tail.array().rowwise() * response.shapes.row(b).array();
-  RowMatrix<float> column;
-  product(weighted, Of::kItself, response.shapes, Of::kTransposed, column);
-  return column;
-}
-
-RowMatrix<float> column(const CompressedResponse& response, const RowMatrix<float>& tail, int b) {
-  const int m = response.fir_steps;
-  RowMatrix<float> values(m + tail.rows(), response.shapes.rows());
-  for (int a = 0; a < values.cols(); ++a) {
-    with_fir(response, a / 3, a % 3, b / 3, b % 3, [&](const auto* numbers, double scale) {
-      for (int s = 0; s < m; ++s)
-        values(s, a) = static_cast<float>(scale * static_cast<double>(numbers[s]));
-    });
-  }
-  values.bottomRows(tail.rows()) = tail_column(response, tail, b);
-  return values;
-}
-
 }  // namespace
 
 double held_force_error(const RowMatrix<double>& expected, const RowMatrix<double>& actual,
@@ -84,8 +62,7 @@ CompressionError measure_error(const CompressedResponse& response, const DenseIn
                                const Console& console) {
   const int nodes = input.degrees_of_freedom() / 3;
   const int stride = (nodes + kMeasuredNodes - 1) / kMeasuredNodes;
-  const RowMatrix<float> tail =
-      tail_responses(response, input.steps() - response.fir_steps).cast<float>();
+  const auto compressed = stored_response(response, transposed_blas_product);
   CompressionError error;
   double squares = 0.0;
   Progress progress(console, "measuring", nodes);
@@ -93,16 +70,16 @@ CompressionError measure_error(const CompressedResponse& response, const DenseIn
     RowMatrix<double> expected(input.steps(), 9);
     RowMatrix<double> actual(input.steps(), 9);
     for (int b = 0; b < 3; ++b) {
-      const RowMatrix<float> R = input.column(3 * node + b);
-      const RowMatrix<float> C = column(response, tail, 3 * node + b);
-      const double size = R.cast<double>().norm();
-      const double share = size > 0.0 ? (C - R).cast<double>().norm() / size : 0.0;
+      const RowMatrix<double> R = input.column(3 * node + b).cast<double>();
+      const RowMatrix<double> C = compressed->column(3 * node + b, input.steps());
+      const double size = R.norm();
+      const double share = size > 0.0 ? (C - R).norm() / size : 0.0;
       error.displacement = std::max(error.displacement, share);
       squares += share * share;
       ++error.measured_columns;
       for (int a = 0; a < 3; ++a) {
-        expected.col(3 * a + b) = R.col(3 * node + a).cast<double>();
-        actual.col(3 * a + b) = C.col(3 * node + a).cast<double>();
+        expected.col(3 * a + b) = R.col(3 * node + a);
+        actual.col(3 * a + b) = C.col(3 * node + a);
       }
     }
     const Model& model = input.description();

@@ -5,6 +5,7 @@
 
 #include "common/error.hpp"
 #include "common/response/compressed_response.hpp"
+#include "precompute/blas_product.hpp"
 #include "precompute/compress/joint_shapes.hpp"
 #include "precompute/modal/lowest_modes.hpp"
 

@@ -1,33 +1,16 @@
 #include "precompute/modal/dense_columns.hpp"
 
-#include <cblas.h>
-
 #include <algorithm>
 #include <limits>
 
-#include "precompute/modal/elastic_statics.hpp"
+#include "common/response/modal_response.hpp"
+#include "precompute/blas_product.hpp"
 
 namespace irdm::precompute {
 namespace {
 
 constexpr int kDenseColumnsAtOnce = 8;
 constexpr Eigen::Index kStepsAtOnce = 32;
-
-// c = a b^T with the first columns of b, as many as a has; all with contiguous rows.
-void multiply_transposed(const RowMatrix<float>& a, const RowMatrix<float>& b,
-                         RowMatrix<float>& c) {
-  cblas_sgemm(CblasRowMajor, CblasNoTrans, CblasTrans, static_cast<int>(a.rows()),
-              static_cast<int>(b.rows()), static_cast<int>(a.cols()), 1.0F, a.data(),
-              static_cast<int>(a.cols()), b.data(), static_cast<int>(b.cols()), 0.0F, c.data(),
-              static_cast<int>(c.cols()));
-}
-void multiply_transposed(const RowMatrix<double>& a, const RowMatrix<double>& b,
-                         RowMatrix<double>& c) {
-  cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasTrans, static_cast<int>(a.rows()),
-              static_cast<int>(b.rows()), static_cast<int>(a.cols()), 1.0, a.data(),
-              static_cast<int>(a.cols()), b.data(), static_cast<int>(b.cols()), 0.0, c.data(),
-              static_cast<int>(c.cols()));
-}
 
 // How many modes to keep so that the others add up to at most `share` of all, where mode i counts
 // with bound(i).
@@ -87,10 +70,10 @@ RowMatrix<Scalar> DenseColumns<Scalar>::weighted_columns(const RowMatrix<Scalar>
       weighted.middleRows(b * count, count) =
           responses_.block(s, 0, count, modes).array().rowwise() * loads.row(b).head(modes).array();
     }
-    RowMatrix<Scalar> product(weighted.rows(), shapes_.rows());
-    multiply_transposed(weighted, shapes_, product);
+    RowMatrix<Scalar> part;
+    product(weighted, Of::kItself, shapes_, Of::kTransposed, part);
     for (Eigen::Index b = 0; b < loads.rows(); ++b) {
-      columns.middleRows(b * steps + s, count) = product.middleRows(b * count, count);
+      columns.middleRows(b * steps + s, count) = part.middleRows(b * count, count);
     }
   }
   return columns;

@@ -53,15 +53,6 @@ double later_bound(const HeldForceOscillator& o, double omega, int steps) {
 
 }  // namespace
 
-RowMatrix<double> held_responses(const ModalResponse& response, double dt, int steps) {
-  RowMatrix<double> h(steps, response.mode_count());
-  for (Eigen::Index i = 0; i < h.cols(); ++i) {
-    h.col(i) = held_force_response(
-        held_force_oscillator(response.angular_frequency(i), response.decay_rate(i), dt), steps);
-  }
-  return h;
-}
-
 double decay_left(const ModalResponse& response, double dt, int steps) {
   const auto& shapes = std::get<RowMatrix<double>>(response.shapes);
   const RowMatrix<double> squares = shapes.array().square();

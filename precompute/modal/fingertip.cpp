@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/response/modal_response.hpp"
 #include "precompute/blas_kernel.hpp"
 #include "precompute/modal/driving_spectrum.hpp"
 #include "precompute/modal/elastic_statics.hpp"

@@ -163,15 +163,6 @@ void CompressedEngine::displacement(Points& u, double /*tolerance*/) const {
   }
 }
 
-Eigen::MatrixXd CompressedEngine::zero_lag_compliance() const {
-  const int nodes = model_->mesh.surface_node_count();
-  Eigen::MatrixXd R(3 * nodes, 3 * nodes);
-  for (int i = 0; i < nodes; ++i) {
-    for (int j = 0; j < nodes; ++j) R.block<3, 3>(3 * i, 3 * j) = block(*response_, i, j, 0);
-  }
-  return R;
-}
-
 void CompressedEngine::reset() noexcept {
   history_.clear();
   tail_.reset();

@@ -28,7 +28,6 @@ class CompressedEngine final : public ResponseEngine {
   void advance(std::span<const NodalForce> forces) noexcept override;
   using ResponseEngine::displacement;
   void displacement(Points& u, double tolerance) const override;
-  Eigen::MatrixXd zero_lag_compliance() const override;
   void reset() noexcept override;
 
  private:

@@ -121,11 +121,6 @@ void DenseEngine<Scalar>::displacement(Points& u, double /*tolerance*/) const {
 }
 
 template <typename Scalar>
-Eigen::MatrixXd DenseEngine<Scalar>::zero_lag_compliance() const {
-  return whole_response(model_->degrees_of_freedom(), [&](int a, int b) { return entry(0, a, b); });
-}
-
-template <typename Scalar>
 void DenseEngine<Scalar>::reset() noexcept {
   past_.clear();
   spin_.reset();

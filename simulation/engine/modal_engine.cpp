@@ -371,20 +371,6 @@ void ModalEngine<Scalar>::displacements(std::span<const SurfaceRequest> requests
   }
 }
 
-// Phi diag(b1) Phi^T, and what is left out.
-template <typename Scalar>
-Eigen::MatrixXd ModalEngine<Scalar>::zero_lag_compliance() const {
-  const Eigen::Map<const Eigen::VectorXd> weights(b1_.data(), static_cast<Eigen::Index>(modes_));
-  const Eigen::MatrixXd weighted =
-      shapes_->template cast<double>() * weights.cwiseMax(0.0).cwiseSqrt().asDiagonal();
-  const Eigen::Index dof = weighted.rows();
-  Eigen::MatrixXd R = Eigen::MatrixXd::Zero(dof, dof);
-  R.template selfadjointView<Eigen::Lower>().rankUpdate(weighted);
-  R = Eigen::MatrixXd(R.template selfadjointView<Eigen::Lower>());
-  residual_.add_all(R);
-  return R;
-}
-
 template <typename Scalar>
 void ModalEngine<Scalar>::reset() noexcept {
   residual_.release();

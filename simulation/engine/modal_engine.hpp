@@ -45,7 +45,6 @@ class ModalEngine final : public ResponseEngine,
   }
   void displacements(std::span<const SurfaceRequest> requests) const override;
   const void* shared_surface() const noexcept override { return shapes_; }
-  Eigen::MatrixXd zero_lag_compliance() const override;
   void reset() noexcept override;
 
  private:

@@ -54,14 +54,4 @@ void predict_patches(std::span<const ContactPatch> patches, const Free& free, co
   }
 }
 
-/// All of R[0] from its entries, (3n, 3n).
-template <typename Entry>
-Eigen::MatrixXd whole_response(int dof, const Entry& entry) {
-  Eigen::MatrixXd R(dof, dof);
-  for (int b = 0; b < dof; ++b) {
-    for (int a = 0; a < dof; ++a) R(a, b) = entry(a, b);
-  }
-  return R;
-}
-
 }  // namespace irdm

@@ -10,12 +10,6 @@
 
 namespace irdm {
 
-/// How far each surface node yields along a direction of its own to a force along it that lasts,
-/// without rigid motion [m/N]: d^T (sum_s R_ii[s]) d. Of a dense response as far as it was
-/// recorded.
-/// @param directions unit vectors, one a surface node, B
-std::vector<float> static_compliance(const Model& model, const std::vector<Vector3>& directions);
-
 /// What modes that a model leaves out would add: a compliance without delay, so that it belongs to
 /// R[0] alone and to the forces of the last step. Costs what the nodes in contact and their
 /// neighbours are, whatever the size of the object. One thread; real-time safe after construction.
@@ -39,17 +33,8 @@ class ResidualPart {
   /// Adds what these forces do to the nodes' displacements, (n, 3) [m].
   void add_displacement(Points& u) const noexcept;
 
-  /// Adds G to a (3n, 3n) matrix [m/N]. Takes its time.
-  void add_all(Eigen::MatrixXd& compliance) const;
-
  private:
-  using Block = Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>;
-  Block block(int place) const noexcept {
-    return Block(compliance_.blocks.data() + 9 * static_cast<std::size_t>(place));
-  }
-  int begin_of(int node) const noexcept { return compliance_.row_start[index(node)]; }
-  int end_of(int node) const noexcept { return compliance_.row_start[index(node) + 1]; }
-  int column(int place) const noexcept { return compliance_.nodes[index(place)]; }
+  int neighbour(int place) const noexcept { return compliance_.nodes[index(place)]; }
   static std::size_t index(int i) noexcept { return static_cast<std::size_t>(i); }
 
   void spread(const ContactPatch& patch) noexcept;

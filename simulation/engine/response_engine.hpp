@@ -97,9 +97,8 @@ struct EngineCapabilities {
 
 /// The elastic answer of one object to the history of forces on its surface nodes, equation (10):
 /// u[k] = sum_s R[s] f[k-s]. Everything is in B. An engine has one state and belongs to one thread;
-/// several engines may share the same model. All members but the constructor, displacement() and
-/// zero_lag_compliance() are real-time safe, and what they cost does not depend on the number of
-/// nodes.
+/// several engines may share the same model. All members but the constructor and
+/// displacement() are real-time safe, and what they cost does not depend on the number of nodes.
 class ResponseEngine {
  public:
   virtual ~ResponseEngine() = default;
@@ -138,10 +137,6 @@ class ResponseEngine {
   /// @param tolerance by how much each component may be off, so that less has to be read [m], >= 0
   virtual void displacement(Points& u, double tolerance) const = 0;
   void displacement(Points& u) const { displacement(u, 0.0); }
-
-  /// R[0], the displacement within the step of all nodes per force on each: (3n, 3n) [m/N]. Takes
-  /// its time; not for the force thread.
-  virtual Eigen::MatrixXd zero_lag_compliance() const = 0;
 
   /// Forgets all forces: at rest under gravity as it is.
   virtual void reset() noexcept = 0;

@@ -218,11 +218,6 @@ void StreamedEngine<Scalar>::displacement(Points& u, double /*tolerance*/) const
 }
 
 template <typename Scalar>
-Eigen::MatrixXd StreamedEngine<Scalar>::zero_lag_compliance() const {
-  return whole_response(response_.degrees_of_freedom, [&](int a, int b) { return first(a, b); });
-}
-
-template <typename Scalar>
 void StreamedEngine<Scalar>::reset() noexcept {
   columns_.clear();
   past_.clear();

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/error.hpp"
+#include "common/response/stored_response.hpp"
 
 namespace irdm {
 namespace {
@@ -17,8 +18,7 @@ constexpr double kFading = 0.99;
 
 }  // namespace
 
-FloorContacts::FloorContacts(const FloorConfig& floor, const RestSurface& rest,
-                             const ResponseEngine& engine)
+FloorContacts::FloorContacts(const FloorConfig& floor, const RestSurface& rest, const Model& model)
     : floor_(floor),
       rest_(rest),
       anchors_(static_cast<std::size_t>(rest.node_count())),
@@ -30,7 +30,7 @@ FloorContacts::FloorContacts(const FloorConfig& floor, const RestSurface& rest,
                     " surface nodes is too large for a floor",
                 "use a mesh of at most " + std::to_string(kMaxNodes) + " surface nodes");
   }
-  compliance_ = engine.zero_lag_compliance();
+  compliance_ = stored_response(model)->zero_lag();
 }
 
 void FloorContacts::reset() noexcept {

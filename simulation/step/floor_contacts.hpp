@@ -19,7 +19,7 @@ class FloorContacts {
   static constexpr int kMaxNodes = 1100;
 
   /// Throws Error when the object has more nodes than that.
-  FloorContacts(const FloorConfig& floor, const RestSurface& rest, const ResponseEngine& engine);
+  FloorContacts(const FloorConfig& floor, const RestSurface& rest, const Model& model);
 
   /// Chooses this step's contacts: the nodes that would be below the floor by the end of it, and
   /// those that were pressed on it. Returns how many; at most kMaxFloorContacts, the others wait.

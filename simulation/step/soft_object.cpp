@@ -24,7 +24,7 @@ SoftObject::SoftObject(const SimulationObject& object, const SimulationConfig& c
       nodal_(kMaxContacts * kMaxPatchNodes + kMaxFloorContacts) {
   check_inertial_loading(model(), object.inertial_loading, "object");
   if (config.floor && body_.rigid().moves()) {
-    floor_ = std::make_unique<FloorContacts>(*config.floor, rest_, body_.engine());
+    floor_ = std::make_unique<FloorContacts>(*config.floor, rest_, model());
   }
 }
 

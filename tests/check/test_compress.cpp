@@ -9,7 +9,7 @@
 #include "common/model/model_file.hpp"
 #include "common/model/model_writer.hpp"
 #include "common/response/compressed_response.hpp"
-#include "precompute/check/columns.hpp"
+#include "common/response/stored_response.hpp"
 #include "precompute/compress/compress_model.hpp"
 #include "precompute/compress/dense_input.hpp"
 #include "precompute/compress/measured_error.hpp"
@@ -85,10 +85,10 @@ TEST_CASE("compress: the stated errors are those of the file, twice to the same 
   const auto& response = std::get<CompressedResponse>(model.response);
   const bool integers = !response.fir_scale.empty();
   CHECK(integers == (allowed > 1e-3));
-  const RowMatrix<double> tail = tail_responses(response, 200 - response.fir_steps);
+  const auto R = stored_response(model);
   double largest = 0.0;
   for (int b = 0; b < model.degrees_of_freedom(); b += 5) {
-    const RowMatrix<double> column = compressed_column(response, tail, b, 200);
+    const RowMatrix<double> column = R->column(b, 200);
     double difference = 0.0;
     double size = 0.0;
     double fir = 0.0;

@@ -61,11 +61,11 @@ TEST_CASE("a pulse that travels over the surface is found with its speed") {
 TEST_CASE("a response whose waves are faster than any of its material fails") {
   Model model = cube_in_double({.cells = 6});
   const double dt = wave_interval(model);
-  const ModalColumns columns(std::get<ModalResponse>(model.response), dt);
-  CHECK(wave_line(model, columns, dt, 10000).verdict == Verdict::kOk);
+  const auto R = stored_response(std::get<ModalResponse>(model.response), dt);
+  CHECK(wave_line(model, *R, dt, 10000).verdict == Verdict::kOk);
   model.material.youngs_modulus *= 0.01;  // waves of a tenth of the speed that it has
-  INFO(wave_line(model, columns, dt, 10000).found);
-  CHECK(wave_line(model, columns, dt, 10000).verdict == Verdict::kFail);
+  INFO(wave_line(model, *R, dt, 10000).found);
+  CHECK(wave_line(model, *R, dt, 10000).verdict == Verdict::kFail);
 }
 
 // Where the passages do not lie on a line, no speed is sound or wrong but by luck.
@@ -75,8 +75,8 @@ TEST_CASE("a mesh that is too coarse for its waves, or damps them away, is not j
       const Model model =
           cube_in_double({.cells = cells, .youngs_modulus = youngs_modulus, .poisson_ratio = 0.45});
       const double dt = wave_interval(model);
-      const ModalColumns columns(std::get<ModalResponse>(model.response), dt);
-      const Line line = wave_line(model, columns, dt, 10000);
+      const auto R = stored_response(std::get<ModalResponse>(model.response), dt);
+      const Line line = wave_line(model, *R, dt, 10000);
       INFO(cells << " cells, E = " << youngs_modulus << ": " << line.found);
       CHECK(line.verdict == Verdict::kNone);
     }

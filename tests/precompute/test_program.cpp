@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "common/model/model_file.hpp"
+#include "common/response/modal_response.hpp"
 #include "precompute/modal/elastic_statics.hpp"
 #include "tests/support/child_process.hpp"
 #include "tests/support/eventually.hpp"

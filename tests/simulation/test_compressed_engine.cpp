@@ -6,7 +6,7 @@
 #include <random>
 
 #include "common/response/compressed_response.hpp"
-#include "simulation/engine/residual_part.hpp"
+#include "common/response/stored_response.hpp"
 #include "simulation/engine/response_engine.hpp"
 #include "tests/support/fem_cube.hpp"
 #include "tests/support/interaction_suite.hpp"
@@ -89,14 +89,12 @@ std::vector<std::vector<NodalForce>> random_forces(int nodes, int steps) {
 
 // Equation (10) with the columns as they are defined.
 Points direct_sum(const Model& model, const std::vector<std::vector<NodalForce>>& history, int k) {
-  const auto& response = std::get<CompressedResponse>(model.response);
-  const RowMatrix<double> tail = tail_responses(response, kRecord - kFir);
+  const auto R = stored_response(model);
   Eigen::VectorXd u = Eigen::VectorXd::Zero(model.degrees_of_freedom());
   for (int age = 0; age <= k; ++age) {
     for (const NodalForce& force : history[static_cast<std::size_t>(k - age)]) {
       for (int b = 0; b < 3; ++b) {
-        u += compressed_column(response, tail, 3 * force.node + b, age + 1).row(age).transpose() *
-             force.force[b];
+        u += R->column(3 * force.node + b, age + 1).row(age).transpose() * force.force[b];
       }
     }
   }
@@ -153,7 +151,7 @@ TEST_CASE("compressed engine predicts the coming step, and R[0] between the cont
     const Vector3 expected = h[a] + answer.segment<3>(static_cast<Eigen::Index>(3 * a));
     CHECK((moved - expected).norm() < 1e-12 * u.norm());
   }
-  const Eigen::MatrixXd R = engine->zero_lag_compliance();
+  const Eigen::MatrixXd R = stored_response(*model)->zero_lag();
   CHECK((R - R.transpose()).norm() == 0.0);
 }
 

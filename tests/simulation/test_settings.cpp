@@ -2,8 +2,8 @@
 #include <catch2/catch.hpp>
 
 #include "common/error.hpp"
+#include "common/response/stored_response.hpp"
 #include "simulation/deformation/deformation.hpp"
-#include "simulation/engine/residual_part.hpp"
 #include "simulation/step/simulation.hpp"
 #include "tests/support/shared_model.hpp"
 #include "tests/support/synthetic_model.hpp"

@@ -31,7 +31,6 @@ class FakeEngine final : public ResponseEngine {
   void add_delayed_force(std::span<const NodalForce>, int) noexcept override {}
   void advance(std::span<const NodalForce>) noexcept override {}
   void displacement(Points&, double) const override {}
-  Eigen::MatrixXd zero_lag_compliance() const override { return {}; }
   void reset() noexcept override {}
   mutable int evaluations = 0;
   double bound = std::numeric_limits<double>::infinity();

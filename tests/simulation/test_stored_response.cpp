@@ -1,0 +1,120 @@
+// Every stored form of R against the same R in another form, and against the engine that plays it.
+#include <catch2/catch.hpp>
+
+#include "common/model/model_file.hpp"
+#include "common/response/compressed_response.hpp"
+#include "common/response/stored_response.hpp"
+#include "simulation/engine/response_engine.hpp"
+#include "tests/support/shared_model.hpp"
+#include "tests/support/streamed_model.hpp"
+#include "tests/support/synthetic_model.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+using namespace irdm;
+using namespace irdm::test;
+
+namespace {
+
+constexpr int kSteps = 60;
+
+double difference(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  return (a - b).norm() / b.norm();
+}
+
+// What the members say of one another, whatever the form. `limit`: also the static limit is that of
+// these steps.
+void check_consistent(const StoredResponse& R, int nodes, int steps, bool limit) {
+  const Eigen::MatrixXd first = R.zero_lag();
+  REQUIRE(first.rows() == 3 * nodes);
+  const std::vector<DrivingPoint> own = R.driving_points(1, nodes - 2, steps);
+  REQUIRE(static_cast<int>(own.size()) == nodes - 2);
+  for (const int b : {3, 3 * nodes - 4}) {
+    CAPTURE(b);
+    const RowMatrix<double> column = R.column(b, steps);
+    REQUIRE(column.rows() == steps);
+    CHECK(difference(column.row(0), first.col(b).transpose()) < 1e-12);
+    CHECK(difference(R.column(b, steps / 2), column.topRows(steps / 2)) < 1e-12);
+    const int node = b / 3;
+    const Eigen::MatrixXd rows = own[static_cast<std::size_t>(node - 1)].middleRows<3>(3 * (b % 3));
+    CHECK(difference(rows.transpose(), column.middleCols<3>(3 * node)) < 1e-10);
+    const Eigen::VectorXd settled = R.static_column(b);
+    CHECK(difference(R.static_block(node).col(b % 3), settled.segment<3>(3 * node)) < 1e-10);
+    if (limit) CHECK(difference(column.colwise().sum().transpose(), settled) < 1e-6);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("stored response: modes, with and without residual, are the R of the closed form") {
+  Model modal = synthetic_cube(2, 12, kSteps);
+  if (GENERATE(false, true)) add_residual(modal);
+  const Model dense = with_dense_response<double>(modal);
+  const auto of_modes = stored_response(modal);
+  const auto of_dense = stored_response(dense);
+  const int nodes = modal.mesh.surface_node_count();
+  check_consistent(*of_modes, nodes, kSteps, false);
+  check_consistent(*of_dense, nodes, kSteps, true);
+  CHECK(difference(of_modes->zero_lag(), of_dense->zero_lag()) < 1e-12);
+  for (int b = 0; b < 3 * nodes; b += 7) {
+    CHECK(difference(of_modes->column(b, kSteps), of_dense->column(b, kSteps)) < 1e-11);
+  }
+}
+
+TEST_CASE("stored response: the static limit of modes is the sum over all time") {
+  Model modal = synthetic_cube(2, 12, 4000);
+  add_residual(modal);
+  const int nodes = modal.mesh.surface_node_count();
+  check_consistent(*stored_response(modal), nodes, 4000, true);
+  auto& shapes = std::get<ModalResponse>(modal.response).shapes;
+  const Eigen::VectorXd in_double = stored_response(modal)->static_column(4);
+  shapes = RowMatrix<float>(std::get<RowMatrix<double>>(shapes).cast<float>());
+  check_consistent(*stored_response(modal), nodes, kSteps, false);
+  CHECK(difference(stored_response(modal)->static_column(4), in_double) < 1e-6);
+}
+
+TEST_CASE("stored response: dense in a file and streamed are the dense one in memory") {
+  const StreamedModel model(with_dense_response<float>(synthetic_cube(2, 12, kSteps)));
+  const int nodes = model.dense->mesh.surface_node_count();
+  const auto dense = stored_response(*model.dense);
+  const TemporaryFolder folder;
+  const std::filesystem::path path = folder.path() / "dense.h5";
+  write_dense_model(*model.dense, path);
+  const auto file = stored_response(path, 3 * nodes, kSteps);
+  const auto streamed = stored_response(*model.streamed);
+  check_consistent(*file, nodes, kSteps, true);
+  check_consistent(*streamed, nodes, kSteps, true);
+  CHECK(file->zero_lag() == dense->zero_lag());
+  CHECK(streamed->zero_lag() == dense->zero_lag());
+  CHECK(file->column(7, kSteps) == dense->column(7, kSteps));
+  CHECK(difference(streamed->static_column(7), dense->static_column(7)) < 1e-6);
+  CHECK_THROWS_WITH(stored_response(path, 3 * nodes, kSteps - 1),
+                    Catch::Contains("must have the shape"));
+}
+
+TEST_CASE("stored response: a compressed one is what its engine plays") {
+  Model model = synthetic_cube(2, 12, kSteps);
+  model.response = compressed_response(model);
+  const int nodes = model.mesh.surface_node_count();
+  const auto R = stored_response(model);
+  check_consistent(*R, nodes, 3000, true);
+  const auto engine = make_engine(share(model));
+  const NodalForce push{4, Vector3(0, 1, 0)};
+  const RowMatrix<double> column = R->column(13, kSteps);
+  for (int s = 0; s < kSteps; ++s) {
+    engine->advance(s == 0 ? std::span(&push, 1) : std::span<const NodalForce>());
+    Points u;
+    engine->displacement(u);
+    CHECK(difference(Eigen::Map<const Eigen::VectorXd>(u.data(), u.size()),
+                     column.row(s).transpose()) < 1e-6);
+  }
+}
+
+TEST_CASE("static compliance of a model without a response is not a number") {
+  Model model = synthetic_cube(2, 12, kSteps);
+  model.response = std::monostate{};
+  const std::vector<Vector3> up(static_cast<std::size_t>(model.mesh.surface_node_count()),
+                                Vector3::UnitY());
+  const std::vector<float> compliance = static_compliance(model, up);
+  REQUIRE(compliance.size() == up.size());
+  CHECK(std::isnan(compliance.front()));
+}

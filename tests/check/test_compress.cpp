@@ -157,13 +157,13 @@ TEST_CASE("a compressed response needs the scales that it was written with") {
   };
   response.fir_scale[entry] = std::numeric_limits<float>::quiet_NaN();
   CHECK_THROWS_WITH(read_model(write("nan.h5"), ResponseKind::kCompressed),
-                    Contains("an fir_scale that is negative, not finite"));
+                    Contains("an early_scale that is negative, not finite"));
   response.fir_scale.resize(9);
   CHECK_THROWS_WITH(read_model(write("few.h5"), ResponseKind::kCompressed),
                     Contains("early_scale has shape"));
   response.fir_scale.clear();
   CHECK_THROWS_WITH(read_model(write("none.h5"), ResponseKind::kCompressed),
-                    Contains("in 16 bits without its fir_scale"));
+                    Contains("in 16 bits without its early_scale"));
   response.fir_scale.assign(fir.size() / m, 1.0F);
   response.fir = std::vector<float>(fir.size(), 1e-3F);
   CHECK_THROWS_WITH(read_model(write("single.h5"), ResponseKind::kCompressed),

@@ -98,14 +98,15 @@ TEST_CASE("stored response: a compressed one is what its engine plays") {
   const auto R = stored_response(model);
   check_consistent(*R, nodes, 3000, true);
   const auto engine = make_engine(share(model));
-  const NodalForce push{4, Vector3(0, 1, 0)};
-  const RowMatrix<double> column = R->column(13, kSteps);
+  const NodalForce push{0, Vector3(1, 0, 0)};
+  const RowMatrix<double> column = R->column(0, kSteps);
+  REQUIRE(column.row(kSteps / 2).norm() > 0.0);
   for (int s = 0; s < kSteps; ++s) {
     engine->advance(s == 0 ? std::span(&push, 1) : std::span<const NodalForce>());
     Points u;
     engine->displacement(u);
-    CHECK(difference(Eigen::Map<const Eigen::VectorXd>(u.data(), u.size()),
-                     column.row(s).transpose()) < 1e-6);
+    const Eigen::Map<const Eigen::VectorXd> moved(u.data(), u.size());
+    CHECK((moved - column.row(s).transpose()).norm() < 1e-6 * column.norm());
   }
 }
 

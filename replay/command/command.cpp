@@ -56,12 +56,11 @@ Command add_compare_command(CLI::App& app) {
   command->add_option("b", options->b, "Another one, of the same scene")->required();
   command->add_option("--json", options->json,
                       "File for all of it, frame by frame; must not exist");
-  command->add_option("--html")->group("")->check(CLI::Validator(
-      [](const std::string&) {
-        return std::string(
-            "is not an option: give --json FILE, and draw it with scripts/plot_comparison.py");
-      },
-      ""));
+  const auto refuse = [](const std::string&) {
+    throw CLI::ValidationError(
+        "--html", "is no option; give --json FILE, and draw it with scripts/plot_comparison.py");
+  };
+  command->add_option_function<std::string>("--html", refuse)->group("");
   command
       ->add_option("--hand", options->hand,
                    "Mass with the device's (kg), damping (N s/m) and stiffness (N/m) of the hand "

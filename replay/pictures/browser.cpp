@@ -177,9 +177,9 @@ std::string Browser::picture() {
 
 // Between a call and its answer there may be events, which have no number.
 Json Browser::call(const std::string& method, const Json& parameters) {
-  Json command{{"id", ++calls_}, {"method", method}, {"params", parameters}};
-  if (!session_.empty()) command["sessionId"] = session_;
-  if (!pipe_.write(command.dump(), kPatienceMs)) fail("takes no commands");
+  Json request{{"id", ++calls_}, {"method", method}, {"params", parameters}};
+  if (!session_.empty()) request["sessionId"] = session_;
+  if (!pipe_.write(request.dump(), kPatienceMs)) fail("takes no commands");
   for (;;) {
     std::string text;
     if (!pipe_.read(text, kPatienceMs)) fail("does not answer " + method);

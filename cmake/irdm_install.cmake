@@ -6,7 +6,7 @@ set(data ${CMAKE_INSTALL_DATADIR}/irdm)
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/irdm)
 
 install(DIRECTORY configs/ DESTINATION ${data}/configs COMPONENT runtime)
-install(PROGRAMS scripts/plot_force.py DESTINATION ${data}/scripts COMPONENT runtime)
+install(PROGRAMS scripts/plot_comparison.py scripts/plot_force.py DESTINATION ${data}/scripts COMPONENT runtime)
 install(DIRECTORY examples/tutorial DESTINATION ${data}/examples COMPONENT runtime)
 install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT runtime)

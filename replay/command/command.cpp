@@ -12,14 +12,13 @@
 #include "replay/compare/comparison_text.hpp"
 #include "replay/output/output_file.hpp"
 #include "replay/replay.hpp"
-#include "replay/report/comparison_html.hpp"
 
 namespace irdm::replay {
 namespace {
 
 struct CompareOptions {
   std::filesystem::path a, b;
-  std::optional<std::filesystem::path> json, html;
+  std::optional<std::filesystem::path> json;
   std::vector<double> hand;  // mass, damping, stiffness; or empty
 };
 
@@ -43,7 +42,6 @@ int compare(const CompareOptions& options) {
   const Comparison comparison = compare_runs(a, b);
   const Measures measures = measure_runs(a, b, comparison, hand_of(options));
   if (options.json) write_text(*options.json, comparison_json(comparison, measures));
-  if (options.html) write_text(*options.html, comparison_html(comparison, measures));
   std::cout << comparison_table(comparison, measures) << std::flush;
   return 0;
 }
@@ -58,8 +56,11 @@ Command add_compare_command(CLI::App& app) {
   command->add_option("b", options->b, "Another one, of the same scene")->required();
   command->add_option("--json", options->json,
                       "File for all of it, frame by frame; must not exist");
-  command->add_option("--html", options->html,
-                      "File for a report with figures, to open in a browser; must not exist");
+  const auto refuse = [](const std::string&) {
+    throw CLI::ValidationError(
+        "--html", "is no option; give --json FILE, and draw it with scripts/plot_comparison.py");
+  };
+  command->add_option_function<std::string>("--html", refuse)->group("");
   command
       ->add_option("--hand", options->hand,
                    "Mass with the device's (kg), damping (N s/m) and stiffness (N/m) of the hand "

@@ -1,188 +1,178 @@
 #include "replay/compare/comparison_json.hpp"
 
-#include "replay/compare/json_text.hpp"
+#include <nlohmann/json.hpp>
+#include <utility>
 
 namespace irdm::replay {
 namespace {
 
-JsonObject json(const Apart& apart, const char* unit) {
-  return JsonObject()
-      .add("unit", unit)
-      .add("rms", apart.rms_over_time())
-      .add("max", apart.maximum())
-      .add("last", apart.last())
-      .add("reference", apart.reference)
-      .add("rms_over_time", apart.rms)
-      .add("max_over_time", apart.largest);
+using Json = nlohmann::ordered_json;
+
+Json json(const Apart& apart, const char* unit) {
+  return {{"unit", unit},
+          {"rms", apart.rms_over_time()},
+          {"max", apart.maximum()},
+          {"last", apart.last()},
+          {"reference", apart.reference},
+          {"rms_over_time", apart.rms},
+          {"max_over_time", apart.largest}};
 }
 
-JsonObject size_json(const SignalPair& pair, const char* unit) {
-  return JsonObject().add("unit", unit).add("a", pair.size_a).add("b", pair.size_b);
+Json size_json(const SignalPair& pair, const char* unit) {
+  return {{"unit", unit}, {"a", pair.size_a}, {"b", pair.size_b}};
 }
 
-JsonObject spectrum_json(const Spectrum& a, const Spectrum& b, const char* unit) {
-  return JsonObject()
-      .add("unit", unit)
-      .add("frequency", a.frequency)
-      .add("a", a.amplitude)
-      .add("b", b.amplitude);
+Json spectrum_json(const Spectrum& a, const Spectrum& b, const char* unit) {
+  return {{"unit", unit}, {"frequency", a.frequency}, {"a", a.amplitude}, {"b", b.amplitude}};
 }
 
-std::vector<JsonObject> json(const std::vector<Ringing>& list) {
-  std::vector<JsonObject> all;
+Json json(const std::vector<Ringing>& list) {
+  Json all = Json::array();
   for (const Ringing& each : list) {
-    all.push_back(JsonObject()
-                      .add("frequency", each.frequency)
-                      .add("damping_ratio", each.damping_ratio)
-                      .add("amplitude", each.amplitude));
+    all.push_back({{"frequency", each.frequency},
+                   {"damping_ratio", each.damping_ratio},
+                   {"amplitude", each.amplitude}});
   }
   return all;
 }
 
 // What both ring with.
-std::vector<JsonObject> pairs_json(const SignalPair& pair) {
-  std::vector<JsonObject> all;
+Json pairs_json(const SignalPair& pair) {
+  Json all = Json::array();
   for (const auto& [a, b] : pairs_of(pair.ringing_a, pair.ringing_b)) {
-    all.push_back(JsonObject()
-                      .add("frequency", a.frequency)
-                      .add("frequency_share", b.frequency / a.frequency - 1.0)
-                      .add("damping_ratio", a.damping_ratio)
-                      .add("damping_ratio_difference", b.damping_ratio - a.damping_ratio));
+    all.push_back({{"frequency", a.frequency},
+                   {"frequency_share", b.frequency / a.frequency - 1.0},
+                   {"damping_ratio", a.damping_ratio},
+                   {"damping_ratio_difference", b.damping_ratio - a.damping_ratio}});
   }
   return all;
 }
 
-JsonObject ringing_json(const SignalPair& pair, const std::vector<double>& times) {
-  JsonObject json_of_pair;
-  if (pair.stretch.count == 0) {
-    json_of_pair.add_null("from").add_null("to");
-  } else {
-    json_of_pair.add("from", times[pair.stretch.first])
-        .add("to", times[pair.stretch.first + pair.stretch.count - 1]);
+Json ringing_json(const SignalPair& pair, const std::vector<double>& times) {
+  Json from, to;  // null
+  if (pair.stretch.count > 0) {
+    from = times[pair.stretch.first];
+    to = times[pair.stretch.first + pair.stretch.count - 1];
   }
-  return json_of_pair.add("a", json(pair.ringing_a))
-      .add("b", json(pair.ringing_b))
-      .add("pairs", pairs_json(pair));
+  return {{"from", from},
+          {"to", to},
+          {"a", json(pair.ringing_a)},
+          {"b", json(pair.ringing_b)},
+          {"pairs", pairs_json(pair)}};
 }
 
-JsonObject object_json(const ObjectComparison& object, const SignalPair& node,
-                       const std::vector<double>& times) {
-  JsonObject all;
-  all.add("name", object.name);
+Json node_json(Eigen::Index number, const SignalPair& node, const std::vector<double>& times) {
+  return {{"number", number},
+          {"size_over_time", size_json(node, "m")},
+          {"spectrum", spectrum_json(node.spectrum_a, node.spectrum_b, "m")},
+          {"ringing", ringing_json(node, times)}};
+}
+
+Json object_json(const ObjectComparison& object, const SignalPair& node,
+                 const std::vector<double>& times) {
+  Json all;
+  all["name"] = object.name;
   if (object.same_nodes) {
-    all.add("displacement", json(object.displacement, "m")).add("place", json(object.place, "m"));
+    all["displacement"] = json(object.displacement, "m");
+    all["place"] = json(object.place, "m");
   }
-  all.add("centre_of_mass", json(object.centre_of_mass, "m"))
-      .add("orientation", json(object.orientation, "rad"));
-  if (!object.same_nodes) return all.add_null("node");
-  return all.add("node", JsonObject()
-                             .add("number", static_cast<std::size_t>(object.node))
-                             .add("size_over_time", size_json(node, "m"))
-                             .add("spectrum", spectrum_json(node.spectrum_a, node.spectrum_b, "m"))
-                             .add("ringing", ringing_json(node, times)));
+  all["centre_of_mass"] = json(object.centre_of_mass, "m");
+  all["orientation"] = json(object.orientation, "rad");
+  all["node"] = object.same_nodes ? node_json(object.node, node, times) : Json();
+  return all;
 }
 
-JsonObject add_verdict(JsonObject all, const std::optional<bool>& verdict) {
-  return verdict ? all.add("noticeable", *verdict) : all.add_null("noticeable");
+// Null where nothing is judged.
+Json verdict_json(const std::optional<bool>& verdict) {
+  return verdict ? Json(*verdict) : Json();
 }
 
-JsonObject force_json(const ForceDifference& force, const std::vector<double>& times) {
-  return JsonObject()
-      .add("limit", perception::kForceShare)
-      .add("largest", force.largest)
-      .add("largest_at", times[force.worst_frame])
-      .add("noticeable_time", force.noticeable_time)
-      .add("noticeable", force.noticeable())
-      .add("share_over_time", force.share);
+Json force_json(const ForceDifference& force, const std::vector<double>& times) {
+  return {{"limit", perception::kForceShare},       {"largest", force.largest},
+          {"largest_at", times[force.worst_frame]}, {"noticeable_time", force.noticeable_time},
+          {"noticeable", force.noticeable()},       {"share_over_time", force.share}};
 }
 
-JsonObject compliance_json(const StylusMeasures& stylus) {
-  JsonObject all;
-  all.add("unit", "m/N").add("limit", perception::kComplianceShare);
+Json compliance_json(const StylusMeasures& stylus) {
   const auto verdict = stylus.noticeable_compliance();
-  if (!verdict) return all.add_null("a").add_null("b").add_null("share").add_null("noticeable");
-  return all.add("a", stylus.compliance_a.value())
-      .add("b", stylus.compliance_b.value())
-      .add("share", stylus.compliance_share())
-      .add("noticeable", *verdict);
+  const auto if_judged = [&](double value) { return verdict ? Json(value) : Json(); };
+  return {{"unit", "m/N"},
+          {"limit", perception::kComplianceShare},
+          {"a", if_judged(stylus.compliance_a.value())},
+          {"b", if_judged(stylus.compliance_b.value())},
+          {"share", if_judged(stylus.compliance_share())},
+          {"noticeable", verdict_json(verdict)}};
 }
 
-JsonObject vibration_json(const StylusMeasures& stylus, const perception::Hand& hand) {
+Json vibration_json(const StylusMeasures& stylus, const perception::Hand& hand) {
   const Spectrum& spectrum = stylus.vibration_difference.spectrum;
   std::vector<double> threshold;
   for (const double frequency : spectrum.frequency) {
     threshold.push_back(perception::vibration_threshold(frequency));
   }
-  JsonObject all;
-  all.add("unit", "m")
-      .add("hand", JsonObject()
-                       .add("mass", hand.mass)
-                       .add("damping", hand.damping)
-                       .add("stiffness", hand.stiffness))
-      .add("frequency", spectrum.frequency)
-      .add("threshold", threshold)
-      .add("a", stylus.vibration_a.spectrum.amplitude)
-      .add("b", stylus.vibration_b.spectrum.amplitude)
-      .add("difference", spectrum.amplitude)
-      .add("level_a", stylus.vibration_a.level)
-      .add("level_b", stylus.vibration_b.level)
-      .add("level", stylus.vibration_difference.level)
-      .add("level_at", stylus.vibration_difference.frequency);
-  return add_verdict(all, stylus.vibration_difference.noticeable());
+  return {{"unit", "m"},
+          {"hand", {{"mass", hand.mass}, {"damping", hand.damping}, {"stiffness", hand.stiffness}}},
+          {"frequency", spectrum.frequency},
+          {"threshold", threshold},
+          {"a", stylus.vibration_a.spectrum.amplitude},
+          {"b", stylus.vibration_b.spectrum.amplitude},
+          {"difference", spectrum.amplitude},
+          {"level_a", stylus.vibration_a.level},
+          {"level_b", stylus.vibration_b.level},
+          {"level", stylus.vibration_difference.level},
+          {"level_at", stylus.vibration_difference.frequency},
+          {"noticeable", verdict_json(stylus.vibration_difference.noticeable())}};
 }
 
-JsonObject onset_json(const OnsetDelays& onsets, double interval) {
-  JsonObject all;
-  all.add("unit", "s")
-      .add("limit", perception::kOnsetDelay)
-      .add("resolution", interval)
-      .add("onsets", onsets.onsets)
-      .add("delays", onsets.delays)
-      .add("largest", onsets.largest)
-      .add("alone", onsets.alone);
-  return add_verdict(all, onsets.noticeable(interval));
+Json onset_json(const OnsetDelays& onsets, double interval) {
+  return {{"unit", "s"},
+          {"limit", perception::kOnsetDelay},
+          {"resolution", interval},
+          {"onsets", onsets.onsets},
+          {"delays", onsets.delays},
+          {"largest", onsets.largest},
+          {"alone", onsets.alone},
+          {"noticeable", verdict_json(onsets.noticeable(interval))}};
 }
 
-JsonObject stylus_json(const Apart& force, const StylusMeasures& stylus, const Measures& measures,
-                       const std::vector<double>& times) {
-  return JsonObject()
-      .add("force", json(force, "N"))
-      .add("size_over_time", size_json(stylus.force, "N"))
-      .add("spectrum", spectrum_json(stylus.force.spectrum_a, stylus.force.spectrum_b, "N"))
-      .add("ringing", ringing_json(stylus.force, times))
-      .add("perception", JsonObject()
-                             .add("force", force_json(stylus.difference, times))
-                             .add("compliance", compliance_json(stylus))
-                             .add("vibration", vibration_json(stylus, measures.hand))
-                             .add("onset", onset_json(stylus.onsets, measures.interval)));
+Json stylus_json(const Apart& force, const StylusMeasures& stylus, const Measures& measures,
+                 const std::vector<double>& times) {
+  return {{"force", json(force, "N")},
+          {"size_over_time", size_json(stylus.force, "N")},
+          {"spectrum", spectrum_json(stylus.force.spectrum_a, stylus.force.spectrum_b, "N")},
+          {"ringing", ringing_json(stylus.force, times)},
+          {"perception",
+           {{"force", force_json(stylus.difference, times)},
+            {"compliance", compliance_json(stylus)},
+            {"vibration", vibration_json(stylus, measures.hand)},
+            {"onset", onset_json(stylus.onsets, measures.interval)}}}};
 }
 
 }  // namespace
 
 std::string comparison_json(const Comparison& comparison, const Measures& measures) {
-  std::vector<JsonObject> objects;
+  Json objects = Json::array();
   for (std::size_t i = 0; i < comparison.objects.size(); ++i) {
     objects.push_back(object_json(comparison.objects[i], measures.nodes[i], comparison.times));
   }
-  std::vector<JsonObject> styluses;
+  Json styluses = Json::array();
   for (std::size_t s = 0; s < comparison.forces.size(); ++s) {
     styluses.push_back(
         stylus_json(comparison.forces[s], measures.styluses[s], measures, comparison.times));
   }
-  return JsonObject()
-             .add("format", "irdm-comparison")
-             .add("version", std::size_t{1})
-             .add("a", comparison.a)
-             .add("b", comparison.b)
-             .add("frames", comparison.times.size())
-             .add("frames_alone", comparison.alone)
-             .add("evenly_spaced", measures.evenly_spaced)
-             .add("interval", measures.interval)
-             .add("time", comparison.times)
-             .add("objects", objects)
-             .add("styluses", styluses)
-             .text() +
-         "\n";
+  const Json all{{"format", "irdm-comparison"},
+                 {"version", 1},
+                 {"a", comparison.a},
+                 {"b", comparison.b},
+                 {"frames", comparison.times.size()},
+                 {"frames_alone", comparison.alone},
+                 {"evenly_spaced", measures.evenly_spaced},
+                 {"interval", measures.interval},
+                 {"time", comparison.times},
+                 {"objects", std::move(objects)},
+                 {"styluses", std::move(styluses)}};
+  // A file's name may have bytes that are no UTF-8.
+  return all.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace irdm::replay

@@ -75,14 +75,14 @@ std::string onset_finding(const OnsetDelays& onsets, double interval) {
                  onsets.onsets.empty() ? "none in both" : "the frames are too far apart");
 }
 
-}  // namespace
-
 std::vector<std::string> perceptual_findings(const StylusMeasures& stylus, const Measures& measures,
                                              const std::vector<double>& times) {
   return {force_finding(stylus.difference, times), compliance_finding(stylus),
           vibration_finding(stylus.vibration_difference, measures.evenly_spaced),
           onset_finding(stylus.onsets, measures.interval)};
 }
+
+}  // namespace
 
 std::string comparison_table(const Comparison& comparison, const Measures& measures) {
   std::string text = comparison.a + " and " + comparison.b + ": " +

@@ -6,13 +6,11 @@
 #include <signal.h>
 #include <unistd.h>
 #include <array>
-#include <boost/property_tree/json_parser.hpp>
 #include <cerrno>
-#include <sstream>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "common/error.hpp"
-#include "replay/compare/json_text.hpp"
 
 namespace irdm::replay {
 namespace {
@@ -93,6 +91,8 @@ bool NulDelimitedPipe::read(std::string& text, int patience_ms) {
 
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 constexpr int kPatienceMs = 60'000;  // without a GPU a large picture takes seconds
 
 [[noreturn]] void fail(const std::string& problem) {
@@ -132,71 +132,63 @@ std::map<int, int> its_descriptors(const NulDelimitedPipe& pipe) {
 
 }  // namespace
 
-struct Browser::Answer {
-  boost::property_tree::ptree result;
-};
-
 Browser::Browser(const BrowserWindow& window) {
   chromium_.emplace(command(profile_.path()),
                     ChildSettings{.own_group = true, .descriptors = its_descriptors(pipe_)});
   pipe_.close_its_ends();
-  const Answer targets = call("Target.getTargets", "{}");
+  const Json targets = call("Target.getTargets", Json::object());
   std::string page;
-  for (const auto& [key, target] : targets.result.get_child("targetInfos")) {
-    if (target.get<std::string>("type") == "page") page = target.get<std::string>("targetId");
+  for (const Json& target : targets.at("targetInfos")) {
+    if (target.at("type") == "page") page = target.at("targetId").get<std::string>();
   }
   if (page.empty()) fail("has opened no page");
-  JsonObject target;
-  target.add("targetId", page).add("flatten", true);
-  session_ = call("Target.attachToTarget", target.text()).result.get<std::string>("sessionId");
-  JsonObject size;
-  size.add("width", static_cast<std::size_t>(window.width));
-  size.add("height", static_cast<std::size_t>(window.height));
-  size.add("deviceScaleFactor", std::size_t{1}).add("mobile", false);
-  call("Emulation.setDeviceMetricsOverride", size.text());
-  JsonObject colours;
-  colours.add("name", "prefers-color-scheme").add("value", window.dark ? "dark" : "light");
-  call("Emulation.setEmulatedMedia",
-       JsonObject().add("features", std::vector<JsonObject>{colours}).text());
+  const Json attached = call("Target.attachToTarget", {{"targetId", page}, {"flatten", true}});
+  session_ = attached.at("sessionId").get<std::string>();
+  call("Emulation.setDeviceMetricsOverride", {{"width", window.width},
+                                              {"height", window.height},
+                                              {"deviceScaleFactor", 1},
+                                              {"mobile", false}});
+  const Json colours{{"name", "prefers-color-scheme"}, {"value", window.dark ? "dark" : "light"}};
+  call("Emulation.setEmulatedMedia", {{"features", Json::array({colours})}});
 }
 
 void Browser::open(const std::string& url) {
-  call("Page.navigate", JsonObject().add("url", url).text());
+  call("Page.navigate", {{"url", url}});
 }
 
 std::string Browser::evaluate(const std::string& expression) {
-  JsonObject parameters;
-  parameters.add("expression", expression).add("awaitPromise", true).add("returnByValue", true);
-  const Answer answer = call("Runtime.evaluate", parameters.text());
-  if (const auto exception = answer.result.get_child_optional("exceptionDetails")) {
-    fail("the page says: " +
-         exception->get("exception.description", exception->get<std::string>("text")));
+  const Json answer =
+      call("Runtime.evaluate",
+           {{"expression", expression}, {"awaitPromise", true}, {"returnByValue", true}});
+  if (const auto found = answer.find("exceptionDetails"); found != answer.end()) {
+    const Json& thrown = found->contains("exception") ? found->at("exception") : Json::object();
+    fail("the page says: " + thrown.value("description", found->value("text", "")));
   }
-  return answer.result.get("result.value", "");
+  const Json& result = answer.at("result");
+  const auto value = result.find("value");
+  if (value == result.end()) return "";
+  return value->is_string() ? value->get<std::string>() : value->dump();
 }
 
 std::string Browser::picture() {
-  const Answer answer = call("Page.captureScreenshot", JsonObject().add("format", "png").text());
-  return from_base64(answer.result.get<std::string>("data"));
+  const Json answer = call("Page.captureScreenshot", {{"format", "png"}});
+  return from_base64(answer.at("data").get<std::string>());
 }
 
 // Between a call and its answer there may be events, which have no number.
-Browser::Answer Browser::call(const std::string& method, const std::string& parameters) {
-  const std::string number = std::to_string(++calls_);
-  const std::string session = session_.empty() ? "" : ",\"sessionId\":\"" + session_ + "\"";
-  std::string text = "{\"id\":" + number + ",\"method\":\"" + method + "\"" + session +
-                     ",\"params\":" + parameters + "}";
-  if (!pipe_.write(text, kPatienceMs)) fail("takes no commands");
+Json Browser::call(const std::string& method, const Json& parameters) {
+  Json request{{"id", ++calls_}, {"method", method}, {"params", parameters}};
+  if (!session_.empty()) request["sessionId"] = session_;
+  if (!pipe_.write(request.dump(), kPatienceMs)) fail("takes no commands");
   for (;;) {
+    std::string text;
     if (!pipe_.read(text, kPatienceMs)) fail("does not answer " + method);
-    std::istringstream input(text);
-    boost::property_tree::ptree message;
-    boost::property_tree::read_json(input, message);
-    if (message.get("id", "") != number) continue;
-    if (const auto error = message.get_child_optional("error")) {
-      fail("refuses " + method + ": " + error->get("message", ""));
+    Json message = Json::parse(text);
+    if (message.value("id", 0) != calls_) continue;
+    if (const auto error = message.find("error"); error != message.end()) {
+      fail("refuses " + method + ": " + error->value("message", ""));
     }
-    return {std::move(message.get_child("result"))};
+    return std::move(message.at("result"));
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 
@@ -58,9 +59,7 @@ class Browser {
   std::string picture();
 
  private:
-  struct Answer;
-
-  Answer call(const std::string& method, const std::string& parameters);
+  nlohmann::ordered_json call(const std::string& method, const nlohmann::ordered_json& parameters);
 
   // In this order: Chromium ends when its pipe does.
   TemporaryFolder profile_{"irdm-pictures"};

@@ -1,5 +1,7 @@
 // Differences of two runs that are known.
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "common/error.hpp"
 #include "replay/compare/comparison_json.hpp"
@@ -137,11 +139,32 @@ TEST_CASE("runs with other meshes are compared as bodies, with other objects not
                     Contains("other objects"));
 }
 
-TEST_CASE("a comparison as JSON has its numbers and quotes its words") {
+TEST_CASE("a comparison as JSON has its numbers to the bit, its words and its keys in order") {
   const TwoRuns runs({.force = {0.3, 0.0, 0.4}});
-  const std::string json = comparison_json(runs.compared(), runs.measured());
-  CHECK_THAT(json, Contains("\"name\": \"the \\\"cube\\\"\"") && Contains("\"unit\": \"rad\"") &&
-                       Contains("\"frames\": 4,"));
+  Comparison compared = runs.compared();
+  const Measures measured = runs.measured();
+  const auto json = nlohmann::ordered_json::parse(comparison_json(compared, measured));
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : json.items()) keys.push_back(key);
+  CHECK(keys == std::vector<std::string>{"format", "version", "a", "b", "frames", "frames_alone",
+                                         "evenly_spaced", "interval", "time", "objects",
+                                         "styluses"});
+  CHECK(json["frames"] == 4);
+  CHECK(json["time"].get<std::vector<double>>() == compared.times);
+  REQUIRE(json["objects"].size() == 1);
+  CHECK(json["objects"][0]["name"] == "the \"cube\"");
+  CHECK(json["objects"][0]["orientation"]["unit"] == "rad");
+  CHECK(json["objects"][0]["node"]["number"].is_number_integer());
+  REQUIRE(json["styluses"].size() == 1);
+  const auto& force = json["styluses"][0]["force"];
+  CHECK(force["rms_over_time"].get<std::vector<double>>() == compared.forces[0].rms);
+  CHECK(force["rms"].get<double>() == compared.forces[0].rms_over_time());
+
+  compared.a = "\xff.h5";  // no UTF-8
+  compared.forces[0].reference = std::nan("");
+  const auto odd = nlohmann::json::parse(comparison_json(compared, measured));
+  CHECK(odd["a"] == "\xEF\xBF\xBD.h5");
+  CHECK(odd["styluses"][0]["force"]["reference"].is_null());
 }
 
 TEST_CASE("an output is not written over, and one that is not finished leaves nothing") {

@@ -1,6 +1,7 @@
 // What compare says of two runs that were made so that the answers are known: a tap that lets a
 // node ring.
 #include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "replay/compare/comparison_json.hpp"
@@ -140,8 +141,11 @@ TEST_CASE("a tap is not noticeably different from itself") {
 
 TEST_CASE("what a run has too few frames for is not judged") {
   const TwoTaps taps({.interval = 0.02}, {.interval = 0.02});
-  const std::string json = comparison_json(taps.comparison, taps.measures);
-  CHECK_THAT(json, Contains("\"resolution\": 0.02") && Contains("\"noticeable\": null"));
+  const auto json = nlohmann::json::parse(comparison_json(taps.comparison, taps.measures));
+  const auto& perception = json["styluses"][0]["perception"];
+  CHECK(perception["onset"]["resolution"].get<double>() == Approx(0.02));
+  CHECK(perception["onset"]["noticeable"].is_null());
+  CHECK(perception["vibration"]["noticeable"].is_null());
   CHECK_THAT(comparison_table(taps.comparison, taps.measures),
              Contains("not judged: too few frames a second") &&
                  Contains("not judged: the frames are too far apart"));

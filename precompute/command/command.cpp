@@ -120,10 +120,10 @@ Command add_compress_command(CLI::App& app) {
       ->add_option("--fir-steps", options->settings.fir_steps,
                    "Steps of R that are kept as they are (default: 16, more where it takes more)")
       ->check(CLI::Range(1, 1000));
-  command->add_option("--early-steps")
-      ->group("")
-      ->check(CLI::Validator([](const std::string&) { return std::string("is named --fir-steps"); },
-                             ""));
+  const auto refuse = [](const std::string&) {
+    throw CLI::ValidationError("--early-steps", "is named --fir-steps");
+  };
+  command->add_option_function<std::string>("--early-steps", refuse)->group("");
   command->add_option("--threads", options->threads, "Threads of the BLAS (default: all cores)")
       ->check(CLI::Range(1, 1024));
   return [options] { return compress(*options); };

@@ -1,7 +1,7 @@
-// How soon the hand feels nothing when something fails: a stylus presses a cube, irdm-server in a
-// process of its own, the bridge's own threads, and between them a relay that makes things go wrong
-// at random moments. For each cause the time from the last good frame that was passed on (or from
-// the fault, if later ones came all along) to the first tick without force.
+// Fail-to-zero latency, the time from a fault to zero force: a stylus presses a cube, irdm-server
+// in a process of its own, the bridge's own threads, and between them a relay that makes things go
+// wrong at random moments. For each cause the time from the last good frame that was passed on (or
+// from the fault, if later ones came all along) to the first tick without force.
 //   bench_fail_to_zero [TIMES] [CAUSE]      20 of each cause and mode unless given
 // Beside it the longest gap between two ticks in that time: the machine's own noise.
 #include <sys/ptrace.h>

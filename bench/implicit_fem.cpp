@@ -16,7 +16,7 @@
 #include "bench/report.hpp"
 #include "bench/sparse_resident.hpp"
 #include "bench/statistics.hpp"
-#include "precompute/blas_kernel.hpp"
+#include "precompute/blas.hpp"
 #include "precompute/dynamics/sparse_solver.hpp"
 #include "precompute/fem/assembly.hpp"
 #include "precompute/mesh/box_mesh.hpp"

@@ -9,7 +9,7 @@
 #include "bench/machine.hpp"
 #include "bench/report.hpp"
 #include "bench/statistics.hpp"
-#include "precompute/blas_kernel.hpp"
+#include "precompute/blas.hpp"
 
 using namespace irdm;
 

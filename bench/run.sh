@@ -26,7 +26,7 @@ part() {  # TITLE COMMAND...
   part "Implicit finite elements" "$bin/bench_implicit_fem"
   part "Round trip" "$bin/bench_round_trip" "$model"
   part "Contacts" "$bin/bench_contact_step"
-  part "Contact solved at the bridge" "$bin/bench_foresee"
+  part "Contact solved at the bridge" "$bin/bench_predict_horizon"
   part "Viewers" "$bin/bench_viewer_load" "$model"
   part "Reconnects" "$bin/bench_reconnect"
   part "Scaling" bench/scaling.py out/bench "$bin"

@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "precompute/blas_kernel.hpp"
+#include "precompute/blas.hpp"
 #include "precompute/mesh/box_mesh.hpp"
 #include "precompute/mesh/tetgen_program.hpp"
 #include "precompute/modal/lowest_modes.hpp"

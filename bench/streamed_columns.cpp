@@ -17,7 +17,7 @@
 #include "common/model/model_file.hpp"
 #include "common/realtime/clock.hpp"
 #include "common/realtime/histogram.hpp"
-#include "scene/columns/scene_columns.hpp"
+#include "scene/columns/column_store.hpp"
 #include "simulation/step/simulation.hpp"
 
 using namespace irdm;
@@ -115,7 +115,7 @@ void feel(bench::Report& report, const std::string& where, const Motion& motion,
            peak;
   };
   report.row({where, motion.name(), static_cast<double>(columns.loaded() - loaded) / kDuration,
-              static_cast<double>(simulation.missed_columns()), share(0.5), share(0.99), share(1.0),
+              static_cast<double>(simulation.cache_misses()), share(0.5), share(0.99), share(1.0),
               static_cast<double>(step_time.percentile(0.5)) / 1e3,
               static_cast<double>(step_time.percentile(0.99)) / 1e3});
 }

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstddef>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 namespace irdm {
 
@@ -27,5 +29,13 @@ class Error : public std::runtime_error {
     return text;
   }
 };
+
+inline constexpr std::size_t kMostQuoted = 80;  ///< bytes of an input in a message
+
+/// Words of an input for a message: what is beyond `most` bytes becomes "...", and each byte that
+/// is no character, or one of control, "?".
+std::string shortened(std::string_view words, std::size_t most = kMostQuoted);
+/// The same, 'in quotes'.
+std::string in_quotes(std::string_view words);
 
 }  // namespace irdm

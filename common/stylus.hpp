@@ -8,7 +8,7 @@ namespace irdm {
 
 /// Bit 0 of StylusSample::buttons is the grab button.
 inline constexpr std::uint32_t kGrabButton = 1u << 0;
-/// Bit 1 is the reset button: when it goes down, every object is put back to the start.
+/// Bit 1 is the reset button: when it goes down, every object is reset.
 inline constexpr std::uint32_t kResetButton = 1u << 1;
 
 /// What a bridge knows of one stylus at one moment.

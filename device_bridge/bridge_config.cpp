@@ -7,7 +7,6 @@
 
 #include "common/blackbox/black_box_file.hpp"
 #include "common/error.hpp"
-#include "common/quoted.hpp"
 #include "device_bridge/device_registry.hpp"
 
 namespace irdm {

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "common/error.hpp"
-#include "common/quoted.hpp"
 #include "device_bridge/forcedimension/forcedimension_device.hpp"
 #include "device_bridge/openhaptics/openhaptics_device.hpp"
 #include "device_bridge/virtual_stylus.hpp"

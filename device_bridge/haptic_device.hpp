@@ -29,10 +29,10 @@ class TickSource {
 
 /// What a device says of itself beside its readings.
 struct DeviceState {
-  double motor_warmth = 0.0;  ///< of the warmest motor, 0 cold to 1; 0: it says nothing
-  bool ready = true;          ///< calibrated; while it is not, no force
-  bool failed = false;        ///< something went wrong: no force any more
-  bool lost = false;          ///< and no readings either
+  double motor_temperature = 0.0;  ///< of the warmest motor, 0 cold to 1; 0: it says nothing
+  bool ready = true;               ///< calibrated; while it is not, no force
+  bool failed = false;             ///< something went wrong: no force any more
+  bool lost = false;               ///< and no readings either
 };
 
 /// The largest forces that a device is made for; infinity: it does not say.

@@ -96,8 +96,8 @@ void ServoLoop::apply(std::int64_t now_ns, const ServoInput& input) noexcept {
   ForceDemand wanted = demand(now_ns, input);
   wanted.force = clutch_.gain(now_ns) * mapping_.workspace.to_device(wanted.force);
   wanted.normal = mapping_.workspace.direction_to_device(wanted.normal);
-  const Vector3 force =
-      filter_.step(now_ns, {.tip = *reading_, .motor_warmth = device_state_.motor_warmth}, wanted);
+  const Vector3 force = filter_.step(
+      now_ns, {.tip = *reading_, .motor_temperature = device_state_.motor_temperature}, wanted);
   demanded_ = wanted;
   peak_force_ = std::max(peak_force_, force.norm());
   show(force);

@@ -7,7 +7,6 @@
 #include <string_view>
 
 #include "common/error.hpp"
-#include "common/quoted.hpp"
 
 namespace irdm {
 namespace {

@@ -145,7 +145,7 @@ Vector3 VirtualStylus::move_hand(double time, const Vector3& target) noexcept {
 }
 
 DeviceState VirtualStylus::state() const noexcept {
-  return {.motor_warmth = std::min(motors_.warmth(), 1.0)};
+  return {.motor_temperature = std::min(motors_.warmth(), 1.0)};
 }
 
 std::string VirtualStylus::trouble() const {

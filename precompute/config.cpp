@@ -1,5 +1,6 @@
 #include "precompute/config.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -8,6 +9,105 @@
 #include "precompute/mesh/mesh_file.hpp"
 
 namespace irdm::precompute {
+namespace {
+
+constexpr double kDefaultFirstStep = 1e-4;
+constexpr double kTargetStrain = 1e-4;
+constexpr int kMaxStepsPerInterval = 100'000;
+constexpr int kMaxHold = 1'000'000;
+// What decimal numbers in a file may miss of dividing dt.
+constexpr double kDivides = 1e-6;
+
+double read_step(TomlTable& table, const std::string& key, double dt) {
+  const double step = table.number(key, above(0));
+  const double count = dt / step;
+  if (step > dt * (1.0 + kDivides)) {
+    table.fail(key, "is longer than response.dt", "make it dt over a whole number");
+  }
+  if (count > kMaxStepsPerInterval) {
+    table.fail(key, "is too short: more than 100 000 steps in response.dt", "make it longer");
+  }
+  if (std::abs(count - std::round(count)) > kDivides * count) {
+    table.fail(key, "does not divide response.dt", "make it dt over a whole number");
+  }
+  return dt / std::round(count);
+}
+
+}  // namespace
+
+TimeSteppingConfig read_time_stepping(TomlTable table, double dt) {
+  TimeSteppingConfig config;
+  config.model = table.choice("model", {"corotational", "linear"}, "corotational") == "linear"
+                     ? Elasticity::kLinear
+                     : Elasticity::kCorotational;
+  const double default_first = dt / std::ceil(dt / kDefaultFirstStep * (1.0 - kDivides));
+  config.first_step = table.has("first_step") ? read_step(table, "first_step", dt) : default_first;
+  config.last_step = table.has("last_step") ? read_step(table, "last_step", dt) : dt;
+  if (config.last_step < config.first_step) {
+    table.fail("last_step", "is shorter than first_step", "make it first_step or longer");
+  }
+  config.hold = table.integer("hold", 1, kMaxHold, config.hold);
+  if (table.has("force")) config.force = table.number("force", lab::kProbeForce);
+  config.rotation_weights = table.choice("rotation_weights", {"mass", "none"}, "mass") == "mass"
+                                ? RotationWeights::kMass
+                                : RotationWeights::kNone;
+  table.finish();
+  return config;
+}
+
+std::vector<int> step_schedule(const TimeSteppingConfig& config, double dt, int intervals) {
+  const int fewest = static_cast<int>(std::lround(dt / config.last_step));
+  int count = static_cast<int>(std::lround(dt / config.first_step));
+  std::vector<int> schedule;
+  for (int k = 0; k < intervals; ++k) {
+    if (k > 0 && k % config.hold == 0) count = std::max(fewest, (count + 1) / 2);
+    schedule.push_back(count);
+  }
+  return schedule;
+}
+
+double default_force(const SoftBody& body, double youngs_modulus) {
+  return kTargetStrain * youngs_modulus * std::pow(body.volume() / body.node_count(), 2.0 / 3.0);
+}
+
+namespace {
+
+constexpr int kMostModes = 20'000;
+
+ModeSolver solver_from_word(const std::string& word) {
+  static const std::map<std::string, ModeSolver> words{
+      {"spectra", ModeSolver::kSpectra},
+      {"slepc", ModeSolver::kSlepc},
+      {"slepc-multigrid", ModeSolver::kSlepcMultigrid}};
+  return words.at(word);
+}
+
+}  // namespace
+
+ModesConfig read_modes(TomlTable table) {
+  ModesConfig modes;
+  if (table.has("count") + table.has("highest_frequency") + table.has("error") > 1) {
+    table.fail("", "has more than one of count, highest_frequency and error",
+               "choose one, or none for all modes");
+  }
+  if (table.has("count")) modes.count = table.integer("count", 1, kMostModes, 1);
+  if (table.has("highest_frequency")) {
+    modes.highest_frequency = table.number("highest_frequency", lab::kFrequency);
+  }
+  if (table.has("error")) modes.error = table.number("error", between(1e-4, 0.5));
+  for (const char* key : {"contact_radius", "solver"}) {
+    if (table.has(key) && modes.all()) {
+      table.fail(key, "is there but all modes are asked for",
+                 "give one of count, highest_frequency and error, or leave it out");
+    }
+  }
+  modes.contact_radius = table.number("contact_radius", lab::kLength, modes.contact_radius);
+  modes.solver =
+      solver_from_word(table.choice("solver", {"spectra", "slepc", "slepc-multigrid"}, "spectra"));
+  table.finish();
+  return modes;
+}
+
 namespace {
 
 constexpr int kMaxCells = 100;

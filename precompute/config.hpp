@@ -4,15 +4,67 @@
 #include <filesystem>
 #include <optional>
 #include <variant>
+#include <vector>
 
 #include "common/config/toml_reader.hpp"
 #include "common/model/model.hpp"
 #include "common/model/model_file.hpp"
-#include "precompute/dynamics/time_stepping_config.hpp"
+#include "precompute/dynamics/rigid_extraction.hpp"
+#include "precompute/dynamics/soft_body.hpp"
 #include "precompute/mesh/region.hpp"
-#include "precompute/modal/modes_config.hpp"
 
 namespace irdm::precompute {
+
+/// [time_stepping]: how method = "time-stepping" obtains R. The first `hold` response intervals are
+/// divided into steps of first_step, every further `hold` intervals into half as many (rounded
+/// up), until a step is as long as last_step. Steps always divide the interval.
+struct TimeSteppingConfig {
+  Elasticity model = Elasticity::kCorotational;  ///< "corotational" | "linear"
+  double first_step = 0.0;  ///< [s], divides dt; default: dt over a whole number, 1e-4 at most
+  double last_step = 0.0;   ///< [s], divides dt, first_step at least; default: dt
+  int hold = 10;            ///< 1..1 000 000
+  /// Force that a column is simulated with [N], above 0; the response is divided by it. 0 (key left
+  /// out): see default_force(). Much smaller ones lose digits to rounding
+  /// (0.5 % of R at 1e-13 N on a cube of 12 cm), larger ones leave the linear range.
+  double force = 0.0;
+  RotationWeights rotation_weights = RotationWeights::kMass;  ///< "mass" | "none"
+};
+
+/// @param table of the configuration file; all keys are optional
+/// @param dt response interval [s]
+TimeSteppingConfig read_time_stepping(TomlTable table, double dt);
+
+/// Number of steps in each of the T response intervals.
+std::vector<int> step_schedule(const TimeSteppingConfig& config, double dt, int intervals);
+
+/// 1e-4 of Young's modulus times the area that a node has, (volume / nodes)^(2/3): strains of 1e-4
+/// next to the node, so that R is the linear response to about that share.
+double default_force(const SoftBody& body, double youngs_modulus);
+
+/// Who finds the lowest modes.
+enum class ModeSolver {
+  kSpectra,         ///< Spectra in one process, with a sparse Cholesky factorisation
+  kSlepc,           ///< SLEPc on any number of ranks, with a factorisation by MUMPS
+  kSlepcMultigrid,  ///< SLEPc on any number of ranks, with conjugate gradients and multigrid (GAMG)
+};
+
+/// [modes]: which of the elastic modes are computed. At most one of `count`, `highest_frequency`
+/// and `error`; none: all of them.
+struct ModesConfig {
+  std::optional<int> count;                 ///< the lowest so many, 1..20 000
+  std::optional<double> highest_frequency;  ///< all up to this [Hz], > 0
+  /// As few as keep the force under a fingertip within this share of that of all modes, 1e-4..0.5.
+  std::optional<double> error;
+  /// Of that fingertip [m], > 0. What the missing modes would add is kept for nodes up to twice as
+  /// far apart.
+  double contact_radius = 0.015;
+  ModeSolver solver = ModeSolver::kSpectra;
+
+  bool all() const { return !count && !highest_frequency && !error; }
+};
+
+/// Throws Error with file and line.
+ModesConfig read_modes(TomlTable table);
 
 /// A box to be meshed: one corner at the origin, edges along the axes.
 struct BoxConfig {

@@ -1,7 +1,7 @@
 #include <map>
 
 #include "common/program/program.hpp"
-#include "precompute/blas_kernel.hpp"
+#include "precompute/blas.hpp"
 #include "precompute/command/command.hpp"
 
 using namespace irdm;

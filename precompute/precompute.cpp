@@ -9,7 +9,7 @@
 
 #include "common/error.hpp"
 #include "common/model/model_check.hpp"
-#include "precompute/blas_kernel.hpp"
+#include "precompute/blas.hpp"
 #include "precompute/columns/assemble.hpp"
 #include "precompute/columns/compute_columns.hpp"
 #include "precompute/columns/work_file.hpp"

@@ -55,7 +55,7 @@ class FrameSteps {
   std::size_t end_;    // one behind its last
 };
 
-/// What is to be made again, and what is to be written of it.
+/// What is to be rerun, and what is to be written of it.
 struct ReplayOptions {
   std::filesystem::path trace;
   std::vector<std::string> models;     ///< FILE or NAME=FILE

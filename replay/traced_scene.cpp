@@ -6,10 +6,8 @@
 
 #include "common/checksum.hpp"
 #include "common/error.hpp"
-#include "common/quoted.hpp"
 #include "replay/replay.hpp"
 #include "scene/scene.hpp"
-#include "scene/scene_simulation.hpp"
 #include "trace/recording.hpp"
 #include "trace/trace_layout.hpp"
 

@@ -10,7 +10,7 @@
 
 namespace irdm::replay {
 
-/// An object of a traced run, and the model that it is made again with.
+/// An object of a traced run, and the model that it is rerun with.
 struct TracedObject {
   std::string name;
   std::filesystem::path model;
@@ -18,7 +18,7 @@ struct TracedObject {
   ResponseKind engine = ResponseKind::kModal;
 };
 
-/// The scene of a trace, ready to be made again.
+/// The scene of a trace, ready to be rerun.
 struct TracedScene {
   std::vector<TracedObject> objects;
   SimulationConfig config;

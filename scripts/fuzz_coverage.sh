@@ -20,9 +20,9 @@ decoders=(
   viewer/request_rules.cpp viewer/connection.cpp
   device_bridge/link/server_session.cpp device_bridge/link/force_receiver.cpp
   device_bridge/bridge_config.cpp device_bridge/stylus_script.cpp
-  device_bridge/link/server_datagrams.cpp
-  precompute/config.cpp precompute/modal/modes_config.cpp precompute/dynamics/time_stepping_config.cpp
-  precompute/columns/column_file.cpp precompute/compress/dense_input.cpp precompute/mesh/format/*.cpp
+  device_bridge/link/server_session.cpp
+  precompute/config.cpp
+  precompute/columns/column_file.cpp precompute/compress/tail_space.cpp precompute/mesh/format/*.cpp
   replay/compare/run_reader.cpp
 )
 lists=build/coverage/tests/fuzz

@@ -1,30 +1,30 @@
 #include "server/run_server.hpp"
 
 #include <omp.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <iostream>
 #include <memory>
+#include <string>
 
 #include "common/blackbox/frame_log.hpp"
 #include "common/checksum.hpp"
 #include "common/contact/contact_model.hpp"
 #include "common/error.hpp"
 #include "common/program/program.hpp"
-#include "common/quoted.hpp"
 #include "common/realtime/event_fd.hpp"
 #include "common/realtime/scheduling.hpp"
 #include "scene/scene.hpp"
-#include "scene/scene_simulation.hpp"
 #include "server/blackbox/step_log.hpp"
-#include "server/report.hpp"
 #include "server/threads/deformation_thread.hpp"
 #include "server/threads/force_thread.hpp"
 #include "server/threads/recorder_thread.hpp"
 #include "server/threads/status_thread.hpp"
 #include "server/threads/step_clock.hpp"
-#include "server/viewed_run/live_run.hpp"
-#include "server/viewed_run/playback.hpp"
+#include "server/viewer_session/live_run.hpp"
+#include "server/viewer_session/playback.hpp"
 #include "simulation/step/settings.hpp"
 #include "trace/recording.hpp"
 #include "trace/trace_layout.hpp"
@@ -32,6 +32,86 @@
 
 namespace irdm {
 namespace {
+
+/// The threads of a run that has ended.
+struct FinishedRun {
+  const ForceThread& force;
+  const NetworkServer& network;
+  const DeformationThread& deformation;
+  const RecorderThread* recorder;  ///< null: not recorded
+  const RealTimeClock* clock;      ///< null: lockstep
+  std::string memory;              ///< whether it is locked, in words
+  const SceneColumns& columns;
+  std::uint64_t viewers_unlogged;  ///< complaints about viewers beyond what is logged
+};
+
+std::string microseconds(const Histogram& histogram) {
+  const auto value = [](std::int64_t ns) { return static_cast<double>(ns) / 1000.0; };
+  char text[128];
+  std::snprintf(text, sizeof text, "p50 %.1f us, p99 %.1f us, max %.1f us",
+                value(histogram.percentile(0.5)), value(histogram.percentile(0.99)),
+                value(histogram.maximum()));
+  return text;
+}
+
+// Prints how the run went and returns the exit status: 1 when the recording is not whole.
+int print_report(const FinishedRun& run, const ServerOptions& options) {
+  const ForceThreadReport& force = run.force.report();
+  std::cout << "steps: " << force.steps << '\n';
+  if (run.clock != nullptr) {
+    std::cout << "real-time scheduling: " << run.force.scheduling() << ", memory " << run.memory
+              << '\n'
+              << "missed deadlines: " << run.clock->missed() << '\n'
+              << "wake-up delay: " << microseconds(run.clock->wakeup_delay()) << '\n';
+  }
+  char peak[32];
+  std::snprintf(peak, sizeof peak, "%.3f", force.peak_force);
+  std::cout << "step time: " << microseconds(force.step_time) << '\n'
+            << "peak force: " << peak << " N\n"
+            << "reset: " << force.resets << " times\n"
+            << "steps without a finite solution: " << force.unsolved << '\n'
+            << "surfaces: " << run.deformation.frames() << ", each "
+            << microseconds(run.deformation.compute_time()) << '\n'
+            << "sessions: " << run.network.stats().accepted << " accepted, "
+            << run.network.stats().refused << " refused, " << run.network.stats().protocol_errors
+            << " closed for protocol errors\n";
+  const auto faults = [](const char* what, std::uint64_t count) {
+    if (count > 0) std::cout << what << ": " << count << '\n';
+  };
+  faults("forces that were not finite, sent as zero", run.network.stats().forces_not_finite);
+  faults("connections cut before their Hello, for another", run.network.stats().displaced);
+  faults("connections without the server's key", run.network.stats().wrong_keys);
+  faults("connections closed for being silent", run.network.stats().timeouts);
+  faults("connections closed for too many messages", run.network.stats().too_fast);
+  faults("datagrams that were spoilt, foreign or came twice, dropped",
+         run.network.stats().datagrams_foreign + run.network.stats().datagrams_forged +
+             run.network.stats().datagrams_replayed);
+  faults("messages that a newer one had overtaken, dropped", run.network.stats().messages_late);
+  faults("lines about bridges that were not logged", run.network.stats().unlogged);
+  faults("lines about viewers that were not logged", run.viewers_unlogged);
+  faults("errors inside the network thread", run.network.stats().internal_errors);
+  faults("forces of bridges that came late, entered at their own step", force.late);
+  faults("forces of bridges that were lost", force.lost);
+  if (run.columns.any()) {
+    std::cout << "nodes whose columns were read: " << run.columns.loaded()
+              << ", cache misses: " << force.cache_misses << '\n';
+  }
+  faults("nodes whose columns cannot be read", run.columns.failed());
+  faults("steps that the deformation did not see", run.deformation.lost_steps());
+  if (run.recorder == nullptr) return 0;
+  if (!run.recorder->error().empty()) {
+    std::cerr << "irdm-server: error: recording ended early: " << run.recorder->error() << '\n';
+    return 1;
+  }
+  std::cout << "recorded: " << run.recorder->rows() << " steps in " << options.record->string()
+            << std::endl;
+  if (const std::uint64_t lost = run.recorder->lost()) {
+    std::cerr << "irdm-server: error: " << lost << " steps are missing in the trace: "
+              << "the disk was too slow; record to a faster one\n";
+    return 1;
+  }
+  return 0;
+}
 
 void check_model(const SceneConfig& scene, const TraceHeader& header, const std::string& trace) {
   const std::filesystem::path& model = scene.objects.front().model;

@@ -18,7 +18,7 @@ TraceHeader read_trace_header(const std::filesystem::path& path) {
   if (version != trace::kVersion) {
     throw Error(path.string(),
                 "is a trace of version " + std::to_string(version) + ", and only version " +
-                    std::to_string(trace::kVersion) + " can be made again" +
+                    std::to_string(trace::kVersion) + " can be rerun" +
                     (version == 1 ? ": its step was of first order in time" : ""),
                 "record it again");
   }

@@ -48,7 +48,7 @@ Hello get_hello(Reader& reader) {
 
 Command get_command(Reader& reader) {
   const auto kind = reader.get<std::uint16_t>();
-  if (kind < static_cast<std::uint16_t>(CommandKind::kPutBack) ||
+  if (kind < static_cast<std::uint16_t>(CommandKind::kReset) ||
       kind > static_cast<std::uint16_t>(CommandKind::kSetSpeed)) {
     throw MessageError("the command is unknown");
   }

@@ -297,7 +297,7 @@ void BeastConnection::expect_hello() const {
 
 void BeastConnection::take(const Command& command) {
   expect_hello();
-  if (!looks_on_) hub_.carry_out(command);
+  if (!looks_on_) hub_.handle(command);
 }
 
 void BeastConnection::take(const SettingsRequest& request) {
@@ -305,12 +305,12 @@ void BeastConnection::take(const SettingsRequest& request) {
   if (request.objects != hub_.objects()) {
     throw MessageError("its settings are for another number of objects");
   }
-  if (!looks_on_) hub_.carry_out(request);
+  if (!looks_on_) hub_.handle(request);
 }
 
 void BeastConnection::take(const StylusRequest& request) {
   expect_hello();
-  if (!looks_on_) hub_.carry_out(request, *this);
+  if (!looks_on_) hub_.handle(request, *this);
 }
 
 void BeastConnection::offer(SharedBytes& slot, SharedBytes bytes) {

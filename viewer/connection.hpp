@@ -27,9 +27,9 @@ class Hub {
   virtual SharedBytes newest_health() = 0;
   virtual SharedBytes newest_state(const Connection& viewer) = 0;
   /// What a viewer asks for that may ask.
-  virtual void carry_out(const Command& command) = 0;
-  virtual void carry_out(const SettingsRequest& request) = 0;
-  virtual void carry_out(const StylusRequest& request, const Connection& viewer) = 0;
+  virtual void handle(const Command& command) = 0;
+  virtual void handle(const SettingsRequest& request) = 0;
+  virtual void handle(const StylusRequest& request, const Connection& viewer) = 0;
   /// Logs what a peer did wrong, or counts it where the log has had enough of them.
   virtual void complain(const std::string& what) = 0;
 };

@@ -124,7 +124,7 @@ struct Hello {
 };
 
 enum class CommandKind : std::uint16_t {
-  kPutBack = 1,
+  kReset = 1,
   kPause = 2,
   kResume = 3,
   kStep = 4,  ///< number
@@ -140,7 +140,7 @@ enum class CommandKind : std::uint16_t {
 
 /// What a viewer asks for.
 struct Command {
-  CommandKind kind = CommandKind::kPutBack;
+  CommandKind kind = CommandKind::kReset;
   std::uint16_t number = 0;
   double value = 0.0;
 };

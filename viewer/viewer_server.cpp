@@ -12,11 +12,10 @@
 #include <vector>
 
 #include "common/error.hpp"
-#include "common/quoted.hpp"
 #include "common/realtime/clock.hpp"
 #include "common/wire/token_bucket.hpp"
 #include "viewer/connection.hpp"
-#include "viewer/viewed_run.hpp"
+#include "viewer/viewer_session.hpp"
 
 namespace irdm::viewer {
 
@@ -29,7 +28,7 @@ constexpr int kTicks = 5;  // of the timer between two messages of health
 
 class ViewerServer::Impl final : public Hub {
  public:
-  Impl(ViewerSettings settings, ViewedRun& run)
+  Impl(ViewerSettings settings, ViewerSession& run)
       : settings_(std::move(settings)),
         run_(run),
         sources_(run.sources()),
@@ -57,9 +56,9 @@ class ViewerServer::Impl final : public Hub {
   SharedBytes newest_frame() override;
   SharedBytes newest_health() override;
   SharedBytes newest_state(const Connection& viewer) override;
-  void carry_out(const Command& command) override;
-  void carry_out(const SettingsRequest& request) override;
-  void carry_out(const StylusRequest& request, const Connection& viewer) override;
+  void handle(const Command& command) override;
+  void handle(const SettingsRequest& request) override;
+  void handle(const StylusRequest& request, const Connection& viewer) override;
   void complain(const std::string& what) override;
 
   std::uint16_t port_ = 0;
@@ -83,7 +82,7 @@ class ViewerServer::Impl final : public Hub {
   void await_end(std::int64_t deadline_ns);
 
   ViewerSettings settings_;
-  ViewedRun& run_;
+  ViewerSession& run_;
   std::vector<SurfaceSource> sources_;
   boost::asio::io_context io_{1};
   tcp::acceptor acceptor_;
@@ -224,17 +223,17 @@ SharedBytes ViewerServer::Impl::newest_state(const Connection& viewer) {
   return std::make_shared<const Bytes>(encode(state));
 }
 
-void ViewerServer::Impl::carry_out(const Command& command) {
-  run_.carry_out(command);
+void ViewerServer::Impl::handle(const Command& command) {
+  run_.handle(command);
   spread_state();
 }
 
-void ViewerServer::Impl::carry_out(const SettingsRequest& request) {
-  run_.carry_out(request);
+void ViewerServer::Impl::handle(const SettingsRequest& request) {
+  run_.handle(request);
   spread_state();
 }
 
-void ViewerServer::Impl::carry_out(const StylusRequest& request, const Connection& viewer) {
+void ViewerServer::Impl::handle(const StylusRequest& request, const Connection& viewer) {
   if (!run_.scene().viewer_stylus) return;
   if (stylus_.take(request, &viewer, monotonic_ns())) spread_state();
 }
@@ -338,7 +337,7 @@ void ViewerServer::Impl::await_end(std::int64_t deadline_ns) {
   timer_.async_wait([this, deadline_ns](error_code) { await_end(deadline_ns); });
 }
 
-ViewerServer::ViewerServer(ViewerSettings settings, ViewedRun& run)
+ViewerServer::ViewerServer(ViewerSettings settings, ViewerSession& run)
     : impl_(std::make_unique<Impl>(std::move(settings), run)) {}
 ViewerServer::~ViewerServer() = default;
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "viewer/page_files.hpp"
-#include "viewer/viewed_run.hpp"
+#include "viewer/viewer_session.hpp"
 
 namespace irdm::viewer {
 
@@ -30,7 +30,7 @@ class ViewerServer {
  public:
   /// Binds and listens. Throws Error when it cannot, or when a token is needed and not there.
   /// @param run must outlive the server
-  ViewerServer(ViewerSettings settings, ViewedRun& run);
+  ViewerServer(ViewerSettings settings, ViewerSession& run);
   ViewerServer(const ViewerServer&) = delete;
   ViewerServer& operator=(const ViewerServer&) = delete;
   ~ViewerServer();  ///< stops

@@ -4,7 +4,6 @@
 
 #include "common/config/range.hpp"
 #include "common/error.hpp"
-#include "common/quoted.hpp"
 
 namespace irdm {
 namespace {

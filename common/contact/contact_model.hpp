@@ -10,7 +10,7 @@
 
 namespace irdm {
 
-/// Steps that a contact model can look ahead.
+/// Steps that a contact model can predict.
 inline constexpr int kMaxHorizon = 50;
 
 inline constexpr std::uint64_t kNoStep = ~std::uint64_t{0};

@@ -129,7 +129,7 @@ File File::create(const std::filesystem::path& path, const Handle& access) {
     throw Error(path.string(), "cannot be created", "check that the folder exists and is writable");
   }
   File made(std::move(file), path.string());
-  made.room_.emplace();
+  made.reserved_.emplace();
   return made;
 }
 
@@ -211,7 +211,7 @@ void File::flush() {
 
 void File::close() {
   flush();
-  if (room_) room_->give_back(file_.get());
+  if (reserved_) reserved_->release(file_.get());
   file_ = Handle();
 }
 
@@ -457,10 +457,10 @@ void File::create_growing(const std::string& dataset, const Shape& row, hsize_t 
 }
 
 void File::reserve_for(const Handle& dataset, hsize_t rows, hsize_t more) {
-  if (!room_) return;
+  if (!reserved_) return;
   const hsize_t bytes = growth(dataset, rows, more);
   if (bytes == 0) return;
-  const int error = room_->reserve(file_.get(), bytes);
+  const int error = reserved_->reserve(file_.get(), bytes);
   if (error != 0) fail_write("cannot grow: " + std::generic_category().message(error));
 }
 

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "common/hdf5/free_space.hpp"
 #include "common/hdf5/handle.hpp"
-#include "common/hdf5/room.hpp"
 
 namespace irdm::hdf5 {
 
@@ -138,7 +138,7 @@ class File {
 
   Handle file_;
   std::string name_;
-  std::optional<Room> room_ = {};  ///< of a new file on the disk
+  std::optional<ReservedSpace> reserved_ = {};  ///< of a new file on the disk
 };
 
 }  // namespace irdm::hdf5

@@ -10,7 +10,6 @@
 #include "common/model/dense_file.hpp"
 #include "common/model/model_check.hpp"
 #include "common/model/model_writer.hpp"
-#include "common/quoted.hpp"
 #include "common/response/modal_response.hpp"
 
 namespace irdm {

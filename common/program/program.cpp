@@ -14,7 +14,6 @@
 #include <new>
 
 #include "common/error.hpp"
-#include "common/quoted.hpp"
 
 namespace irdm {
 

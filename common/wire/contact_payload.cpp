@@ -1,4 +1,4 @@
-#include "common/wire/contact_payload.hpp"
+#include "common/wire/payload.hpp"
 
 #include <cmath>
 #include <string>

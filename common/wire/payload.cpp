@@ -5,7 +5,6 @@
 #include <string>
 
 #include "common/wire/bytes.hpp"
-#include "common/wire/contact_payload.hpp"
 #include "common/wire/protocol_error.hpp"
 
 namespace irdm::wire {

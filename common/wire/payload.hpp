@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 
+#include "common/wire/bytes.hpp"
 #include "common/wire/message.hpp"
 
 /// Payloads, field by field as in the tables of docs/protocol.md.
@@ -21,5 +22,15 @@ std::optional<std::size_t> payload_size(MessageType type) noexcept;
 void encode_payload(const Message& message, std::span<std::uint8_t> payload);
 /// Reads a payload of the right size. Throws ProtocolError for values outside their range.
 Message decode_payload(MessageType type, std::span<const std::uint8_t> payload);
+
+// Of the contact that is solved at the bridge (contact_payload.cpp).
+
+inline constexpr std::size_t kContactModelSize = 4072;
+inline constexpr std::size_t kAppliedForcesSize = 24 + 72 * AppliedForces::kSteps;
+
+void encode(const ContactModelMessage& message, ByteWriter& out);
+ContactModelMessage decode_contact_model(ByteReader& in);
+void encode(const AppliedForcesMessage& message, ByteWriter& out);
+AppliedForcesMessage decode_applied_forces(ByteReader& in);
 
 }  // namespace irdm::wire

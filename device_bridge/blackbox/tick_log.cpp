@@ -37,8 +37,8 @@ void write_input(ColumnGroup<TickRow>& columns, std::int64_t origin_ns) {
                                [](const TickRow& row) { return row.device.failed; });
   columns.number<std::uint8_t>("device_lost", "",
                                [](const TickRow& row) { return row.device.lost; });
-  columns.number<double>("motor_warmth", "",
-                         [](const TickRow& row) { return row.device.motor_warmth; });
+  columns.number<double>("motor_temperature", "",
+                         [](const TickRow& row) { return row.device.motor_temperature; });
   columns.number<std::uint64_t>("sequence", "",
                                 [](const TickRow& row) { return row.sample.sequence; });
   columns.number<std::int32_t>("buttons", "",

@@ -15,7 +15,7 @@ Vector3 sideways(const Vector3& v, const Vector3& normal) noexcept {
 
 }  // namespace
 
-// Where nothing can be touched, nothing is foreseen for any longer.
+// Where nothing can be touched, nothing is predicted for any longer.
 bool ContactPredictor::reaches(std::uint64_t k) const noexcept {
   const int horizon = model_.valid ? model_.horizon : kMaxHorizon;
   return any_ && k > model_.step && k - model_.step <= static_cast<std::uint64_t>(horizon);

@@ -24,7 +24,7 @@ struct LinkMeasurement {
   double predict_success() const noexcept { return share(young_for_predict); }
   /// Of the two, that of the bridge's mode.
   double success() const noexcept { return predict ? predict_success() : hold_success(); }
-  /// Age that a force may have in that mode [ns]; with a contact model as far as it looks ahead.
+  /// Age that a force may have in that mode [ns]; with a contact model as far as it predicts.
   std::int64_t limit_ns() const noexcept { return predict ? predict_limit_ns() : kHoldNs; }
   std::int64_t predict_limit_ns() const noexcept;
   /// Share of the server's steps that did not arrive.

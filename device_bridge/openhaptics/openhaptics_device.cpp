@@ -164,7 +164,7 @@ void OpenHapticsDevice::read_warmth() noexcept {
     if (motor > warmest) warmest = std::min(motor, 1.0);
   }
   if (warm_ticks_ > 0) --warm_ticks_;
-  state_.motor_warmth = warm_ticks_ > 0 ? 1.0 : warmest;
+  state_.motor_temperature = warm_ticks_ > 0 ? 1.0 : warmest;
 }
 
 void OpenHapticsDevice::calibrate() noexcept {

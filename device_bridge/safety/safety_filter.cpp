@@ -60,7 +60,7 @@ Vector3 SafetyFilter::step(std::int64_t now_ns, const DeviceReading& reading,
                            const ForceDemand& demand) noexcept {
   const ReadingVerdict verdict = check(now_ns, reading);
   observe(now_ns);
-  thermal_.heat(sent_.norm(), reading_.elapsed(), reading.motor_warmth);
+  thermal_.heat(sent_.norm(), reading_.elapsed(), reading.motor_temperature);
   accept(now_ns, demand);
   age_ = age(now_ns);
   const double fresh_share = fresh(now_ns);

@@ -31,8 +31,8 @@ struct FilterLimits {
 
 /// The device at one tick.
 struct DeviceReading {
-  Vector3 tip = Vector3::Zero();  ///< [m], D; anything
-  double motor_warmth = 0.0;      ///< what the device says, 0 to 1; 0: it says nothing
+  Vector3 tip = Vector3::Zero();   ///< [m], D; anything
+  double motor_temperature = 0.0;  ///< what the device says, 0 to 1; 0: it says nothing
 };
 
 /// The force that the world asks for at one tick, and what it rests on. Nothing in it is trusted.

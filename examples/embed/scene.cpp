@@ -8,7 +8,6 @@
 
 #include "common/checksum.hpp"
 #include "scene/scene.hpp"
-#include "scene/scene_simulation.hpp"
 #include "simulation/step/simulation.hpp"
 #include "trace/trace_writer.hpp"
 

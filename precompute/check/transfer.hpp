@@ -5,6 +5,7 @@
 #include <functional>
 #include <vector>
 
+#include "common/model/model.hpp"
 #include "common/response/stored_response.hpp"
 
 /// The z-transform of a node's own response on circles about the origin, and what can be read from
@@ -34,5 +35,15 @@ int resolving_half_circle(Eigen::Index length);
 int count_zeros(const MatrixHalfCircle& response, double radius,
                 const std::function<std::complex<double>(const Eigen::Matrix3cd&,
                                                          std::complex<double>)>& value);
+
+/// A record that is long enough to stand for one without end.
+struct RecordLength {
+  int steps;
+  /// Of the circle that counts as the unit circle: what lies beyond the record weighs less than
+  /// 1e-9 on it. 1 unless the modes hardly decay.
+  double radius;
+};
+RecordLength record_length(const ModalResponse& response, double dt);
+RecordLength record_length(const CompressedResponse& response);
 
 }  // namespace irdm::precompute

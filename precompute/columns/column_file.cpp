@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "common/error.hpp"
-#include "common/quoted.hpp"
 #include "common/response/modal_response.hpp"
 #include "common/wire/frame.hpp"
 

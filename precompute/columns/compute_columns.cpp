@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "common/hdf5/file.hpp"
-#include "precompute/blas_kernel.hpp"
+#include "precompute/blas.hpp"
 
 namespace irdm::precompute {
 

@@ -10,7 +10,7 @@
 #include "common/error.hpp"
 #include "common/process/temporary_files.hpp"
 #include "common/program/program.hpp"
-#include "precompute/blas_kernel.hpp"
+#include "precompute/blas.hpp"
 #include "precompute/check/check_model.hpp"
 #include "precompute/columns/assemble.hpp"
 #include "precompute/compress/compress_model.hpp"

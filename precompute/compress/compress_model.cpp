@@ -10,7 +10,7 @@
 #include "common/error.hpp"
 #include "common/model/model_writer.hpp"
 #include "common/response/compressed_response.hpp"
-#include "precompute/blas_product.hpp"
+#include "precompute/blas.hpp"
 #include "precompute/compress/joint_shapes.hpp"
 #include "precompute/compress/measured_error.hpp"
 #include "precompute/compress/pole_fit.hpp"

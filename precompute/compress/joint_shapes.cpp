@@ -6,7 +6,7 @@
 #include <random>
 
 #include "common/error.hpp"
-#include "precompute/blas_product.hpp"
+#include "precompute/blas.hpp"
 
 namespace irdm::precompute {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/response/stored_response.hpp"
-#include "precompute/blas_product.hpp"
+#include "precompute/blas.hpp"
 #include "precompute/check/static_reference.hpp"
 
 namespace irdm::precompute {

@@ -5,8 +5,8 @@
 
 #include "common/model/model_writer.hpp"
 #include "precompute/columns/column_source.hpp"
+#include "precompute/config.hpp"
 #include "precompute/dynamics/implicit_midpoint.hpp"
-#include "precompute/dynamics/time_stepping_config.hpp"
 
 namespace irdm::precompute {
 

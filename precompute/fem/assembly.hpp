@@ -1,7 +1,10 @@
 #pragma once
 
+#include <Eigen/Dense>
 #include <Eigen/Sparse>
 
+#include "common/geometry.hpp"
+#include "common/response/modal_response.hpp"
 #include "precompute/fem/material.hpp"
 #include "precompute/mesh/tet_mesh.hpp"
 
@@ -24,5 +27,18 @@ RowSparseMatrix assemble_stiffness_rows(const TetMesh& mesh, const Lame& lame, i
 /// -1/20. Total mass and centre of mass are those of the solid.
 /// @param density [kg/m^3]
 Eigen::VectorXd lumped_mass(const TetMesh& mesh, double density);
+
+/// Nodal loads of a body that turns: shape (3N, 6), one column a product of SpinProducts. With
+/// q = spin_products(w) the columns add up to m_i (|w|^2 X_i - w (w . X_i)) on node i, the
+/// centrifugal force [N] where w is in rad/s. [kg m]
+/// @param nodes X (N, 3) [m], B: the centre of mass is the origin
+/// @param mass lumped (N) [kg]
+Eigen::Matrix<double, Eigen::Dynamic, kSpinProducts> centrifugal_loads(const Points& nodes,
+                                                                       const Eigen::VectorXd& mass);
+
+/// Nodal loads of a body all of which is accelerated alike, as gravity does: shape (3N, 3), one
+/// column an axis, m_i on node i along it. [kg]
+/// @param mass lumped (N) [kg]
+Eigen::Matrix<double, Eigen::Dynamic, 3> uniform_loads(const Eigen::VectorXd& mass);
 
 }  // namespace irdm::precompute

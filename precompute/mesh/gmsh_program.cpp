@@ -7,7 +7,7 @@
 #include "common/error.hpp"
 #include "common/process/child_program.hpp"
 #include "common/process/temporary_files.hpp"
-#include "precompute/mesh/format/gmsh_reader.hpp"
+#include "precompute/mesh/format/readers.hpp"
 #include "precompute/mesh/mesh_check.hpp"
 
 namespace irdm::precompute {

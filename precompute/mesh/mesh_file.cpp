@@ -7,15 +7,7 @@
 #include <string>
 
 #include "common/error.hpp"
-#include "common/quoted.hpp"
-#include "precompute/mesh/format/gmsh_reader.hpp"
-#include "precompute/mesh/format/medit_reader.hpp"
-#include "precompute/mesh/format/obj_reader.hpp"
-#include "precompute/mesh/format/ply_reader.hpp"
-#include "precompute/mesh/format/stl_reader.hpp"
-#include "precompute/mesh/format/tetgen_reader.hpp"
-#include "precompute/mesh/format/vtk_reader.hpp"
-#include "precompute/mesh/format/vtu_reader.hpp"
+#include "precompute/mesh/format/readers.hpp"
 #include "precompute/mesh/gmsh_program.hpp"
 #include "precompute/mesh/mesh_check.hpp"
 #include "precompute/mesh/tetgen_program.hpp"

@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "common/error.hpp"
-#include "common/quoted.hpp"
 
 namespace irdm::precompute {
 namespace {

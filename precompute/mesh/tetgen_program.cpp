@@ -11,7 +11,7 @@
 #include "common/error.hpp"
 #include "common/process/child_program.hpp"
 #include "common/process/temporary_files.hpp"
-#include "precompute/mesh/format/tetgen_reader.hpp"
+#include "precompute/mesh/format/readers.hpp"
 #include "precompute/mesh/surface.hpp"
 
 namespace irdm::precompute {

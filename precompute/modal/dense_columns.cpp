@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "common/response/modal_response.hpp"
-#include "precompute/blas_product.hpp"
+#include "precompute/blas.hpp"
 
 namespace irdm::precompute {
 namespace {

@@ -4,8 +4,8 @@
 
 #include "common/error.hpp"
 #include "common/response/modal_response.hpp"
-#include "precompute/fem/loads.hpp"
-#include "precompute/fem/rigid_motions.hpp"
+#include "precompute/fem/assembly.hpp"
+#include "precompute/fem/mass_properties.hpp"
 
 namespace irdm::precompute {
 

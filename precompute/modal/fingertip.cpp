@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "common/response/modal_response.hpp"
-#include "precompute/blas_kernel.hpp"
+#include "precompute/blas.hpp"
 #include "precompute/modal/driving_spectrum.hpp"
 #include "precompute/modal/elastic_statics.hpp"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/error.hpp"
-#include "precompute/blas_kernel.hpp"
+#include "precompute/blas.hpp"
 
 namespace irdm::precompute {
 

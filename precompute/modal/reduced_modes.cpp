@@ -6,7 +6,7 @@
 #include <string>
 
 #include "common/error.hpp"
-#include "precompute/blas_kernel.hpp"
+#include "precompute/blas.hpp"
 #include "precompute/modal/driving_spectrum.hpp"
 #include "precompute/modal/elastic_statics.hpp"
 #include "precompute/modal/fingertip.hpp"

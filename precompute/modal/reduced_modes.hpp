@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "common/model/model.hpp"
+#include "precompute/config.hpp"
 #include "precompute/dynamics/sparse_solver.hpp"
 #include "precompute/mesh/tet_mesh.hpp"
 #include "precompute/modal/elastic_modes.hpp"
-#include "precompute/modal/modes_config.hpp"
 #include "precompute/progress.hpp"
 
 namespace irdm::precompute {

@@ -7,7 +7,7 @@
 
 #include "common/error.hpp"
 #include "common/model/dense_file.hpp"
-#include "precompute/blas_kernel.hpp"
+#include "precompute/blas.hpp"
 
 namespace irdm::precompute {
 namespace {

@@ -3,10 +3,10 @@
 #include <memory>
 #include <vector>
 
+#include "precompute/config.hpp"
 #include "precompute/dynamics/sparse_solver.hpp"
 #include "precompute/mesh/tet_mesh.hpp"
 #include "precompute/modal/elastic_modes.hpp"
-#include "precompute/modal/modes_config.hpp"
 #include "precompute/parallel/ranks.hpp"
 
 namespace irdm::precompute {

@@ -7,9 +7,7 @@
 
 #include "common/error.hpp"
 #include "common/program/program.hpp"
-#include "common/quoted.hpp"
-#include "replay/compare/comparison_json.hpp"
-#include "replay/compare/comparison_text.hpp"
+#include "replay/compare/comparison_output.hpp"
 #include "replay/output/output_file.hpp"
 #include "replay/replay.hpp"
 

@@ -27,15 +27,15 @@ bool same_nodes(const Points& a, const Points& b) {
   return a.rows() == b.rows() && (a - b).cwiseAbs().maxCoeff() <= 1e-6 * a.cwiseAbs().maxCoeff();
 }
 
-void add(Apart& apart, double difference) {
-  apart.rms.push_back(difference);
-  apart.largest.push_back(difference);
+void add(DifferenceSeries& series, double difference) {
+  series.rms.push_back(difference);
+  series.largest.push_back(difference);
 }
 
-void add(Apart& apart, const Points& difference) {
+void add(DifferenceSeries& series, const Points& difference) {
   const Eigen::VectorXd squares = difference.rowwise().squaredNorm();
-  apart.rms.push_back(std::sqrt(squares.mean()));
-  apart.largest.push_back(std::sqrt(squares.maxCoeff()));
+  series.rms.push_back(std::sqrt(squares.mean()));
+  series.largest.push_back(std::sqrt(squares.maxCoeff()));
 }
 
 Points places_of(const RunPose& pose, const Points& rest, const Points& u) {
@@ -69,30 +69,30 @@ ObjectComparison compare_object(const RunReader& a, const RunReader& b, std::siz
   return found;
 }
 
-Apart compare_force(const RunReader& a, const RunReader& b, std::size_t s,
-                    const FramePairs& frames) {
-  Apart apart;
+DifferenceSeries compare_force(const RunReader& a, const RunReader& b, std::size_t s,
+                               const FramePairs& frames) {
+  DifferenceSeries series;
   for (const auto& [frame_a, frame_b] : frames) {
     const Vector3 force = a.force(s, frame_a);
-    add(apart, (force - b.force(s, frame_b)).norm());
-    apart.reference = std::max(apart.reference, force.norm());
+    add(series, (force - b.force(s, frame_b)).norm());
+    series.reference = std::max(series.reference, force.norm());
   }
-  return apart;
+  return series;
 }
 
 }  // namespace
 
-double Apart::rms_over_time() const {
+double DifferenceSeries::rms_over_time() const {
   double sum = 0.0;
   for (const double each : rms) sum += each * each;
   return rms.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(rms.size()));
 }
 
-double Apart::maximum() const {
+double DifferenceSeries::maximum() const {
   return largest.empty() ? 0.0 : *std::max_element(largest.begin(), largest.end());
 }
 
-std::size_t Apart::worst_frame() const {
+std::size_t DifferenceSeries::worst_frame() const {
   return static_cast<std::size_t>(std::max_element(largest.begin(), largest.end()) -
                                   largest.begin());
 }

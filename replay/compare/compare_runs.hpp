@@ -9,7 +9,7 @@
 namespace irdm::replay {
 
 /// How far one quantity of two runs is apart, over the frames that they have in common.
-struct Apart {
+struct DifferenceSeries {
   std::vector<double> rms;      ///< of each frame: over nodes, or the difference itself
   std::vector<double> largest;  ///< the same: of the worst node
   double reference = 0.0;       ///< largest size in A; 0: none is meant
@@ -23,12 +23,12 @@ struct Apart {
 
 struct ObjectComparison {
   std::string name;
-  bool same_nodes = false;  ///< otherwise the next two are empty: the meshes differ
-  Apart displacement;       ///< of the nodes [m], B
-  Apart place;              ///< of the nodes [m], W
-  Apart centre_of_mass;     ///< [m], W
-  Apart orientation;        ///< angle between [rad]
-  Eigen::Index node = 0;    ///< surface node that is displaced most in A, at any time
+  bool same_nodes = false;          ///< otherwise the next two are empty: the meshes differ
+  DifferenceSeries displacement;    ///< of the nodes [m], B
+  DifferenceSeries place;           ///< of the nodes [m], W
+  DifferenceSeries centre_of_mass;  ///< [m], W
+  DifferenceSeries orientation;     ///< angle between [rad]
+  Eigen::Index node = 0;            ///< surface node that is displaced most in A, at any time
 };
 
 /// Frames of A and B that belong together.
@@ -40,7 +40,7 @@ struct Comparison {
   std::vector<double> times;  ///< of the common frames [s]
   std::size_t alone = 0;      ///< frames of A and B that the other has not
   std::vector<ObjectComparison> objects;
-  std::vector<Apart> forces;  ///< of each stylus [N], W
+  std::vector<DifferenceSeries> forces;  ///< of each stylus [N], W
 };
 
 /// Compares two runs of the same scene. Frames belong together whose times are the same within a

@@ -1,4 +1,4 @@
-#include "replay/compare/comparison_json.hpp"
+#include "replay/compare/comparison_output.hpp"
 
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -8,14 +8,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json json(const Apart& apart, const char* unit) {
+Json json(const DifferenceSeries& series, const char* unit) {
   return {{"unit", unit},
-          {"rms", apart.rms_over_time()},
-          {"max", apart.maximum()},
-          {"last", apart.last()},
-          {"reference", apart.reference},
-          {"rms_over_time", apart.rms},
-          {"max_over_time", apart.largest}};
+          {"rms", series.rms_over_time()},
+          {"max", series.maximum()},
+          {"last", series.last()},
+          {"reference", series.reference},
+          {"rms_over_time", series.rms},
+          {"max_over_time", series.largest}};
 }
 
 Json size_json(const SignalPair& pair, const char* unit) {
@@ -135,8 +135,8 @@ Json onset_json(const OnsetDelays& onsets, double interval) {
           {"noticeable", verdict_json(onsets.noticeable(interval))}};
 }
 
-Json stylus_json(const Apart& force, const StylusMeasures& stylus, const Measures& measures,
-                 const std::vector<double>& times) {
+Json stylus_json(const DifferenceSeries& force, const StylusMeasures& stylus,
+                 const Measures& measures, const std::vector<double>& times) {
   return {{"force", json(force, "N")},
           {"size_over_time", size_json(stylus.force, "N")},
           {"spectrum", spectrum_json(stylus.force.spectrum_a, stylus.force.spectrum_b, "N")},

@@ -1,11 +1,11 @@
-#include "replay/compare/comparison_text.hpp"
+#include "replay/compare/comparison_output.hpp"
 
 #include <cstdio>
 
 namespace irdm::replay {
 namespace {
 
-std::string line(const std::string& what, const Apart& apart, const char* unit,
+std::string line(const std::string& what, const DifferenceSeries& apart, const char* unit,
                  const std::vector<double>& times) {
   char text[256];
   std::snprintf(text, sizeof text, "  %-18s rms %10.3g %-3s  largest %10.3g %-3s at %.6g s",

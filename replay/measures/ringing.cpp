@@ -9,7 +9,7 @@
 #include <limits>
 #include <numbers>
 
-#include "replay/measures/perception.hpp"
+#include "replay/measures/force_difference.hpp"
 
 namespace irdm::replay {
 namespace {

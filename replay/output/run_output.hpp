@@ -50,7 +50,7 @@ class FrameOutput {
   virtual void finish() = 0;
 };
 
-/// What a run was made again from.
+/// What a run was rerun from.
 struct RunOrigin {
   std::string trace;    ///< name of the trace file
   std::string from;     ///< "forces" or "inputs"

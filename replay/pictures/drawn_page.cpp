@@ -5,7 +5,6 @@
 #include <cstdio>
 
 #include "common/error.hpp"
-#include "common/quoted.hpp"
 
 namespace irdm::replay {
 

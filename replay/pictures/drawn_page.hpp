@@ -5,12 +5,12 @@
 #include <string>
 
 #include "replay/pictures/browser.hpp"
-#include "viewer/viewed_run.hpp"
+#include "viewer/viewer_session.hpp"
 
 namespace irdm::replay {
 
 /// A run of which one surface after the other is put before the viewer, which can ask for nothing.
-class DrawnRun final : public viewer::ViewedRun {
+class DrawnRun final : public viewer::ViewerSession {
  public:
   /// @param first a frame of the scene's objects and styluses
   DrawnRun(viewer::Scene scene, const Settings& settings, const SurfaceFrame& first);
@@ -23,9 +23,9 @@ class DrawnRun final : public viewer::ViewedRun {
   std::size_t shown_source() const override { return 0; }
   viewer::Health health() override { return {}; }
   viewer::State state() override { return state_; }
-  void carry_out(const viewer::Command&) override {}
-  void carry_out(const viewer::SettingsRequest&) override {}
-  void carry_out(const viewer::StylusRequest&) override {}
+  void handle(const viewer::Command&) override {}
+  void handle(const viewer::SettingsRequest&) override {}
+  void handle(const viewer::StylusRequest&) override {}
 
  private:
   viewer::Scene scene_;

@@ -22,7 +22,7 @@ bool is_finite(const ObjectRecord& object) {
 }
 
 [[noreturn]] void refuse(const std::string& trace) {
-  throw Error(trace, "gives numbers that are not finite when it is made again",
+  throw Error(trace, "gives numbers that are not finite when it is rerun",
               "it is damaged, or the model is not that of the recording: record it again");
 }
 

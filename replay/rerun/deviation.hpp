@@ -11,14 +11,14 @@ namespace irdm::replay {
 /// Whether every number that a step did is finite.
 bool is_finite(const StepRecord& record);
 
-/// Throws Error unless a step that was made again is finite: forces of a damaged trace, or of
+/// Throws Error unless a step that was rerun is finite: forces of a damaged trace, or of
 /// another model, may drive an object beyond all numbers.
 /// @param trace its name
 void require_finite(const StepRecord& again, const std::string& trace);
 /// The same of the displacements of all objects.
 void require_finite(const std::vector<Points>& displacements, const std::string& trace);
 
-/// How far a run that is made again is from the recorded one: the largest differences of all steps,
+/// How far a run that is rerun is from the recorded one: the largest differences of all steps,
 /// objects and styluses.
 class Deviation {
  public:

@@ -1,12 +1,32 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
-#include "replay/rerun/forced_body.hpp"
 #include "simulation/step/deformable_body.hpp"
 #include "simulation/step/nodal_forces.hpp"
+#include "simulation/step/step_record.hpp"
 
 namespace irdm::replay {
+
+/// One object under the forces that a trace has of it: they deform it and move it. Pure; one
+/// thread.
+class ForcedBody {
+ public:
+  virtual ~ForcedBody() = default;
+
+  virtual void reset() = 0;
+  /// Before the step: a force that belonged to an earlier one.
+  virtual void insert_delayed_force(const LateForce& late) = 0;
+  /// From the next step on.
+  virtual void set(const Vector3& gravity, const ObjectSettings& settings) = 0;
+  /// @param again the recorded step, whose contacts and floor's forces act; the start of the step
+  /// and the motion are written, and forces, where they are not kept in B
+  /// @param styluses as they are in the recorded step
+  virtual void step(ObjectRecord& again, std::span<const StylusRecord> styluses) = 0;
+  /// Of all surface nodes at the end of the last step, (n, 3) [m], B.
+  virtual void displacement(Points& u) const = 0;
+};
 
 /// By its response: the forces as they stand in B, each with the lever arm of the point that it
 /// acts on as the engine has it here. Nothing is solved.

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "replay/rerun/forced_body.hpp"
+#include "replay/rerun/forced_object.hpp"
 #include "simulation/step/simulation.hpp"
 #include "simulation/step/simulation_config.hpp"
 #include "simulation/step/step_record.hpp"
@@ -31,7 +31,7 @@ std::vector<DelayedForces> delayed_forces(const Recording& recording);
 void add_delayed_forces(const std::vector<DelayedForces>& told, std::size_t step, bool held_anew,
                         StepRecord& record);
 
-/// A recorded run that is made again, step by step. Pure; one thread.
+/// A recorded run that is rerun, step by step. Pure; one thread.
 class Rerun {
  public:
   virtual ~Rerun() = default;

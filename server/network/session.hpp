@@ -8,7 +8,6 @@
 
 #include "common/wire/connection.hpp"
 #include "common/wire/token_bucket.hpp"
-#include "server/network/datagram_port.hpp"
 #include "server/network/network_server.hpp"
 #include "server/network/stylus_slots.hpp"
 

@@ -1,11 +1,41 @@
 #include "server/threads/force_thread.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "common/realtime/clock.hpp"
 #include "common/realtime/real_time_scope.hpp"
 
 namespace irdm {
+namespace {
+
+Vector3 no_longer_than(const Vector3& v, double length) noexcept {
+  const double norm = v.norm();
+  return norm > length ? Vector3(length / norm * v) : v;
+}
+
+}  // namespace
+
+StylusCommand ViewerStylus::next(const StylusCommand& wanted, const StylusRecord& last) noexcept {
+  StylusCommand command = wanted;
+  if (!wanted.present || !wanted.tip.allFinite()) {
+    present_ = false;
+    command.present = false;
+    return command;
+  }
+  if (!present_) tip_ = wanted.tip;
+  present_ = true;
+  const double share = 1.0 - std::exp(-dt_ / kSmoothing);
+  Vector3 tip = tip_ + no_longer_than(share * (wanted.tip - tip_), kFastest * dt_);
+  if (last.contact != ContactState::kFree && stiffness_ > 0 && max_force_ > 0) {
+    // Where the spring would be without tension.
+    const Vector3 rest = last.tip + last.force / stiffness_;
+    tip = rest + no_longer_than(tip - rest, max_force_ / stiffness_);
+  }
+  command.tip = tip_ = tip;
+  return command;
+}
+
 namespace {
 
 StylusCommand to_command(const StylusInput& input) noexcept {
@@ -73,7 +103,7 @@ void ForceThread::run() noexcept {
     report_.late += stylus.late();
     report_.lost += stylus.lost();
   }
-  report_.missed_columns = simulation_.missed_columns();
+  report_.cache_misses = simulation_.cache_misses();
   finished_.signal();
 }
 
@@ -125,7 +155,7 @@ void ForceThread::watch_health(std::int64_t begin_ns, std::int64_t end_ns) noexc
   window_.resets = report_.resets;
   window_.unsolved = report_.unsolved;
   window_.missed = clock_.missed();
-  window_.missed_columns = simulation_.missed_columns();
+  window_.cache_misses = simulation_.cache_misses();
   health_.put(window_);  // some 10 kB each, once a second
   status_.put(window_);
   window_ = ForceHealth{};

@@ -14,22 +14,48 @@
 #include "server/network/network_server.hpp"
 #include "server/threads/run_control.hpp"
 #include "server/threads/step_clock.hpp"
-#include "server/threads/viewer_stylus.hpp"
 #include "simulation/step/bridged_stylus.hpp"
 #include "simulation/step/simulation.hpp"
+#include "simulation/step/step_record.hpp"
 
 namespace irdm {
+
+/// Turns what a pointing device says some 60 times a second into a stylus that the force step can
+/// follow: smooth, never faster than a hand, and pressing no harder than allowed, as no hand gives
+/// way here. Pure; real-time safe.
+class ViewerStylus {
+ public:
+  static constexpr double kSmoothing = 0.015;  ///< time constant [s]
+  static constexpr double kFastest = 1.0;      ///< [m/s]
+
+  /// @param stiffness of the spring between tip and surface [N/m]; 0: none, and then no bound
+  /// @param max_force that it pushes or pulls with at most [N]; 0: no bound
+  ViewerStylus(double dt, double stiffness, double max_force) noexcept
+      : dt_(dt), stiffness_(stiffness), max_force_(max_force) {}
+
+  /// The stylus of the coming step.
+  /// @param wanted where it is to be
+  /// @param last what became of it in the last step
+  StylusCommand next(const StylusCommand& wanted, const StylusRecord& last) noexcept;
+
+ private:
+  double dt_;
+  double stiffness_;
+  double max_force_;
+  bool present_ = false;
+  Vector3 tip_ = Vector3::Zero();
+};
 
 /// What the force thread counted; read after finish().
 struct ForceThreadReport {
   std::uint64_t steps = 0;
-  std::uint64_t resets = 0;    ///< how often everything was put back to the start
-  std::uint64_t unsolved = 0;  ///< steps whose contact problem had no finite solution
-  std::uint64_t late = 0;      ///< forces of bridges that came after their step, and entered it
-  std::uint64_t lost = 0;      ///< forces of bridges that came too late for that, or never
-  std::uint64_t missed_columns = 0;  ///< Simulation::missed_columns()
-  double peak_force = 0.0;           ///< largest |force| on a stylus [N]
-  Histogram step_time;               ///< from the clock's go to the forces' hand-over [ns]
+  std::uint64_t resets = 0;        ///< how often everything was reset
+  std::uint64_t unsolved = 0;      ///< steps whose contact problem had no finite solution
+  std::uint64_t late = 0;          ///< forces of bridges that came after their step, and entered it
+  std::uint64_t lost = 0;          ///< forces of bridges that came too late for that, or never
+  std::uint64_t cache_misses = 0;  ///< Simulation::cache_misses()
+  double peak_force = 0.0;         ///< largest |force| on a stylus [N]
+  Histogram step_time;             ///< from the clock's go to the forces' hand-over [ns]
 };
 
 /// How the force thread fares while it runs.
@@ -38,7 +64,7 @@ struct ForceHealth {
   std::uint64_t resets = 0;
   std::uint64_t unsolved = 0;
   std::uint64_t missed = 0;  ///< deadlines
-  std::uint64_t missed_columns = 0;
+  std::uint64_t cache_misses = 0;
   Histogram step_time;     ///< of the last kHealthPeriodNs [ns]
   Histogram wakeup_delay;  ///< of the last kHealthPeriodNs [ns]; empty in lockstep
 };

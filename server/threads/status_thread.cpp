@@ -53,7 +53,7 @@ void StatusThread::run() {
     if (log_period_ns_ == 0 || gathered_ns_ - logged_ns < log_period_ns_) continue;
     logged_ns = gathered_ns_;
     spdlog::info("{}", status_line(status, parts_.network.stats(),
-                                   parts_.force.status().front().missed_columns));
+                                   parts_.force.status().front().cache_misses));
   }
 }
 
@@ -84,7 +84,7 @@ float StatusThread::surface_rate() {
 }
 
 std::string status_line(const wire::Status& status, const NetworkStats& network,
-                        std::uint64_t missed_columns) {
+                        std::uint64_t cache_misses) {
   std::ostringstream text;
   text << std::fixed << std::setprecision(1) << "status: " << status.steps << " steps";
   put(text, "step", status.step_time);
@@ -95,7 +95,7 @@ std::string status_line(const wire::Status& status, const NetworkStats& network,
   const auto count = [&text](const char* name, std::uint64_t value) {
     if (value > 0) text << ", " << name << ' ' << value;
   };
-  count("columns not there in time", missed_columns);
+  count("column cache misses", cache_misses);
   count("refused", network.refused);
   count("cut before Hello", network.displaced);
   count("without the key", network.wrong_keys);

@@ -44,8 +44,8 @@ class StatusThread {
 };
 
 /// One line for the log.
-/// @param missed_columns Simulation::missed_columns()
+/// @param cache_misses Simulation::cache_misses()
 std::string status_line(const wire::Status& status, const NetworkStats& network,
-                        std::uint64_t missed_columns);
+                        std::uint64_t cache_misses);
 
 }  // namespace irdm

@@ -92,7 +92,7 @@ class Deformation {
   explicit Deformation(const SimulationConfig& config, double tolerance = 0.0);
 
   /// Takes in the next step. Steps that were lost on the way are taken to have had the forces and
-  /// the spin of the one before them, or none if everything was put back to the start since then;
+  /// the spin of the one before them, or none if everything was reset since then;
   /// how many, is counted.
   void follow(const StepRecord& record);
 

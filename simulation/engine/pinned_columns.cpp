@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "common/model/model.hpp"
+#include "simulation/engine/force_history.hpp"
 #include "simulation/engine/kernels.hpp"
-#include "simulation/engine/nonzero_intervals.hpp"
 
 namespace irdm {
 

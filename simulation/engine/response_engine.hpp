@@ -64,7 +64,7 @@ class ColumnStreaming {
   /// only. Real-time safe. @param tips at most kMaxStyluses [m], B
   virtual void prefetch(std::span<const Vector3> tips) noexcept = 0;
   /// Nodes that forces began to act on while their columns of R were not there.
-  virtual std::uint64_t missed_columns() const noexcept = 0;
+  virtual std::uint64_t cache_misses() const noexcept = 0;
 };
 
 /// What nodes will do can be kept ready from step to step.

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "simulation/engine/force_history.hpp"
 #include "simulation/engine/kernels.hpp"
-#include "simulation/engine/nonzero_intervals.hpp"
 #include "simulation/engine/patch_response.hpp"
 
 namespace irdm {

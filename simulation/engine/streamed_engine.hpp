@@ -38,7 +38,7 @@ class StreamedEngine final : public ResponseEngine,
   void prefetch(std::span<const Vector3> tips) noexcept override {
     response_.columns->prefetch(tips);
   }
-  std::uint64_t missed_columns() const noexcept override { return columns_.missed(); }
+  std::uint64_t cache_misses() const noexcept override { return columns_.missed(); }
   Vector3 free_displacement(int node) const noexcept override;
   double free_displacement_bound() const noexcept override;
   void predict(std::span<const ContactPatch> patches, std::span<Vector3> h,

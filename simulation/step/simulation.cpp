@@ -39,9 +39,9 @@ void Simulation::set(const Settings& settings) noexcept {
   }
 }
 
-std::uint64_t Simulation::missed_columns() const noexcept {
+std::uint64_t Simulation::cache_misses() const noexcept {
   std::uint64_t sum = 0;
-  for (const auto& object : objects_) sum += object->missed_columns();
+  for (const auto& object : objects_) sum += object->cache_misses();
   return sum;
 }
 
@@ -64,9 +64,9 @@ bool Simulation::reset_pressed(std::span<const StylusCommand> commands) noexcept
 }
 
 void Simulation::step(std::span<const StylusCommand> commands, StepRecord& record,
-                      bool put_back) noexcept {
+                      bool reset_first) noexcept {
   const NoDenormals here;  // in whatever thread: the same bits
-  if (reset_pressed(commands) || put_back) reset();
+  if (reset_pressed(commands) || reset_first) reset();
   record.reset = std::exchange(was_reset_, false);
   record.reset_step = reset_step_;
   record.force_step = next_step_++;

@@ -22,13 +22,13 @@ class Simulation {
   /// when damping or tether are too strong for it, or when there are too many objects or styluses.
   explicit Simulation(const SimulationConfig& config);
 
-  /// Step k = 0, 1, ...: from time k dt to (k + 1) dt. Before it everything is put back to the
-  /// start if `put_back` says so or the reset button of a stylus has gone down since the step
+  /// Step k = 0, 1, ...: from time k dt to (k + 1) dt. Before it everything is reset to the
+  /// start if `reset_first` says so or the reset button of a stylus has gone down since the step
   /// before. A stylus then has to come from outside, and press its grab button again, to touch or
   /// take hold.
   /// @param commands one a stylus
   void step(std::span<const StylusCommand> commands, StepRecord& record,
-            bool put_back = false) noexcept;
+            bool reset_first = false) noexcept;
 
   /// Puts everything back to the start; the step number goes on. The record of the next step says
   /// so.
@@ -36,7 +36,7 @@ class Simulation {
 
   /// For the bridge of stylus s, between steps: how its contact goes on after the last step.
   /// @param tip where the stylus was in the last step [m], W
-  /// @param horizon steps to look ahead, 1 to kMaxHorizon
+  /// @param horizon steps to predict, 1 to kMaxHorizon
   void predict_horizon(std::size_t s, const Vector3& tip, int horizon,
                        ContactModel& model) noexcept;
 
@@ -44,13 +44,13 @@ class Simulation {
   /// step `age` steps before the last one. False: that is too long ago, it touched
   /// nothing, or there are more of them than LateForces::kMost.
   bool insert_delayed_force(std::size_t s, const AppliedForce& applied, int age) noexcept;
-  /// The same of a recorded one (StepRecord::late), when a run is made again.
+  /// The same of a recorded one (StepRecord::late), when a run is rerun.
   bool insert_delayed_force(const LateForce& late) noexcept;
   /// How many more can be entered before the coming step.
   std::size_t late_room() const noexcept { return LateForces::kMost - late_.count; }
   /// The object that predict_horizon() last spoke of; -1: none.
   int local_model_object(std::size_t s) const noexcept { return local_model_object_[s]; }
-  /// The last step before which everything was put back; 0: none.
+  /// The last step before which everything was reset; 0: none.
   std::uint64_t reset_step() const noexcept { return reset_step_; }
 
   /// From the next step on. They must have passed check_settings(). Real-time safe.
@@ -61,7 +61,7 @@ class Simulation {
   /// The number of the coming step.
   std::uint64_t next_step() const noexcept { return next_step_; }
   /// Nodes that forces began to act on while their columns of R were not there, so far.
-  std::uint64_t missed_columns() const noexcept;
+  std::uint64_t cache_misses() const noexcept;
   int object_count() const noexcept { return static_cast<int>(objects_.size()); }
   const SoftObject& object(int i = 0) const noexcept {
     return *objects_[static_cast<std::size_t>(i)];

@@ -192,7 +192,7 @@ bool SoftObject::insert_delayed_force(std::size_t s, const AppliedForce& applied
   return insert_delayed_force(entry);
 }
 
-// What acts is the entry: a run that is made again has nothing else.
+// What acts is the entry: a run that is rerun has nothing else.
 bool SoftObject::insert_delayed_force(const LateForce& entry) noexcept {
   if (entry.age >= body_.past().count()) return false;
   nodal_.clear();

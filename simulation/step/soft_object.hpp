@@ -36,7 +36,7 @@ class SoftObject {
   /// of the floor are taken to stay as they were in the last step, those of other styluses as they
   /// were on average over the last while. Between steps.
   /// @param tip where the stylus was in the last step [m], W
-  /// @param horizon steps to look ahead, 1 to kMaxHorizon
+  /// @param horizon steps to predict, 1 to kMaxHorizon
   void predict_horizon(std::size_t s, const Vector3& tip, int horizon,
                        ContactModel& model) noexcept;
   /// What stylus s exerted, besides what is known, in the step `age` steps before the last one: at
@@ -54,9 +54,9 @@ class SoftObject {
   const RigidState& state() const noexcept { return body_.state(); }
   const ResponseEngine& engine() const noexcept { return body_.engine(); }
   /// Nodes that forces began to act on while their columns of R were not there, so far.
-  std::uint64_t missed_columns() const noexcept {
+  std::uint64_t cache_misses() const noexcept {
     const ColumnStreaming* const columns = body_.capabilities().columns;
-    return columns == nullptr ? 0 : columns->missed_columns();
+    return columns == nullptr ? 0 : columns->cache_misses();
   }
   const RestSurface& surface() const noexcept { return rest_; }
 

@@ -122,7 +122,7 @@ struct StylusRecord {
 struct StepRecord {
   std::uint64_t force_step = 0;  ///< k
   double time = 0.0;             ///< (k + 1) dt, the end of the step [s]
-  bool reset = false;            ///< everything was put back to the start before this step
+  bool reset = false;            ///< everything was reset before this step
   std::uint64_t reset_step = 0;  ///< the last step that this was so in, this one included; 0: none
   Settings settings;             ///< that the step was made with
   std::uint32_t settings_change = 0;  ///< how often they were changed so far

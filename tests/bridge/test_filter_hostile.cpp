@@ -29,7 +29,7 @@ class Hostility {
     move();
     if (one_in(calm_ ? 20 : 3)) demand_something();
     demand.linked = !one_in(calm_ ? 5000 : 50);
-    reading.motor_warmth = one_in(50) ? wild() : 0.0;
+    reading.motor_temperature = one_in(50) ? wild() : 0.0;
     if (one_in(calm_ ? 50'000 : 2000)) filter.fail();
     if (one_in(5000)) filter.disarm();
     if (one_in(100)) act(filter);

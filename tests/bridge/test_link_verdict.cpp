@@ -68,7 +68,7 @@ TEST_CASE("a link is graded by the share of ticks that were answered in time") {
   CHECK(judge(link_with(0)).advice.empty());
 }
 
-TEST_CASE("a link is graded by what its mode needs: a bridge that predicts looks ahead") {
+TEST_CASE("a link is graded by what its mode needs: a bridge that predicts has a horizon") {
   LinkMeasurement link = link_with(1000);
   CHECK(judge(link).grade == LinkGrade::kBad);
   CHECK_THAT(judge(link).advice.front(), Contains("bridge.mode"));
@@ -82,7 +82,7 @@ TEST_CASE("a link is graded by what its mode needs: a bridge that predicts looks
   CHECK_THAT(judge(link).advice.front(), Contains("nearer to the device"));
 }
 
-TEST_CASE("a contact model looks ahead 50 steps, and at most 50 ms") {
+TEST_CASE("a contact model predicts 50 steps, and at most 50 ms") {
   LinkMeasurement link;
   CHECK(link.predict_limit_ns() == 50 * kMs);
   link.dt = 0.002;

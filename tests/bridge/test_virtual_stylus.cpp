@@ -67,8 +67,8 @@ TEST_CASE("virtual stylus: warm motors are told to the filter and to people") {
   for (int tick = 1; tick <= 1000; ++tick) {
     stylus.write(Vector3(0, 2, 0));
     stylus.read(1e-3 * tick);
-    REQUIRE(stylus.state().motor_warmth >= last);
-    last = stylus.state().motor_warmth;
+    REQUIRE(stylus.state().motor_temperature >= last);
+    last = stylus.state().motor_temperature;
     CHECK(stylus.trouble().empty() == (last < 1.0));
   }
   CHECK(last == 1.0);

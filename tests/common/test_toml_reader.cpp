@@ -2,7 +2,6 @@
 
 #include "common/config/toml_reader.hpp"
 #include "common/error.hpp"
-#include "common/quoted.hpp"
 
 using Catch::Matchers::Contains;
 using irdm::Error;

@@ -1,5 +1,5 @@
 #include "common/wire/bytes.hpp"
-#include "common/wire/contact_payload.hpp"
+#include "common/wire/payload.hpp"
 #include "common/wire/protocol_error.hpp"
 #include "device_bridge/contact/bridge_contact.hpp"
 #include "tests/fuzz/harness.hpp"

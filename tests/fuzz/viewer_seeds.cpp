@@ -13,10 +13,10 @@ void write_viewer(const Seeds& seeds, std::uint8_t kind, const std::string& name
 
 void write_client_messages(const Seeds& seeds) {
   const auto hello = encode(viewer::ClientMessage(viewer::Hello{"0123456789abcdef"}));
-  const auto put_back = encode(viewer::ClientMessage(viewer::Command{}));
+  const auto reset = encode(viewer::ClientMessage(viewer::Command{}));
   write_viewer(seeds, 0, "hello", hello);
   write_viewer(seeds, 0, "no_token", encode(viewer::ClientMessage(viewer::Hello{})));
-  write_viewer(seeds, 0, "put_back", put_back);
+  write_viewer(seeds, 0, "reset", reset);
   write_viewer(seeds, 0, "seek",
                encode(viewer::ClientMessage(viewer::Command{viewer::CommandKind::kSeek, 0, 1.5})));
   write_viewer(

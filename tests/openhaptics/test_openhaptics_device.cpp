@@ -161,15 +161,15 @@ TEST_CASE("the warmest motor is told, and a warning of the driver counts for fiv
   SteppedDevice stepped;
   fakehd_temperature("", 0.6);
   stepped.tick();
-  CHECK(stepped.device.state().motor_warmth == 0.6);
+  CHECK(stepped.device.state().motor_temperature == 0.6);
   fakehd_raise_at_end("", 0x0200);
   stepped.tick(2);
-  CHECK(stepped.device.state().motor_warmth == 1.0);
+  CHECK(stepped.device.state().motor_temperature == 1.0);
   CHECK_FALSE(stepped.device.state().failed);
   stepped.tick(4900);
-  CHECK(stepped.device.state().motor_warmth == 1.0);
+  CHECK(stepped.device.state().motor_temperature == 1.0);
   stepped.tick(200);
-  CHECK(stepped.device.state().motor_warmth == 0.6);
+  CHECK(stepped.device.state().motor_temperature == 0.6);
 }
 
 TEST_CASE("motors that heat up under a force are warm in the end") {
@@ -178,10 +178,10 @@ TEST_CASE("motors that heat up under a force are warm in the end") {
   SteppedDevice stepped;
   stepped.wanted = Vector3(0, 3.0, 0);
   stepped.tick(20);
-  CHECK(stepped.device.state().motor_warmth > 0.1);
-  CHECK(stepped.device.state().motor_warmth < 0.9);
+  CHECK(stepped.device.state().motor_temperature > 0.1);
+  CHECK(stepped.device.state().motor_temperature < 0.9);
   stepped.tick(500);
-  CHECK(stepped.device.state().motor_warmth == 1.0);
+  CHECK(stepped.device.state().motor_temperature == 1.0);
 }
 
 TEST_CASE("a device that cannot tell its temperature gives good readings all the same") {
@@ -189,7 +189,7 @@ TEST_CASE("a device that cannot tell its temperature gives good readings all the
   fakehd_no_temperature("");
   SteppedDevice stepped;
   for (int tick = 0; tick < 5; ++tick) CHECK_FALSE(stepped.tick().tip.hasNaN());
-  CHECK(stepped.device.state().motor_warmth == 0.0);
+  CHECK(stepped.device.state().motor_temperature == 0.0);
   CHECK_FALSE(stepped.device.state().failed);
 }
 

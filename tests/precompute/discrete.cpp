@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "precompute/fem/rigid_motions.hpp"
+#include "precompute/fem/mass_properties.hpp"
 
 namespace irdm::precompute::test {
 

@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "precompute/blas_kernel.hpp"
+#include "precompute/blas.hpp"
 
 using namespace irdm::precompute;
 

@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "precompute/fem/loads.hpp"
+#include "precompute/fem/assembly.hpp"
 #include "precompute/fem/mass_properties.hpp"
 #include "precompute/modal/elastic_modes.hpp"
 #include "tests/precompute/discrete.hpp"

@@ -4,6 +4,7 @@
 #include <numbers>
 #include <sstream>
 
+#include "precompute/config.hpp"
 #include "precompute/mesh/surface.hpp"
 #include "precompute/modal/driving_spectrum.hpp"
 #include "precompute/modal/fingertip.hpp"

@@ -1,6 +1,6 @@
 #include <sstream>
 
-#include "precompute/mesh/format/obj_reader.hpp"
+#include "precompute/mesh/format/readers.hpp"
 #include "precompute/mesh/gmsh_program.hpp"
 #include "precompute/mesh/mesh_check.hpp"
 #include "precompute/mesh/mesh_file.hpp"

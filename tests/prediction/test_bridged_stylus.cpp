@@ -33,14 +33,14 @@ class Served {
   explicit Served(std::size_t objects) : simulation(cubes(objects)), bridged(simulation, 0) {}
 
   /// One step with the tip here; the bridge tells of this force, unless it is held back.
-  void step(const Vector3& tip, const Vector3& force, bool told = true, bool put_back = false) {
+  void step(const Vector3& tip, const Vector3& force, bool told = true, bool reset = false) {
     applied.step = simulation.next_step();
     applied.count = 1;
     applied.base = base.value_or(applied.step);
     applied.past[0] = {force, tip, told_arm.value_or(tip)};
     if (told) history.take(applied);
     const std::array commands{bridged.next({true, 0, tip, {}}, session, history)};
-    simulation.step(commands, record, put_back);
+    simulation.step(commands, record, reset);
     bridged.predict_horizon(model);
   }
   void tell_now(std::uint64_t step, const Vector3& tip, const Vector3& force) {
@@ -169,7 +169,7 @@ TEST_CASE("bridged stylus: what rests on a model from before a reset is for anot
   Served served(1);
   for (int k = 0; k < 5; ++k) served.step(kAbove, Vector3::Zero());
   served.base = served.simulation.next_step() - 1;
-  served.step(kAbove, kPush, true, true);  // put back before this step
+  served.step(kAbove, kPush, true, true);  // reset before this step
   for (int k = 0; k < 5; ++k) served.step(kAbove, kPush);
   CHECK(served.moved(0).isZero(0.0));
   served.base.reset();
@@ -183,7 +183,7 @@ TEST_CASE("bridged stylus: what rests on a model from before a reset is for anot
 TEST_CASE("bridged stylus: of the first message after a reset the newest force alone counts") {
   Served served(1);
   for (int k = 0; k < 5; ++k) served.step(kAbove, Vector3::Zero());
-  served.step(kAbove, Vector3::Zero(), false, true);  // put back before this step
+  served.step(kAbove, Vector3::Zero(), false, true);  // reset before this step
   served.applied.step = served.simulation.next_step() + 3;
   served.applied.base = served.simulation.next_step() - 1;
   served.applied.count = 4;

@@ -4,8 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/error.hpp"
-#include "replay/compare/comparison_json.hpp"
-#include "replay/compare/comparison_text.hpp"
+#include "replay/compare/comparison_output.hpp"
 #include "replay/output/run_output.hpp"
 #include "tests/support/synthetic_model.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -108,7 +107,7 @@ TEST_CASE("a node's place moves with its body") {
   CHECK(moved.compared().objects.at(0).place.rms_over_time() == Approx(0.005));
   // Turned about its middle, a node at r from the axis moves by 2 r sin(angle / 2).
   const TwoRuns turned({.rotation = {0.0, 0.3, 0.0}});
-  const Apart place = turned.compared().objects.at(0).place;
+  const DifferenceSeries place = turned.compared().objects.at(0).place;
   CHECK(place.maximum() <= 2 * (0.06 * std::sqrt(3.0) + 0.02) * std::sin(0.15));
   CHECK(place.maximum() >= 2 * 0.06 * std::sin(0.15));
 }

@@ -4,8 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "replay/compare/comparison_json.hpp"
-#include "replay/compare/comparison_text.hpp"
+#include "replay/compare/comparison_output.hpp"
 #include "replay/output/run_output.hpp"
 #include "tests/support/synthetic_model.hpp"
 #include "tests/support/temporary_folder.hpp"

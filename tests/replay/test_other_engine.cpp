@@ -1,4 +1,4 @@
-// A run that is made again by another engine, whose error is known.
+// A run that is rerun by another engine, whose error is known.
 #include <catch2/catch.hpp>
 #include <numbers>
 

@@ -1,4 +1,4 @@
-// Runs that are made again from their traces, against what they were.
+// Runs that are rerun from their traces, against what they were.
 #include <catch2/catch.hpp>
 
 #include "replay/rerun/deviation.hpp"
@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::uint64_t kSession = 3;
 
-/// Largest differences of a run that is made again.
+/// Largest differences of a run that is rerun.
 struct Found {
   Deviation deviation;
   double displacement = 0.0;  ///< of a component [m]
@@ -70,7 +70,7 @@ void check_both(const KeptRun& run) {
   check_from_forces(run);
 }
 
-/// Falls, spins, is touched and held, changes its settings, is put back; forces come late.
+/// Falls, spins, is touched and held, changes its settings, is reset; forces come late.
 KeptRun fall(std::size_t objects) {
   SimulationConfig config = two_cubes();
   config.objects.resize(objects);
@@ -84,7 +84,7 @@ KeptRun fall(std::size_t objects) {
   return run;
 }
 
-/// A fixed cube that sags, is touched and held, swings as gravity changes, and is put back.
+/// A fixed cube that sags, is touched and held, swings as gravity changes, and is reset.
 KeptRun sag() {
   Model model = synthetic_cube(3, 12, 40);
   add_gravity(model, true);
@@ -191,11 +191,11 @@ TEST_CASE("forces act where they acted: off the surface's point, near an edge an
   check_both(run);
 }
 
-TEST_CASE("a run of a fixed object that sags is made again, to the bit from its tips") {
+TEST_CASE("a run of a fixed object that sags is rerun, to the bit from its tips") {
   check_both(sag());
 }
 
-TEST_CASE("a run is made again: floor, spin, settings, a reset and late forces") {
+TEST_CASE("a run is rerun: floor, spin, settings, a reset and late forces") {
   const KeptRun run = fall(GENERATE(1, 2));
   std::size_t late = 0;
   for (const StepRecord& record : run.records) late += record.late.count;
@@ -203,7 +203,7 @@ TEST_CASE("a run is made again: floor, spin, settings, a reset and late forces")
   check_both(run);
 }
 
-TEST_CASE("a run in which a bridge solved contacts is made again") {
+TEST_CASE("a run in which a bridge solved contacts is rerun") {
   const KeptRun run = bridged_fall();
   std::size_t late = 0;
   std::size_t bridged = 0;
@@ -253,8 +253,7 @@ TEST_CASE("forces of held points that were found anew have what was told late") 
   CHECK(record.stylus[0].force == Vector3(1, -2, 0));
 }
 
-TEST_CASE(
-    "what a viewer recorded is made again: it begins with a reset, and settings as they were") {
+TEST_CASE("what a viewer recorded is rerun: it begins with a reset, and settings as they were") {
   SimulationConfig config = two_cubes();
   config.floor.reset();
   config.objects[0].friction = {0.3, 0.2};

@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "common/model/model_file.hpp"
-#include "scene/columns/scene_columns.hpp"
+#include "scene/columns/column_store.hpp"
 #include "simulation/engine/response_engine.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/left_out.hpp"
@@ -216,7 +216,7 @@ TEST_CASE(
     expected->displacement(expected_u);
     REQUIRE(u == expected_u);
   }
-  CHECK(engine->capabilities().columns->missed_columns() == 0);
+  CHECK(engine->capabilities().columns->cache_misses() == 0);
   CHECK(columns.loaded() >= 33);
   CHECK(columns.failed() == 0);
 }
@@ -236,5 +236,5 @@ TEST_CASE(
     CHECK(engine->free_displacement(97 - k).allFinite());
   }
   CHECK(columns.failed() > 0);
-  CHECK(engine->capabilities().columns->missed_columns() > 0);
+  CHECK(engine->capabilities().columns->cache_misses() > 0);
 }

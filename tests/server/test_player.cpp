@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "common/error.hpp"
-#include "server/viewed_run/player.hpp"
+#include "server/viewer_session/player.hpp"
 #include "tests/server/recorded_fall.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/sparse_dataset.hpp"

@@ -3,7 +3,7 @@
 #include <fstream>
 
 #include "common/error.hpp"
-#include "server/viewed_run/recordings.hpp"
+#include "server/viewer_session/recordings.hpp"
 #include "tests/server/records.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -2,7 +2,6 @@
 
 #include "common/error.hpp"
 #include "scene/scene.hpp"
-#include "scene/scene_simulation.hpp"
 #include "tests/support/streamed_model.hpp"
 #include "tests/support/synthetic_model.hpp"
 #include "tests/support/temporary_folder.hpp"

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 
-#include "server/threads/viewer_stylus.hpp"
+#include "server/threads/force_thread.hpp"
 
 using namespace irdm;
 

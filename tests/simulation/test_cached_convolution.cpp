@@ -189,7 +189,7 @@ TEMPLATE_TEST_CASE("patches of any size are convolved together", "", float, doub
   CHECK(worst < 1e-14 * largest);
 }
 
-TEST_CASE("what a step sees has the same bits whether somebody looks ahead or not") {
+TEST_CASE("what a step sees has the same bits whether somebody predicts or not") {
   PlainConvolution<float> plain(40, 100);
   ResidentColumns<float> columns = plain.columns();
   CachedConvolution watched(columns, kSources);

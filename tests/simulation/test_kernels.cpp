@@ -5,8 +5,8 @@
 #include <random>
 
 #include "simulation/engine/active_modes.hpp"
+#include "simulation/engine/force_history.hpp"
 #include "simulation/engine/kernels.hpp"
-#include "simulation/engine/nonzero_intervals.hpp"
 #include "simulation/engine/wide_kernels.hpp"
 
 using namespace irdm;

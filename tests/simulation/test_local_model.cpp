@@ -4,7 +4,7 @@
 #include "simulation/step/simulation.hpp"
 #include "tests/support/fem_cube.hpp"
 
-// A live run looks ahead for its bridges and finds where late forces acted. One that is made again
+// A live run predicts for its bridges and finds where late forces acted. One that is rerun
 // does neither, and has to come out the same.
 
 using namespace irdm;
@@ -22,7 +22,7 @@ bool same(const StepRecord& a, const StepRecord& b) {
 
 }  // namespace
 
-TEST_CASE("looking ahead and late forces leave a run that is made again the same to the bit") {
+TEST_CASE("predictions and late forces leave a run that is rerun the same to the bit") {
   const ResponseKind kind =
       GENERATE(ResponseKind::kModal, ResponseKind::kDense, ResponseKind::kCompressed);
   SimulationConfig config;

@@ -1,4 +1,4 @@
-// Everything is put back to the start.
+// Everything is reset.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
@@ -53,9 +53,9 @@ void check_same(const StepRecord& a, const StepRecord& b) {
   }
 }
 
-StepRecord step(Simulation& simulation, const Commands& commands, bool put_back = false) {
+StepRecord step(Simulation& simulation, const Commands& commands, bool reset = false) {
   StepRecord record;
-  simulation.step(commands, record, put_back);
+  simulation.step(commands, record, reset);
   return record;
 }
 
@@ -71,19 +71,19 @@ TEST_CASE("reset: what follows is, to the bit, what follows a start") {
     touched = touched || record.stylus[0].force.norm() > 0.05;
   }
   REQUIRE(touched);
-  StepRecord put_back;
+  StepRecord reset;
   SECTION("by the reset button of a stylus") {
     Commands pressed = press(0);
     pressed[1].buttons = kResetButton;
-    put_back = step(used, pressed);
+    reset = step(used, pressed);
   }
   SECTION("asked for from outside") {
-    put_back = step(used, press(0), true);
+    reset = step(used, press(0), true);
   }
-  CHECK(put_back.reset);
-  CHECK(put_back.force_step == 200);
-  CHECK(put_back.reset_step == 200);
-  check_same(put_back, step(fresh, press(0)));
+  CHECK(reset.reset);
+  CHECK(reset.force_step == 200);
+  CHECK(reset.reset_step == 200);
+  check_same(reset, step(fresh, press(0)));
   for (int k = 1; k < 200; ++k) {
     const StepRecord record = step(used, press(k));
     check_same(record, step(fresh, press(k)));

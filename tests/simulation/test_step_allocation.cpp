@@ -10,7 +10,7 @@ using namespace irdm;
 using namespace irdm::test;
 
 TEST_CASE(
-    "step: nothing allocates, free, touching, held or put back, with two styluses and all "
+    "step: nothing allocates, free, touching, held or reset, with two styluses and all "
     "engines, with and without inertial loading") {
   if (!AllocationGuard::active()) return leave_out(kNotCounted);
   const ResponseKind kind =

@@ -31,7 +31,7 @@ TEST_CASE("a million force steps touch neither heap, locks, exceptions nor files
   ContactModel model;
   std::uint64_t touching = 0;
   std::uint64_t held = 0;
-  std::uint64_t foreseen = 0;
+  std::uint64_t predicted = 0;
   std::uint64_t late = 0;
   const RealTimeGuard guard;
   for (int k = 0; k < kStepsOfEach; ++k) {
@@ -50,7 +50,7 @@ TEST_CASE("a million force steps touch neither heap, locks, exceptions nor files
     simulation.step({commands.data(), styluses}, record, k % 2000 == 1999);
     if (k % 10 == 0) {
       simulation.predict_horizon(0, commands[0].tip, kMaxHorizon, model);
-      foreseen += model.valid ? 1 : 0;
+      predicted += model.valid ? 1 : 0;
     }
     for (std::size_t s = 0; s < styluses; ++s) {
       touching += record.stylus[s].contact == ContactState::kTouching ? 1 : 0;
@@ -63,5 +63,5 @@ TEST_CASE("a million force steps touch neither heap, locks, exceptions nor files
   CHECK(late > kStepsOfEach / 200);
   CHECK(touching > kStepsOfEach / 20);
   CHECK(held > kStepsOfEach / 3);
-  CHECK(foreseen > kStepsOfEach / 20);
+  CHECK(predicted > kStepsOfEach / 20);
 }

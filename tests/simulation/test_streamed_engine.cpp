@@ -119,7 +119,7 @@ void check_equal(Model dense) {
     CHECK(u == expected);
     check_same_answers(*streamed, *whole, k % 20);
   }
-  CHECK(streamed->capabilities().columns->missed_columns() == 0);
+  CHECK(streamed->capabilities().columns->cache_misses() == 0);
   for (ResponseEngine* engine : {streamed.get(), whole.get()}) {
     CHECK(std::isinf(engine->free_displacement_bound()));
     engine->capabilities().gravity->set_gravity(Vector3::Zero());
@@ -225,7 +225,7 @@ TEST_CASE("without columns a force is answered by R[0] at first and settles wher
     if (k > 0) REQUIRE((coming[k - 1] - left).cwiseAbs().maxCoeff() < 1e-6 * size);
   }
   CHECK(settled == Approx(1.0));
-  CHECK(streamed->capabilities().columns->missed_columns() == 2);
+  CHECK(streamed->capabilities().columns->cache_misses() == 2);
   streamed->reset();
   streamed->displacement(u);
   CHECK(u.isZero(0.0));
@@ -271,7 +271,7 @@ TEST_CASE(
   for (int i = 0; i < nodes; ++i) {
     CHECK(late->free_displacement(i) == whole->free_displacement(i));
   }
-  CHECK(late->capabilities().columns->missed_columns() == 1);
+  CHECK(late->capabilities().columns->cache_misses() == 1);
 }
 
 TEST_CASE(
@@ -293,7 +293,7 @@ TEST_CASE(
     if (k % 50 == 0) check_same_answers(*engine, *engine, k % 20);
   }
   CHECK(most == 8);
-  CHECK(engine->capabilities().columns->missed_columns() > 0);
+  CHECK(engine->capabilities().columns->cache_misses() > 0);
   const std::array<NodalForce, 1> force{NodalForce{2, Vector3::Ones()}};
   engine->reset();
   CHECK(model.supply->taken() == 0);
@@ -360,7 +360,7 @@ Felt feel_cycle(const std::shared_ptr<const Model>& model, const PressCycle& cyc
     last_tip = command.tip;
     last_force = force;
   }
-  felt.missed = simulation.missed_columns();
+  felt.missed = simulation.cache_misses();
   return felt;
 }
 
@@ -405,17 +405,17 @@ TEST_CASE("a streamed step allocates nothing, whatever becomes of the columns") 
   model.supply->most = 12;
   Simulation simulation(config);
   StepRecord record;
-  ContactModel foreseen;
+  ContactModel predicted;
   const PressCycle cycle(*model.dense, 1);
   std::uint64_t touching = 0;
   const AllocationGuard guard;
   for (; k < 1500; ++k) {
     const StylusCommand command = at_tip(cycle.tip(k % 900));
     simulation.step({&command, 1}, record, k == 1000);
-    simulation.predict_horizon(0, command.tip, 20, foreseen);
+    simulation.predict_horizon(0, command.tip, 20, predicted);
     touching += record.stylus[0].contact == ContactState::kTouching ? 1 : 0;
   }
   CHECK(guard.count() == 0);
   CHECK(touching > 300);
-  CHECK(simulation.missed_columns() > 0);
+  CHECK(simulation.cache_misses() > 0);
 }

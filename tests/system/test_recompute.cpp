@@ -229,7 +229,7 @@ TEST_CASE("forces are recomputed from a trace and its model alone") {
   check_forces(play(stage), 50, 250);
 }
 
-TEST_CASE("forces are recomputed from a trace in which everything was put back") {
+TEST_CASE("forces are recomputed from a trace in which everything was reset") {
   const Stage stage;
   stage.write("scene.toml", moving_scene());
   stage.write("script.csv", twice_with_a_reset());
@@ -317,7 +317,7 @@ TEST_CASE("poses are recomputed from the forces of a trace, those of the floor i
   CHECK(worst_momentum < 1e-14);
 }
 
-TEST_CASE("a run is made again, to the bit, from the tips and buttons of its trace") {
+TEST_CASE("a run is rerun, to the bit, from the tips and buttons of its trace") {
   const Stage stage;
   set_on_floor(stage);
   const Trace trace = play(stage);

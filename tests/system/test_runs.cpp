@@ -100,7 +100,7 @@ TEST_CASE("a run in real time with columns of R from the disk, as many as a fing
   server.process.signal(SIGTERM);
   check_ended_well(server.process);
   const std::string said = server.process.out();
-  CHECK_THAT(said, Contains(", not there in time: ") && !Contains("cannot be read"));
+  CHECK_THAT(said, Contains(", cache misses: ") && !Contains("cannot be read"));
   CHECK(number_after(said, "nodes whose columns were read: ") >= 12);
   CHECK(number_after(said, "steps without a finite solution: ") == 0);
   check_whole(read_trace(stage.path("trace.h5")), said);

@@ -50,7 +50,7 @@ std::size_t nodes_of(const WebPeer::Message& scene) {
 
 }  // namespace
 
-TEST_CASE("viewer: put back over the WebSocket shows up in the trace and in health") {
+TEST_CASE("viewer: a reset over the WebSocket shows up in the trace and in health") {
   const Stage stage;
   stage.write("scene.toml", scene_text("[world]\ngravity = [0, -1, 0]\n"));
   Server server = stage.start_server({"--record", stage.path("trace.h5").string()});

@@ -5,12 +5,12 @@
 #include <cstdint>
 
 #include "tests/viewer/frames.hpp"
-#include "viewer/viewed_run.hpp"
+#include "viewer/viewer_session.hpp"
 
 namespace irdm::test {
 
 /// Shows the example scene and counts what it is asked for.
-struct ExampleRun final : viewer::ViewedRun {
+struct ExampleRun final : viewer::ViewerSession {
   const viewer::Scene& scene() const override { return scene_; }
   std::vector<viewer::SurfaceSource> sources() override {
     return {{surfaces, ready}, {other_surfaces, other_ready}};
@@ -22,12 +22,12 @@ struct ExampleRun final : viewer::ViewedRun {
     state.notice = shown == 0 ? "the first one" : "the other one";
     return state;
   }
-  void carry_out(const viewer::Command& command) override {
-    if (command.kind == viewer::CommandKind::kPutBack) ++put_backs;
+  void handle(const viewer::Command& command) override {
+    if (command.kind == viewer::CommandKind::kReset) ++resets;
     if (command.kind == viewer::CommandKind::kShowRecording) shown = 1;
   }
-  void carry_out(const viewer::SettingsRequest&) override { ++settings; }
-  void carry_out(const viewer::StylusRequest& request) override {
+  void handle(const viewer::SettingsRequest&) override { ++settings; }
+  void handle(const viewer::StylusRequest& request) override {
     (request.present ? presses : releases)++;
   }
 
@@ -37,7 +37,7 @@ struct ExampleRun final : viewer::ViewedRun {
   EventFd ready, other_ready;
   std::atomic<std::size_t> shown{0};
   std::atomic<std::uint64_t> steps{77};
-  std::atomic<int> put_backs{0}, settings{0}, presses{0}, releases{0};
+  std::atomic<int> resets{0}, settings{0}, presses{0}, releases{0};
 };
 
 }  // namespace irdm::test

@@ -237,7 +237,7 @@ TEST_CASE("a viewer can put everything back") {
   Show show;
   WebPeer peer = show.watch();
   peer.send_message(encode(ClientMessage(Command{})));
-  CHECK(eventually([&] { return show.run.put_backs == 1; }));
+  CHECK(eventually([&] { return show.run.resets == 1; }));
 }
 
 TEST_CASE("viewers are told the state at first and whenever it changes") {
@@ -306,7 +306,7 @@ TEST_CASE("who only looks on is sent everything and asks for nothing") {
   other.send_message(encode(ClientMessage(SettingsRequest{example_state().settings, 2})));
   REQUIRE(eventually([&] { return show.run.settings == 1; }));
   other.send_message(encode(ClientMessage(Command{})));
-  REQUIRE(eventually([&] { return show.run.put_backs == 1; }));
+  REQUIRE(eventually([&] { return show.run.resets == 1; }));
   CHECK(show.run.presses == 0);
 }
 
@@ -338,7 +338,7 @@ TEST_CASE("a message that breaks the rules ends the session") {
     peer.send_message(Bytes(600, 0));
     CHECK(close_code(peer) == 1009);
   }
-  CHECK(show.run.put_backs == 0);
+  CHECK(show.run.resets == 0);
   WebPeer next = show.watch();
   CHECK(next_frame(next, show.scene).force_step == 1039);
 }

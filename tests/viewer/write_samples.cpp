@@ -54,7 +54,7 @@ int main(int argc, char** argv) {
     write(folder / (name + ".bin"), encode(message));
   };
   ask("look_on", viewer::Hello{"", true});
-  ask("put_back", viewer::Command{});
+  ask("reset", viewer::Command{});
   ask("seek", viewer::Command{viewer::CommandKind::kSeek, 0, 1.25});
   ask("show_recording", viewer::Command{viewer::CommandKind::kShowRecording, 3, 0.0});
   ask("stylus", viewer::StylusRequest{true, kGrabButton, Vector3(0.1, -0.2, 0.3)});

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "common/wire/contact_payload.hpp"
 #include "common/wire/frame.hpp"
+#include "common/wire/payload.hpp"
 #include "common/wire/protocol_error.hpp"
 
 using namespace irdm;

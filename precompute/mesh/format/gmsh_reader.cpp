@@ -1,4 +1,4 @@
-#include "precompute/mesh/format/gmsh_reader.hpp"
+#include "precompute/mesh/format/readers.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/quoted.hpp"
+#include "common/error.hpp"
 #include "precompute/mesh/format/token_reader.hpp"
 
 namespace irdm::precompute {

@@ -1,4 +1,4 @@
-#include "precompute/mesh/format/medit_reader.hpp"
+#include "precompute/mesh/format/readers.hpp"
 
 #include <map>
 #include <string>

@@ -1,4 +1,4 @@
-#include "precompute/mesh/format/obj_reader.hpp"
+#include "precompute/mesh/format/readers.hpp"
 
 #include <charconv>
 #include <set>

@@ -1,4 +1,4 @@
-#include "precompute/mesh/format/ply_reader.hpp"
+#include "precompute/mesh/format/readers.hpp"
 
 #include <cmath>
 #include <map>

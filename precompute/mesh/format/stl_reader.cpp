@@ -1,4 +1,4 @@
-#include "precompute/mesh/format/stl_reader.hpp"
+#include "precompute/mesh/format/readers.hpp"
 
 #include <array>
 #include <string>

@@ -1,4 +1,4 @@
-#include "precompute/mesh/format/tetgen_reader.hpp"
+#include "precompute/mesh/format/readers.hpp"
 
 #include <vector>
 

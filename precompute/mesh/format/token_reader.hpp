@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "common/quoted.hpp"
+#include "common/error.hpp"
 
 namespace irdm::precompute {
 

@@ -1,4 +1,4 @@
-#include "precompute/mesh/format/vtk_reader.hpp"
+#include "precompute/mesh/format/readers.hpp"
 
 #include <string>
 #include <vector>

@@ -1,4 +1,4 @@
-#include "precompute/mesh/format/vtu_reader.hpp"
+#include "precompute/mesh/format/readers.hpp"
 
 #include <boost/property_tree/ptree.hpp>
 #include <boost/property_tree/xml_parser.hpp>
@@ -7,7 +7,6 @@
 #include <string>
 
 #include "common/error.hpp"
-#include "common/quoted.hpp"
 #include "precompute/mesh/format/number_array.hpp"
 #include "precompute/mesh/format/token_reader.hpp"
 #include "precompute/mesh/format/vtk_cells.hpp"

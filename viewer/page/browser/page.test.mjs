@@ -124,7 +124,7 @@ test("whoever cannot touch is told why, and sends nothing", async (context) => {
   const { page, server } = await stage(context, { query: "?watch=1" });
   assert.deepEqual(said(server, "hello"), [{ type: "hello", looksOn: 1 }]);
   assert.match(await page.locator("#modes").innerText(), /only looking on/);
-  for (const button of ["#put-back", "#pause", "#step", "#record"]) {
+  for (const button of ["#reset", "#pause", "#step", "#record"]) {
     assert.equal(await page.locator(button).isDisabled(), true, button);
   }
   await press(page);
@@ -150,7 +150,7 @@ test("a stylus that is lost to another ends the press", async (context) => {
   assert.equal(await page.locator("#felt").isVisible(), false);
 });
 
-test("the run is paused, stepped, put back and recorded by buttons and keys", async (context) => {
+test("the run is paused, stepped, reset and recorded by buttons and keys", async (context) => {
   const { page, server } = await stage(context);
   await page.keyboard.press("p");
   await until(async () => /paused/.test(await page.locator("#modes").innerText()), "it is paused");
@@ -162,7 +162,7 @@ test("the run is paused, stepped, put back and recorded by buttons and keys", as
   await page.locator("#pause").click();
   await until(() => page.locator("#step").isDisabled(), "it goes on");
   await page.keyboard.press("r");
-  await until(() => asked(server, 1).length === 1, "it is put back");
+  await until(() => asked(server, 1).length === 1, "it is reset");
   await page.locator("#record").click();
   await until(async () => /recording/.test(await page.locator("#modes").innerText()), "it is recorded");
   await page.locator("#record").click();

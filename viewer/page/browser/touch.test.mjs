@@ -1,4 +1,4 @@
-// The mouse as a stylus, in a real browser against real irdm-server: contact, grab, put back, onlookers, recordings.
+// The mouse as a stylus, in a real browser against real irdm-server: contact, grab, reset, onlookers, recordings.
 // Programs, model and browser are named by the environment: tests/system/CMakeLists.txt.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
@@ -88,7 +88,7 @@ test("a press makes a contact, whose force is in the recorded trace", async (con
   context.diagnostic(`${seen.length} frames of contact, up to ${Math.max(...seen.map(({ force }) => force)).toFixed(2)} N`);
 });
 
-test("a grab swings the object, and put back puts it back", async (context) => {
+test("a grab swings the object, and a reset puts it back", async (context) => {
   // So damped that it ends beside the mouse and does not tumble about it, however late the page looks.
   const stage = new Stage(context, "", "damping = { linear = 10, angular = 100 }\n");
   const server = await stage.server();
@@ -103,12 +103,12 @@ test("a grab swings the object, and put back puts it back", async (context) => {
   await page.mouse.up();
   await page.keyboard.up("Shift");
   await sees(page, () => window.irdm.frame().styluses.at(-1).present === false);
-  await page.locator("#put-back").click();
+  await page.locator("#reset").click();
   await sees(page, () => Math.hypot(...window.irdm.frame().objects[0].position) < 1e-6);
   assert.deepEqual(page.faults, []);
 });
 
-test("a press goes on after everything was put back", async (context) => {
+test("a press goes on after everything was reset", async (context) => {
   const stage = new Stage(context, "", TETHERED);
   const server = await stage.server();
   const page = await ready(context, stage, server);
@@ -190,7 +190,7 @@ test("what was recorded is played, sought in, and left", async (context) => {
   const page = await ready(context, stage, server);
   await page.locator("#record").click();
   await sees(page, () => window.irdm.state().recording);
-  await page.waitForTimeout(200); // everything is put back first
+  await page.waitForTimeout(200); // everything is reset first
   await press(page);
   await sees(page, () => window.seen.filter(({ contact, force }) => contact === 1 && force > 0.02).length > 5);
   await page.waitForTimeout(700);

@@ -147,7 +147,7 @@ test("a pressed cube is deformed on the page as at the server", async (context) 
   assert.ok(drawn < 1e-7);
 });
 
-test("put back puts the falling cube back, by button and by key", async (context) => {
+test("a reset puts the falling cube back, by button and by key", async (context) => {
   const stage = new Stage(context, "[world]\ngravity = [0, -0.1, 0]");
   const server = await stage.server();
   const page = await open(context, server.url);
@@ -161,11 +161,11 @@ test("put back puts the falling cube back, by button and by key", async (context
       height = y;
     });
   });
-  const ways = [() => page.locator("#put-back").click(), () => page.keyboard.press("r")];
+  const ways = [() => page.locator("#reset").click(), () => page.keyboard.press("r")];
   for (let i = 0; i < ways.length; ++i) {
     await until(() => page.evaluate(() => window.irdm.frame().objects[0].position[1] < -0.1), "it falls");
     await ways[i]();
-    await until(() => page.evaluate((count) => window.rises === count, i + 1), "it is put back");
+    await until(() => page.evaluate((count) => window.rises === count, i + 1), "it is reset");
   }
   assert.deepEqual(page.faults, []);
 });
@@ -181,7 +181,7 @@ test("the page comes back when the server does, and two pages see the same", asy
   first.kill("SIGKILL");
   await first.ended;
   await until(async () => /lost|Connecting/.test(await page.locator("#link").innerText()), "the page sees the loss");
-  assert.equal(await page.locator("#put-back").isDisabled(), true);
+  assert.equal(await page.locator("#reset").isDisabled(), true);
   stage.write(
     "scene.toml",
     `[viewer]\nport = ${port}\n[world]\ngravity = [0, -0.01, 0]\n[[object]]\nname = "another"\nmodel = "${IRDM_MODEL}"\n`,

@@ -149,7 +149,7 @@ const TURN = 0.09; // [rad]
 const NEARER = 1.15;
 listenForShortcuts(
   {
-    r: () => run.putBack(),
+    r: () => run.reset(),
     p: () => run.togglePause(),
     ".": () => run.step(),
     f: () => world?.fit(),

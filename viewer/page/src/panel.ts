@@ -103,7 +103,7 @@ export class HealthPanel {
       ["Steps not in the surface", ...fault(health.lostSteps)],
       ["Samples from bridges", rate("samples"), false],
       ["Forces to bridges", rate("forces"), false],
-      ["Put back", `${health.resets} ×`, false],
+      ["Resets", `${health.resets} ×`, false],
       ["Viewers", String(health.viewers), false],
     ];
     this.counts.replaceChildren(

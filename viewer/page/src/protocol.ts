@@ -474,7 +474,7 @@ export function encodeHello(token: string, onlyLooksOn = false): ArrayBuffer {
 }
 
 export const enum Command {
-  PutBack = 1,
+  Reset = 1,
   Pause = 2,
   GoOn = 3,
   Step = 4,

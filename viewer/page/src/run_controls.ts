@@ -1,10 +1,10 @@
 import { element, make } from "./elements";
 import { Command, encodeCommand, type State } from "./protocol";
 
-/** Put back, pause, step, record, and the list of recordings. */
+/** Reset, pause, step, record, and the list of recordings. */
 export class RunControls {
   private state: State | null = null;
-  private readonly putBackButton = element<HTMLButtonElement>("put-back");
+  private readonly resetButton = element<HTMLButtonElement>("reset");
   private readonly pauseButton = element<HTMLButtonElement>("pause");
   private readonly stepButton = element<HTMLButtonElement>("step");
   private readonly recordButton = element<HTMLButtonElement>("record");
@@ -13,14 +13,14 @@ export class RunControls {
   private listed = "";
 
   constructor(private readonly send: (message: ArrayBuffer) => void) {
-    this.putBackButton.onclick = () => this.putBack();
+    this.resetButton.onclick = () => this.reset();
     this.pauseButton.onclick = () => this.togglePause();
     this.stepButton.onclick = () => this.step();
     this.recordButton.onclick = () => this.toggleRecording();
   }
 
-  putBack(): void {
-    if (!this.putBackButton.disabled) this.ask(Command.PutBack);
+  reset(): void {
+    if (!this.resetButton.disabled) this.ask(Command.Reset);
   }
 
   togglePause(): void {
@@ -54,8 +54,8 @@ export class RunControls {
     const { state } = this;
     const may = state !== null && !state.onlyLooksOn;
     const live = may && state.playback === null;
-    this.putBackButton.disabled = !may;
-    this.putBackButton.firstChild!.textContent = state?.playback ? "To the start " : "Put back ";
+    this.resetButton.disabled = !may;
+    this.resetButton.firstChild!.textContent = state?.playback ? "To the start " : "Reset ";
     this.pauseButton.disabled = !live;
     this.pauseButton.firstChild!.textContent = state?.paused ? "Go on " : "Pause ";
     this.pauseButton.setAttribute("aria-pressed", String(live && state.paused));

@@ -77,7 +77,7 @@ export class Touch {
     }
   }
 
-  /** A tip that is inside, after everything was put back say, touches nothing until it has been outside. */
+  /** A tip that is inside, after everything was reset say, touches nothing until it has been outside. */
   private comeAgain(tip: Vector3): void {
     const place = this.world.pick(this.ray!);
     if (place === null || tip.distanceTo(this.ray!.origin) < place.distanceTo(this.ray!.origin) + BEHIND) return;

@@ -67,7 +67,7 @@ test("health is what the server made it", () => {
 
 test("the page's messages are those of the server's decoder", () => {
   assert.deepEqual(Buffer.from(encodeHello("token ü")), Buffer.from(bytes("hello.bin")));
-  assert.deepEqual(Buffer.from(encodeCommand(Command.PutBack)), Buffer.from(bytes("put_back.bin")));
+  assert.deepEqual(Buffer.from(encodeCommand(Command.Reset)), Buffer.from(bytes("reset.bin")));
 });
 
 test("a message that is cut, too long or of another kind is refused", () => {

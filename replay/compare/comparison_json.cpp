@@ -50,9 +50,9 @@ Json pairs_json(const SignalPair& pair) {
 
 Json ringing_json(const SignalPair& pair, const std::vector<double>& times) {
   Json from, to;  // null
-  if (pair.stretch.count > 0) {
-    from = times[pair.stretch.first];
-    to = times[pair.stretch.first + pair.stretch.count - 1];
+  if (pair.interval.count > 0) {
+    from = times[pair.interval.first];
+    to = times[pair.interval.first + pair.interval.count - 1];
   }
   return {{"from", from},
           {"to", to},

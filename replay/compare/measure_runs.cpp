@@ -61,16 +61,16 @@ std::vector<double> sizes_of(const Points& signal) {
 }
 
 SignalPair pair_of(const Points& a, const Points& b, const Measures& all,
-                   const TimeInterval& stretch) {
+                   const TimeInterval& interval) {
   SignalPair pair;
   pair.size_a = sizes_of(a);
   pair.size_b = sizes_of(b);
   if (!all.evenly_spaced) return pair;
   pair.spectrum_a = amplitude_spectrum(a, all.interval, kSpectrumSegment, Hold::kMean);
   pair.spectrum_b = amplitude_spectrum(b, all.interval, kSpectrumSegment, Hold::kMean);
-  pair.stretch = stretch;
-  const auto first = static_cast<Eigen::Index>(stretch.first);
-  const auto count = static_cast<Eigen::Index>(stretch.count);
+  pair.interval = interval;
+  const auto first = static_cast<Eigen::Index>(interval.first);
+  const auto count = static_cast<Eigen::Index>(interval.count);
   pair.ringing_a = find_ringing(a.middleRows(first, count), all.interval);
   pair.ringing_b = find_ringing(b.middleRows(first, count), all.interval);
   return pair;

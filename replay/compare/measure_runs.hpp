@@ -12,11 +12,11 @@
 namespace irdm::replay {
 
 /// A signal of both runs: its size in each frame, its spectrum over the whole time that they have
-/// in common, and what rings in one stretch of it.
+/// in common, and what rings in one interval of it.
 struct SignalPair {
   std::vector<double> size_a, size_b;
   Spectrum spectrum_a, spectrum_b;
-  TimeInterval stretch;  ///< of common frames
+  TimeInterval interval;  ///< of common frames
   std::vector<Ringing> ringing_a, ringing_b;
 };
 

@@ -93,8 +93,8 @@ TEST_CASE("a tap on a softer object that answers later is told from the other") 
   CHECK(taps.comparison.objects.at(0).node == kTapped);
 
   const SignalPair& node = taps.measures.nodes.at(0);
-  CHECK(node.stretch.first == kRelease);
-  CHECK(node.stretch.count == kFrames - kRelease);
+  CHECK(node.interval.first == kRelease);
+  CHECK(node.interval.count == kFrames - kRelease);
   REQUIRE(node.ringing_a.size() == 1);
   REQUIRE(node.ringing_b.size() == 1);
   CHECK(node.ringing_a[0].frequency == Approx(12.0).epsilon(1e-6));

@@ -15,7 +15,7 @@ using namespace irdm::test;
 
 namespace {
 
-constexpr int kSteps = 60;
+constexpr int kStoredSteps = 60;
 
 double difference(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   return (a - b).norm() / b.norm();
@@ -46,17 +46,17 @@ void check_consistent(const StoredResponse& R, int nodes, int steps, bool limit)
 }  // namespace
 
 TEST_CASE("stored response: modes, with and without residual, are the R of the closed form") {
-  Model modal = synthetic_cube(2, 12, kSteps);
+  Model modal = synthetic_cube(2, 12, kStoredSteps);
   if (GENERATE(false, true)) add_residual(modal);
   const Model dense = with_dense_response<double>(modal);
   const auto of_modes = stored_response(modal);
   const auto of_dense = stored_response(dense);
   const int nodes = modal.mesh.surface_node_count();
-  check_consistent(*of_modes, nodes, kSteps, false);
-  check_consistent(*of_dense, nodes, kSteps, true);
+  check_consistent(*of_modes, nodes, kStoredSteps, false);
+  check_consistent(*of_dense, nodes, kStoredSteps, true);
   CHECK(difference(of_modes->zero_lag(), of_dense->zero_lag()) < 1e-12);
   for (int b = 0; b < 3 * nodes; b += 7) {
-    CHECK(difference(of_modes->column(b, kSteps), of_dense->column(b, kSteps)) < 1e-11);
+    CHECK(difference(of_modes->column(b, kStoredSteps), of_dense->column(b, kStoredSteps)) < 1e-11);
   }
 }
 
@@ -68,40 +68,40 @@ TEST_CASE("stored response: the static limit of modes is the sum over all time")
   auto& shapes = std::get<ModalResponse>(modal.response).shapes;
   const Eigen::VectorXd in_double = stored_response(modal)->static_column(4);
   shapes = RowMatrix<float>(std::get<RowMatrix<double>>(shapes).cast<float>());
-  check_consistent(*stored_response(modal), nodes, kSteps, false);
+  check_consistent(*stored_response(modal), nodes, kStoredSteps, false);
   CHECK(difference(stored_response(modal)->static_column(4), in_double) < 1e-6);
 }
 
 TEST_CASE("stored response: dense in a file and streamed are the dense one in memory") {
-  const StreamedModel model(with_dense_response<float>(synthetic_cube(2, 12, kSteps)));
+  const StreamedModel model(with_dense_response<float>(synthetic_cube(2, 12, kStoredSteps)));
   const int nodes = model.dense->mesh.surface_node_count();
   const auto dense = stored_response(*model.dense);
   const TemporaryFolder folder;
   const std::filesystem::path path = folder.path() / "dense.h5";
   write_dense_model(*model.dense, path);
-  const auto file = stored_response(path, 3 * nodes, kSteps);
+  const auto file = stored_response(path, 3 * nodes, kStoredSteps);
   const auto streamed = stored_response(*model.streamed);
-  check_consistent(*file, nodes, kSteps, true);
-  check_consistent(*streamed, nodes, kSteps, true);
+  check_consistent(*file, nodes, kStoredSteps, true);
+  check_consistent(*streamed, nodes, kStoredSteps, true);
   CHECK(file->zero_lag() == dense->zero_lag());
   CHECK(streamed->zero_lag() == dense->zero_lag());
-  CHECK(file->column(7, kSteps) == dense->column(7, kSteps));
+  CHECK(file->column(7, kStoredSteps) == dense->column(7, kStoredSteps));
   CHECK(difference(streamed->static_column(7), dense->static_column(7)) < 1e-6);
-  CHECK_THROWS_WITH(stored_response(path, 3 * nodes, kSteps - 1),
+  CHECK_THROWS_WITH(stored_response(path, 3 * nodes, kStoredSteps - 1),
                     Catch::Contains("must have the shape"));
 }
 
 TEST_CASE("stored response: a compressed one is what its engine plays") {
-  Model model = synthetic_cube(2, 12, kSteps);
+  Model model = synthetic_cube(2, 12, kStoredSteps);
   model.response = compressed_response(model);
   const int nodes = model.mesh.surface_node_count();
   const auto R = stored_response(model);
   check_consistent(*R, nodes, 3000, true);
   const auto engine = make_engine(share(model));
   const NodalForce push{0, Vector3(1, 0, 0)};
-  const RowMatrix<double> column = R->column(0, kSteps);
-  REQUIRE(column.row(kSteps / 2).norm() > 0.0);
-  for (int s = 0; s < kSteps; ++s) {
+  const RowMatrix<double> column = R->column(0, kStoredSteps);
+  REQUIRE(column.row(kStoredSteps / 2).norm() > 0.0);
+  for (int s = 0; s < kStoredSteps; ++s) {
     engine->advance(s == 0 ? std::span(&push, 1) : std::span<const NodalForce>());
     Points u;
     engine->displacement(u);
@@ -111,7 +111,7 @@ TEST_CASE("stored response: a compressed one is what its engine plays") {
 }
 
 TEST_CASE("static compliance of a model without a response is not a number") {
-  Model model = synthetic_cube(2, 12, kSteps);
+  Model model = synthetic_cube(2, 12, kStoredSteps);
   model.response = std::monostate{};
   const std::vector<Vector3> up(static_cast<std::size_t>(model.mesh.surface_node_count()),
                                 Vector3::UnitY());

@@ -55,7 +55,7 @@ if [ $all = yes ]; then
   build_ahead tsan
   build_ahead ci tsan
   run_tests asan --label-exclude slow --parallel 2
-  IRDM_FUZZ_SEED=1 IRDM_FUZZ_AT_ONCE=$((2 * $(nproc))) scripts/fuzz.sh 60
+  IRDM_FUZZ_SEED=1 IRDM_FUZZ_AT_ONCE=$((2 * $(nproc))) scripts/fuzz.sh 30
   finish tsan
   run_tests tsan --label-exclude slow --parallel 2
   finish ci

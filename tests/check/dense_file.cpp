@@ -4,7 +4,7 @@
 #include "tests/support/fem_cube.hpp"
 #include "tests/support/synthetic_model.hpp"
 
-namespace irdm::precompute::test {
+namespace irdm::test {
 
 DenseCube::DenseCube(int steps)
     : model(*irdm::test::fem_cube({.cells = 2, .rayleigh_alpha = 24.0})) {
@@ -37,4 +37,4 @@ void DenseCube::write(const std::filesystem::path& path) const {
   writer.commit();
 }
 
-}  // namespace irdm::precompute::test
+}  // namespace irdm::test

@@ -4,7 +4,7 @@
 
 #include "common/model/model.hpp"
 
-namespace irdm::precompute::test {
+namespace irdm::test {
 
 /// A cube as irdm-precompute makes it (2 cells an edge), with R in memory to be spoilt.
 struct DenseCube {
@@ -19,4 +19,4 @@ struct DenseCube {
   std::vector<double> values_;
 };
 
-}  // namespace irdm::precompute::test
+}  // namespace irdm::test

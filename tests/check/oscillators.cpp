@@ -2,7 +2,9 @@
 
 #include <cmath>
 
-namespace irdm::precompute::test {
+namespace irdm::test {
+
+using namespace precompute;
 namespace {
 
 // Answer at time t >= 0 to f = 1 from t = 0 on.
@@ -34,4 +36,4 @@ std::vector<Mode> damped_modes() {
           {1250.0, 60.0, Vector3(0.8, 0.7, -0.6)}};
 }
 
-}  // namespace irdm::precompute::test
+}  // namespace irdm::test

@@ -2,7 +2,9 @@
 
 #include "precompute/check/transfer.hpp"
 
-namespace irdm::precompute::test {
+namespace irdm::test {
+
+using namespace precompute;
 
 /// One mode: h[s] of q'' + 2 sigma q' + omega^2 q = f in closed form, differences of the step
 /// response; sigma < omega may be negative: it grows.
@@ -18,4 +20,4 @@ DrivingPoint driving_point(const std::vector<Mode>& modes, double dt, int steps)
 /// Four modes between 10 and 200 Hz in all directions, which decay to 1e-5 in 1 s.
 std::vector<Mode> damped_modes();
 
-}  // namespace irdm::precompute::test
+}  // namespace irdm::test

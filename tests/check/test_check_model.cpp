@@ -10,7 +10,7 @@
 
 using namespace irdm;
 using namespace irdm::precompute;
-using irdm::precompute::test::DenseCube;
+using irdm::test::DenseCube;
 
 namespace {
 

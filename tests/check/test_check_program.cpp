@@ -9,17 +9,17 @@
 
 using Catch::Matchers::Contains;
 using namespace irdm;
-using irdm::precompute::test::DenseCube;
+using irdm::test::DenseCube;
 
 namespace {
 
-struct Run {
+struct CheckRun {
   int status;
   std::string out;
   std::string err;
 };
 
-Run run(std::vector<std::string> arguments) {
+CheckRun run(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), {IRDM_PROGRAM, "check"});
   test::ChildProcess process(arguments, {});
   const int status = process.wait();
@@ -70,7 +70,7 @@ TEST_CASE("check passes a good model file and says what it found") {
   const test::TemporaryFolder folder;
   const auto path = folder.path() / "cube.h5";
   write_modal(path, DenseCube(10).model);
-  const Run result = run({path.string()});
+  const CheckRun result = run({path.string()});
   CHECK(result.err.empty());
   CHECK(result.status == 0);
   for (const char* line :
@@ -87,7 +87,7 @@ TEST_CASE("check fails a model file with a changed byte and names the line") {
   const Model model = DenseCube(10).model;
   write_modal(path, model);
   flip(path, std::get<ModalResponse>(model.response).decay_rate(3));
-  const Run result = run({path.string()});
+  const CheckRun result = run({path.string()});
   CHECK(result.status == 1);
   CHECK_THAT(result.out, Contains("checksum             FAIL"));
   CHECK_THAT(result.err, Contains("fails: checksum"));
@@ -102,7 +102,7 @@ TEST_CASE("check fails dense R with a changed byte by the checksum of its chunk"
   add_dense_with_checksums(path, model, kValue);
   CHECK_THAT(run({path.string()}).out, Contains("Fletcher32 of every column matches"));
   flip(path, kValue);
-  const Run result = run({path.string()});
+  const CheckRun result = run({path.string()});
   CHECK(result.status == 1);
   CHECK_THAT(result.err, Contains("fails: dense response (dense)"));
 }
@@ -113,7 +113,7 @@ TEST_CASE("check fails modes that cannot be, and goes on with the rest") {
   Model model = DenseCube(10).model;
   std::get<ModalResponse>(model.response).decay_rate(2) = -1.0;
   write_modal(path, model);
-  const Run result = run({path.string()});
+  const CheckRun result = run({path.string()});
   CHECK(result.status == 1);
   CHECK_THAT(result.err, Contains("fails: modes"));
   CHECK_THAT(result.out, Contains("checksum") && Contains("decay_rate has a number that is not"));

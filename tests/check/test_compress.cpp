@@ -20,8 +20,8 @@
 using Catch::Matchers::Contains;
 using namespace irdm;
 using namespace irdm::precompute;
-using irdm::precompute::test::DenseCube;
 using irdm::test::ChildProcess;
+using irdm::test::DenseCube;
 
 namespace {
 

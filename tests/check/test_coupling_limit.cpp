@@ -5,13 +5,14 @@
 
 using namespace irdm;
 using namespace irdm::precompute;
-using irdm::precompute::test::damped_modes;
-using irdm::precompute::test::driving_point;
+using irdm::test::damped_modes;
+using irdm::test::driving_point;
 
 namespace {
 
-constexpr double kDt = 0.002;
-const Matrix3 kRigid = 0.5 * kDt * kDt * Vector3(9.0, 6.0, 7.0).asDiagonal().toDenseMatrix();
+constexpr double kLimitDt = 0.002;
+const Matrix3 kLimitRigid =
+    0.5 * kLimitDt * kLimitDt * Vector3(9.0, 6.0, 7.0).asDiagonal().toDenseMatrix();
 
 // Hand and object step by step; the hand is integrated in small steps. Ratio of the forces late to
 // those earlier: above one when the loop grows.
@@ -29,7 +30,7 @@ double simulated_growth(const DrivingPoint& record, const Matrix3& rigid, const 
     const Vector3 felt = k >= loop.delay ? Vector3(-force[static_cast<std::size_t>(k - loop.delay)])
                                          : Vector3(Vector3::Zero());
     constexpr int kSubsteps = 200;
-    const double h = kDt / kSubsteps;
+    const double h = kLimitDt / kSubsteps;
     for (int i = 0; i < kSubsteps; ++i) {  // velocity Verlet with the damper at the half step
       const auto acceleration = [&] {
         return Vector3((felt - loop.hand.stiffness * hand - loop.hand.damping * hand_velocity) /
@@ -64,28 +65,28 @@ TEST_CASE("the transfer of the hand is its response to a held force") {
   const std::complex<double> w = std::polar(0.97, -0.4);
   const DrivingPoint response = driving_point(
       {{std::sqrt(hand.stiffness / hand.mass), 0.5 * hand.damping / hand.mass, Vector3::UnitX()}},
-      kDt, 2000);
+      kLimitDt, 2000);
   std::complex<double> power = 1.0;
   for (int s = 0; s < 2000; ++s, power *= w) sum += response(0, s) / hand.mass * power;
-  CHECK(std::abs(hand_transfer(hand, kDt, w) - sum) < 1e-10 * std::abs(sum));
+  CHECK(std::abs(hand_transfer(hand, kLimitDt, w) - sum) < 1e-10 * std::abs(sum));
 }
 
 TEST_CASE("a delay counts in whole steps, both ways, and one for the computation") {
-  CHECK(loop_delay(0.0, kDt) == 1);
-  CHECK(loop_delay(0.002, kDt) == 3);
-  CHECK(loop_delay(0.0021, kDt) == 5);
-  CHECK(loop_delay(0.01, kDt) == 11);
+  CHECK(loop_delay(0.0, kLimitDt) == 1);
+  CHECK(loop_delay(0.002, kLimitDt) == 3);
+  CHECK(loop_delay(0.0021, kLimitDt) == 5);
+  CHECK(loop_delay(0.01, kLimitDt) == 11);
 }
 
 TEST_CASE("the loop is stable just below the largest coupling and grows just above it") {
   // Stiff enough that the delay is felt.
   auto modes = damped_modes();
   for (auto& mode : modes) mode.shape *= 0.3;
-  const DrivingPoint record = driving_point(modes, kDt, 800);
+  const DrivingPoint record = driving_point(modes, kLimitDt, 800);
   const bool floating = GENERATE(true, false);
   const int delay = GENERATE(3, 11);
-  const Matrix3 rigid = floating ? kRigid : Matrix3(Matrix3::Zero());
-  const HandLoop loop{{}, kDt, delay};
+  const Matrix3 rigid = floating ? kLimitRigid : Matrix3(Matrix3::Zero());
+  const HandLoop loop{{}, kLimitDt, delay};
   const double limit = largest_coupling(record, rigid, loop, 1.0);
   REQUIRE(limit > kSoftestCoupling);
   REQUIRE(limit < kStiffestCoupling);
@@ -96,19 +97,19 @@ TEST_CASE("the loop is stable just below the largest coupling and grows just abo
 TEST_CASE("a longer delay and a hand with less damping allow less coupling") {
   auto modes = damped_modes();
   for (auto& mode : modes) mode.shape *= 0.3;
-  const DrivingPoint record = driving_point(modes, kDt, 800);
-  const double usual = largest_coupling(record, kRigid, {{}, kDt, 3}, 1.0);
-  CHECK(largest_coupling(record, kRigid, {{}, kDt, 11}, 1.0) < usual);
-  CHECK(largest_coupling(record, kRigid, {{0.12, 0.5, 300.0}, kDt, 3}, 1.0) < usual);
+  const DrivingPoint record = driving_point(modes, kLimitDt, 800);
+  const double usual = largest_coupling(record, kLimitRigid, {{}, kLimitDt, 3}, 1.0);
+  CHECK(largest_coupling(record, kLimitRigid, {{}, kLimitDt, 11}, 1.0) < usual);
+  CHECK(largest_coupling(record, kLimitRigid, {{0.12, 0.5, 300.0}, kLimitDt, 3}, 1.0) < usual);
 }
 
 TEST_CASE("a soft body bears a stiff coupling, one that answers late a softer one") {
-  const DrivingPoint good = driving_point(damped_modes(), kDt, 800);
-  const double limit = largest_coupling(good, kRigid, {{}, kDt, 1}, 1.0);
+  const DrivingPoint good = driving_point(damped_modes(), kLimitDt, 800);
+  const double limit = largest_coupling(good, kLimitRigid, {{}, kLimitDt, 1}, 1.0);
   CAPTURE(limit);
   CHECK(limit > 3e3);
   DrivingPoint late = DrivingPoint::Zero(9, 811);
   late.rightCols(800) = good;
   late.col(0) = 0.1 * good.col(0);
-  CHECK(largest_coupling(late, kRigid, {{}, kDt, 1}, 1.0) < 0.9 * limit);
+  CHECK(largest_coupling(late, kLimitRigid, {{}, kLimitDt, 1}, 1.0) < 0.9 * limit);
 }

@@ -5,8 +5,8 @@
 
 using namespace irdm;
 using namespace irdm::precompute;
-using irdm::precompute::test::damped_modes;
-using irdm::precompute::test::driving_point;
+using irdm::test::damped_modes;
+using irdm::test::driving_point;
 
 namespace {
 

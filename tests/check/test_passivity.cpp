@@ -5,12 +5,12 @@
 
 using namespace irdm;
 using namespace irdm::precompute;
-using irdm::precompute::test::damped_modes;
-using irdm::precompute::test::driving_point;
+using irdm::test::damped_modes;
+using irdm::test::driving_point;
 
 namespace {
 
-constexpr double kDt = 0.002;
+constexpr double kPassiveDt = 0.002;
 
 // Symmetric part of the map from a history of held forces to the displacement increments: the work
 // of the history f is f^T A f. Lowest and highest eigenvalue.
@@ -33,25 +33,25 @@ Eigen::Vector2d work_range(const DrivingPoint& record, int steps) {
 }  // namespace
 
 TEST_CASE("damped oscillators give out no energy") {
-  CHECK(analyse_passivity(driving_point(damped_modes(), kDt, 1000), 1.0).lowest > -1e-6);
+  CHECK(analyse_passivity(driving_point(damped_modes(), kPassiveDt, 1000), 1.0).lowest > -1e-6);
 }
 
 TEST_CASE("an oscillator that grows gives out energy") {
   auto modes = damped_modes();
   modes[1].sigma = -2.0;
-  const Passivity found = analyse_passivity(driving_point(modes, kDt, 500), 1.0);
+  const Passivity found = analyse_passivity(driving_point(modes, kPassiveDt, 500), 1.0);
   CHECK(found.lowest < -0.01);
-  CHECK(found.angle / kDt == Approx(modes[1].omega).epsilon(0.1));
+  CHECK(found.angle / kPassiveDt == Approx(modes[1].omega).epsilon(0.1));
 }
 
 TEST_CASE("a record that is cut off while it rings gives out energy") {
-  CHECK(analyse_passivity(driving_point(damped_modes(), kDt, 60), 1.0).lowest < -0.01);
+  CHECK(analyse_passivity(driving_point(damped_modes(), kPassiveDt, 60), 1.0).lowest < -0.01);
 }
 
 TEST_CASE("what is lowest on the circle is the least work of all histories of force") {
   auto modes = damped_modes();
   modes[2].sigma = -1.0;
-  const DrivingPoint record = driving_point(modes, kDt, 60);
+  const DrivingPoint record = driving_point(modes, kPassiveDt, 60);
   const Passivity found = analyse_passivity(record, 1.0);
   // The eigenvalues of the truncated Toeplitz matrices approach the range on the circle from
   // within.
@@ -65,7 +65,7 @@ TEST_CASE("what is lowest on the circle is the least work of all histories of fo
 }
 
 TEST_CASE("a response that is not reciprocal can be active though its symmetric part is passive") {
-  DrivingPoint record = driving_point(damped_modes(), kDt, 1000);
+  DrivingPoint record = driving_point(damped_modes(), kPassiveDt, 1000);
   Matrix3 turn = Matrix3::Zero();
   turn(0, 1) = 2e-4;
   turn(1, 0) = -2e-4;

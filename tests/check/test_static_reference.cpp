@@ -20,14 +20,14 @@ TEST_CASE("the static reference is the inertia relief of the mesh, however it is
   TetMesh mesh;
   mesh.nodes = model.mesh.nodes;
   mesh.tets = model.mesh.tets;
-  const precompute::test::Discrete body(mesh, model.material);
+  const test::Discrete body(mesh, model.material);
   const int b = 17;
   const int dof = 3 * model.mesh.surface_nodes[b / 3] + b % 3;
-  const Eigen::VectorXd u = precompute::test::inertia_relief(
-      body, Eigen::VectorXd::Unit(3 * mesh.nodes.rows(), dof),
-      precompute::test::node_at(mesh, Vector3(-0.06, -0.06, -0.06)),
-      precompute::test::node_at(mesh, Vector3(0.06, -0.06, -0.06)),
-      precompute::test::node_at(mesh, Vector3(-0.06, 0.06, -0.06)));
+  const Eigen::VectorXd u =
+      test::inertia_relief(body, Eigen::VectorXd::Unit(3 * mesh.nodes.rows(), dof),
+                           test::node_at(mesh, Vector3(-0.06, -0.06, -0.06)),
+                           test::node_at(mesh, Vector3(0.06, -0.06, -0.06)),
+                           test::node_at(mesh, Vector3(-0.06, 0.06, -0.06)));
   const Eigen::VectorXd found = StaticReference(model).displacement(b);
   double error = 0.0;
   for (std::size_t i = 0; i < model.mesh.surface_nodes.size(); ++i) {

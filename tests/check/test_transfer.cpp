@@ -43,8 +43,7 @@ int zeros_of_determinant(const DrivingPoint& record, double radius) {
 }  // namespace
 
 TEST_CASE("the transform is the sum of the series on the circle") {
-  const DrivingPoint record =
-      precompute::test::driving_point(precompute::test::damped_modes(), 0.002, 300);
+  const DrivingPoint record = test::driving_point(test::damped_modes(), 0.002, 300);
   for (const double radius : {0.9, 1.0, 1.02}) {
     const MatrixHalfCircle values = transform(record, radius, 128);  // shorter than the record
     for (const int j : {0, 1, 50, 128}) {

@@ -10,10 +10,10 @@ using namespace irdm::precompute;
 
 namespace {
 
-const Material kMaterial{2000.0, 0.3, 110.0, 8.0, 2e-4};
+const Material kMovedMaterial{2000.0, 0.3, 110.0, 8.0, 2e-4};
 
 SoftBody some_body() {
-  return {test::box_mesh(Vector3(0.12, 0.08, 0.10), {3, 2, 2}), kMaterial,
+  return {test::box_mesh(Vector3(0.12, 0.08, 0.10), {3, 2, 2}), kMovedMaterial,
           Elasticity::kCorotational};
 }
 

@@ -6,7 +6,9 @@
 
 #include "precompute/fem/mass_properties.hpp"
 
-namespace irdm::precompute::test {
+namespace irdm::test {
+
+using namespace precompute;
 
 Discrete::Discrete(TetMesh m, const Material& material)
     : mesh(std::move(m)),
@@ -62,4 +64,4 @@ double lowest_frequency(const Discrete& body, double shift) {
   return std::sqrt(lowest_eigenvalues(body, shift, 12, 12)(0)) / (2.0 * std::numbers::pi);
 }
 
-}  // namespace irdm::precompute::test
+}  // namespace irdm::test

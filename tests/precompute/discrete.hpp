@@ -5,7 +5,9 @@
 #include "precompute/fem/assembly.hpp"
 #include "precompute/mesh/tet_mesh.hpp"
 
-namespace irdm::precompute::test {
+namespace irdm::test {
+
+using namespace precompute;
 
 /// A meshed body with its matrices.
 struct Discrete {
@@ -37,4 +39,4 @@ Eigen::VectorXd lowest_eigenvalues(const Discrete& body, double shift, int block
 /// Lowest elastic frequency of the free body [Hz].
 double lowest_frequency(const Discrete& body, double shift);
 
-}  // namespace irdm::precompute::test
+}  // namespace irdm::test

@@ -10,7 +10,9 @@
 #include "common/process/temporary_files.hpp"
 #include "precompute/mesh/tet_mesh.hpp"
 
-namespace irdm::precompute::test {
+namespace irdm::test {
+
+using namespace precompute;
 
 /// A folder for mesh files, and programs that write them.
 struct MeshFiles : TemporaryFolder {
@@ -48,4 +50,4 @@ inline double volume(const TetMesh& mesh) {
   return sum;
 }
 
-}  // namespace irdm::precompute::test
+}  // namespace irdm::test

@@ -3,7 +3,9 @@
 #include "precompute/mesh/box_mesh.hpp"
 #include "precompute/mesh/tetgen_program.hpp"
 
-namespace irdm::precompute::test {
+namespace irdm::test {
+
+using namespace precompute;
 
 TetMesh box_mesh(const Vector3& size, const std::array<int, 3>& cells) {
   return tetrahedralise(box_surface(size, cells));
@@ -36,4 +38,4 @@ TetMesh together(const TetMesh& a, const TetMesh& b) {
   return mesh;
 }
 
-}  // namespace irdm::precompute::test
+}  // namespace irdm::test

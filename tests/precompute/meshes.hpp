@@ -4,7 +4,9 @@
 
 #include "precompute/mesh/tet_mesh.hpp"
 
-namespace irdm::precompute::test {
+namespace irdm::test {
+
+using namespace precompute;
 
 /// A box filled by TetGen: irregular inside.
 TetMesh box_mesh(const Vector3& size, const std::array<int, 3>& cells);
@@ -18,4 +20,4 @@ TetMesh two_tets();
 /// Both meshes side by side in one, joined nowhere.
 TetMesh together(const TetMesh& a, const TetMesh& b);
 
-}  // namespace irdm::precompute::test
+}  // namespace irdm::test

@@ -26,12 +26,12 @@ const std::string kStepping =
 constexpr int kDof = 54;
 
 // Runs the real program in a folder of its own.
-struct Run : irdm::test::TemporaryFolder {
+struct ColumnsRun : irdm::test::TemporaryFolder {
   int status = -1;
   std::string out;
   std::string err;
 
-  explicit Run(const std::string& config = kStepping) { write("c.toml", config); }
+  explicit ColumnsRun(const std::string& config = kStepping) { write("c.toml", config); }
   void write(const std::string& name, const std::string& text) const {
     std::ofstream(path() / name) << text;
   }
@@ -85,7 +85,7 @@ int columns_kept(const std::string& out) {
 
 TEST_CASE("slices join to the file of a whole run, bit for bit, by both methods", "[slow]") {
   for (const std::string& config : {kStepping, modal(), fixed_modal()}) {
-    Run run(config);
+    ColumnsRun run(config);
     const bool fixed = config == fixed_modal();
     const bool stepping = config != modal() && !fixed;
     // The modes themselves may differ in their last bits with the number of threads.
@@ -107,7 +107,7 @@ TEST_CASE("slices join to the file of a whole run, bit for bit, by both methods"
 }
 
 TEST_CASE("merge refuses slices that do not fit together, one by one", "[slow]") {
-  Run run;
+  ColumnsRun run;
   run.write("other.toml", std::string(kStepping).replace(kStepping.find("2000"), 4, "2001"));
   run.write("linear.toml", kStepping + "[time_stepping]\nmodel = \"linear\"\n");
   run.write("double.toml", kStepping + "precision = \"double\"\n");
@@ -139,7 +139,7 @@ TEST_CASE("merge refuses slices that do not fit together, one by one", "[slow]")
 }
 
 TEST_CASE("option --columns takes A:B within R, of dense R only") {
-  Run run;
+  ColumnsRun run;
   for (const std::string bad : {"5", "5:", ":5", "5:5", "6:5", "-1:5", "1:2x", "a:b"}) {
     run.start("c.toml -o a.part --columns=" + bad);
     CHECK(run.status == 2);
@@ -152,7 +152,7 @@ TEST_CASE("option --columns takes A:B within R, of dense R only") {
 
 TEST_CASE("a work file goes on where its last whole column ends, however it was cut or damaged",
           "[slow]") {
-  Run run;
+  ColumnsRun run;
   run.good("c.toml -o whole.h5");
   run.good("c.toml -o a.part --columns 0:54");
   const std::string whole = run.content("a.part");
@@ -185,7 +185,7 @@ TEST_CASE("a work file goes on where its last whole column ends, however it was 
 }
 
 TEST_CASE("a work file of another configuration is given up", "[slow]") {
-  Run run;
+  ColumnsRun run;
   run.write("other.toml", std::string(kStepping).replace(kStepping.find("2000"), 4, "2001"));
   run.good("other.toml -o other.h5");
   run.good("c.toml -o a.part --columns 0:54");
@@ -198,7 +198,7 @@ TEST_CASE("a work file of another configuration is given up", "[slow]") {
 TEST_CASE("SIGINT keeps the work file and says how to go on, and the same command goes on") {
   const std::string longer =
       std::string(kStepping).replace(kStepping.find("steps = 40"), 10, "steps = 300");
-  Run run(longer);
+  ColumnsRun run(longer);
   ChildProcess process = run.begin("c.toml -o model.h5");
   const auto some = [&] {
     return run.has("model.h5.columns") &&
@@ -220,7 +220,7 @@ TEST_CASE("two ranks share the columns and one file comes out, that of a single 
   const std::string two = IRDM_MPIRUN " -n 2 --oversubscribe --allow-run-as-root";
   for (const std::string& config :
        {kStepping, kStepping + "[time_stepping]\nmodel = \"linear\"\n"}) {
-    Run run(config);
+    ColumnsRun run(config);
     run.good("c.toml -o single.h5");
     run.good("c.toml -o shared.h5 --threads 1", two);
     CHECK((run.content("shared.h5") == run.content("single.h5")));
@@ -241,7 +241,7 @@ TEST_CASE("killed at 20 random moments, the run ends with the file of an undistu
           "[slow]") {
   const std::string config =
       std::string(kStepping).replace(kStepping.find("steps = 40"), 10, "steps = 1500");
-  Run undisturbed(config);
+  ColumnsRun undisturbed(config);
   const auto start = std::chrono::steady_clock::now();
   undisturbed.good("c.toml -o model.h5 --threads 2");
   const double whole =
@@ -249,7 +249,7 @@ TEST_CASE("killed at 20 random moments, the run ends with the file of an undistu
   const std::string expected = undisturbed.content("model.h5");
   std::mt19937 random(2026);
   std::uniform_real_distribution<double> moment(0.0, 0.35 * whole);
-  Run run(config);
+  ColumnsRun run(config);
   int kills = 0;
   int had = 0;
   while (kills < 20) {

@@ -14,7 +14,7 @@ using namespace irdm::precompute;
 namespace {
 
 const std::string kMesh = "[mesh]\nbox = { size = [0.1, 0.2, 0.3], cells = [1, 2, 3] }\n";
-const std::string kMaterial =
+const std::string kMaterialTable =
     "[material]\nyoungs_modulus = 2000\npoisson_ratio = 0.3\ndensity = 110\n";
 
 PrecomputeConfig read(const std::string& text) {
@@ -27,7 +27,7 @@ void check_refused(const std::string& text, const std::string& message) {
 }
 
 std::string material(const std::string& key, const std::string& value) {
-  std::string text = kMaterial;
+  std::string text = kMaterialTable;
   const auto start = text.find(key);
   if (start == std::string::npos) return text + key + " = " + value + "\n";
   return text.replace(start, text.find('\n', start) - start, key + " = " + value);
@@ -85,7 +85,7 @@ TEST_CASE("the liver is an organ of hand size, sound, and held by a part of its 
 }
 
 TEST_CASE("configuration has defaults for damping and response") {
-  const PrecomputeConfig config = read(kMesh + kMaterial);
+  const PrecomputeConfig config = read(kMesh + kMaterialTable);
   CHECK(config.mesh.order == 1);
   CHECK(config.material.rayleigh_alpha == 8.0);
   CHECK(config.material.rayleigh_beta == 2e-4);
@@ -97,7 +97,7 @@ TEST_CASE("configuration has defaults for damping and response") {
 
 TEST_CASE("configuration takes every documented word") {
   const auto response = [](const std::string& line) {
-    return read(kMesh + kMaterial + "[response]\n" + line + "\n").response;
+    return read(kMesh + kMaterialTable + "[response]\n" + line + "\n").response;
   };
   CHECK(response("storage = \"dense\"").storage == Storage::kDense);
   CHECK(response("storage = \"both\"").storage == Storage::kBoth);
@@ -108,42 +108,42 @@ TEST_CASE("configuration takes every documented word") {
 }
 
 TEST_CASE("a mesh file is found beside its configuration") {
-  const auto config = read("[mesh]\nfile = \"x/liver.msh\"\n" + kMaterial);
+  const auto config = read("[mesh]\nfile = \"x/liver.msh\"\n" + kMaterialTable);
   CHECK(std::get<std::filesystem::path>(config.mesh.source) ==
         std::filesystem::current_path() / "x" / "liver.msh");
   CHECK(config.mesh.unit == 1.0);
-  CHECK(read("[mesh]\nfile = \"a.msh\"\nunit = \"mm\"\n" + kMaterial).mesh.unit == 1e-3);
+  CHECK(read("[mesh]\nfile = \"a.msh\"\nunit = \"mm\"\n" + kMaterialTable).mesh.unit == 1e-3);
   CHECK(!config.mesh.edge_length);
-  CHECK(read("[mesh]\nfile = \"a.STL\"\nedge_length = 0.01\n" + kMaterial).mesh.edge_length ==
+  CHECK(read("[mesh]\nfile = \"a.STL\"\nedge_length = 0.01\n" + kMaterialTable).mesh.edge_length ==
         0.01);
 }
 
 TEST_CASE("configuration refuses each bad mesh entry") {
-  check_refused(kMaterial, "mesh is missing");
-  check_refused("[mesh]\n" + kMaterial, "has neither box nor file");
-  check_refused(kMesh + "file = \"a.msh\"\n" + kMaterial, "has both box and file");
-  check_refused("[mesh]\nbox = 3\n" + kMaterial, "mesh.box is not a table");
-  check_refused("[mesh]\nfile = 3\n" + kMaterial, "mesh.file is not text");
-  check_refused("[mesh]\nbox = { size = [0.1, 0.2], cells = [1, 2, 3] }\n" + kMaterial,
+  check_refused(kMaterialTable, "mesh is missing");
+  check_refused("[mesh]\n" + kMaterialTable, "has neither box nor file");
+  check_refused(kMesh + "file = \"a.msh\"\n" + kMaterialTable, "has both box and file");
+  check_refused("[mesh]\nbox = 3\n" + kMaterialTable, "mesh.box is not a table");
+  check_refused("[mesh]\nfile = 3\n" + kMaterialTable, "mesh.file is not text");
+  check_refused("[mesh]\nbox = { size = [0.1, 0.2], cells = [1, 2, 3] }\n" + kMaterialTable,
                 "has 2 entries");
-  check_refused("[mesh]\nbox = { size = [0.1, 0, 0.3], cells = [1, 2, 3] }\n" + kMaterial,
+  check_refused("[mesh]\nbox = { size = [0.1, 0, 0.3], cells = [1, 2, 3] }\n" + kMaterialTable,
                 "size is 0");
-  check_refused("[mesh]\nbox = { size = [0.1, nan, 0.3], cells = [1, 2, 3] }\n" + kMaterial,
+  check_refused("[mesh]\nbox = { size = [0.1, nan, 0.3], cells = [1, 2, 3] }\n" + kMaterialTable,
                 "size is nan");
-  check_refused("[mesh]\nbox = { size = [1, 1, 1], cells = [1, 0, 3] }\n" + kMaterial,
+  check_refused("[mesh]\nbox = { size = [1, 1, 1], cells = [1, 0, 3] }\n" + kMaterialTable,
                 "cells is 0");
-  check_refused("[mesh]\nbox = { size = [1, 1, 1], cells = [1, 1.5, 3] }\n" + kMaterial,
+  check_refused("[mesh]\nbox = { size = [1, 1, 1], cells = [1, 1.5, 3] }\n" + kMaterialTable,
                 "not whole");
-  check_refused("[mesh]\nbox = { size = [1, 1, 1], cells = [1, 1, 3], x = 1 }\n" + kMaterial,
+  check_refused("[mesh]\nbox = { size = [1, 1, 1], cells = [1, 1, 3], x = 1 }\n" + kMaterialTable,
                 "mesh.box.x is not a known key");
-  check_refused(kMesh + "unit = \"mm\"\n" + kMaterial, "unit belongs to a mesh file");
-  check_refused("[mesh]\nfile = \"a.msh\"\nunit = \"inch\"\n" + kMaterial, "m | cm | mm");
-  check_refused("[mesh]\nfile = \"a.stl\"\nedge_length = 0\n" + kMaterial, "edge_length is 0");
-  check_refused("[mesh]\nfile = \"a.msh\"\nedge_length = 0.1\n" + kMaterial,
+  check_refused(kMesh + "unit = \"mm\"\n" + kMaterialTable, "unit belongs to a mesh file");
+  check_refused("[mesh]\nfile = \"a.msh\"\nunit = \"inch\"\n" + kMaterialTable, "m | cm | mm");
+  check_refused("[mesh]\nfile = \"a.stl\"\nedge_length = 0\n" + kMaterialTable, "edge_length is 0");
+  check_refused("[mesh]\nfile = \"a.msh\"\nedge_length = 0.1\n" + kMaterialTable,
                 "edge_length belongs to a surface (.stl, .obj, .ply)");
-  check_refused(kMesh + "edge_length = 0.1\n" + kMaterial, "cells says how fine a box is");
-  check_refused(kMesh + "order = 3\n" + kMaterial, "mesh.order is 3");
-  check_refused(kMesh + "typo = 2\n" + kMaterial, "mesh.typo is not a known key");
+  check_refused(kMesh + "edge_length = 0.1\n" + kMaterialTable, "cells says how fine a box is");
+  check_refused(kMesh + "order = 3\n" + kMaterialTable, "mesh.order is 3");
+  check_refused(kMesh + "typo = 2\n" + kMaterialTable, "mesh.typo is not a known key");
 }
 
 TEST_CASE("configuration refuses each bad material entry") {
@@ -167,7 +167,7 @@ TEST_CASE("configuration refuses each bad material entry") {
 
 TEST_CASE("configuration refuses each bad response entry") {
   const auto refused = [](const std::string& line, const std::string& message) {
-    check_refused(kMesh + kMaterial + "[response]\n" + line + "\n", message);
+    check_refused(kMesh + kMaterialTable + "[response]\n" + line + "\n", message);
   };
   refused("dt = 0", "response.dt is 0");
   refused("dt = -0.002", "response.dt is -0.002");
@@ -191,10 +191,10 @@ TEST_CASE("configuration refuses each bad response entry") {
   refused("support = \"fixed\"", "support is missing");
   refused("support = \"nailed\"", "floating | fixed");
   refused("typo = 1", "response.typo is not a known key");
-  check_refused(kMesh + kMaterial + "[time_stepping]\nfirst_step = 3e-4\n",
+  check_refused(kMesh + kMaterialTable + "[time_stepping]\nfirst_step = 3e-4\n",
                 "c.toml:8: time_stepping.first_step does not divide response.dt");
-  check_refused(kMesh + kMaterial + "[respnse]\n", "respnse is not a known key");
-  check_refused("mesh = 3\n" + kMaterial, "mesh is not a table");
+  check_refused(kMesh + kMaterialTable + "[respnse]\n", "respnse is not a known key");
+  check_refused("mesh = 3\n" + kMaterialTable, "mesh is not a table");
 }
 
 TEST_CASE("configuration takes what a laboratory may have, and nothing beyond") {
@@ -208,22 +208,23 @@ TEST_CASE("configuration takes what a laboratory may have, and nothing beyond") 
   limits("rayleigh_alpha", {"0", "1e6"}, {"1e300"});
   limits("rayleigh_beta", {"0", "100"}, {"1e300"});
   const auto dt = [](const std::string& value) {
-    return kMesh + kMaterial + "[response]\ndt = " + value + "\n";
+    return kMesh + kMaterialTable + "[response]\ndt = " + value + "\n";
   };
   for (const char* good : {"1e-5", "1e-4", "4e-3", "1"}) CHECK_NOTHROW(read(dt(good)));
   for (const char* bad : {"1e-20", "4e-10", "9e-6", "1.1"}) {
     check_refused(dt(bad), "response.dt is ");
   }
-  const std::string modes = kMesh + kMaterial + "[modes]\n";
+  const std::string modes = kMesh + kMaterialTable + "[modes]\n";
   check_refused(modes + "highest_frequency = 1e300\n", "modes.highest_frequency is 1e+300");
   check_refused(modes + "count = 9\ncontact_radius = 1e300\n", "modes.contact_radius is 1e+300");
-  check_refused("[mesh]\nbox = { size = [1e300, 1, 1], cells = [1, 1, 1] }\n" + kMaterial,
+  check_refused("[mesh]\nbox = { size = [1e300, 1, 1], cells = [1, 1, 1] }\n" + kMaterialTable,
                 "size is 1e+300");
-  check_refused("[mesh]\nfile = \"a.stl\"\nedge_length = 1e300\n" + kMaterial,
+  check_refused("[mesh]\nfile = \"a.stl\"\nedge_length = 1e300\n" + kMaterialTable,
                 "edge_length is 1e+300");
-  check_refused(kMesh + kMaterial + "[time_stepping]\nforce = 1e300\n",
+  check_refused(kMesh + kMaterialTable + "[time_stepping]\nforce = 1e300\n",
                 "time_stepping.force is 1e+300");
-  const std::string support = kMesh + kMaterial + "[response]\nsupport = \"fixed\"\n[support]\n";
+  const std::string support =
+      kMesh + kMaterialTable + "[response]\nsupport = \"fixed\"\n[support]\n";
   check_refused(support + "half_space = { point = [1e300, 0, 0], normal = [0, 0, 1] }\n",
                 "point is 1e+300");
   check_refused(support + "half_space = { point = [0, 0, 0], normal = [0, 0, 1e300] }\n",
@@ -233,9 +234,9 @@ TEST_CASE("configuration takes what a laboratory may have, and nothing beyond") 
 
 TEST_CASE("configuration takes all modes, or some by one of three measures") {
   const auto modes = [](const std::string& lines) {
-    return read(kMesh + kMaterial + "[modes]\n" + lines).modes;
+    return read(kMesh + kMaterialTable + "[modes]\n" + lines).modes;
   };
-  CHECK(read(kMesh + kMaterial).modes.all());
+  CHECK(read(kMesh + kMaterialTable).modes.all());
   CHECK(modes("").all());
   CHECK(modes("count = 300\n").count == 300);
   CHECK(modes("highest_frequency = 400.0\n").highest_frequency == 400.0);
@@ -243,7 +244,7 @@ TEST_CASE("configuration takes all modes, or some by one of three measures") {
   CHECK(modes("error = 0.01\ncontact_radius = 0.01\n").contact_radius == 0.01);
   CHECK(modes("error = 0.01\n").contact_radius == 0.015);
   const auto refused = [](const std::string& lines, const std::string& message) {
-    check_refused(kMesh + kMaterial + "[modes]\n" + lines, message);
+    check_refused(kMesh + kMaterialTable + "[modes]\n" + lines, message);
   };
   CHECK(modes("error = 0.01\n").solver == ModeSolver::kSpectra);
   CHECK(modes("count = 9\nsolver = \"slepc\"\n").solver == ModeSolver::kSlepc);
@@ -262,10 +263,11 @@ TEST_CASE("configuration takes all modes, or some by one of three measures") {
 
 TEST_CASE("configuration takes each kind of support") {
   const auto support = [](const std::string& line) {
-    return *read(kMesh + kMaterial + "[response]\nsupport = \"fixed\"\n[support]\n" + line + "\n")
+    return *read(kMesh + kMaterialTable + "[response]\nsupport = \"fixed\"\n[support]\n" + line +
+                 "\n")
                 .support;
   };
-  CHECK(!read(kMesh + kMaterial).support);
+  CHECK(!read(kMesh + kMaterialTable).support);
   const auto half =
       std::get<HalfSpace>(support("half_space = { point = [1, 2, 3], normal = [0, 0, 2] }"));
   CHECK(half.point == Vector3(1, 2, 3));
@@ -277,7 +279,7 @@ TEST_CASE("configuration takes each kind of support") {
 }
 
 TEST_CASE("configuration refuses each bad support") {
-  const std::string fixed = kMesh + kMaterial + "[response]\nsupport = \"fixed\"\n";
+  const std::string fixed = kMesh + kMaterialTable + "[response]\nsupport = \"fixed\"\n";
   const auto refused = [&](const std::string& text, const std::string& message) {
     check_refused(fixed + text + "\n", message);
   };
@@ -288,7 +290,7 @@ TEST_CASE("configuration refuses each bad support") {
   refused("[support]\nbox = { min = [0, 0, 2], max = [1, 1, 1] }", "min is above max");
   refused("[support]\ngroup = 3", "group is not text");
   refused("[support]\ngroup = \"a\"\ntypo = 3", "support.typo is not a known key");
-  check_refused(kMesh + kMaterial + "[support]\ngroup = \"a\"\n", "the body is floating");
+  check_refused(kMesh + kMaterialTable + "[support]\ngroup = \"a\"\n", "the body is floating");
 }
 
 TEST_CASE("configuration refuses files that are missing, empty or truncated") {

@@ -10,18 +10,18 @@
 using Catch::Matchers::Contains;
 using namespace irdm;
 using namespace irdm::precompute;
-using irdm::precompute::test::Discrete;
-using irdm::precompute::test::inertia_relief;
-using irdm::precompute::test::lowest_eigenvalues;
-using irdm::precompute::test::lowest_frequency;
-using irdm::precompute::test::node_at;
+using irdm::test::Discrete;
+using irdm::test::inertia_relief;
+using irdm::test::lowest_eigenvalues;
+using irdm::test::lowest_frequency;
+using irdm::test::node_at;
 
 namespace {
 
-const Material kMaterial{2000.0, 0.49, 110.0, 8.0, 2e-4};
+const Material kModesMaterial{2000.0, 0.49, 110.0, 8.0, 2e-4};
 
 Discrete small_box() {
-  return Discrete(test::box_mesh(Vector3(0.12, 0.08, 0.10), {4, 3, 3}), kMaterial);
+  return Discrete(test::box_mesh(Vector3(0.12, 0.08, 0.10), {4, 3, 3}), kModesMaterial);
 }
 
 }  // namespace
@@ -76,7 +76,7 @@ TEST_CASE("static limit of R is the answer of an independent inertia-relief solv
   const Discrete body = small_box();
   const ElasticModes modes = elastic_modes(body.stiffness, body.mesh.nodes, body.mass);
   const Surface surface = extract_surface(body.mesh, "box");
-  const ModalResponse response = modal_response(modes, surface.nodes, kMaterial);
+  const ModalResponse response = modal_response(modes, surface.nodes, kModesMaterial);
   const auto& phi = std::get<RowMatrix<double>>(response.shapes);
   const Eigen::VectorXd compliance = response.angular_frequency.cwiseAbs2().cwiseInverse();
   for (const int b : {0, 7, 50, 3 * static_cast<int>(surface.nodes.size()) - 1}) {
@@ -98,7 +98,7 @@ TEST_CASE("decay rates are those of Rayleigh damping") {
   ElasticModes modes;
   modes.angular_frequency = Eigen::Vector2d(10.0, 100.0);
   modes.shapes = Eigen::MatrixXd::Random(6, 2);
-  const ModalResponse response = modal_response(modes, {1}, kMaterial);
+  const ModalResponse response = modal_response(modes, {1}, kModesMaterial);
   CHECK(response.decay_rate(0) == Approx(0.5 * (8.0 + 2e-4 * 100.0)));
   CHECK(response.decay_rate(1) == Approx(0.5 * (8.0 + 2e-4 * 10000.0)));
   CHECK(std::get<RowMatrix<double>>(response.shapes) == modes.shapes.bottomRows(3));
@@ -112,13 +112,13 @@ TEST_CASE("bodies with more than six modes without energy are refused") {
   mesh.nodes.row(5) << 0, -1, 0;
   mesh.tets.conservativeResize(2, 4);
   mesh.tets.row(1) << 0, 4, 5, 3;
-  const Discrete body(mesh, kMaterial);
+  const Discrete body(mesh, kModesMaterial);
   CHECK_THROWS_WITH(elastic_modes(body.stiffness, body.mesh.nodes, body.mass),
                     Contains("7 modes without elastic energy"));
 }
 
 TEST_CASE("lowest elastic frequency of the paper's cube is 10.7 Hz") {
-  const Discrete body(test::box_mesh(Vector3(0.12, 0.12, 0.12), {12, 12, 12}), kMaterial);
+  const Discrete body(test::box_mesh(Vector3(0.12, 0.12, 0.12), {12, 12, 12}), kModesMaterial);
   CHECK(lowest_frequency(body, 1000.0) == Approx(10.7).margin(0.2));
 }
 

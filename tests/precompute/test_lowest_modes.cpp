@@ -13,15 +13,15 @@
 using Catch::Matchers::Contains;
 using namespace irdm;
 using namespace irdm::precompute;
-using irdm::precompute::test::Discrete;
+using irdm::test::Discrete;
 
 namespace {
 
-const Material kMaterial{2000.0, 0.4, 110.0, 8.0, 2e-4};
+const Material kLowestMaterial{2000.0, 0.4, 110.0, 8.0, 2e-4};
 const HalfSpace kLeft{Vector3::Zero(), Vector3(1, 0, 0)};
 
-Discrete small_box() {
-  return Discrete(test::box_mesh(Vector3(0.12, 0.08, 0.10), {4, 3, 3}), kMaterial);
+Discrete lowest_box() {
+  return Discrete(test::box_mesh(Vector3(0.12, 0.08, 0.10), {4, 3, 3}), kLowestMaterial);
 }
 
 ElasticModes all_modes(const Discrete& body, const std::vector<int>& clamped) {
@@ -32,7 +32,7 @@ ElasticModes all_modes(const Discrete& body, const std::vector<int>& clamped) {
 }  // namespace
 
 TEST_CASE("lowest modes are those of the full set, free and fixed") {
-  const Discrete body = small_box();
+  const Discrete body = lowest_box();
   const std::vector<int> clamped =
       GENERATE_COPY(std::vector<int>{}, nodes_in(body.mesh, kLeft, "box"));
   const ElasticModes all = all_modes(body, clamped);
@@ -58,7 +58,7 @@ TEST_CASE("lowest modes are those of the full set, free and fixed") {
 }
 
 TEST_CASE("lowest modes are the same bits every time") {
-  const Discrete body = small_box();
+  const Discrete body = lowest_box();
   const ElasticStatics statics(body.stiffness, body.mesh.nodes, body.mass, {});
   const ElasticModes once = lowest_modes(statics, 12);
   const ElasticModes again = lowest_modes(statics, 12);
@@ -73,7 +73,7 @@ TEST_CASE("bodies with motions without energy besides the rigid ones have no low
   mesh.nodes.row(5) << 0, -1, 0;
   mesh.tets.conservativeResize(2, 4);
   mesh.tets.row(1) << 0, 4, 5, 3;
-  const Discrete body(mesh, kMaterial);
+  const Discrete body(mesh, kLowestMaterial);
   const auto lowest = [&] {
     return lowest_modes(ElasticStatics(body.stiffness, body.mesh.nodes, body.mass, {}), 3);
   };
@@ -104,7 +104,7 @@ TEST_CASE("a rod without transverse contraction is pulled by F L / (E A)") {
 }
 
 TEST_CASE("static displacement of a free body is that of an independent inertia-relief solve") {
-  const Discrete body = small_box();
+  const Discrete body = lowest_box();
   const ElasticStatics statics(body.stiffness, body.mesh.nodes, body.mass, {});
   Eigen::MatrixXd force = Eigen::MatrixXd::Zero(body.mass3.size(), 2);
   force(5, 0) = 1.0;
@@ -120,7 +120,7 @@ TEST_CASE("static displacement of a free body is that of an independent inertia-
 }
 
 TEST_CASE("a driving spectrum answers as all modes do") {
-  const Discrete body = small_box();
+  const Discrete body = lowest_box();
   const ElasticModes all = all_modes(body, {});
   const ElasticStatics statics(body.stiffness, body.mesh.nodes, body.mass, {});
   Eigen::MatrixXd load = Eigen::MatrixXd::Zero(body.mass3.size(), 2);
@@ -131,16 +131,16 @@ TEST_CASE("a driving spectrum answers as all modes do") {
   for (int k = 0; k < 2; ++k) {
     const Eigen::VectorXd share = all.shapes.transpose() * load.col(k);
     const DrivingSpectrum exact{all.angular_frequency, share.cwiseAbs2()};
-    const Eigen::VectorXd expected = driving_response(exact, kMaterial, dt, press_steps(dt));
-    const Eigen::VectorXd found =
-        driving_response(spectra[static_cast<std::size_t>(k)], kMaterial, dt, press_steps(dt));
+    const Eigen::VectorXd expected = driving_response(exact, kLowestMaterial, dt, press_steps(dt));
+    const Eigen::VectorXd found = driving_response(spectra[static_cast<std::size_t>(k)],
+                                                   kLowestMaterial, dt, press_steps(dt));
     CHECK((found - expected).cwiseAbs().maxCoeff() < 1e-5 * expected.cwiseAbs().maxCoeff());
     CHECK(found.sum() == Approx(expected.sum()).epsilon(1e-6));
     CHECK(press_error(expected, found, dt) < 1e-5);
     // More steps come closer: nothing but the quadrature is between the two.
     const auto coarse = driving_spectra(statics, load, 20)[static_cast<std::size_t>(k)];
-    CHECK(press_error(expected, driving_response(coarse, kMaterial, dt, press_steps(dt)), dt) >
-          10.0 * press_error(expected, found, dt));
+    CHECK(press_error(expected, driving_response(coarse, kLowestMaterial, dt, press_steps(dt)),
+                      dt) > 10.0 * press_error(expected, found, dt));
   }
 }
 

@@ -9,7 +9,7 @@
 using Catch::Matchers::Contains;
 using namespace irdm;
 using namespace irdm::precompute;
-using namespace irdm::precompute::test;
+using namespace irdm::test;
 
 TEST_CASE("sound meshes pass the check") {
   CHECK_NOTHROW(check_mesh(one_tet(), "m"));

@@ -7,13 +7,13 @@
 using Catch::Matchers::Contains;
 using namespace irdm;
 using namespace irdm::precompute;
-using irdm::precompute::test::content;
-using irdm::precompute::test::replaced;
-using irdm::precompute::test::volume;
+using irdm::test::content;
+using irdm::test::replaced;
+using irdm::test::volume;
 
 namespace {
 
-struct Files : test::MeshFiles {
+struct MeshFolder : test::MeshFiles {
   // A unit cube, and a point that belongs to nothing, by the gmsh program.
   std::filesystem::path gmsh(const std::string& options) const {
     write("cube.geo",
@@ -34,7 +34,7 @@ const std::string kMsh41 =
 }  // namespace
 
 TEST_CASE("real Gmsh files of both versions give the same sound mesh") {
-  const Files files;
+  const MeshFolder files;
   TetMesh v2 = read_mesh_file(files.gmsh("-format msh22"));
   TetMesh v4 = read_mesh_file(files.gmsh("-format msh41"));
   CHECK(v2.nodes == v4.nodes);
@@ -45,7 +45,7 @@ TEST_CASE("real Gmsh files of both versions give the same sound mesh") {
 }
 
 TEST_CASE("Gmsh files with parametric coordinates are read") {
-  const Files files;
+  const MeshFolder files;
   TetMesh mesh = read_mesh_file(files.gmsh("-format msh41 -parametric"));
   CHECK(content(files.path() / "cube.msh").find("\n2 1 1 ") != std::string::npos);
   drop_unused_nodes(mesh);
@@ -54,7 +54,7 @@ TEST_CASE("Gmsh files with parametric coordinates are read") {
 }
 
 TEST_CASE("physical groups of real Gmsh files become groups of the mesh") {
-  const Files files;
+  const MeshFolder files;
   files.write("cube.geo",
               "SetFactory(\"OpenCASCADE\");\nBox(1) = {0, 0, 0, 1, 1, 1};\n"
               "Mesh.MeshSizeMax = 0.4;\nbase() = Surface In BoundingBox{-1, -1, -0.1, 2, 2, 0.1};\n"
@@ -77,7 +77,7 @@ TEST_CASE("physical groups of real Gmsh files become groups of the mesh") {
 }
 
 TEST_CASE("Gmsh files that cannot be used are refused with the way out") {
-  const Files files;
+  const MeshFolder files;
   CHECK_THROWS_WITH(read_mesh_file(files.gmsh("-format msh41 -bin")),
                     Contains("binary MSH files are not read"));
   CHECK_THROWS_WITH(read_mesh_file(files.gmsh("-format msh22 -bin")),
@@ -89,7 +89,7 @@ TEST_CASE("Gmsh files that cannot be used are refused with the way out") {
 }
 
 TEST_CASE("a real Gmsh file that is cut off anywhere is refused") {
-  const Files files;
+  const MeshFolder files;
   for (const char* format : {"-format msh22", "-format msh41"}) {
     const std::string whole = content(files.gmsh(format));
     for (const double share : {0.1, 0.5, 0.99}) {
@@ -101,7 +101,7 @@ TEST_CASE("a real Gmsh file that is cut off anywhere is refused") {
 }
 
 TEST_CASE("damaged Gmsh files are refused with file, line and fault") {
-  const Files files;
+  const MeshFolder files;
   const auto refuse = [&](const std::string& text, const std::string& message) {
     CAPTURE(text);
     CHECK_THROWS_WITH(read_mesh_file(files.write("m.msh", text)), Contains(message));
@@ -129,7 +129,7 @@ TEST_CASE("damaged Gmsh files are refused with file, line and fault") {
 }
 
 TEST_CASE("real TetGen files are read, whichever of the two is named") {
-  const Files files;
+  const MeshFolder files;
   files.write("box.poly",
               "8 3 0 0\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 0 0 1\n6 1 0 1\n7 1 1 1\n8 0 1 1\n"
               "6 0\n1\n4 1 2 3 4\n1\n4 5 6 7 8\n1\n4 1 2 6 5\n1\n4 2 3 7 6\n1\n4 3 4 8 7\n1\n"
@@ -147,7 +147,7 @@ TEST_CASE("real TetGen files are read, whichever of the two is named") {
 }
 
 TEST_CASE("damaged TetGen files are refused with file, line and fault") {
-  const Files files;
+  const MeshFolder files;
   const std::string node = "4 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n";
   const std::string ele = "1 4 0\n1 1 2 3 4\n# comment\n";
   const auto refuse = [&](const std::string& nodes, const std::string& tets,

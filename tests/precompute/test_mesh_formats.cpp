@@ -8,7 +8,7 @@
 using Catch::Matchers::Contains;
 using namespace irdm;
 using namespace irdm::precompute;
-using namespace irdm::precompute::test;
+using namespace irdm::test;
 
 namespace {
 

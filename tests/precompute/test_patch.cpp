@@ -12,7 +12,7 @@ using namespace irdm::precompute;
 
 namespace {
 
-const Material kMaterial{2000.0, 0.49, 110.0, 8.0, 2e-4};
+const Material kPatchMaterial{2000.0, 0.49, 110.0, 8.0, 2e-4};
 
 // The box's mesh with its inner nodes shaken, so that nothing about it is regular.
 TetMesh irregular_mesh() {
@@ -41,7 +41,7 @@ Eigen::VectorXd linear_field(const TetMesh& mesh, const Matrix3& gradient) {
 
 TEST_CASE("patch test: a linear displacement needs no forces inside an irregular mesh") {
   const TetMesh mesh = irregular_mesh();
-  const SparseMatrix stiffness = assemble_stiffness(mesh, lame_parameters(kMaterial));
+  const SparseMatrix stiffness = assemble_stiffness(mesh, lame_parameters(kPatchMaterial));
   const Eigen::VectorXd force = stiffness * linear_field(mesh, some_gradient());
   const auto n = static_cast<Eigen::Index>(extract_surface(mesh, "box").nodes.size());
   REQUIRE(mesh.node_count() >= n + 10);
@@ -53,15 +53,16 @@ TEST_CASE("patch test: a linear displacement gives Hooke's stress in every eleme
   const TetMesh mesh = irregular_mesh();
   const Matrix3 gradient = some_gradient();
   const Matrix3 strain = 0.5 * (gradient + gradient.transpose());
-  const double e = kMaterial.youngs_modulus;
-  const double nu = kMaterial.poisson_ratio;
+  const double e = kPatchMaterial.youngs_modulus;
+  const double nu = kPatchMaterial.poisson_ratio;
   const Matrix3 expected =
       e / (1 + nu) * (strain + nu / (1 - 2 * nu) * strain.trace() * Matrix3::Identity());
   for (int t = 0; t < mesh.tet_count(); ++t) {
     tet4::Corners corners;
     for (int i = 0; i < 4; ++i) corners.row(i) = mesh.nodes.row(mesh.tets(t, i));
     const tet4::Displacements u = corners * gradient.transpose();
-    const Matrix3 stress = tet4::stress(tet4::geometry(corners), lame_parameters(kMaterial), u);
+    const Matrix3 stress =
+        tet4::stress(tet4::geometry(corners), lame_parameters(kPatchMaterial), u);
     REQUIRE((stress - expected).norm() < 1e-10 * expected.norm());
   }
 }
@@ -70,7 +71,7 @@ TEST_CASE("element forces are the stress times the faces, element stiffness is s
   tet4::Corners corners;
   corners << 0.1, 0.2, 0.0, 1.3, 0.1, -0.1, 0.2, 0.9, 0.3, 0.0, 0.1, 1.1;
   const tet4::Geometry geometry = tet4::geometry(corners);
-  const Lame lame = lame_parameters(kMaterial);
+  const Lame lame = lame_parameters(kPatchMaterial);
   const tet4::Stiffness k = tet4::stiffness(geometry, lame);
   CHECK((k - k.transpose()).norm() < 1e-12 * k.norm());
   const tet4::Displacements u = corners * some_gradient().transpose();
@@ -89,8 +90,8 @@ TEST_CASE("element forces are the stress times the faces, element stiffness is s
 
 TEST_CASE("rigid motions cost no elastic energy and are mass-normalised") {
   const TetMesh mesh = irregular_mesh();
-  const SparseMatrix stiffness = assemble_stiffness(mesh, lame_parameters(kMaterial));
-  const Eigen::VectorXd mass = lumped_mass(mesh, kMaterial.density);
+  const SparseMatrix stiffness = assemble_stiffness(mesh, lame_parameters(kPatchMaterial));
+  const Eigen::VectorXd mass = lumped_mass(mesh, kPatchMaterial.density);
   const Eigen::MatrixXd motions = rigid_motions(mesh.nodes, mass);
   const double scale = Eigen::VectorXd(stiffness.diagonal()).maxCoeff() * motions.norm();
   CHECK((stiffness * motions).norm() < 1e-13 * scale);

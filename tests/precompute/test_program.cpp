@@ -21,23 +21,23 @@ using namespace irdm::precompute;
 namespace {
 
 const std::string kBox = "[mesh]\nbox = { size = [0.12, 0.1, 0.08], cells = [3, 2, 2] }\n";
-const std::string kMaterial =
+const std::string kProgramMaterial =
     "[material]\nyoungs_modulus = 2000\npoisson_ratio = 0.3\ndensity = 110\n";
 const std::string kMsh =
     "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n"
     "5 1 1 1\n$EndNodes\n$Elements\n2\n1 4 2 0 1 1 2 3 4\n2 4 2 0 1 2 3 4 5\n$EndElements\n";
 
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
+std::string with_words(std::string text, const std::string& from, const std::string& to) {
   return text.replace(text.find(from), from.size(), to);
 }
 
 // Runs the real program in a folder of its own.
-struct Run : irdm::test::TemporaryFolder {
+struct ProgramRun : irdm::test::TemporaryFolder {
   int status = -1;
   std::string out;
   std::string err;
 
-  Run() { std::filesystem::create_directory(path() / "made"); }
+  ProgramRun() { std::filesystem::create_directory(path() / "made"); }
   void write(const std::string& name, const std::string& text) const {
     std::ofstream(path() / name) << text;
   }
@@ -67,8 +67,8 @@ struct Run : irdm::test::TemporaryFolder {
 }  // namespace
 
 TEST_CASE("program writes a model whose dense columns are the closed form of its modes") {
-  Run run;
-  run.write("c.toml", kBox + kMaterial +
+  ProgramRun run;
+  run.write("c.toml", kBox + kProgramMaterial +
                           "[response]\nsteps = 60\nstorage = \"both\"\nprecision = \"double\"\n");
   run.start("c.toml -o made/model.h5 --threads 1");
   REQUIRE(run.err ==
@@ -121,8 +121,8 @@ TEST_CASE("program writes a model whose dense columns are the closed form of its
 }
 
 TEST_CASE("program removes what killed runs have left of its output, and leaves what is written") {
-  Run run;
-  run.write("c.toml", kBox + kMaterial);
+  ProgramRun run;
+  run.write("c.toml", kBox + kProgramMaterial);
   irdm::test::ChildProcess killed({"/bin/true"});
   const std::string part = "made/model.h5.part-";
   const std::string gone = part + std::to_string(killed.pid());
@@ -138,8 +138,8 @@ TEST_CASE("program removes what killed runs have left of its output, and leaves 
 }
 
 TEST_CASE("the body in a model file is what its nodes and masses make, about the origin") {
-  Run run;
-  run.write("c.toml", kBox + kMaterial);
+  ProgramRun run;
+  run.write("c.toml", kBox + kProgramMaterial);
   run.start("c.toml -o made/model.h5");
   REQUIRE(run.status == 0);
   const Model model = read_model(run.model(), ResponseKind::kModal);
@@ -157,9 +157,10 @@ TEST_CASE("the body in a model file is what its nodes and masses make, about the
 }
 
 TEST_CASE("command line overrides storage, and a mesh file works from end to end") {
-  Run run;
+  ProgramRun run;
   run.write("m.msh", kMsh);
-  run.write("c.toml", "[mesh]\nfile = \"m.msh\"\n" + kMaterial + "[response]\nsteps = 900\n");
+  run.write("c.toml",
+            "[mesh]\nfile = \"m.msh\"\n" + kProgramMaterial + "[response]\nsteps = 900\n");
   run.start("c.toml -o made/model.h5 --storage dense --method modal");
   CHECK(run.status == 0);
   CHECK(std::filesystem::exists(run.model()));
@@ -168,20 +169,20 @@ TEST_CASE("command line overrides storage, and a mesh file works from end to end
 }
 
 TEST_CASE("high Poisson ratio is warned about, unless the tetrahedra are quadratic") {
-  Run run;
-  run.write("c.toml", kBox + replaced(kMaterial, "0.3", "0.49"));
+  ProgramRun run;
+  run.write("c.toml", kBox + with_words(kProgramMaterial, "0.3", "0.49"));
   run.start("c.toml -o made/model.h5");
   CHECK(run.status == 0);
   CHECK_THAT(run.err, Contains("warning: poisson_ratio above 0.45") && Contains("order = 2"));
-  run.write("c.toml", kBox + "order = 2\n" + replaced(kMaterial, "0.3", "0.49"));
+  run.write("c.toml", kBox + "order = 2\n" + with_words(kProgramMaterial, "0.3", "0.49"));
   run.start("c.toml -o made/model.h5");
   CHECK(run.status == 0);
   CHECK_THAT(run.err, !Contains("poisson_ratio"));
 }
 
 TEST_CASE("a model of quadratic tetrahedra has their mid-side nodes at the surface") {
-  Run run;
-  run.write("c.toml", kBox + "order = 2\n" + kMaterial);
+  ProgramRun run;
+  run.write("c.toml", kBox + "order = 2\n" + kProgramMaterial);
   run.start("c.toml -o made/model.h5");
   REQUIRE(run.status == 0);
   const Model model = read_model(run.model(), ResponseKind::kModal);
@@ -192,8 +193,8 @@ TEST_CASE("a model of quadratic tetrahedra has their mid-side nodes at the surfa
 }
 
 TEST_CASE("a fixed body does not move where it is clamped and has all other modes") {
-  Run run;
-  run.write("c.toml", kBox + kMaterial +
+  ProgramRun run;
+  run.write("c.toml", kBox + kProgramMaterial +
                           "[response]\nsupport = \"fixed\"\n[support]\n"
                           "half_space = { point = [0, 0, 0], normal = [0, 0, 1] }\n");
   run.start("c.toml -o made/model.h5");
@@ -211,21 +212,21 @@ TEST_CASE("a fixed body does not move where it is clamped and has all other mode
 }
 
 TEST_CASE("a mesh file in millimetres becomes metres, and the wrong unit is hinted at") {
-  Run run;
+  ProgramRun run;
   std::string large = kMsh;
   for (const char* line : {"2 1 0 0\n", "3 0 1 0\n", "4 0 0 1\n", "5 1 1 1\n"}) {
     std::string scaled = line;
     for (std::size_t i = 2; i < scaled.size(); ++i) {
       if (scaled[i] == '1') scaled.replace(i++, 1, "120");
     }
-    large = replaced(large, line, scaled);
+    large = with_words(large, line, scaled);
   }
   run.write("m.msh", large);
-  run.write("c.toml", "[mesh]\nfile = \"m.msh\"\n" + kMaterial);
+  run.write("c.toml", "[mesh]\nfile = \"m.msh\"\n" + kProgramMaterial);
   run.start("c.toml -o made/model.h5");
   CHECK(run.status == 0);
   CHECK_THAT(run.err, Contains("the body is 120 x 120 x 120 m") && Contains("mesh.unit = \"mm\""));
-  run.write("c.toml", "[mesh]\nfile = \"m.msh\"\nunit = \"mm\"\n" + kMaterial);
+  run.write("c.toml", "[mesh]\nfile = \"m.msh\"\nunit = \"mm\"\n" + kProgramMaterial);
   run.start("c.toml -o made/model.h5");
   CHECK(run.status == 0);
   CHECK_THAT(run.err, !Contains("mesh.unit"));
@@ -235,7 +236,7 @@ TEST_CASE("a mesh file in millimetres becomes metres, and the wrong unit is hint
 }
 
 TEST_CASE("wrong usage ends with status 2, help and version with 0") {
-  Run run;
+  ProgramRun run;
   for (const char* arguments :
        {"", "c.toml", "-o made/model.h5", "c.toml -o made/model.h5 --storage sparse",
         "c.toml -o made/model.h5 --method magic", "c.toml -o made/model.h5 --threads 0",
@@ -252,7 +253,7 @@ TEST_CASE("wrong usage ends with status 2, help and version with 0") {
 }
 
 TEST_CASE("bad configuration: one line on stderr, status 1, no output") {
-  Run run;
+  ProgramRun run;
   const auto refused = [&](const std::string& text, const std::string& message) {
     CAPTURE(text);
     run.write("c.toml", text);
@@ -260,36 +261,38 @@ TEST_CASE("bad configuration: one line on stderr, status 1, no output") {
   };
   run.check_refused("no such file");
   refused("", "mesh is missing");
-  refused((kBox + kMaterial).substr(0, 40), "c.toml:2");
-  refused(kBox + replaced(kMaterial, "2000", "\"soft\""), "c.toml:4: material.youngs_modulus");
-  refused(kBox + kMaterial + "typo = 1\n", "material.typo is not a known key");
-  refused(kBox + replaced(kMaterial, "2000", "nan"), "material.youngs_modulus is nan");
-  refused(kBox + replaced(kMaterial, "0.3", "0.5"), "material.poisson_ratio is 0.5");
-  refused(kBox + replaced(kMaterial, "110", "-110"), "material.density is -110");
-  refused(kBox + kMaterial + "[response]\ndt = 0\n", "response.dt is 0");
-  const std::string fixed = kBox + kMaterial + "[response]\nsupport = \"fixed\"\n[support]\n";
-  refused(kBox + kMaterial + "[response]\nsupport = \"fixed\"\n", "support is missing");
+  refused((kBox + kProgramMaterial).substr(0, 40), "c.toml:2");
+  refused(kBox + with_words(kProgramMaterial, "2000", "\"soft\""),
+          "c.toml:4: material.youngs_modulus");
+  refused(kBox + kProgramMaterial + "typo = 1\n", "material.typo is not a known key");
+  refused(kBox + with_words(kProgramMaterial, "2000", "nan"), "material.youngs_modulus is nan");
+  refused(kBox + with_words(kProgramMaterial, "0.3", "0.5"), "material.poisson_ratio is 0.5");
+  refused(kBox + with_words(kProgramMaterial, "110", "-110"), "material.density is -110");
+  refused(kBox + kProgramMaterial + "[response]\ndt = 0\n", "response.dt is 0");
+  const std::string fixed =
+      kBox + kProgramMaterial + "[response]\nsupport = \"fixed\"\n[support]\n";
+  refused(kBox + kProgramMaterial + "[response]\nsupport = \"fixed\"\n", "support is missing");
   refused(fixed + "group = \"base\"\n", "has no group 'base'");
   refused(fixed + "box = { min = [5, 5, 5], max = [6, 6, 6] }\n", "holds no node");
   refused(fixed + "box = { min = [0, 0, 0], max = [6, 6, 6] }\n", "every node of the surface");
   refused(fixed + "box = { min = [0, 0, 0], max = [1, 0, 0] }\n", "can still turn");
   const std::string stepped = "[response]\nmethod = \"time-stepping\"\n";
-  refused(kBox + kMaterial + stepped, "time-stepping gives R in dense form only");
-  refused(kBox + kMaterial + stepped + "storage = \"both\"\n",
+  refused(kBox + kProgramMaterial + stepped, "time-stepping gives R in dense form only");
+  refused(kBox + kProgramMaterial + stepped + "storage = \"both\"\n",
           "time-stepping gives R in dense form only");
-  refused(kBox + "order = 2\n" + kMaterial + stepped + "storage = \"dense\"\n",
+  refused(kBox + "order = 2\n" + kProgramMaterial + stepped + "storage = \"dense\"\n",
           "linear tetrahedra only");
-  refused(kBox + kMaterial + stepped +
+  refused(kBox + kProgramMaterial + stepped +
               "storage = \"dense\"\nsupport = \"fixed\"\n[support]\n"
               "box = { min = [0, 0, 0], max = [0, 1, 1] }\n",
           "floating bodies only");
 }
 
 TEST_CASE("a part of the modes that cannot be had is told in one line") {
-  Run run;
+  ProgramRun run;
   const auto refused = [&](const std::string& lines, const std::string& message) {
     CAPTURE(lines);
-    run.write("c.toml", kBox + kMaterial + lines);
+    run.write("c.toml", kBox + kProgramMaterial + lines);
     run.check_refused(message);
   };
   refused("[modes]\ncount = 100\n", "at most half of them are computed one by one");
@@ -301,9 +304,9 @@ TEST_CASE("a part of the modes that cannot be had is told in one line") {
 }
 
 TEST_CASE("the program says how well some modes stand for all of them, in the file as well") {
-  Run run;
+  ProgramRun run;
   run.write("c.toml", "[mesh]\nbox = { size = [0.12, 0.1, 0.08], cells = [6, 5, 4] }\n" +
-                          kMaterial + "[modes]\ncount = 60\n");
+                          kProgramMaterial + "[modes]\ncount = 60\n");
   run.start("c.toml -o made/model.h5");
   INFO(run.err);
   REQUIRE(run.status == 0);
@@ -324,8 +327,8 @@ TEST_CASE("the program says how well some modes stand for all of them, in the fi
 }
 
 TEST_CASE("bad mesh: one line on stderr, status 1, no output") {
-  Run run;
-  run.write("c.toml", "[mesh]\nfile = \"m.msh\"\n" + kMaterial);
+  ProgramRun run;
+  run.write("c.toml", "[mesh]\nfile = \"m.msh\"\n" + kProgramMaterial);
   const auto refused = [&](const std::string& text, const std::string& message) {
     CAPTURE(text);
     run.write("m.msh", text);
@@ -334,27 +337,27 @@ TEST_CASE("bad mesh: one line on stderr, status 1, no output") {
   run.check_refused("m.msh: no such file");
   refused("", "m.msh: is empty");
   refused(kMsh.substr(0, 100), "truncated");
-  refused(replaced(kMsh, "2 1 0 0", "2 one 0 0"), "m.msh:7: 'one' is not a number");
-  refused(replaced(kMsh, "2 1 0 0", "2 nan 0 0"), "not finite");
-  refused(replaced(kMsh, "2 1 0 0", "2 inf 0 0"), "not finite");
-  refused(replaced(kMsh, "1 2 3 4", "2 1 3 4"), "1 of 2 tetrahedra are inverted");
-  refused(replaced(replaced(kMsh, "1 2 3 4", "2 1 3 4"), "2 3 4 5", "3 2 4 5"),
+  refused(with_words(kMsh, "2 1 0 0", "2 one 0 0"), "m.msh:7: 'one' is not a number");
+  refused(with_words(kMsh, "2 1 0 0", "2 nan 0 0"), "not finite");
+  refused(with_words(kMsh, "2 1 0 0", "2 inf 0 0"), "not finite");
+  refused(with_words(kMsh, "1 2 3 4", "2 1 3 4"), "1 of 2 tetrahedra are inverted");
+  refused(with_words(with_words(kMsh, "1 2 3 4", "2 1 3 4"), "2 3 4 5", "3 2 4 5"),
           "all 2 tetrahedra are inverted");
-  refused(replaced(kMsh, "5 1 1 1", "5 0.25 0.25 0.5"), "element 2 has zero volume");
-  const std::string eight_nodes = replaced(replaced(kMsh, "$Nodes\n5", "$Nodes\n8"), "5 1 1 1\n",
-                                           "5 9 0 0\n6 10 0 0\n7 9 1 0\n8 9 0 1\n");
-  refused(replaced(eight_nodes, "2 3 4 5", "5 6 7 8"), "2 pieces");
+  refused(with_words(kMsh, "5 1 1 1", "5 0.25 0.25 0.5"), "element 2 has zero volume");
+  const std::string eight_nodes = with_words(with_words(kMsh, "$Nodes\n5", "$Nodes\n8"),
+                                             "5 1 1 1\n", "5 9 0 0\n6 10 0 0\n7 9 1 0\n8 9 0 1\n");
+  refused(with_words(eight_nodes, "2 3 4 5", "5 6 7 8"), "2 pieces");
 }
 
 TEST_CASE("a surface in millimetres is filled, its edge length is in metres") {
-  Run run;
+  ProgramRun run;
   // A cube of 120 mm, which has 8 nodes.
   const std::string cube =
       "v 0 0 0\nv 0 0 120\nv 0 120 0\nv 0 120 120\nv 120 0 0\nv 120 0 120\nv 120 120 0\n"
       "v 120 120 120\nf 1 2 4\nf 1 4 3\nf 5 7 8\nf 5 8 6\nf 1 5 6\nf 1 6 2\nf 3 4 8\nf 3 8 7\n"
       "f 1 3 7\nf 1 7 5\nf 2 6 8\nf 2 8 4\n";
   const auto config = [](const std::string& more) {
-    return "[mesh]\nfile = \"s.obj\"\n" + more + "\n" + kMaterial;
+    return "[mesh]\nfile = \"s.obj\"\n" + more + "\n" + kProgramMaterial;
   };
   run.write("s.obj", cube);
   run.write("c.toml", config("unit = \"mm\"\nedge_length = 0.04"));
@@ -370,15 +373,15 @@ TEST_CASE("a surface in millimetres is filled, its edge length is in metres") {
   run.check_refused("s.obj: mesh.edge_length is 0.000192");
   run.write("c.toml", config("unit = \"mm\"\nedge_length = 40"));
   run.check_refused("s.obj: mesh.edge_length is 192.45");
-  run.write("s.obj", replaced(cube, "f 2 8 4\n", ""));
+  run.write("s.obj", with_words(cube, "f 2 8 4\n", ""));
   run.check_refused("s.obj: the surface is open at 3 edges, for instance from (");
 }
 
 TEST_CASE("time stepping gives the dense R of the modes, the same for any number of threads",
           "[slow]") {
-  Run run;
-  const std::string box = replaced(kBox, "[3, 2, 2]", "[2, 1, 1]");
-  run.write("c.toml", box + kMaterial +
+  ProgramRun run;
+  const std::string box = with_words(kBox, "[3, 2, 2]", "[2, 1, 1]");
+  run.write("c.toml", box + kProgramMaterial +
                           "[response]\nsteps = 12\nprecision = \"double\"\nstorage = \"dense\"\n"
                           "[time_stepping]\nfirst_step = 1e-5\nlast_step = 1e-5\n");
   const auto numbers = [&](const std::string& options) {
@@ -404,8 +407,8 @@ TEST_CASE("time stepping gives the dense R of the modes, the same for any number
 }
 
 TEST_CASE("an output folder that does not exist is told") {
-  Run run;
-  run.write("c.toml", kBox + kMaterial);
+  ProgramRun run;
+  run.write("c.toml", kBox + kProgramMaterial);
   run.start("c.toml -o nowhere/model.h5");
   CHECK(run.status == 1);
   CHECK(std::count(run.err.begin(), run.err.end(), '\n') == 1);
@@ -414,10 +417,10 @@ TEST_CASE("an output folder that does not exist is told") {
 
 TEST_CASE("SIGINT and SIGTERM leave neither the model nor its temporary file") {
   for (const int signal : {SIGINT, SIGTERM}) {
-    Run run;
+    ProgramRun run;
     // Long enough to be interrupted while dense R is written.
-    run.write("c.toml", "[mesh]\nbox = { size = [1, 1, 1], cells = [6, 6, 6] }\n" + kMaterial +
-                            "[response]\nsteps = 500\nstorage = \"dense\"\n");
+    run.write("c.toml", "[mesh]\nbox = { size = [1, 1, 1], cells = [6, 6, 6] }\n" +
+                            kProgramMaterial + "[response]\nsteps = 500\nstorage = \"dense\"\n");
     irdm::test::ChildProcess process = run.begin("c.toml -o made/model.h5");
     const auto writing = [&] {
       for (const auto& entry : std::filesystem::directory_iterator(run.path() / "made")) {
@@ -433,8 +436,8 @@ TEST_CASE("SIGINT and SIGTERM leave neither the model nor its temporary file") {
 }
 
 TEST_CASE("a model that does not fit on the disk: one error, and nothing is left of it") {
-  Run run;
-  run.write("c.toml", kBox + kMaterial);
+  ProgramRun run;
+  run.write("c.toml", kBox + kProgramMaterial);
   const irdm::test::FinishedProgram ended = irdm::test::run_to_end(
       irdm::test::on_full_disk(10'000, {IRDM_PROGRAM, "c.toml", "-o", run.model().string()}),
       {.folder = run.path()});

@@ -14,10 +14,10 @@
 
 using namespace irdm;
 using namespace irdm::precompute;
-using irdm::precompute::test::Discrete;
-using irdm::precompute::test::inertia_relief;
-using irdm::precompute::test::lowest_frequency;
-using irdm::precompute::test::node_at;
+using irdm::test::Discrete;
+using irdm::test::inertia_relief;
+using irdm::test::lowest_frequency;
+using irdm::test::node_at;
 
 namespace {
 
@@ -26,7 +26,7 @@ const Vector3 kSize(0.12, 0.10, 0.11);
 
 // A box of quadratic tetrahedra whose inner corners are shaken, so that nothing about it is
 // regular.
-TetMesh irregular_mesh() {
+TetMesh irregular_quadratic_mesh() {
   TetMesh mesh = test::box_mesh(kSize, {3, 3, 2});
   const Surface surface = extract_surface(mesh, "box");
   std::mt19937 random(1);
@@ -158,7 +158,7 @@ TEST_CASE("the paper's cube of quadratic tetrahedra has the paper's surface") {
 }
 
 TEST_CASE("patch test: a linear displacement gives Hooke's stress and no forces inside") {
-  const TetMesh mesh = irregular_mesh();
+  const TetMesh mesh = irregular_quadratic_mesh();
   const Lame lame = lame_parameters(kMaterial);
   QuadraticField field;
   field.linear = some_matrix(1);
@@ -181,7 +181,7 @@ TEST_CASE("patch test: a linear displacement gives Hooke's stress and no forces 
 }
 
 TEST_CASE("any quadratic displacement is reproduced with its exact elastic energy") {
-  const TetMesh mesh = irregular_mesh();
+  const TetMesh mesh = irregular_quadratic_mesh();
   const Lame lame = lame_parameters(kMaterial);
   const SparseMatrix stiffness = assemble_stiffness(mesh, lame);
   for (int seed = 1; seed <= 3; ++seed) {
@@ -193,7 +193,7 @@ TEST_CASE("any quadratic displacement is reproduced with its exact elastic energ
 }
 
 TEST_CASE("pure bending is exact: energy E I / 2 per length, no forces inside") {
-  const TetMesh mesh = irregular_mesh();
+  const TetMesh mesh = irregular_quadratic_mesh();
   const SparseMatrix stiffness = assemble_stiffness(mesh, lame_parameters(kMaterial));
   const Eigen::VectorXd u = bending(kMaterial.poisson_ratio).nodal(mesh);
   const Eigen::VectorXd force = stiffness * u;
@@ -205,7 +205,7 @@ TEST_CASE("pure bending is exact: energy E I / 2 per length, no forces inside") 
 
 TEST_CASE(
     "lumped masses of quadratic tetrahedra are positive, mass and centre those of the solid") {
-  const TetMesh mesh = irregular_mesh();
+  const TetMesh mesh = irregular_quadratic_mesh();
   const Eigen::VectorXd mass = lumped_mass(mesh, 110.0);
   CHECK(mass.minCoeff() > 0.0);
   const MassProperties solid = solid_mass_properties(mesh, 110.0);

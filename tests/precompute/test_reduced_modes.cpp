@@ -16,7 +16,7 @@
 
 using namespace irdm;
 using namespace irdm::precompute;
-using irdm::precompute::test::Discrete;
+using irdm::test::Discrete;
 
 namespace {
 

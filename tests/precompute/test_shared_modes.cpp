@@ -18,7 +18,7 @@
 using Catch::Matchers::Contains;
 using namespace irdm;
 using namespace irdm::precompute;
-using irdm::precompute::test::Discrete;
+using irdm::test::Discrete;
 
 namespace {
 
@@ -44,7 +44,7 @@ void share(const Discrete& body, const std::vector<int>& clamped, ModeSolver sol
 }  // namespace
 
 TEST_CASE("SLEPc's modes are Spectra's, by either solver, free and fixed") {
-  const Discrete body(precompute::test::box_mesh(Vector3(0.12, 0.08, 0.10), {5, 3, 4}), kMaterial);
+  const Discrete body(test::box_mesh(Vector3(0.12, 0.08, 0.10), {5, 3, 4}), kMaterial);
   const std::vector<int> clamped =
       GENERATE_COPY(std::vector<int>{}, nodes_in(body.mesh, kLeft, "box"));
   const auto solver = GENERATE(ModeSolver::kSlepc, ModeSolver::kSlepcMultigrid);
@@ -72,8 +72,8 @@ TEST_CASE("SLEPc's modes are Spectra's, by either solver, free and fixed") {
 }
 
 TEST_CASE("SLEPc's modes of quadratic elements are Spectra's") {
-  const Discrete body(
-      quadratic_mesh(precompute::test::box_mesh(Vector3(0.12, 0.08, 0.10), {2, 2, 2})), kMaterial);
+  const Discrete body(quadratic_mesh(test::box_mesh(Vector3(0.12, 0.08, 0.10), {2, 2, 2})),
+                      kMaterial);
   share(body, {}, ModeSolver::kSlepc, [&](SharedModes& shared) {
     const ElasticStatics statics(body.stiffness, body.mesh.nodes, body.mass, {});
     const Eigen::VectorXd expected = lowest_modes(statics, 20).angular_frequency;
@@ -83,7 +83,7 @@ TEST_CASE("SLEPc's modes of quadratic elements are Spectra's") {
 }
 
 TEST_CASE("shared factors solve as those of one process do, and tell what is not definite") {
-  const Discrete body(precompute::test::box_mesh(Vector3(0.12, 0.08, 0.10), {5, 3, 4}), kMaterial);
+  const Discrete body(test::box_mesh(Vector3(0.12, 0.08, 0.10), {5, 3, 4}), kMaterial);
   const std::vector<int> clamped = nodes_in(body.mesh, kLeft, "box");
   share(body, clamped, ModeSolver::kSlepc, [&](SharedModes& shared) {
     const ElasticStatics alone(body.stiffness, body.mesh.nodes, body.mass, clamped);
@@ -113,7 +113,7 @@ TEST_CASE("shared factors solve as those of one process do, and tell what is not
 
 // MUMPS sums up what other ranks send in the order that it comes.
 TEST_CASE("SLEPc gives the same every time, bit for bit on one rank") {
-  const Discrete body(precompute::test::box_mesh(Vector3(0.12, 0.08, 0.10), {4, 3, 3}), kMaterial);
+  const Discrete body(test::box_mesh(Vector3(0.12, 0.08, 0.10), {4, 3, 3}), kMaterial);
   std::vector<ElasticModes> twice;
   for (int i = 0; i < 2; ++i) {
     share(body, {}, ModeSolver::kSlepc,
@@ -128,9 +128,8 @@ TEST_CASE("SLEPc gives the same every time, bit for bit on one rank") {
 }
 
 TEST_CASE("what SLEPc cannot do is one error, and it goes on after it") {
-  TetMesh mesh =
-      precompute::test::together(precompute::test::box_mesh(Vector3::Constant(0.1), {2, 2, 2}),
-                                 precompute::test::box_mesh(Vector3::Constant(0.1), {2, 2, 2}));
+  TetMesh mesh = test::together(test::box_mesh(Vector3::Constant(0.1), {2, 2, 2}),
+                                test::box_mesh(Vector3::Constant(0.1), {2, 2, 2}));
   mesh.nodes.bottomRows(mesh.node_count() / 2).col(0).array() += 0.2;
   const Discrete two(mesh, kMaterial);
   share(two, {}, ModeSolver::kSlepc, [&](SharedModes& shared) {
@@ -141,7 +140,7 @@ TEST_CASE("what SLEPc cannot do is one error, and it goes on after it") {
 }
 
 TEST_CASE("an order by bisection has each point once, and halves that lie apart") {
-  const TetMesh mesh = precompute::test::box_mesh(Vector3(0.3, 0.1, 0.1), {9, 3, 3});
+  const TetMesh mesh = test::box_mesh(Vector3(0.3, 0.1, 0.1), {9, 3, 3});
   const std::vector<int> order = bisection_order(mesh.nodes);
   std::vector<int> sorted = order;
   std::sort(sorted.begin(), sorted.end());
@@ -152,7 +151,7 @@ TEST_CASE("an order by bisection has each point once, and halves that lie apart"
 }
 
 TEST_CASE("rows of the stiffness are those of the whole") {
-  const Discrete body(precompute::test::box_mesh(Vector3(0.12, 0.08, 0.10), {3, 2, 2}), kMaterial);
+  const Discrete body(test::box_mesh(Vector3(0.12, 0.08, 0.10), {3, 2, 2}), kMaterial);
   const RowSparseMatrix whole = body.stiffness;
   const RowSparseMatrix some =
       assemble_stiffness_rows(body.mesh, lame_parameters(kMaterial), 5, 17);

@@ -12,7 +12,7 @@
 
 using namespace irdm;
 using namespace irdm::precompute;
-using irdm::precompute::test::Discrete;
+using irdm::test::Discrete;
 
 namespace {
 

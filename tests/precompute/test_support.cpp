@@ -13,18 +13,18 @@
 using Catch::Matchers::Contains;
 using namespace irdm;
 using namespace irdm::precompute;
-using irdm::precompute::test::Discrete;
+using irdm::test::Discrete;
 
 namespace {
 
-const HalfSpace kLeft{Vector3::Zero(), Vector3(3, 0, 0)};
+const HalfSpace kLeftHalf{Vector3::Zero(), Vector3(3, 0, 0)};
 
 }  // namespace
 
 TEST_CASE("a half-space holds the nodes behind its plane, a box those within, bounds included") {
   const TetMesh mesh = test::box_mesh(Vector3(0.3, 0.2, 0.1), {3, 2, 1});
-  for (const int node : nodes_in(mesh, kLeft, "m")) CHECK(mesh.nodes(node, 0) == 0.0);
-  CHECK(nodes_in(mesh, kLeft, "m").size() == 3 * 2);
+  for (const int node : nodes_in(mesh, kLeftHalf, "m")) CHECK(mesh.nodes(node, 0) == 0.0);
+  CHECK(nodes_in(mesh, kLeftHalf, "m").size() == 3 * 2);
   CHECK(nodes_in(mesh, HalfSpace{Vector3(0.1, 0, 0), Vector3::UnitX()}, "m").size() == 2 * 3 * 2);
   CHECK(nodes_in(mesh, BoxRegion{Vector3(0.1, 0.1, 0), Vector3(0.3, 0.2, 0)}, "m").size() == 3 * 2);
   CHECK(nodes_in(mesh, BoxRegion{Vector3(5, 5, 5), Vector3(6, 6, 6)}, "m").empty());
@@ -53,7 +53,7 @@ TEST_CASE("a slender beam clamped at one end bends at the frequency of beam theo
   const Discrete beam(quadratic_mesh(test::box_mesh(Vector3(length, side, side), {16, 1, 1})),
                       material);
   const ElasticModes modes =
-      fixed_modes(beam.stiffness, beam.mass, nodes_in(beam.mesh, kLeft, "beam"));
+      fixed_modes(beam.stiffness, beam.mass, nodes_in(beam.mesh, kLeftHalf, "beam"));
   const double stiffness = material.youngs_modulus * std::pow(side, 4) / 12.0;
   const double line_mass = material.density * side * side;
   const double expected = std::pow(1.8751041 / length, 2) * std::sqrt(stiffness / line_mass);
@@ -65,7 +65,7 @@ TEST_CASE("a slender beam clamped at one end bends at the frequency of beam theo
 TEST_CASE("static limit of a fixed body's R is the answer of a sparse solve") {
   const Material material{2000.0, 0.49, 110.0, 8.0, 2e-4};
   const Discrete body(test::box_mesh(Vector3(0.12, 0.08, 0.10), {4, 3, 3}), material);
-  const std::vector<int> clamped = nodes_in(body.mesh, kLeft, "m");
+  const std::vector<int> clamped = nodes_in(body.mesh, kLeftHalf, "m");
   const ElasticModes modes = fixed_modes(body.stiffness, body.mass, clamped);
   REQUIRE(modes.angular_frequency.size() ==
           3 * (body.mesh.node_count() - static_cast<Eigen::Index>(clamped.size())));
@@ -89,7 +89,7 @@ TEST_CASE("what is left of R is judged where the body moves") {
   const Material material{2000.0, 0.3, 110.0, 8.0, 2e-4};
   const Discrete body(test::box_mesh(Vector3(0.1, 0.1, 0.1), {2, 2, 2}), material);
   const ElasticModes modes =
-      fixed_modes(body.stiffness, body.mass, nodes_in(body.mesh, kLeft, "m"));
+      fixed_modes(body.stiffness, body.mass, nodes_in(body.mesh, kLeftHalf, "m"));
   const ModalResponse response =
       modal_response(modes, extract_surface(body.mesh, "m").nodes, material);
   const double left = decay_left(response, 0.002, 500);

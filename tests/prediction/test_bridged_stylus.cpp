@@ -12,7 +12,7 @@ using namespace irdm;
 
 namespace {
 
-constexpr double kHalfEdge = 0.06;
+constexpr double kCubeHalf = 0.06;
 constexpr std::uint64_t kSession = 7;
 
 SimulationConfig cubes(std::size_t count) {
@@ -67,7 +67,7 @@ class Served {
   ContactModel model;
 };
 
-const Vector3 kAbove(0.005, kHalfEdge + 0.001, 0.005);
+const Vector3 kAbove(0.005, kCubeHalf + 0.001, 0.005);
 const Vector3 kPush(0, -0.2, 0);
 
 }  // namespace
@@ -126,7 +126,7 @@ TEST_CASE("bridged stylus: a new session knows nothing of the one before") {
   for (int k = 0; k < 5; ++k) served.step(kAbove, Vector3::Zero());
   served.begin_session(kSession + 1);
   // The next hand is on the other side: no way leads through the object.
-  const Vector3 below(0.005, -kHalfEdge - 0.001, 0.005);
+  const Vector3 below(0.005, -kCubeHalf - 0.001, 0.005);
   for (int k = 0; k < 20; ++k) {
     served.step(below, Vector3::Zero());
     CHECK(served.record.stylus[0].contact == ContactState::kFree);
@@ -151,7 +151,7 @@ TEST_CASE(
   Served served(1);
   for (int k = 0; k < 5; ++k) served.step(kAbove, Vector3::Zero());
   for (int k = 0; k < 5; ++k) served.step(kAbove, kPush);
-  const Vector3 right(kHalfEdge + 0.001, 0.005, 0.005);
+  const Vector3 right(kCubeHalf + 0.001, 0.005, 0.005);
   for (int k = 0; k < 10; ++k) served.step(Vector3(0.1, 0.1, 0), Vector3::Zero());
   for (int k = 0; k < 10; ++k) served.step(right, Vector3::Zero());
   served.step(right, Vector3::Zero(), false);
@@ -161,7 +161,7 @@ TEST_CASE(
   CHECK(served.bridged.late() == 1);
   REQUIRE(served.record.late.count == 1);
   const LateForce& late = served.record.late.force[0];
-  CHECK(late.arm.x() > 0.9 * kHalfEdge);
+  CHECK(late.arm.x() > 0.9 * kCubeHalf);
   CHECK(late.age == 0);
 }
 
@@ -220,7 +220,7 @@ TEST_CASE("bridged stylus: the other's force is in its contact model as the mean
   config.objects[0].model = std::make_shared<const Model>(fixed);
   config.styluses.resize(2, config.styluses[0]);
   Simulation simulation(config);
-  const std::array tips{Vector3(kHalfEdge + 5e-4, 0.01, 0.01), Vector3(-kHalfEdge - 5e-4, 0, 0.02)};
+  const std::array tips{Vector3(kCubeHalf + 5e-4, 0.01, 0.01), Vector3(-kCubeHalf - 5e-4, 0, 0.02)};
   const std::array forces{Vector3(-0.03, 0.004, 0), Vector3(0.02, 0, -0.003)};
   StepRecord record;
   ContactModel model;

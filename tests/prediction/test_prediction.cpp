@@ -21,7 +21,7 @@ using test::run_loop;
 
 namespace {
 
-constexpr double kHalfEdge = 0.06;
+constexpr double kPredictedHalf = 0.06;
 
 LoopSetup cube(double youngs_modulus, ResponseKind kind = ResponseKind::kModal) {
   LoopSetup setup;
@@ -51,7 +51,7 @@ LoopHand swinging(const Vector3& at, double way = 0.05) {
 LoopSetup swung(double youngs_modulus, ResponseKind kind = ResponseKind::kModal,
                 double way = 0.05) {
   LoopSetup setup = cube(youngs_modulus, kind);
-  setup.hands.push_back(swinging({0, kHalfEdge, 0}, way));
+  setup.hands.push_back(swinging({0, kPredictedHalf, 0}, way));
   return setup;
 }
 
@@ -63,7 +63,7 @@ LoopSetup pressed(double youngs_modulus, double aside) {
   setup.config.objects[0].damping = {20.0, 20.0};
   setup.hands.push_back({.target = [aside](double t) {
     const double down = 0.02 * (smooth(t, 0.1, 0.6) - smooth(t, 2.2, 2.6));
-    return Vector3(aside * smooth(t, 0.8, 2.0), kHalfEdge + 0.005 - down, 0.01);
+    return Vector3(aside * smooth(t, 0.8, 2.0), kPredictedHalf + 0.005 - down, 0.01);
   }});
   return setup;
 }
@@ -72,8 +72,9 @@ LoopSetup pressed(double youngs_modulus, double aside) {
 LoopSetup by_two(double youngs_modulus) {
   LoopSetup setup = cube(youngs_modulus);
   setup.config.styluses = {{0.0, 2000.0, 0.005}, {0.0, 2000.0, 0.005}};
-  setup.hands.push_back(swinging({-kHalfEdge, 0, 0}));
-  setup.hands.push_back({.target = [](double) { return Vector3(kHalfEdge, 0, 0); }, .grab = true});
+  setup.hands.push_back(swinging({-kPredictedHalf, 0, 0}));
+  setup.hands.push_back(
+      {.target = [](double) { return Vector3(kPredictedHalf, 0, 0); }, .grab = true});
   return setup;
 }
 

@@ -11,6 +11,7 @@ export class PlaybackBar {
   private soughtAt = Number.NEGATIVE_INFINITY;
   private lastSent = 0;
   private timer = 0;
+  private wanted: number | null = null; // sought, and not sent yet
   private readonly bar = element("playback");
   private readonly playButton = element<HTMLButtonElement>("play");
   private readonly slider = element<HTMLInputElement>("seek");
@@ -24,7 +25,8 @@ export class PlaybackBar {
     this.backButton.onclick = () => send(encodeCommand(Command.BackToLive));
     this.speed.onchange = () => send(encodeCommand(Command.Speed, 0, Number(this.speed.value)));
     this.slider.oninput = () => {
-      this.write(Number(this.slider.value));
+      this.wanted = Number(this.slider.value);
+      this.write(this.wanted);
       this.seekSoon();
     };
   }
@@ -41,12 +43,13 @@ export class PlaybackBar {
   }
 
   follow(frame: Frame): void {
-    if (this.bar.hidden || performance.now() - this.soughtAt < HAND_ON_MS) return;
+    if (this.bar.hidden || this.wanted !== null || performance.now() - this.soughtAt < HAND_ON_MS) return;
     this.slider.value = String(frame.time);
     this.write(frame.time);
   }
 
   private seekSoon(): void {
+    if (this.wanted === null) return;
     this.soughtAt = performance.now();
     clearTimeout(this.timer);
     const wait = this.lastSent + LEAST_PAUSE_MS - this.soughtAt;
@@ -55,7 +58,8 @@ export class PlaybackBar {
       return;
     }
     this.lastSent = this.soughtAt;
-    this.send(encodeCommand(Command.Seek, 0, Number(this.slider.value)));
+    this.send(encodeCommand(Command.Seek, 0, this.wanted));
+    this.wanted = null;
   }
 
   private write(time: number): void {

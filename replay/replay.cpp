@@ -119,8 +119,8 @@ std::optional<std::filesystem::path> journal_path(const ReplayOptions& options) 
   return std::nullopt;
 }
 
-std::unique_ptr<Rerun> rerun_of(const TracedScene& scene, const std::vector<DelayedForces>& late,
-                                const ReplayOptions& options, StepJournal* journal) {
+std::unique_ptr<Rerun> make_rerun(const TracedScene& scene, const std::vector<DelayedForces>& late,
+                                  const ReplayOptions& options, StepJournal* journal) {
   if (options.reference) {
     return fem_reference(scene, *options.reference, options.substep.value_or(kReferenceSubstep),
                          options.from_inputs, late, journal);
@@ -216,7 +216,7 @@ int replay(const ReplayOptions& options) {
   if (path) journal.emplace(*path, reference_key(scene, options));
   const std::vector<DelayedForces> late =
       options.solve_bridged ? std::vector<DelayedForces>() : delayed_forces(recording);
-  const auto made = rerun_of(scene, late, options, journal ? &*journal : nullptr);
+  const auto made = make_rerun(scene, late, options, journal ? &*journal : nullptr);
   std::vector<Points> surfaces(scene.config.objects.size());
   Deviation deviation;
   const auto recorded = std::make_unique<StepRecord>();

@@ -22,7 +22,7 @@ decoders=(
   device_bridge/bridge_config.cpp device_bridge/stylus_script.cpp
   device_bridge/link/server_session.cpp
   precompute/config.cpp
-  precompute/columns/column_file.cpp precompute/compress/tail_space.cpp precompute/mesh/format/*.cpp
+  precompute/columns/column_file.cpp precompute/compress/dense_input.cpp precompute/mesh/format/*.cpp
   replay/compare/run_reader.cpp
 )
 lists=build/coverage/tests/fuzz

@@ -103,7 +103,7 @@ struct State {
   bool paused = false;
   bool recording = false;
   bool playback = false;  ///< a recorded run is shown
-  bool playing = false;   ///< ... and does not stand still
+  bool playing = false;   ///< ... and is not paused
   bool can_record = false;
   std::uint32_t settings_changes = 0;
   double length = 0.0;  ///< of the recorded run that is shown [s]
@@ -133,7 +133,7 @@ enum class CommandKind : std::uint16_t {
   kShowRecording = 7,  ///< number
   kShowLive = 8,
   kPlay = 9,
-  kStandStill = 10,
+  kPausePlayback = 10,
   kSeek = 11,      ///< value [s]
   kSetSpeed = 12,  ///< value
 };

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "common/hdf5/file.hpp"
+#include "common/realtime/bounded_queue.hpp"
 #include "common/realtime/event_fd.hpp"
-#include "common/realtime/triple_buffer.hpp"
 
 namespace irdm {
 

@@ -8,7 +8,7 @@
 
 #include "common/blackbox/black_box.hpp"
 #include "common/hdf5/file.hpp"
-#include "common/realtime/triple_buffer.hpp"
+#include "common/realtime/bounded_queue.hpp"
 
 namespace irdm {
 

@@ -32,7 +32,7 @@ struct ContactModel {
   std::uint64_t missing = 0;  ///< bit i: the force of step K - i is not in it, and may yet come
   /// The newest step of which the bridge's force had come by then; kNoStep: none had.
   std::uint64_t newest = kNoStep;
-  /// The run stands still: what is felt is to fade. Nothing else means anything then.
+  /// The run is paused: what is felt is to fade. Nothing else means anything then.
   bool paused = false;
   double dt = 0.0;  ///< of a step [s], > 0
   int horizon = 0;  ///< H, 1 to kMaxHorizon

@@ -241,11 +241,11 @@ CompressedResponse read_compressed(const hdf5::File& file, const Model& model) {
                 "use another engine, or make one with irdm-precompute compress");
   }
   CompressedResponse response;
-  const std::int64_t fir = file.read_integer_attribute(kCompressedGroup, "early_steps");
-  require(file, fir >= 1 && fir <= kMostFirSteps, "has early_steps out of range");
-  response.fir_steps = static_cast<int>(fir);
+  const std::int64_t fir_steps = file.read_integer_attribute(kCompressedGroup, "early_steps");
+  require(file, fir_steps >= 1 && fir_steps <= kMostFirSteps, "has early_steps out of range");
+  response.fir_steps = static_cast<int>(fir_steps);
   const auto nodes = static_cast<std::size_t>(model.mesh.surface_node_count());
-  const hdf5::Shape shape{fir_entries(nodes) / 9, 9, static_cast<hsize_t>(fir)};
+  const hdf5::Shape shape{fir_entries(nodes) / 9, 9, static_cast<hsize_t>(fir_steps)};
   require(file, file.stored_shape(kCompressedFir) == shape, "has an FIR part of another shape");
   const bool integers = file.stores_integers(kCompressedFir);
   require(file, integers == file.exists(kCompressedFirScale),

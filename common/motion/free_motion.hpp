@@ -68,7 +68,7 @@ RigidState end_of_step(const RigidBody& body, const FreeForces& forces, const Fr
                        const Vector3& force, const Vector3& torque) noexcept;
 
 /// The last steps of a rigid motion, so that a force that is heard of late can be entered in its
-/// own step: from there on the motion is rerun. Forces keep their direction in W and their
+/// own step: from there on the motion is computed again. Forces keep their direction in W and their
 /// points in B. Pure, real-time safe.
 class RigidStateHistory {
  public:

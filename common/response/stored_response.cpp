@@ -115,9 +115,7 @@ template <typename Scalar>
 class DenseStored final : public StoredResponse {
  public:
   DenseStored(const DenseResponse& response, const std::vector<Scalar>& values)
-      : values_(values.data(), response.degrees_of_freedom * response.degrees_of_freedom,
-                response.steps),
-        dof_(response.degrees_of_freedom) {}
+      : dof_(response.degrees_of_freedom), values_(values.data(), dof_ * dof_, response.steps) {}
 
   RowMatrix<double> column(int b, int steps) const override {
     return values_.block(b * dof_, 0, dof_, steps).transpose().template cast<double>();
@@ -140,8 +138,8 @@ class DenseStored final : public StoredResponse {
   }
 
  private:
-  Eigen::Map<const RowMatrix<Scalar>> values_;  ///< row b 3n + a: (a, b) of all steps
   Eigen::Index dof_;
+  Eigen::Map<const RowMatrix<Scalar>> values_;  ///< row b 3n + a: (a, b) of all steps
 };
 
 template <typename Scalar>
@@ -160,6 +158,10 @@ class StreamedStored final : public StoredResponse {
   }
   Eigen::VectorXd static_column(int b) const override {
     return first_.col(b).template cast<double>() + rest_.col(b).template cast<double>();
+  }
+  Matrix3 static_block(int node) const override {
+    return first_.template block<3, 3>(3 * node, 3 * node).template cast<double>() +
+           rest_.template block<3, 3>(3 * node, 3 * node).template cast<double>();
   }
   Eigen::MatrixXd zero_lag() const override { return first_.template cast<double>(); }
 

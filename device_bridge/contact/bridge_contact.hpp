@@ -17,7 +17,7 @@ class BridgeContact {
   /// The force that the contact asks for, and what it rests on.
   struct ForceCommand {
     bool any = false;             ///< the rest means something
-    bool paused = false;          ///< the run stands still: what was felt is to fade
+    bool paused = false;          ///< the run is paused: what was felt is to fade
     std::int64_t content_ns = 0;  ///< end of the last step that the server knew everything of
     std::int64_t horizon_ns = 0;  ///< how long after that it is good
     std::int64_t solved_ns = 0;   ///< when it was solved, with the tip of then

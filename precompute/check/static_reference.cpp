@@ -1,7 +1,7 @@
 #include "precompute/check/static_reference.hpp"
 
 #include "common/error.hpp"
-#include "precompute/fem/mass_properties.hpp"
+#include "precompute/fem/rigid_motions.hpp"
 
 namespace irdm::precompute {
 

@@ -19,7 +19,7 @@ namespace irdm::precompute {
 namespace {
 
 constexpr int kMostAttempts = 6;
-constexpr int kFirstFirSteps = 16;
+constexpr int kInitialFirSteps = 16;
 
 // Shares of the allowed error, root mean square over the columns; the largest column's is about
 // twice that.
@@ -39,8 +39,8 @@ Parts identify(const DenseInput& input, const Survey& found, double error, const
   const int r = directions_for(found.space_values, kOfSpace * error);
   const int K = directions_for(found.time_values, kOfTime * error);
   const Core core = project(input, found, r, K, console);
-  const double tail = core.matrices.cast<double>().norm();
-  const JointShapes joint = joint_shapes(core, kOfShapes * error * found.norm / tail, console);
+  const double tail_norm = core.matrices.cast<double>().norm();
+  const JointShapes joint = joint_shapes(core, kOfShapes * error * found.norm / tail_norm, console);
   Parts parts;
   product(core.space.cast<double>(), Of::kItself, joint.shapes, Of::kItself, parts.shapes);
   product(core.time, Of::kItself, joint.responses, Of::kItself, parts.tail);
@@ -134,11 +134,11 @@ std::string percent(double share) {
               "is not reciprocal or not linear cannot be compressed (irdm-precompute check)");
 }
 
-void check_fir_steps(const DenseInput& input, int fir) {
-  if (fir >= 1 && 4 * fir < input.steps()) return;
+void check_fir_steps(const DenseInput& input, int fir_steps) {
+  if (fir_steps >= 1 && 4 * fir_steps < input.steps()) return;
   throw Error(input.name(),
               "has " + std::to_string(input.steps()) + " steps, too few to keep " +
-                  std::to_string(fir) + " of them and compress the rest",
+                  std::to_string(fir_steps) + " of them and compress the rest",
               "use fewer --fir-steps, or precompute more steps");
 }
 
@@ -155,10 +155,10 @@ CompressionSummary compress_model(const std::filesystem::path& input,
   const DenseInput dense(input);
   const bool automatic = settings.fir_steps == 0;
   const int most_fir_steps = (dense.steps() - 1) / 4;
-  const int fir =
-      automatic ? std::min(kFirstFirSteps, std::max(1, most_fir_steps)) : settings.fir_steps;
-  check_fir_steps(dense, fir);
-  Survey found = survey(dense, fir, console);
+  const int fir_steps =
+      automatic ? std::min(kInitialFirSteps, std::max(1, most_fir_steps)) : settings.fir_steps;
+  check_fir_steps(dense, fir_steps);
+  Survey found = survey(dense, fir_steps, console);
   double finer = 1.0;
   CompressionError best;
   best.requested = settings.error;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "common/model/compressed_file.hpp"
-#include "precompute/compress/tail_space.hpp"
+#include "precompute/compress/dense_input.hpp"
 #include "precompute/progress.hpp"
 
 namespace irdm::precompute {

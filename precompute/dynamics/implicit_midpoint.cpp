@@ -8,7 +8,7 @@
 #include "common/error.hpp"
 #include "precompute/dynamics/rigid_extraction.hpp"
 #include "precompute/dynamics/sparse_solver.hpp"
-#include "precompute/fem/mass_properties.hpp"
+#include "precompute/fem/rigid_motions.hpp"
 
 namespace irdm::precompute {
 

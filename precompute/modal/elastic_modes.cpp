@@ -4,7 +4,7 @@
 #include <string>
 
 #include "common/error.hpp"
-#include "precompute/fem/mass_properties.hpp"
+#include "precompute/fem/rigid_motions.hpp"
 #include "precompute/modal/lowest_modes.hpp"
 
 namespace irdm::precompute {

@@ -5,7 +5,7 @@
 #include "common/error.hpp"
 #include "common/response/modal_response.hpp"
 #include "precompute/fem/assembly.hpp"
-#include "precompute/fem/mass_properties.hpp"
+#include "precompute/fem/rigid_motions.hpp"
 
 namespace irdm::precompute {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "precompute/fem/mass_properties.hpp"
+#include "precompute/fem/rigid_motions.hpp"
 #include "precompute/parallel/bisection_order.hpp"
 
 namespace irdm::precompute {

@@ -55,8 +55,8 @@ Command add_compare_command(CLI::App& app) {
   command->add_option("--json", options->json,
                       "File for all of it, frame by frame; must not exist");
   const auto refuse = [](const std::string&) {
-    throw CLI::ValidationError(
-        "--html", "is no option; give --json FILE, and draw it with scripts/plot_comparison.py");
+    throw CLI::ValidationError("--html",
+                               "was removed; use --json FILE, then scripts/plot_comparison.py");
   };
   command->add_option_function<std::string>("--html", refuse)->group("");
   command

@@ -9,7 +9,7 @@
 #include <limits>
 #include <numbers>
 
-#include "replay/measures/force_difference.hpp"
+#include "replay/measures/perception.hpp"
 
 namespace irdm::replay {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "common/geometry.hpp"
-#include "replay/measures/force_difference.hpp"
+#include "replay/measures/perception.hpp"
 
 namespace irdm::replay {
 

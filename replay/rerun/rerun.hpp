@@ -31,7 +31,7 @@ std::vector<DelayedForces> delayed_forces(const Recording& recording);
 void add_delayed_forces(const std::vector<DelayedForces>& told, std::size_t step, bool held_anew,
                         StepRecord& record);
 
-/// A recorded run that is rerun, step by step. Pure; one thread.
+/// A recorded run, computed again step by step. Pure; one thread.
 class Rerun {
  public:
   virtual ~Rerun() = default;

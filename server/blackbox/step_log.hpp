@@ -31,7 +31,7 @@ struct StepRow {
   std::int64_t duration_ns = 0;  ///< of the step
   std::uint64_t force_step = 0;  ///< k
   std::uint64_t missed = 0;      ///< steps that were left out so far
-  bool continued = false;        ///< the run stood still before
+  bool continued = false;        ///< the run was paused before
   bool reset = false;
   bool solved = true;     ///< every contact problem had a finite solution
   double residual = 0.0;  ///< the largest of the objects [m]

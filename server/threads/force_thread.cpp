@@ -9,35 +9,6 @@
 namespace irdm {
 namespace {
 
-Vector3 no_longer_than(const Vector3& v, double length) noexcept {
-  const double norm = v.norm();
-  return norm > length ? Vector3(length / norm * v) : v;
-}
-
-}  // namespace
-
-StylusCommand ViewerStylus::next(const StylusCommand& wanted, const StylusRecord& last) noexcept {
-  StylusCommand command = wanted;
-  if (!wanted.present || !wanted.tip.allFinite()) {
-    present_ = false;
-    command.present = false;
-    return command;
-  }
-  if (!present_) tip_ = wanted.tip;
-  present_ = true;
-  const double share = 1.0 - std::exp(-dt_ / kSmoothing);
-  Vector3 tip = tip_ + no_longer_than(share * (wanted.tip - tip_), kFastest * dt_);
-  if (last.contact != ContactState::kFree && stiffness_ > 0 && max_force_ > 0) {
-    // Where the spring would be without tension.
-    const Vector3 rest = last.tip + last.force / stiffness_;
-    tip = rest + no_longer_than(tip - rest, max_force_ / stiffness_);
-  }
-  command.tip = tip_ = tip;
-  return command;
-}
-
-namespace {
-
 StylusCommand to_command(const StylusInput& input) noexcept {
   return {input.present, input.sample.buttons, input.sample.tip, std::nullopt};
 }
@@ -88,7 +59,7 @@ void ForceThread::finish() {
 void ForceThread::run() noexcept {
   while ((steps_ == 0 || report_.steps < steps_) && clock_.wait(report_.steps)) {
     if (!control_.take_step()) {
-      stand_still();
+      fade_while_paused();
       continue;
     }
     const std::int64_t begin = monotonic_ns();
@@ -163,11 +134,11 @@ void ForceThread::watch_health(std::int64_t begin_ns, std::int64_t end_ns) noexc
 }
 
 // A hand feels nothing meanwhile: what it felt fades.
-void ForceThread::stand_still() noexcept {
-  still_steps_ = stood_still_ ? still_steps_ + 1 : 1;
-  stood_still_ = true;
+void ForceThread::fade_while_paused() noexcept {
+  paused_steps_ = was_paused_ ? paused_steps_ + 1 : 1;
+  was_paused_ = true;
   const double left =
-      std::max(0.0, 1.0 - static_cast<double>(still_steps_) * simulation_.dt() / kPauseFade);
+      std::max(0.0, 1.0 - static_cast<double>(paused_steps_) * simulation_.dt() / kPauseFade);
   clock_.rest();
   if (clock_.lockstep()) return;  // the bridges wait
   const std::size_t bridges = static_cast<std::size_t>(network_.styluses());
@@ -198,13 +169,13 @@ void ForceThread::take_commands() noexcept {
     port.in.receive();
     commands_[s] = to_command(port.in.front());
     // Who feels nothing has to come from outside again; a step without it makes it so.
-    if (stood_still_ && !clock_.lockstep()) commands_[s].present = false;
+    if (was_paused_ && !clock_.lockstep()) commands_[s].present = false;
     port.applied.receive();
     const std::uint64_t session = port.in.front().predicts ? port.in.front().session : 0;
     commands_[s] = bridged_[s].next(commands_[s], session, port.applied.front());
   }
-  continued_ = stood_still_;
-  if (!control_.paused()) stood_still_ = false;
+  continued_ = was_paused_;
+  if (!control_.paused()) was_paused_ = false;
   if (!viewer_stylus_) return;
   control_.stylus().receive();
   commands_[bridges] =

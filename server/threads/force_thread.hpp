@@ -14,37 +14,12 @@
 #include "server/network/network_server.hpp"
 #include "server/threads/run_control.hpp"
 #include "server/threads/step_clock.hpp"
+#include "server/threads/viewer_stylus.hpp"
 #include "simulation/step/bridged_stylus.hpp"
 #include "simulation/step/simulation.hpp"
 #include "simulation/step/step_record.hpp"
 
 namespace irdm {
-
-/// Turns what a pointing device says some 60 times a second into a stylus that the force step can
-/// follow: smooth, never faster than a hand, and pressing no harder than allowed, as no hand gives
-/// way here. Pure; real-time safe.
-class ViewerStylus {
- public:
-  static constexpr double kSmoothing = 0.015;  ///< time constant [s]
-  static constexpr double kFastest = 1.0;      ///< [m/s]
-
-  /// @param stiffness of the spring between tip and surface [N/m]; 0: none, and then no bound
-  /// @param max_force that it pushes or pulls with at most [N]; 0: no bound
-  ViewerStylus(double dt, double stiffness, double max_force) noexcept
-      : dt_(dt), stiffness_(stiffness), max_force_(max_force) {}
-
-  /// The stylus of the coming step.
-  /// @param wanted where it is to be
-  /// @param last what became of it in the last step
-  StylusCommand next(const StylusCommand& wanted, const StylusRecord& last) noexcept;
-
- private:
-  double dt_;
-  double stiffness_;
-  double max_force_;
-  bool present_ = false;
-  Vector3 tip_ = Vector3::Zero();
-};
 
 /// What the force thread counted; read after finish().
 struct ForceThreadReport {
@@ -103,7 +78,7 @@ class ForceThread {
  private:
   void run() noexcept;
   void step() noexcept;
-  void stand_still() noexcept;
+  void fade_while_paused() noexcept;
   void predict_horizon() noexcept;
   void take_commands() noexcept;
   void write_down(std::int64_t begin_ns, std::int64_t end_ns) noexcept;
@@ -116,9 +91,9 @@ class ForceThread {
   std::vector<StepSink*> sinks_;
   StepLog* log_ = nullptr;  ///< null: nobody
   std::uint64_t steps_;
-  bool stood_still_ = false;
-  bool continued_ = false;         ///< it stood still before this step
-  std::uint64_t still_steps_ = 0;  ///< since it stands still
+  bool was_paused_ = false;
+  bool continued_ = false;          ///< it was paused before this step
+  std::uint64_t paused_steps_ = 0;  ///< since the pause began
   std::optional<ViewerStylus> viewer_stylus_;
   std::vector<BridgedStylus> bridged_;   ///< of the network's styluses
   std::vector<StylusCommand> commands_;  ///< of the network's styluses, and perhaps the viewers'

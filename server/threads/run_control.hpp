@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "common/realtime/bounded_queue.hpp"
 #include "common/realtime/triple_buffer.hpp"
 #include "server/network/stylus_slots.hpp"
 #include "simulation/step/settings.hpp"

@@ -35,7 +35,7 @@ void Playback::show(const std::filesystem::path& path, std::uint16_t number) {
 void Playback::leave() {
   on_ = false;
   number_ = viewer::State::kNone;
-  player_.stand_still();
+  player_.pause();
 }
 
 bool Playback::handle(const viewer::Command& command) {
@@ -47,8 +47,8 @@ bool Playback::handle(const viewer::Command& command) {
     case CommandKind::kPlay:
       player_.play();
       return true;
-    case CommandKind::kStandStill:
-      player_.stand_still();
+    case CommandKind::kPausePlayback:
+      player_.pause();
       return true;
     case CommandKind::kSeek:
       player_.seek(command.value);

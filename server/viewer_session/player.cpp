@@ -40,8 +40,8 @@ void Player::load(const std::filesystem::path& path) {
 void Player::play() {
   ask({Request::Kind::kPlay});
 }
-void Player::stand_still() {
-  ask({Request::Kind::kStandStill});
+void Player::pause() {
+  ask({Request::Kind::kPause});
 }
 void Player::seek(double time) {
   ask({Request::Kind::kSeek, time});
@@ -83,7 +83,7 @@ void Player::handle(const Request& request) {
       if (time_ >= now_.length) time_ = 0.0;
       now_.playing = recording_.has_value();
       return;
-    case Request::Kind::kStandStill:
+    case Request::Kind::kPause:
       now_.playing = false;
       return;
     case Request::Kind::kSeek:

@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "common/realtime/bounded_queue.hpp"
 #include "common/realtime/event_fd.hpp"
 #include "common/realtime/triple_buffer.hpp"
 #include "simulation/deformation/deformation.hpp"
@@ -43,7 +44,7 @@ class Player {
   /// Reads a recording and plays it from its beginning.
   void load(const std::filesystem::path& path);
   void play();
-  void stand_still();
+  void pause();
   void seek(double time);        ///< [s]
   void set_speed(double speed);  ///< > 0, 1: as it was
 
@@ -55,7 +56,7 @@ class Player {
 
  private:
   struct Request {
-    enum class Kind { kLoad, kPlay, kStandStill, kSeek, kSpeed } kind = Kind::kPlay;
+    enum class Kind { kLoad, kPlay, kPause, kSeek, kSpeed } kind = Kind::kPlay;
     double value = 0.0;
     std::filesystem::path path = {};
   };

@@ -11,9 +11,9 @@
 #include "common/response/compressed_response.hpp"
 #include "common/response/stored_response.hpp"
 #include "precompute/compress/compress_model.hpp"
+#include "precompute/compress/dense_input.hpp"
 #include "precompute/compress/measured_error.hpp"
 #include "precompute/compress/pole_fit.hpp"
-#include "precompute/compress/tail_space.hpp"
 #include "tests/check/dense_file.hpp"
 #include "tests/support/child_process.hpp"
 

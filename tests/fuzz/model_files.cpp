@@ -4,7 +4,7 @@
 #include "common/error.hpp"
 #include "common/model/dense_file.hpp"
 #include "common/model/model_file.hpp"
-#include "precompute/compress/tail_space.hpp"
+#include "precompute/compress/dense_input.hpp"
 #include "tests/fuzz/edited_file.hpp"
 #include "tests/fuzz/finite_steps.hpp"
 #include "tests/fuzz/harness.hpp"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "precompute/fem/mass_properties.hpp"
+#include "precompute/fem/rigid_motions.hpp"
 
 namespace irdm::test {
 

@@ -2,7 +2,7 @@
 #include <random>
 
 #include "precompute/fem/assembly.hpp"
-#include "precompute/fem/mass_properties.hpp"
+#include "precompute/fem/rigid_motions.hpp"
 #include "precompute/fem/tetrahedra.hpp"
 #include "precompute/mesh/surface.hpp"
 #include "tests/precompute/meshes.hpp"

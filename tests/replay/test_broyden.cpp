@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "replay/reference/fem_body.hpp"
+#include "replay/reference/broyden_solver.hpp"
 
 using namespace irdm::replay;
 

@@ -78,7 +78,7 @@ TEST_CASE("a player shows the step of the time it is sent to, forwards and back"
   Player player(run.config, run.names, 60.0, 1);
   player.start();
   player.load(folder.path() / "trace.h5");
-  player.stand_still();
+  player.pause();
   for (const std::uint64_t step : {100, 120, 30, 159, 0, 115}) {
     player.seek(0.002 * static_cast<double>(step + 1));
     CHECK(difference(shown(player, step), run.frames[step]) < 1e-14);

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 
-#include "server/threads/force_thread.hpp"
+#include "server/threads/viewer_stylus.hpp"
 
 using namespace irdm;
 

@@ -2,6 +2,7 @@
 
 #include "precompute/fem/assembly.hpp"
 #include "precompute/fem/mass_properties.hpp"
+#include "precompute/fem/rigid_motions.hpp"
 #include "precompute/mesh/box_mesh.hpp"
 #include "precompute/mesh/surface.hpp"
 #include "precompute/mesh/tet_mesh.hpp"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "precompute/fem/assembly.hpp"
-#include "precompute/fem/mass_properties.hpp"
+#include "precompute/fem/rigid_motions.hpp"
 
 namespace irdm::test {
 namespace {

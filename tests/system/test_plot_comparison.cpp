@@ -77,6 +77,6 @@ TEST_CASE("plot_comparison.py draws what irdm-replay compare found, and refuses 
 TEST_CASE("irdm-replay compare names the script that draws to who asks for a page") {
   const FinishedProgram old = run_to_end({IRDM_REPLAY, "compare", "a.h5", "b.h5", "--html", "c"});
   CHECK(old.status == 2);
-  CHECK_THAT(old.err, StartsWith("--html: is no option; give --json FILE") &&
+  CHECK_THAT(old.err, StartsWith("--html: was removed; use --json FILE") &&
                           Contains("scripts/plot_comparison.py"));
 }

@@ -196,7 +196,7 @@ TEST_CASE("viewer: --play shows a recorded run, at the time that is asked for") 
   const auto ask = [&](viewer::CommandKind kind, double value = 0.0) {
     peer.send_message(encode(viewer::ClientMessage(viewer::Command{kind, 0, value})));
   };
-  ask(viewer::CommandKind::kStandStill);
+  ask(viewer::CommandKind::kPausePlayback);
   for (const std::size_t k : {trace.rows() / 2, trace.rows() - 1, trace.rows() / 3}) {
     ask(viewer::CommandKind::kSeek, trace.time[k]);
     REQUIRE(eventually([&] {

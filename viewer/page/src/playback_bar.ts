@@ -21,7 +21,7 @@ export class PlaybackBar {
 
   constructor(private readonly send: (message: ArrayBuffer) => void) {
     this.playButton.onclick = () =>
-      send(encodeCommand(this.state?.playback?.playing ? Command.StandStill : Command.Play));
+      send(encodeCommand(this.state?.playback?.playing ? Command.PausePlayback : Command.Play));
     this.backButton.onclick = () => send(encodeCommand(Command.BackToLive));
     this.speed.onchange = () => send(encodeCommand(Command.Speed, 0, Number(this.speed.value)));
     this.slider.oninput = () => {
@@ -74,7 +74,7 @@ export class PlaybackBar {
     if (playback === null) return;
     const may = !this.state!.onlyLooksOn;
     for (const control of [this.playButton, this.slider, this.speed, this.backButton]) control.disabled = !may;
-    this.playButton.textContent = playback.playing ? "Stand still" : "Play";
+    this.playButton.textContent = playback.playing ? "Pause" : "Play";
     this.slider.max = String(playback.length);
     this.backButton.hidden = this.recordedOnly;
     const speed = String(playback.speed);

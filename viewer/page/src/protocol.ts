@@ -483,7 +483,7 @@ export const enum Command {
   ShowRecording = 7,
   BackToLive = 8,
   Play = 9,
-  StandStill = 10,
+  PausePlayback = 10,
   Seek = 11,
   Speed = 12,
 }

@@ -24,7 +24,7 @@ export class RunControls {
   }
 
   togglePause(): void {
-    if (this.state?.playback) this.ask(this.state.playback.playing ? Command.StandStill : Command.Play);
+    if (this.state?.playback) this.ask(this.state.playback.playing ? Command.PausePlayback : Command.Play);
     else if (!this.pauseButton.disabled) this.ask(this.state!.paused ? Command.GoOn : Command.Pause);
   }
 
@@ -75,7 +75,7 @@ export class RunControls {
     const { state } = this;
     if (state === null) return "";
     if (state.onlyLooksOn) return "This viewer only looks on.";
-    if (state.playback !== null) return "A recorded run is shown; the live run stands still.";
+    if (state.playback !== null) return "A recorded run is shown; the live run is paused.";
     return state.canRecord || state.recording ? "" : "This server keeps no recordings.";
   }
 

@@ -12,7 +12,7 @@ const LINKS: Record<LinkState, string> = {
 /** In what way the run is shown, in a word each. Pure. */
 export function modesOf(scene: Scene, state: State): string[] {
   const modes: string[] = [];
-  if (state.playback !== null) modes.push(state.playback.playing ? "recorded run" : "recorded run, stands still");
+  if (state.playback !== null) modes.push(state.playback.playing ? "recorded run" : "recorded run, paused");
   else if (state.paused) modes.push("paused");
   if (state.recording) modes.push("recording");
   if (scene.lockstep) modes.push("lockstep");

@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# Sets up, builds and runs the whole suite as it ships; checks the formatting.
+# Sets up, builds and runs the suite as it ships; checks the formatting.
 #   scripts/test.sh [--all]
 #     --all: first the tests under the address and undefined-behaviour sanitizers and under the thread sanitizer, and the
-#            fuzzers; then the suite with warnings as errors, MPI and SLEPc (preset ci)
+#            fuzzers; then the suite with warnings as errors, MPI and SLEPc (preset ci), with the tests that repeat
+#            others of it very often (label "exhaustive")
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -48,20 +49,22 @@ scripts/format.sh --check
 echo "includes: checking"
 scripts/check_includes.py
 preset=release
+chosen=(--label-exclude exhaustive)
 if [ $all = yes ]; then
   preset=ci
+  chosen=()
   # Tests labelled "slow" measure or play for long and find nothing new under a sanitizer.
   scripts/build.sh asan
   build_ahead tsan
   build_ahead ci tsan
-  run_tests asan --label-exclude slow --parallel 2
+  run_tests asan --label-exclude 'slow|exhaustive' --parallel 2
   IRDM_FUZZ_SEED=1 IRDM_FUZZ_AT_ONCE=$((2 * $(nproc))) scripts/fuzz.sh 30
   finish tsan
-  run_tests tsan --label-exclude slow --parallel 2
+  run_tests tsan --label-exclude 'slow|exhaustive' --parallel 2
   finish ci
 else
   scripts/build.sh release
 fi
 # Under sanitizers some tests cannot run; here all must that the machine allows.
-run_tests $preset --parallel 4 --output-junit tests.xml
+run_tests $preset "${chosen[@]}" --parallel 4 --output-junit tests.xml
 scripts/check_left_out.py build/$preset/tests.xml

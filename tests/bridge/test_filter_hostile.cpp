@@ -156,7 +156,7 @@ TEST_CASE("safety filter: nothing that comes in gets a force out that is beyond 
   CHECK(check(3, 300'000, Guards{}.without(Guard::kOscillation)).force > 0.99 * kMaxForce);
 }
 
-TEST_CASE("safety filter: the same for a hundred million ticks", "[slow]") {
+TEST_CASE("safety filter: the same for a hundred million ticks", "[exhaustive]") {
   for (std::uint64_t seed = 10; seed < 20; ++seed) check(seed, 10'000'000);
   const Guards no_gain = Guards{}.without(Guard::kOscillation);
   CHECK(check(20, 10'000'000, no_gain).force > 0.99 * kMaxForce);

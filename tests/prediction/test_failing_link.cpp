@@ -43,6 +43,6 @@ TEST_CASE("failing link: no force soon after the last good frame, for every caus
   check_all(3);
 }
 
-TEST_CASE("failing link: the same at two hundred moments each", "[slow]") {
+TEST_CASE("failing link: the same at two hundred moments each", "[exhaustive]") {
   check_all(200);
 }

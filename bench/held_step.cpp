@@ -119,8 +119,9 @@ StepTimes eight_contacts(const std::shared_ptr<const Model>& model, int measured
       for (std::size_t i = 0; i < static_cast<std::size_t>(patch.count); ++i) {
         forces.push_back({patch.nodes[i], patch.weights[i] * problem.contact(a).force});
       }
-      engine->capabilities().caching->cache_nodes(
-          std::span(patch.nodes).first(static_cast<std::size_t>(patch.count)));
+      if (PredictionCaching* const caching = engine->capabilities().caching) {
+        caching->cache_nodes(std::span(patch.nodes).first(static_cast<std::size_t>(patch.count)));
+      }
     }
     engine->advance(forces);
   };

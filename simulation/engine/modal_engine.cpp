@@ -1,7 +1,7 @@
 #include "simulation/engine/modal_engine.hpp"
 
 #include <algorithm>
-#include <functional>
+#include <utility>
 
 #include "common/response/modal_response.hpp"
 #include "simulation/engine/kernels.hpp"
@@ -12,11 +12,16 @@ namespace {
 constexpr std::size_t kBlock = 16;   // rows of Phi that a thread takes at a time
 constexpr std::size_t kSlice = 512;  // modes whose shapes under a contact fill a part of the cache
 
+void add_to(double* sum, const double* numbers, std::size_t n) noexcept {
+  for (std::size_t i = 0; i < n; ++i) sum[i] += numbers[i];
+}
+
 }  // namespace
 
 template <typename Scalar>
 ModalEngine<Scalar>::ModalEngine(std::shared_ptr<const Model> model)
     : model_(std::move(model)),
+      horizon_(static_cast<std::size_t>(std::get<ModalResponse>(model_->response).mode_count())),
       residual_(std::get<ModalResponse>(model_->response).residual,
                 model_->mesh.surface_node_count()),
       gravity_(std::get<ModalResponse>(model_->response)) {
@@ -27,16 +32,14 @@ ModalEngine<Scalar>::ModalEngine(std::shared_ptr<const Model> model)
   largest_shape_.assign(largest.data(), largest.data() + largest.size());
   if (response.centrifugal.rows() > 0) centrifugal_ = response.centrifugal.data();
   modes_ = static_cast<std::size_t>(response.mode_count());
-  for (auto* values : {&a11_, &a12_, &a21_, &a22_, &b1_, &b2_, &coordinate_, &velocity_,
-                       &free_coordinate_, &free_velocity_, &modal_force_}) {
+  for (auto* values :
+       {&a11_, &a12_, &a21_, &a22_, &b1_, &b2_, &coordinate_, &velocity_, &free_coordinate_,
+        &free_velocity_, &modal_force_, &held_force_, &inertial_load_}) {
     values->assign(modes_, 0.0);
   }
   contact_shapes_.assign(3 * kMaxContacts * modes_, 0.0);
   coordinate_after_.assign(kMaxHorizon * modes_, 0.0);
   velocity_after_.assign(kMaxHorizon * modes_, 0.0);
-  coordinate_from_.assign(kMaxHorizon * 3 * modes_, 0.0);
-  shape_products_.assign(6 * modes_, 0.0);
-  state_products_.assign(9 * modes_, 0.0);
   set_transitions(1.0);
 }
 
@@ -54,34 +57,20 @@ void ModalEngine<Scalar>::set_transitions(double damping) noexcept {
     b1_[i] = step.b1;
     b2_[i] = step.b2;
   }
-  tabulate_horizon();
+  horizon_.set_transitions({a11_.data(), a12_.data(), a21_.data(), a22_.data()},
+                           response.angular_frequency.data());
+  tabulate_delayed();
 }
 
-// Step by step from unit forces, coordinates and velocities. Of the latter two only the coordinates
-// that come of them are kept; how fast they move is in what predict_horizon() fills later on.
 template <typename Scalar>
-void ModalEngine<Scalar>::tabulate_horizon() noexcept {
+void ModalEngine<Scalar>::tabulate_delayed() noexcept {
   const Transitions A{a11_.data(), a12_.data(), a21_.data(), a22_.data()};
   const auto after = [&](std::size_t n) { return coordinate_after_.data() + n * modes_; };
   const auto speed_after = [&](std::size_t n) { return velocity_after_.data() + n * modes_; };
-  const auto from = [&](std::size_t n, std::size_t what) {
-    return coordinate_from_.data() + (3 * n + what) * modes_;
-  };
-  double* const speeds = state_products_.data();
   std::copy_n(b1_.data(), modes_, after(0));
   std::copy_n(b2_.data(), modes_, speed_after(0));
-  std::copy_n(b1_.data(), modes_, from(0, 2));
-  for (std::size_t what = 0; what < 2; ++what) {
-    std::fill_n(from(0, what), modes_, what == 0 ? 1.0 : 0.0);
-    std::fill_n(speeds + what * modes_, modes_, what == 0 ? 0.0 : 1.0);
-  }
   for (std::size_t n = 0; n + 1 < kMaxHorizon; ++n) {
     transit(A, after(n), speed_after(n), after(n + 1), speed_after(n + 1), modes_);
-    for (std::size_t what = 0; what < 2; ++what) {
-      double* const speed = speeds + what * modes_;
-      transit(A, from(n, what), speed, from(n + 1, what), speed, modes_);
-    }
-    std::transform(from(n, 2), from(n, 2) + modes_, after(n + 1), from(n + 1, 2), std::plus{});
   }
 }
 
@@ -115,9 +104,17 @@ void ModalEngine<Scalar>::set_gravity(const Vector3& gravity) noexcept {
   if (gravity_.set(gravity)) go_on();
 }
 
+// Otherwise than by a step; what loaded the body is gone with it.
+template <typename Scalar>
+void ModalEngine<Scalar>::change_state() noexcept {
+  state_ = (state_ | 1) + 3;
+  loaded_ = false;
+}
+
 // What was changed before the first step was so since ever.
 template <typename Scalar>
 void ModalEngine<Scalar>::go_on() noexcept {
+  change_state();
   if (begun_) {
     move_on();
   } else {
@@ -141,8 +138,11 @@ template <typename Scalar>
 void ModalEngine<Scalar>::set_angular_velocity(const Vector3& w) noexcept {
   if (centrifugal_ == nullptr) return;
   const SpinProducts q = spin_products(w);
+  loaded_ = true;
+  state_ |= 1;
   for (std::size_t i = 0; i < modes_; ++i) {
     const double force = Eigen::Map<const SpinProducts>(centrifugal_ + i * kSpinProducts).dot(q);
+    inertial_load_[i] = force;
     free_coordinate_[i] += b1_[i] * force;
     free_velocity_[i] += b2_[i] * force;
   }
@@ -230,8 +230,9 @@ void ModalEngine<Scalar>::add_slice(std::span<const ContactPatch> patches, const
 // Three nodes at a time; where fewer are left, the last one counts with weight 0.
 template <typename Scalar>
 void ModalEngine<Scalar>::collect_modal_forces(std::span<const NodalForce> forces,
-                                               const ModeRange& modes) noexcept {
-  double* const to = modal_force_.data() + modes.first;
+                                               const ModeRange& modes,
+                                               double* modal) const noexcept {
+  double* const to = modal + modes.first;
   std::fill_n(to, modes.count, 0.0);
   for (std::size_t first = 0; first < forces.size(); first += 3) {
     std::array<double, 9> weights{};
@@ -247,57 +248,37 @@ void ModalEngine<Scalar>::collect_modal_forces(std::span<const NodalForce> force
   }
 }
 
-// Both are sums over the modes of what the horizon's tables hold, times products that are the same
-// for all of its steps. Gravity goes on like what is held: it is taken out of where the first step
-// ends.
 template <typename Scalar>
 void ModalEngine<Scalar>::predict_horizon(const ContactPatch& patch,
                                           std::span<const NodalForce> held, std::span<Vector3> path,
                                           std::span<Matrix3> response) noexcept {
-  collect_modal_forces(held, {0, modes_});
-  for (std::size_t i = 0; i < 3; ++i) {
-    double* shape = contact_shapes_.data() + i * modes_;
-    mean_shape(patch, static_cast<int>(i), {0, modes_}, shape);
-    double* products = state_products_.data() + 3 * i * modes_;
-    multiply(shape, free_coordinate_.data(), products, modes_);
-    multiply(shape, free_velocity_.data(), products + modes_, modes_);
-    multiply(shape, modal_force_.data(), products + 2 * modes_, modes_);
-    if (gravity_.acts()) hold_gravity(shape, products);
+  ModalHorizon::Contact* contact = horizon_.find(patch);
+  if (contact == nullptr) {
+    contact = &horizon_.begin(patch);
+    for (std::size_t i = 0; i < 3; ++i) {
+      mean_shape(patch, static_cast<int>(i), {0, modes_}, &contact->shapes[i * modes_]);
+    }
   }
-  constexpr std::array<std::array<std::size_t, 2>, 6> kPairs{
-      {{0, 0}, {1, 0}, {1, 1}, {2, 0}, {2, 1}, {2, 2}}};
-  for (std::size_t k = 0; k < kPairs.size(); ++k) {
-    multiply(contact_shapes_.data() + kPairs[k][0] * modes_,
-             contact_shapes_.data() + kPairs[k][1] * modes_, shape_products_.data() + k * modes_,
-             modes_);
-  }
-  for (std::size_t n = 0; n < response.size(); ++n) {
-    const Sums<6> r =
-        dot_six(coordinate_after_.data() + n * modes_, shape_products_.data(), modes_);
-    response[n] << r[0], r[1], r[3], r[1], r[2], r[4], r[3], r[4], r[5];
-  }
-  for (std::size_t n = 0; n < path.size(); ++n) {
-    const Sums<3> moved =
-        dot_three(coordinate_from_.data() + 3 * n * modes_, state_products_.data(), 3 * modes_);
-    path[n] = Vector3(moved[0], moved[1], moved[2]);
-  }
+  horizon_.update(*contact,
+                  {.number = state_,
+                   .coordinate = free_coordinate_.data(),
+                   .velocity = free_velocity_.data(),
+                   .force = gravity_.acts() ? gravity_.force().data() : nullptr,
+                   .last = forced_ ? modal_force_.data() : nullptr,
+                   .only = only_,
+                   .only_force = only_force_},
+                  path.size());
+  std::copy_n(contact->path.begin(), path.size(), path.begin());
+  std::copy_n(contact->response.begin(), response.size(), response.begin());
   Vector3 at_once = residual_.displacement(patch, held);
   if (gravity_.adds_rest()) {
     at_once += mean(patch, [&](int node) { return gravity_.rest(node); });
   }
   for (Vector3& place : path) place += at_once;
   if (!response.empty()) response[0] += residual_.compliance(patch);
-}
-
-template <typename Scalar>
-void ModalEngine<Scalar>::hold_gravity(const double* shape, double* products) const noexcept {
-  const double* const force = gravity_.force().data();
-  for (std::size_t i = 0; i < modes_; ++i) {
-    const double push = shape[i] * force[i];
-    products[i] -= b1_[i] * push;
-    products[modes_ + i] -= b2_[i] * push;
-    products[2 * modes_ + i] += push;
-  }
+  if (held.empty()) return;
+  collect_modal_forces(held, {0, modes_}, held_force_.data());
+  horizon_.add_held(*contact, held_force_.data(), path);
 }
 
 template <typename Scalar>
@@ -305,7 +286,8 @@ void ModalEngine<Scalar>::add_delayed_force(std::span<const NodalForce> forces, 
   if (age < 0 || age >= kMaxHorizon) return;
   if (age == 0) residual_.hold_more(forces);
   begun_ = true;
-  collect_modal_forces(forces, {0, modes_});
+  change_state();
+  collect_modal_forces(forces, {0, modes_}, modal_force_.data());
   const double* coordinate = coordinate_after_.data() + static_cast<std::size_t>(age) * modes_;
   const double* velocity = velocity_after_.data() + static_cast<std::size_t>(age) * modes_;
   for (std::size_t i = 0; i < modes_; ++i) {
@@ -322,13 +304,21 @@ void ModalEngine<Scalar>::advance(std::span<const NodalForce> forces) noexcept {
   begun_ = true;
   coordinate_.swap(free_coordinate_);
   velocity_.swap(free_velocity_);
-  if (forces.empty()) return move_on();
+  state_ = (state_ | 1) + 1;
+  const bool loaded = std::exchange(loaded_, false);
+  forced_ = loaded || !forces.empty();
+  only_ = loaded || forces.empty() ? nullptr : horizon_.find_only(forces, only_force_);
+  if (forces.empty()) {
+    if (loaded) modal_force_.swap(inertial_load_);
+    return move_on();
+  }
   for (std::size_t i = 0; i < modes_; i += kSlice) {
     const ModeRange slice{i, std::min(kSlice, modes_ - i)};
-    collect_modal_forces(forces, slice);
+    collect_modal_forces(forces, slice, modal_force_.data());
     push_and_transit({&a11_[i], &a12_[i], &a21_[i], &a22_[i]}, {&b1_[i], &b2_[i], &modal_force_[i]},
                      &coordinate_[i], &velocity_[i], &free_coordinate_[i], &free_velocity_[i],
                      slice.count);
+    if (loaded) add_to(&modal_force_[i], &inertial_load_[i], slice.count);
   }
   add_gravity();
 }
@@ -374,6 +364,7 @@ void ModalEngine<Scalar>::displacements(std::span<const SurfaceRequest> requests
 template <typename Scalar>
 void ModalEngine<Scalar>::reset() noexcept {
   residual_.release();
+  change_state();
   begun_ = false;
   settle();
 }

@@ -3,6 +3,7 @@
 #include "simulation/engine/active_modes.hpp"
 #include "simulation/engine/kernels.hpp"
 #include "simulation/engine/modal_gravity.hpp"
+#include "simulation/engine/modal_horizon.hpp"
 #include "simulation/engine/residual_part.hpp"
 #include "simulation/engine/response_engine.hpp"
 
@@ -49,7 +50,8 @@ class ModalEngine final : public ResponseEngine,
 
  private:
   void set_transitions(double damping) noexcept;
-  void tabulate_horizon() noexcept;
+  void tabulate_delayed() noexcept;
+  void change_state() noexcept;
   void move_on() noexcept;
   void add_gravity() noexcept;
   void settle() noexcept;
@@ -58,10 +60,8 @@ class ModalEngine final : public ResponseEngine,
                   double* shape) const noexcept;
   void add_slice(std::span<const ContactPatch> patches, const ModeRange& modes,
                  std::span<Vector3> h, ContactMatrix& compliance) noexcept;
-  void collect_modal_forces(std::span<const NodalForce> forces, const ModeRange& modes) noexcept;
-  /// Of one row of a contact's shapes, in what predict_horizon() makes of the state: (r) and (3,
-  /// r).
-  void hold_gravity(const double* shape, double* products) const noexcept;
+  void collect_modal_forces(std::span<const NodalForce> forces, const ModeRange& modes,
+                            double* modal) const noexcept;
   const Scalar* shape_row(int dof) const noexcept {
     return shapes_->data() + static_cast<std::size_t>(dof) * modes_;
   }
@@ -81,11 +81,14 @@ class ModalEngine final : public ResponseEngine,
   /// (kMaxHorizon, r): coordinate and velocity of each mode at the end of the n-th step after the
   /// one in which a modal force of 1 acted.
   AlignedNumbers coordinate_after_, velocity_after_;
-  /// (kMaxHorizon, 3, r): the coordinate n steps on from a coordinate of 1, from a velocity of 1
-  /// (both without force), and from a modal force of 1 held for n + 1 steps.
-  AlignedNumbers coordinate_from_;
-  /// What these are multiplied with: (6, r) and (3, 3, r).
-  AlignedNumbers shape_products_, state_products_;
+  AlignedNumbers held_force_;     ///< (r), of predict_horizon()
+  AlignedNumbers inertial_load_;  ///< (r), of the coming step
+  bool loaded_ = false;           ///< inertial_load_ means something
+  bool forced_ = false;      ///< modal_force_ is all that acted in the last step; else nothing did
+  std::uint64_t state_ = 2;  ///< ModalHorizon::State::number
+  ModalHorizon horizon_;
+  const ModalHorizon::Contact* only_ = nullptr;  ///< ModalHorizon::State::only
+  Vector3 only_force_ = Vector3::Zero();
   ResidualPart residual_;
   ModalGravity gravity_;
   bool begun_ = false;  ///< there was a step, or a late force, since the reset

@@ -4,6 +4,7 @@
 
 #include "simulation/engine/response_engine.hpp"
 #include "tests/support/fem_cube.hpp"
+#include "tests/support/fixed_box.hpp"
 
 // What the engines say of coming steps, and what they make of forces that come late, against plain
 // stepping.
@@ -115,6 +116,69 @@ TEST_CASE("foresight: a force that comes late does what it would have done in ti
       in_time->advance({});
       late->advance({});
       only_old->advance({});
+    }
+  }
+}
+
+// What is kept from step to step must be what somebody finds who looks for the first time.
+TEST_CASE("foresight: a prediction that goes on is the one that is computed anew") {
+  for (const bool fixed : {false, true}) {
+    for (const ResponseKind kind : kKinds) {
+      if (fixed && kind == ResponseKind::kCompressed) continue;  // there is none of it
+      const auto cube = fixed ? test::fixed_box({}, kind) : model(kind);
+      const int nodes = cube->mesh.surface_node_count();
+      auto history = random_history(nodes, 60, 4);
+      for (std::size_t k = 20; k < 60; k += 3) {  // on the patch alone
+        const Vector3 force(0.1, -0.02 * static_cast<double>(k), 0.3);
+        const ContactPatch patch = some_patch();
+        history[k].clear();
+        for (std::size_t i = 0; i < 3; ++i) {
+          history[k].push_back({patch.nodes[i], patch.weights[i] * force});
+        }
+      }
+      const auto engine = make_engine(cube);
+      const auto act = [&](ResponseEngine& on, int k) {
+        const EngineCapabilities can = on.capabilities();
+        if (can.gravity != nullptr && k % 20 == 5) can.gravity->set_gravity({0, 0.3 * k, -9.81});
+        if (can.damping != nullptr && k == 31) can.damping->scale_damping(2.0);
+        if (k == 17 || k == 40) {
+          on.add_delayed_force(std::vector<NodalForce>{{1, Vector3(0.1, 0.2, -0.3)}}, 3);
+        }
+        if (can.inertial_loading != nullptr && k % 7 > 2) {
+          can.inertial_loading->set_angular_velocity({0.1 * k, 5.0, -3.0});
+        }
+        on.advance(history[static_cast<std::size_t>(k)]);
+        if (k == 45) on.reset();
+      };
+      ContactPatch other = some_patch();
+      other.weights[0] = 0.6;
+      other.weights[1] = 0.2;
+      constexpr std::size_t kAhead = 20;
+      for (int k = 0; k < 60; ++k) {
+        act(*engine, k);
+        if (k % 13 == 12) continue;  // nobody looks
+        const auto anew = make_engine(cube);
+        for (int i = 0; i <= k; ++i) act(*anew, i);
+        const std::vector<NodalForce> held{{2, Vector3(0.1, -0.2, 0.3)}};
+        for (const ContactPatch& patch : {some_patch(), other}) {
+          if (patch.weights[0] == 0.6 && k % 5 == 0) continue;
+          std::array<Vector3, kAhead> path;
+          std::array<Vector3, kAhead> expected;
+          std::array<Matrix3, kAhead> response;
+          std::array<Matrix3, kAhead> expected_response;
+          const std::span<const NodalForce> others =
+              k % 2 == 0 ? std::span<const NodalForce>(held) : std::span<const NodalForce>();
+          engine->predict_horizon(patch, others, path, response);
+          anew->predict_horizon(patch, others, expected, expected_response);
+          double largest = 0.0;
+          for (const Vector3& place : expected) largest = std::max(largest, place.norm());
+          CAPTURE(fixed, static_cast<int>(kind), k);
+          for (std::size_t n = 0; n < kAhead; ++n) {
+            CHECK((path[n] - expected[n]).norm() <= 1e-11 * largest);
+            CHECK((response[n] - expected_response[n]).norm() <= 1e-11 * response[0].norm());
+          }
+        }
+      }
     }
   }
 }

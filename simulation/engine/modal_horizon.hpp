@@ -1,0 +1,85 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "common/contact/contact_model.hpp"
+#include "simulation/contact/contact_patch.hpp"
+#include "simulation/engine/kernels.hpp"
+#include "simulation/engine/response_engine.hpp"
+
+namespace irdm {
+
+/// What contacts on modal responses will do in the coming steps. Per contact it keeps the mean
+/// shape of its patch, the response and the free path: while the patch stays, the response stays,
+/// and the path shifts by a step, with what the last step's force adds and one new end. All follow
+/// from c_n and s_n, the coordinate of a mode n steps after a coordinate of 1, or a velocity of 1,
+/// without a force: a force of 1 that is held from the start has moved it to (1 - c_n) / omega^2 by
+/// then. Real-time safe after construction; one thread.
+class ModalHorizon {
+ public:
+  /// One contact.
+  struct Contact {
+    ContactPatch patch;
+    AlignedNumbers shapes;                  ///< (3, r): rows sum_i w_i Phi_i
+    std::uint64_t used = 0;                 ///< number of the state that it was last asked about
+    std::uint64_t state = 0;                ///< that the path goes on from
+    std::size_t steps = 0;                  ///< of path and response
+    std::array<Vector3, kMaxHorizon> path;  ///< path[n]: displacement n + 1 steps on [m]
+    std::array<Matrix3, kMaxHorizon> response;
+  };
+  /// All modes at the end of the coming step under no force but what acts by itself, (r) each.
+  struct State {
+    /// Even, and two more after each step; odd once the body's own motion loads it in the coming
+    /// step; four more when the state was changed otherwise.
+    std::uint64_t number = 0;
+    const double* coordinate = nullptr;
+    const double* velocity = nullptr;
+    const double* force = nullptr;         ///< that acts by itself and goes on; null: none
+    const double* last = nullptr;          ///< modal force during the last step; null: none
+    const Contact* only = nullptr;         ///< on which alone a force acted in it; null: not so
+    Vector3 only_force = Vector3::Zero();  ///< that one [N]
+  };
+
+  /// @param modes r, > 0
+  explicit ModalHorizon(std::size_t modes);
+
+  /// How modes go on; forgets all contacts. @param omega angular frequency (r) [rad/s]
+  void set_transitions(const Transitions& A, const double* omega) noexcept;
+
+  /// Forgets all contacts.
+  void forget() noexcept;
+  /// The contact on this patch, with its shapes; null: it is not known.
+  Contact* find(const ContactPatch& patch) noexcept;
+  /// The contact on whose patch these forces are the share of one force each; null: none.
+  const Contact* find_only(std::span<const NodalForce> forces, Vector3& force) const noexcept;
+  /// In place of the contact that was not asked about for longest; its shapes are to be written.
+  Contact& begin(const ContactPatch& patch) noexcept;
+  /// Makes path and response those of the first `steps` coming steps.
+  void update(Contact& contact, const State& state, std::size_t steps) noexcept;
+  /// Adds what a modal force (r) that is held in all coming steps does.
+  void add_held(const Contact& contact, const double* force, std::span<Vector3> path) noexcept;
+
+ private:
+  void respond(Contact& contact) noexcept;
+  void compute_path(Contact& contact, const State& state, std::size_t first) noexcept;
+  void shift_path(Contact& contact, const State& state) noexcept;
+  template <std::size_t K, typename Products>
+  void sum_free(std::size_t first, std::size_t last, const Products& products,
+                std::array<Sums<K>, kMaxHorizon + 1>& sums) noexcept;
+  void multiply_shapes(const Contact& contact, std::size_t first, std::size_t count,
+                       const double* factors, double* products) const noexcept;
+  const double* from_coordinate(std::size_t n) const noexcept { return &from_[2 * n * modes_]; }
+  const double* from_velocity(std::size_t n) const noexcept { return &from_[(2 * n + 1) * modes_]; }
+
+  std::size_t modes_;
+  AlignedNumbers from_;        ///< (kMaxHorizon + 1, 2, r): c_n and s_n
+  AlignedNumbers compliance_;  ///< (r) 1 / omega^2
+  AlignedNumbers products_;    ///< (6, kPart): of shapes with what c_n or s_n meet
+  AlignedNumbers factors_;     ///< (kPart)
+  std::array<Contact, kMaxContacts> contacts_;
+};
+
+}  // namespace irdm

@@ -5,8 +5,8 @@
                 [--dt 2 1 0.5] [--styluses 1 4] [--mode predict hold] [--busy 0 2]
 
 The paper's cube with all modes and the demonstration's script; more styluses play it on other faces. One row a run:
-step and prediction of the server, round trip, missed deadlines, forces delayed and lost, peak force and impulse at
-the hand (bridge) and on the object (trace). The last lines quote medians. Times in us, forces in N, impulses in N s.
+step of the server, round trip, missed deadlines, forces delayed and lost, peak force at the
+hand (bridge) and on the object (trace), impulse there. The last lines quote medians. Times in us, forces in N, impulses in N s.
 """
 import argparse
 import base64
@@ -121,8 +121,6 @@ def run(args, dt, styluses, mode, busy):
     row = {
         "step p50": number(r"step time: p50 ([\d.]+)", text),
         "step p99": number(r"step time: p50 [\d.]+ us, p99 ([\d.]+)", text),
-        "prediction p50": number(r"of which prediction: p50 ([\d.]+)", text),
-        "prediction p99": number(r"of which prediction: p50 [\d.]+ us, p99 ([\d.]+)", text),
         "round trip p50": 1000 * number(r"round trip: p50 ([\d.]+)", bridge.stdout),
         "steps": number(r"(?m)^steps: (\d+)", text),
         "missed": number(r"missed deadlines: (\d+)", text),
@@ -132,7 +130,6 @@ def run(args, dt, styluses, mode, busy):
         "dropped": number(r"force dropped (\d+)", bridge.stdout),
         "peak hand": number(r"peak force: ([\d.]+)", bridge.stdout),
         "peak object": max(float(force.max()) for force in forces),
-        "impulse hand": number(r"impulse ([\d.]+)", bridge.stdout),
         "impulse object": sum(float(force.sum()) for force in forces) * dt / 1000,
     }
     return row

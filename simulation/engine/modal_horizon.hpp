@@ -49,8 +49,6 @@ class ModalHorizon {
   /// How modes go on; forgets all contacts. @param omega angular frequency (r) [rad/s]
   void set_transitions(const Transitions& A, const double* omega) noexcept;
 
-  /// Forgets all contacts.
-  void forget() noexcept;
   /// The contact on this patch, with its shapes; null: it is not known.
   Contact* find(const ContactPatch& patch) noexcept;
   /// The contact on whose patch these forces are the share of one force each; null: none.
@@ -63,6 +61,7 @@ class ModalHorizon {
   void add_held(const Contact& contact, const double* force, std::span<Vector3> path) noexcept;
 
  private:
+  void forget() noexcept;
   void respond(Contact& contact) noexcept;
   void compute_path(Contact& contact, const State& state, std::size_t first) noexcept;
   void shift_path(Contact& contact, const State& state) noexcept;

@@ -25,8 +25,11 @@ StepPacer::StepPacer(double dt, std::int64_t tick_ns) noexcept
 
 void StepPacer::hear(std::uint64_t step, std::optional<std::uint64_t> newest, bool in_contact,
                      std::int64_t now_ns) noexcept {
-  // Who is behind the server knows nothing of the coming step.
-  if (!running_ || step >= step_ || step_ - step > kFarthest) return begin(step, now_ns);
+  if (!running_) return begin(step, now_ns);
+  // Who is behind the server knows nothing of the coming step. What ends in this tick counts: a
+  // model may come in each tick.
+  const std::uint64_t reached = step_ + due_count(now_ns);
+  if (step >= reached || reached - step > kFarthest) return begin(step, now_ns);
   if (!newest || *newest < settled_from_ || *newest > step_) return;
   keep_pace(static_cast<std::int64_t>(*newest - step), in_contact);
 }
@@ -58,17 +61,20 @@ void StepPacer::keep_pace(std::int64_t lead, bool in_contact) noexcept {
   heard_ = 0;
 }
 
+std::uint64_t StepPacer::due_count(std::int64_t now_ns) const noexcept {
+  const std::int64_t late_ns = now_ns + tick_ns_ / 2 - next_end_ns_;
+  return late_ns < 0 ? 0 : static_cast<std::uint64_t>(late_ns / dt_ns_ + 1);
+}
+
 int StepPacer::due(std::int64_t now_ns) noexcept {
   if (!running_) return 0;
-  const std::int64_t late_ns = now_ns + tick_ns_ / 2 - next_end_ns_;
-  if (late_ns < 0) return 0;
-  const std::int64_t count = late_ns / dt_ns_ + 1;
+  const std::uint64_t count = due_count(now_ns);
   if (count > kMost) {  // it has slept: what it knows is of another time
     running_ = false;
     return 0;
   }
-  step_ += static_cast<std::uint64_t>(count);
-  next_end_ns_ += count * dt_ns_;
+  step_ += count;
+  next_end_ns_ += static_cast<std::int64_t>(count) * dt_ns_;
   return static_cast<int>(count);
 }
 

@@ -37,6 +37,7 @@ class StepPacer {
 
  private:
   void begin(std::uint64_t step, std::int64_t now_ns) noexcept;
+  std::uint64_t due_count(std::int64_t now_ns) const noexcept;
   void keep_pace(std::int64_t lead, bool in_contact) noexcept;
 
   std::int64_t dt_ns_;

@@ -13,8 +13,13 @@ using irdm::test::kMs;
 namespace {
 
 constexpr std::int64_t kPacerTickNs = kMs;
-constexpr double kPacerDt = 0.002;
 constexpr std::int64_t kStepNs = 2 * kMs;
+constexpr double kPacerDt = 1e-9 * kStepNs;
+
+struct ServerSteps {
+  std::int64_t length_ns = kStepNs;
+  std::int64_t phase_ns = 700'000;  ///< of the first, to the bridge's ticks
+};
 
 /// A bridge and a server, each with a clock of its own, and what lies between them.
 class Pair {
@@ -25,7 +30,10 @@ class Pair {
     double drift = 0.0;  ///< by which the server's clock is faster
   };
 
-  explicit Pair(const Way& way) : way_(way) {}
+  explicit Pair(const Way& way, const ServerSteps& steps = {})
+      : pacer(1e-9 * static_cast<double>(steps.length_ns), kPacerTickNs),
+        way_(way),
+        steps_(steps) {}
 
   /// One tick of the bridge; the server's steps fall in between.
   void tick() {
@@ -43,10 +51,10 @@ class Pair {
   int late() { return std::exchange(late_, 0); }
   std::int64_t lead() const { return static_cast<std::int64_t>(pacer.step() - server_step_); }
   /// The server misses so many periods.
-  void stall(int steps) { stalled_ns_ += steps * kStepNs; }
+  void stall(int steps) { stalled_ns_ += steps * steps_.length_ns; }
   void set(const Way& way) { way_ = way; }
 
-  StepPacer pacer{kPacerDt, kPacerTickNs};
+  StepPacer pacer;
   int most_at_once = 0;
   bool in_contact = false;
 
@@ -62,8 +70,8 @@ class Pair {
   };
 
   std::int64_t server_due() const {
-    const auto elapsed = static_cast<double>(kStepNs) * static_cast<double>(server_step_);
-    return std::llround(elapsed * (1.0 - way_.drift)) + 700'000 + stalled_ns_;
+    const auto elapsed = static_cast<double>(steps_.length_ns) * static_cast<double>(server_step_);
+    return std::llround(elapsed * (1.0 - way_.drift)) + steps_.phase_ns + stalled_ns_;
   }
   std::int64_t way() {
     const std::int64_t late = static_cast<std::int64_t>(random_() % 1000) * way_.jitter_ns / 1000;
@@ -97,6 +105,7 @@ class Pair {
   }
 
   Way way_;
+  ServerSteps steps_;
   std::int64_t now_ns_ = 0;
   std::int64_t stalled_ns_ = 0;
   std::uint64_t server_step_ = 0;
@@ -123,6 +132,24 @@ TEST_CASE("step pacer: forces are in time over any delay, and not more ahead tha
       const auto needed = static_cast<std::int64_t>(
           std::ceil(static_cast<double>(delay + jitter) * kMs / static_cast<double>(kStepNs)));
       CHECK(pair.lead() <= needed + 4);
+    }
+  }
+}
+
+// With steps as short as a tick a new model comes before each end of a step.
+TEST_CASE("step pacer: a step may be as short as a tick, or half of one, in any phase") {
+  for (const std::int64_t length : {kMs / 2, kMs, 3 * kMs / 2}) {
+    for (std::int64_t phase = 0; phase < kMs; phase += kMs / 20) {
+      for (const std::int64_t jitter : {std::int64_t{0}, kMs / 10}) {
+        CAPTURE(length, phase, jitter);
+        Pair pair({.delay_ns = kMs / 20, .jitter_ns = jitter}, {length, phase});
+        pair.ticks(300);
+        pair.late();
+        pair.ticks(5000);
+        CHECK(pair.late() <= (jitter > 0 ? 5 : 0));
+        CHECK(pair.lead() >= 0);
+        CHECK(pair.lead() <= 5);
+      }
     }
   }
 }

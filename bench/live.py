@@ -122,6 +122,8 @@ def run(args, dt, styluses, mode, busy):
     row = {
         "step p50": number(r"step time: p50 ([\d.]+)", text),
         "step p99": number(r"step time: p50 [\d.]+ us, p99 ([\d.]+)", text),
+        "prediction p50": number(r"of which prediction: p50 ([\d.]+)", text),
+        "prediction p99": number(r"of which prediction: p50 [\d.]+ us, p99 ([\d.]+)", text),
         "round trip p50": 1000 * number(r"round trip: p50 ([\d.]+)", bridge.stdout),
         "steps": number(r"(?m)^steps: (\d+)", text),
         "missed": number(r"missed deadlines: (\d+)", text),
@@ -131,6 +133,7 @@ def run(args, dt, styluses, mode, busy):
         "dropped": number(r"force dropped (\d+)", bridge.stdout),
         "peak hand": number(r"peak force: ([\d.]+)", bridge.stdout),
         "peak object": max(float(force.max()) for force in forces),
+        "impulse hand": number(r"impulse ([\d.]+)", bridge.stdout),
         "impulse object": sum(float(force.sum()) for force in forces) * dt / 1000,
     }
     return row

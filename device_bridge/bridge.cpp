@@ -37,7 +37,7 @@ std::string percentiles_text(const Histogram& histogram) {
 }  // namespace
 
 std::string to_text(const BridgeReport& report) {
-  const auto& [servo, client, scheduling, styluses, peak_force, filter] = report;
+  const auto& [servo, client, scheduling, styluses, peak_force, impulse, filter] = report;
   const std::uint64_t reconnects = client.sessions > 0 ? client.sessions - 1 : 0;
   std::ostringstream text;
   text << std::fixed << std::setprecision(3);
@@ -65,9 +65,10 @@ std::string to_text(const BridgeReport& report) {
     text << "servo: " << servo.ticks << " ticks, " << servo.missed << " missed, wake-up "
          << percentiles_text(servo.wakeup) << ", scheduling " << scheduling << '\n';
   }
-  text << "peak force: " << peak_force << " N; safety filter: " << filter.demands << " forces and "
-       << filter.readings << " readings not used, force dropped " << filter.trips
-       << " times, faults " << filter.faults << '\n';
+  text << "peak force: " << peak_force << " N, impulse " << impulse
+       << " N s; safety filter: " << filter.demands << " forces and " << filter.readings
+       << " readings not used, force dropped " << filter.trips << " times, faults " << filter.faults
+       << '\n';
   return text.str();
 }
 
@@ -212,6 +213,7 @@ BridgeReport run_bridge(const BridgeConfig& config, StopSignal& stop_signal, dou
                       .styluses = static_cast<int>(loops.size())};
   for (const ServoLoop& loop : loops) {
     report.peak_force = std::max(report.peak_force, loop.peak_force());
+    report.impulse += loop.impulse();
     const FilterCounts counts = loop.counts();
     report.filter.readings += counts.readings;
     report.filter.demands += counts.demands;

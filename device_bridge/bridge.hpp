@@ -18,6 +18,7 @@ struct BridgeReport {
   std::string scheduling;  ///< of the servo thread, and whether memory is locked
   int styluses = 0;
   double peak_force = 0.0;   ///< shown on any stylus [N]
+  double impulse = 0.0;      ///< of the force's magnitude, on all styluses together [N s]
   FilterCounts filter = {};  ///< of all styluses
 };
 

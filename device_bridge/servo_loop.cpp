@@ -4,6 +4,8 @@
 #include <limits>
 #include <utility>
 
+#include "common/realtime/clock.hpp"
+
 namespace irdm {
 
 ServoLoop::ServoLoop(HapticDevice& device, const FilterLimits& limits, const DeviceMapping& mapping)
@@ -20,6 +22,7 @@ void ServoLoop::restart(bool link_matters) noexcept {
   clutch_ = Clutch{};
   contact_.reset();
   reading_.reset();
+  applied_ns_.reset();
   demanded_ = ForceDemand{};
   was_ready_ = true;
   next_sequence_ = 0;
@@ -49,9 +52,15 @@ void ServoLoop::receive(const ContactModel& model, std::int64_t now_ns) noexcept
   if (contact_) contact_->receive(model, now_ns);
 }
 
-const AppliedForces* ServoLoop::end_steps(std::int64_t now_ns) noexcept {
-  if (!contact_ || !contact_->tick(now_ns, pose_.tip)) return nullptr;
-  return &contact_->applied();
+void ServoLoop::end_steps(std::int64_t now_ns) noexcept {
+  news_ = contact_ && contact_->tick(now_ns, pose_.tip);
+}
+
+// Along the force that was solved: what the filter adds beside it is between hand and device.
+void ServoLoop::tell_shown(const Vector3& solved) noexcept {
+  if (!contact_) return;
+  const double squared = solved.squaredNorm();
+  contact_->shown(squared > 0.0 ? std::clamp(shown_.dot(solved) / squared, 0.0, 1.0) : 1.0);
 }
 
 // Force and normal in W.
@@ -91,16 +100,28 @@ void ServoLoop::update_device_state() noexcept {
 }
 
 void ServoLoop::apply(std::int64_t now_ns, const ServoInput& input) noexcept {
-  if (!reading_) return rest();
+  if (!reading_) {
+    rest();
+    if (contact_) contact_->shown(0.0);
+    return;
+  }
   update_device_state();
   ForceDemand wanted = demand(now_ns, input);
-  wanted.force = clutch_.gain(now_ns) * mapping_.workspace.to_device(wanted.force);
+  const Vector3 solved = mapping_.workspace.to_device(wanted.force);
+  wanted.force = clutch_.gain(now_ns) * solved;
   wanted.normal = mapping_.workspace.direction_to_device(wanted.normal);
   const Vector3 force = filter_.step(
       now_ns, {.tip = *reading_, .motor_temperature = device_state_.motor_temperature}, wanted);
   demanded_ = wanted;
+  if (applied_ns_) {
+    constexpr std::int64_t kLongest = 50'000'000;
+    const auto held_ns = std::clamp<std::int64_t>(now_ns - *applied_ns_, 0, kLongest);
+    impulse_ += kNanosecond * static_cast<double>(held_ns) * shown_.norm();
+  }
+  applied_ns_ = now_ns;
   peak_force_ = std::max(peak_force_, force.norm());
   show(force);
+  tell_shown(solved);
 }
 
 FilterCounts ServoLoop::counts() const noexcept {

@@ -50,11 +50,13 @@ class ServoLoop {
   /// Where the contact is solved here, else nothing happens.
   /// @param model has passed check()
   void receive(const ContactModel& model, std::int64_t now_ns) noexcept;
-  /// Ends the steps that are due, with the stylus where it was read last. What is news for the
-  /// server; null when there is none.
-  const AppliedForces* end_steps(std::int64_t now_ns) noexcept;
+  /// The same. Ends the steps that are due, with the stylus where it was read last.
+  void end_steps(std::int64_t now_ns) noexcept;
+  /// After apply(): what is news for the server of the steps that ended; null when there is none.
+  const AppliedForces* applied() const noexcept { return news_ ? &contact_->applied() : nullptr; }
 
-  /// Shows what the filter makes of the force; none before the first read().
+  /// Shows what the filter makes of the force; none before the first read(). What it shows of a
+  /// force that was solved here is what the object gets.
   /// @param now_ns the clock that samples are stamped with
   void apply(std::int64_t now_ns, const ServoInput& input) noexcept;
   /// Shows no force.
@@ -70,6 +72,7 @@ class ServoLoop {
   const FilterLimits& limits() const noexcept { return limits_; }
   const SafetyFilter& filter() const noexcept { return filter_; }
   double peak_force() const noexcept { return peak_force_; }  ///< shown so far [N], D
+  double impulse() const noexcept { return impulse_; }        ///< of its magnitude, so far [N s]
   /// Of all sessions.
   FilterCounts counts() const noexcept;
   HapticDevice& device() noexcept { return device_; }
@@ -82,6 +85,7 @@ class ServoLoop {
   const DeviceState& device_state() const noexcept { return device_state_; }
 
  private:
+  void tell_shown(const Vector3& solved) noexcept;
   ForceDemand demand(std::int64_t now_ns, const ServoInput& input) noexcept;
   void update_device_state() noexcept;
   void show(const Vector3& force) noexcept {
@@ -95,6 +99,7 @@ class ServoLoop {
   SafetyFilter filter_;
   Clutch clutch_;
   std::optional<BridgeContact> contact_;  ///< none: the server's forces are held
+  bool news_ = false;                     ///< steps ended in this tick
   StylusPose pose_;                       ///< the last good one, W; buttons as on the wire
   /// Tip as it was read last, not a number if of no use; none since restart() [m], D.
   std::optional<Vector3> reading_;
@@ -105,7 +110,9 @@ class ServoLoop {
   std::uint64_t next_sequence_ = 0;
   StylusSample sample_;  ///< that was taken last
   double peak_force_ = 0.0;
-  FilterCounts counts_;  ///< of the sessions before
+  double impulse_ = 0.0;
+  std::optional<std::int64_t> applied_ns_;  ///< time of the last apply() since restart()
+  FilterCounts counts_;                     ///< of the sessions before
 };
 
 }  // namespace irdm

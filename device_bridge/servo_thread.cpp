@@ -162,6 +162,7 @@ void ServoThread::render_tick(std::int64_t now_ns) noexcept {
     end_steps(i, now_ns);
     link_.styluses[i].input.receive();
     loops_[i].apply(now_ns, link_.styluses[i].input.front());
+    hand_on_applied(i);
     write_down(i, now_ns);
     lost = lost || loops_[i].device_state().lost;
     const SafetyFilter& filter = loops_[i].filter();
@@ -219,7 +220,12 @@ void ServoThread::end_steps(std::size_t i, std::int64_t now_ns) noexcept {
   if (stylus.model.receive() && stylus.model.front().session == session_) {
     loops_[i].receive(stylus.model.front().value, now_ns);
   }
-  const AppliedForces* applied = loops_[i].end_steps(now_ns);
+  loops_[i].end_steps(now_ns);
+}
+
+void ServoThread::hand_on_applied(std::size_t i) noexcept {
+  ServoLink::Stylus& stylus = link_.styluses[i];
+  const AppliedForces* applied = loops_[i].applied();
   if (applied == nullptr) return;
   stylus.applied.back().session = session_;
   stylus.applied.back().value = *applied;

@@ -87,6 +87,7 @@ class ServoThread {
   void end(ServoEnd end, std::int64_t now_ns) noexcept;
   void begin_session(const LinkState& state) noexcept;
   void end_steps(std::size_t i, std::int64_t now_ns) noexcept;
+  void hand_on_applied(std::size_t i) noexcept;
   void step(std::uint64_t k) noexcept;
   bool wait_for_forces(std::uint64_t k) noexcept;
 

@@ -164,6 +164,7 @@ SimulationStylus read_stylus(TomlTable table, const ContactConfig& contact) {
   stylus.coupling_stiffness =
       table.number("coupling_stiffness", lab::kStiffness, contact.coupling_stiffness);
   stylus.reach = table.number("reach", lab::kTipLength, stylus.reach);
+  stylus.max_force = table.number("max_force", between(0.1, kMostAppliedForce), stylus.max_force);
   table.finish();
   return stylus;
 }

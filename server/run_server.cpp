@@ -66,8 +66,11 @@ int print_report(const FinishedRun& run, const ServerOptions& options) {
   }
   char peak[32];
   std::snprintf(peak, sizeof peak, "%.3f", force.peak_force);
-  std::cout << "step time: " << microseconds(force.step_time) << '\n'
-            << "peak force: " << peak << " N\n"
+  std::cout << "step time: " << microseconds(force.step_time) << '\n';
+  if (force.prediction_time.count() > 0) {
+    std::cout << "of which prediction: " << microseconds(force.prediction_time) << '\n';
+  }
+  std::cout << "peak force: " << peak << " N\n"
             << "reset: " << force.resets << " times\n"
             << "steps without a finite solution: " << force.unsolved << '\n'
             << "surfaces: " << run.deformation.frames() << ", each "
@@ -92,6 +95,7 @@ int print_report(const FinishedRun& run, const ServerOptions& options) {
   faults("errors inside the network thread", run.network.stats().internal_errors);
   faults("forces of bridges that came late, entered at their own step", force.late);
   faults("forces of bridges that were lost", force.lost);
+  faults("forces of bridges above their stylus' max_force, lowered to it", force.bounded);
   if (run.columns.any()) {
     std::cout << "nodes whose columns were read: " << run.columns.loaded()
               << ", cache misses: " << force.cache_misses << '\n';

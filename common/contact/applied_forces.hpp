@@ -16,13 +16,13 @@ struct AppliedForce {
   Vector3 arm = Vector3::Zero();    ///< from the centre of mass to where it acted [m], B
 };
 
-/// No hand pushes harder [N].
-inline constexpr double kMostAppliedForce = 100.0;
+/// No device shows more [N], and no hand is taken to push harder.
+inline constexpr double kMostAppliedForce = 40.0;
 
-/// A force [N], no larger than that, whatever was found or told.
-inline Vector3 bounded_force(const Vector3& force) noexcept {
+/// A force [N], no larger than `most`, whatever was found or told.
+inline Vector3 bounded_force(const Vector3& force, double most = kMostAppliedForce) noexcept {
   const double norm = force.norm();
-  return norm > kMostAppliedForce ? Vector3(kMostAppliedForce / norm * force) : force;
+  return norm > most ? Vector3(most / norm * force) : force;
 }
 
 /// The last steps of such a stylus: each is told several times, so that what is lost on the way

@@ -2,8 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace irdm {
+
+BridgeContact::BridgeContact(double dt, std::int64_t tick_ns) noexcept
+    : pacer_(dt, tick_ns),
+      dt_(dt),
+      steps_a_tick_(
+          std::max(1, static_cast<int>(std::lround(1e-9 * static_cast<double>(tick_ns) / dt)))) {}
 
 void BridgeContact::receive(const ContactModel& model, std::int64_t now_ns) noexcept {
   if (model.paused) {  // nothing goes on from here: when the run does, all begins anew
@@ -25,17 +32,35 @@ void BridgeContact::receive(const ContactModel& model, std::int64_t now_ns) noex
   predictor_.receive(model);
 }
 
-// A tip that several steps share has come to where it is evenly.
+// A tip that several steps share has come to where it is evenly. In steps that ended before the
+// last tick should have been the device went on showing what it showed.
 bool BridgeContact::tick(std::int64_t now_ns, const Vector3& tip) noexcept {
   const std::uint64_t before = pacer_.step();
   const int count = pacer_.due(now_ns);
   for (int i = 1; i <= count; ++i) {
     const double share = static_cast<double>(i) / count;
     const Vector3 from = last_tip_.value_or(tip);
-    solve(before + static_cast<std::uint64_t>(i), now_ns, from + share * (tip - from));
+    const std::uint64_t k = before + static_cast<std::uint64_t>(i);
+    const Vector3 there = from + share * (tip - from);
+    if (i > count - steps_a_tick_) {
+      solve(k, now_ns, there);
+    } else {
+      predictor_.hold(k);
+      remember(k, there);
+    }
   }
   if (count > 0) last_tip_ = tip;
+  ended_ = std::min(count, steps_a_tick_);
   return count > 0;
+}
+
+void BridgeContact::shown(double share) noexcept {
+  const int count = std::min(std::exchange(ended_, 0), applied_.count);
+  for (int i = 0; i < count; ++i) {
+    const std::uint64_t step = applied_.step - static_cast<std::uint64_t>(i);
+    predictor_.scale(step, share);
+    applied_.past[static_cast<std::size_t>(i)].force = predictor_.applied(step);
+  }
 }
 
 void BridgeContact::solve(std::uint64_t k, std::int64_t now_ns, const Vector3& tip) noexcept {

@@ -27,14 +27,17 @@ class BridgeContact {
   };
 
   /// @param dt of the server's step [s]  @param tick_ns between two calls of tick()
-  BridgeContact(double dt, std::int64_t tick_ns) noexcept : pacer_(dt, tick_ns), dt_(dt) {}
+  BridgeContact(double dt, std::int64_t tick_ns) noexcept;
 
   /// @param model has passed check()
   void receive(const ContactModel& model, std::int64_t now_ns) noexcept;
 
   /// Ends the steps that are due, with the tip where it is now [m], W, finite. True: there is news
-  /// in applied().
+  /// in applied(), once shown() was told.
   bool tick(std::int64_t now_ns, const Vector3& tip) noexcept;
+  /// After tick(): the device shows this share of wanted().force, 0 to 1, and no more acts on the
+  /// object in the steps that ended.
+  void shown(double share) noexcept;
 
   const ForceCommand& wanted() const noexcept { return wanted_; }
   /// Of the last steps.
@@ -52,6 +55,8 @@ class BridgeContact {
   std::uint64_t newest_model_ = 0;  ///< step of the newest model; while the pacer runs
   std::int64_t horizon_ns_ = 0;     ///< of that model
   ForceCommand wanted_;
+  int steps_a_tick_;         ///< at least 1
+  int ended_ = 0;            ///< steps that were solved in the last tick
   bool in_contact_ = false;  ///< in the last step that anything is known of
   AppliedForces applied_;
   std::optional<Vector3> last_tip_;  ///< at the end of the last step; none: it begins anew

@@ -178,6 +178,20 @@ ContactPredictor::Answer ContactPredictor::solve(std::uint64_t k, const Vector3&
   return answer;
 }
 
+void ContactPredictor::hold(std::uint64_t k) noexcept {
+  Past held = k > 0 && past(k - 1).step == k - 1 ? past(k - 1) : Past{};
+  held.step = k;
+  held.slip.setZero();
+  past(k) = held;
+  last_step_ = k;
+}
+
+void ContactPredictor::scale(std::uint64_t step, double share) noexcept {
+  if (past(step).step != step) return;
+  past(step).force *= share;
+  past(step).force_B *= share;
+}
+
 Vector3 ContactPredictor::arm(std::uint64_t step) const noexcept {
   return past(step).step == step ? past(step).arm : Vector3::Zero();
 }

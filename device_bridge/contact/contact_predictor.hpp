@@ -46,6 +46,14 @@ class ContactPredictor {
   /// Where it acted, from the centre of mass [m], B.
   Vector3 arm(std::uint64_t step) const noexcept;
 
+  /// In place of solve(): in step k the device went on showing what it showed in the step before.
+  /// The way of the tip in it is left to the next solve().
+  void hold(std::uint64_t k) noexcept;
+
+  /// Of the force that was answered for the last step, or one just before it, the object gets no
+  /// more than this share. Before the next solve().
+  void scale(std::uint64_t step, double share) noexcept;
+
   /// Forgets everything.
   void reset() noexcept { *this = ContactPredictor{}; }
 

@@ -73,6 +73,7 @@ void ForceThread::run() noexcept {
   for (const BridgedStylus& stylus : bridged_) {
     report_.late += stylus.late();
     report_.lost += stylus.lost();
+    report_.bounded += stylus.bounded();
   }
   report_.cache_misses = simulation_.cache_misses();
   finished_.signal();
@@ -205,6 +206,7 @@ void ForceThread::step() noexcept {
 
 // After all else: who waits for a force has it by now.
 void ForceThread::predict_horizon() noexcept {
+  const std::int64_t begin = monotonic_ns();
   bool any = false;
   for (std::size_t s = 0; s < bridged_.size(); ++s) {
     StylusPort& port = network_.port(static_cast<int>(s));
@@ -214,7 +216,9 @@ void ForceThread::predict_horizon() noexcept {
     port.model.publish();
     any = true;
   }
-  if (any) network_.forces_ready().signal();
+  if (!any) return;
+  network_.forces_ready().signal();
+  report_.prediction_time.add(monotonic_ns() - begin);
 }
 
 }  // namespace irdm

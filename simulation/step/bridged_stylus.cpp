@@ -53,10 +53,16 @@ StylusCommand BridgedStylus::next(const StylusCommand& command, std::uint64_t se
   next.tip = tip_;
   next.bridged = BridgedForce{.object = simulation_.local_model_object(s_)};
   if (applied != nullptr) {
-    next.bridged->force = bounded_force(applied->force);
+    next.bridged->force = bounded(applied->force);
     next.bridged->arm = applied->arm;
   }
   return next;
+}
+
+Vector3 BridgedStylus::bounded(const Vector3& force) noexcept {
+  const double most = simulation_.max_force(s_);
+  if (force.norm() > most) ++bounded_;
+  return bounded_force(force, most);
 }
 
 // There is nothing from before that may yet come.
@@ -82,7 +88,7 @@ void BridgedStylus::insert_delayed_force(const AppliedHistory& history, std::uin
     }
     known_ |= std::uint64_t{1} << i;
     if (applied->force.isZero(0.0)) continue;
-    const AppliedForce late{bounded_force(applied->force), applied->tip, applied->arm};
+    const AppliedForce late{bounded(applied->force), applied->tip, applied->arm};
     ++(simulation_.insert_delayed_force(s_, late, static_cast<int>(i)) ? late_ : lost_);
   }
 }

@@ -31,8 +31,11 @@ class BridgedStylus {
   std::uint64_t late() const noexcept { return late_; }  ///< forces that were entered late
   /// Forces that came too late for that, or for an object that was not touched.
   std::uint64_t lost() const noexcept { return lost_; }
+  /// Forces that were above SimulationStylus::max_force, and entered with that.
+  std::uint64_t bounded() const noexcept { return bounded_; }
 
  private:
+  Vector3 bounded(const Vector3& force) noexcept;
   void begin(const StylusCommand& command, const AppliedHistory& history) noexcept;
   void insert_delayed_force(const AppliedHistory& history, std::uint64_t k) noexcept;
   const AppliedForce* find(const AppliedHistory& history, std::uint64_t step) const noexcept;
@@ -48,6 +51,7 @@ class BridgedStylus {
   Vector3 tip_ = Vector3::Zero();  ///< in the last step
   std::uint64_t late_ = 0;
   std::uint64_t lost_ = 0;
+  std::uint64_t bounded_ = 0;
 };
 
 }  // namespace irdm

@@ -20,6 +20,7 @@ Simulation::Simulation(const SimulationConfig& config)
   }
   reset_down_.fill(true);
   local_model_object_.fill(-1);
+  for (std::size_t s = 0; s < stylus_count_; ++s) max_force_[s] = config.styluses[s].max_force;
   dt_ = config.objects.front().model->dt;
   for (const SimulationObject& object : config.objects) {
     if (object.model->dt != dt_) {

@@ -58,6 +58,8 @@ class Simulation {
   const Settings& settings() const noexcept { return settings_; }
 
   double dt() const noexcept { return dt_; }
+  /// SimulationStylus::max_force of stylus s [N].
+  double max_force(std::size_t s) const noexcept { return max_force_[s]; }
   /// The number of the coming step.
   std::uint64_t next_step() const noexcept { return next_step_; }
   /// Nodes that forces began to act on while their columns of R were not there, so far.
@@ -81,6 +83,7 @@ class Simulation {
   /// The reset button was down, or nobody there, in the last step.
   std::array<bool, kMaxStyluses> reset_down_;
   std::size_t stylus_count_;
+  std::array<double, kMaxStyluses> max_force_{};  ///< of each stylus [N]
   std::vector<std::unique_ptr<SoftObject>> objects_;
   std::array<int, kMaxStyluses> local_model_object_;  ///< object, -1: none
   std::array<StylusCommand, kMaxStyluses> commands_;  ///< of a step that begins with a reset

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "common/contact/applied_forces.hpp"
 #include "common/contact/contact_problem.hpp"
 #include "common/geometry.hpp"
 #include "common/model/model.hpp"
@@ -38,6 +39,8 @@ struct SimulationStylus {
   double radius = 0.0;              ///< of the fingertip [m]; 0: a point
   double coupling_stiffness = 0.0;  ///< k_vc, spring between tip and surface [N/m]; 0: none (rigid)
   double reach = 0.0;  ///< pressed within it, the grab button holds the nearest node [m]
+  /// Its bridge, if the contact is solved there, makes it exert at most this [N], > 0.
+  double max_force = kMostAppliedForce;
 };
 
 /// Objects among their styluses. All models have the same dt.

@@ -36,18 +36,24 @@ class Bench {
       if (served && now_ns % (2 * kMs) == 0) {
         // The server has heard of the touch by then.
         ContactModel model = wall(server_step++);
+        if (yields_later) model.response[1] = 0.5 * model.response[0];
+        // What it does not know of is taken to be at the bridge alone.
+        if (yields_later) model.missing = ~std::uint64_t{0} >> (64 - kMaxHorizon);
         if (contact.wanted().contact == ContactState::kTouching) {
           model.state = ContactState::kTouching;
         }
         contact.receive(model, now_ns);
       }
       told += contact.tick(now_ns, Vector3(0, height, 0)) ? 1 : 0;
+      contact.shown(share);
     }
     return told;
   }
   BridgeContact contact{kDt, kMs};
   std::int64_t now_ns = 0;
   std::uint64_t server_step = 100;
+  double share = 1.0;  ///< of the force that the device shows
+  bool yields_later = false;
 };
 
 }  // namespace
@@ -185,8 +191,55 @@ TEST_CASE("contact at the bridge: no force is larger than a hand's") {
   Bench bench;
   bench.ticks(100, 0.001);
   for (int i = 0; i < 300; ++i) bench.ticks(1, -0.001 * i);
-  CHECK(bench.contact.wanted().force.norm() == Approx(100.0));
-  CHECK(bench.contact.applied().past[0].force.norm() == Approx(100.0));
+  CHECK(bench.contact.wanted().force.norm() == Approx(kMostAppliedForce));
+  CHECK(bench.contact.applied().past[0].force.norm() == Approx(kMostAppliedForce));
+}
+
+// The wall also gives way by half as much in the step after, so that what it got before matters.
+TEST_CASE("contact at the bridge: the object gets what the device shows") {
+  Bench bench;
+  bench.yields_later = true;
+  bench.ticks(100, 0.001);
+  bench.ticks(160, -0.001);
+  const Vector3 full = bench.contact.wanted().force;
+  CHECK((full - Vector3(0, 1.0 / 1.5, 0)).norm() < 1e-12);
+  bench.share = 0.4;
+  bench.ticks(160, -0.001);
+  const AppliedForces& applied = bench.contact.applied();
+  // What is solved knows of what was shown: x = w (f_k + share f_k-1 / 2).
+  const Vector3& solved = bench.contact.wanted().force;
+  CHECK((solved - Vector3(0, 1.0 / 1.2, 0)).norm() < 1e-12);
+  for (std::size_t i = 0; i < 4; ++i) CHECK((applied.past[i].force + 0.4 * solved).norm() < 1e-12);
+  bench.share = 0.0;
+  bench.ticks(4, -0.001);
+  CHECK(applied.past[0].force.isZero(0.0));
+  CHECK((bench.contact.wanted().force - Vector3(0, 1, 0)).norm() < 1e-12);
+}
+
+TEST_CASE("contact at the bridge: a touch in an overrun begins after it, and none acts in it") {
+  Bench bench;
+  bench.ticks(100, 0.001);
+  const std::uint64_t before = bench.contact.applied().step;
+  bench.now_ns += 10 * kMs;
+  REQUIRE(bench.contact.tick(bench.now_ns, Vector3(0, -0.03, 0)));
+  bench.contact.shown(1.0);
+  const AppliedForces& applied = bench.contact.applied();
+  REQUIRE(applied.step >= before + 5);
+  CHECK(bench.contact.wanted().contact == ContactState::kTouching);
+  CHECK((applied.past[0].force - Vector3(0, -30, 0)).norm() < 1e-12);
+  for (std::size_t i = 1; i < 5; ++i) CHECK(applied.past[i].force.isZero(0.0));
+}
+
+TEST_CASE("contact at the bridge: in an overrun the device goes on showing its force") {
+  Bench bench;
+  bench.ticks(100, -0.001);
+  bench.now_ns += 10 * kMs;
+  REQUIRE(bench.contact.tick(bench.now_ns, Vector3(0, -0.002, 0)));
+  const AppliedForces& applied = bench.contact.applied();
+  CHECK((applied.past[0].force - Vector3(0, -2, 0)).norm() < 1e-12);
+  for (std::size_t i = 1; i < 5; ++i) {
+    CHECK((applied.past[i].force - Vector3(0, -1, 0)).norm() < 1e-12);
+  }
 }
 
 TEST_CASE("contact at the bridge: after a silence a contact comes back as slowly as to the hand") {

@@ -200,3 +200,44 @@ TEST_CASE("a servo tick allocates nothing, and the guard would see it") {
   }
   CHECK(guard.count() == 0);
 }
+
+// A wall at y = 0 that gives way by 1 mm per newton.
+TEST_CASE("servo loop: the server is told of the force that the device shows") {
+  ContactModel wall;
+  wall.valid = true;
+  wall.dt = 0.002;
+  wall.horizon = 25;
+  wall.body = {1.0, Matrix3::Identity(), Support::kFixed};
+  wall.normal = Vector3(0, 1, 0);
+  wall.response[0] = 1e-3 * Matrix3::Identity();
+  REQUIRE(check(wall) == ContactModelFault::kNone);
+  ProbeDevice device;
+  DeviceMapping mapping;
+  mapping.workspace.rotation = Eigen::AngleAxisd(0.5 * M_PI, Vector3::UnitX());
+  mapping.workspace.force_scale = 2.0;
+  ServoLoop loop(device, {.max_force = 0.5}, mapping);
+  loop.restart();
+  loop.predict(wall.dt, kTickNs);
+  double told = 0.0;
+  for (int tick = 0; tick < 2000; ++tick) {
+    const std::int64_t now_ns = tick * kTickNs;
+    const double depth = tick < 100 ? -1e-3 : 1e-3;  // in W, where y is D's -z
+    device.pose.tip = mapping.workspace.rotation.conjugate() * Vector3(0, -depth, 0);
+    loop.read(0.0);
+    loop.take_sample(now_ns);
+    if (tick % 2 == 0) {
+      wall.step = wall.newest = static_cast<std::uint64_t>(tick / 2);
+      if (tick > 110) wall.state = ContactState::kTouching;
+      loop.receive(wall, now_ns);
+    }
+    loop.end_steps(now_ns);
+    loop.apply(now_ns, {.linked = true});
+    const AppliedForces* const applied = loop.applied();
+    if (applied == nullptr) continue;
+    told = std::max(told, applied->past[0].force.norm());
+    // In W the device's force is half as large; on the object it is turned round.
+    const Vector3 shown = 0.5 * (mapping.workspace.rotation * loop.shown());
+    CHECK((applied->past[0].force + shown).norm() < 1e-12);
+  }
+  CHECK(told == Approx(0.25));
+}

@@ -49,6 +49,25 @@ class Way {
   std::vector<Timed> under_way_;
 };
 
+/// Whether a side is in an overrun.
+class Busy {
+ public:
+  Busy(const Overruns& overruns, std::uint64_t seed) : overruns_(overruns), random_(seed) {}
+  bool at(double now, double dt) {
+    if (now < until_) return true;
+    if (overruns_.every > 0.0 && uniform() < dt / overruns_.every) {
+      until_ = now + overruns_.longest * uniform();
+    }
+    return now < until_;
+  }
+
+ private:
+  double uniform() { return static_cast<double>(random_() >> 11) * 0x1p-53; }
+  Overruns overruns_;
+  std::mt19937_64 random_;
+  double until_ = 0.0;
+};
+
 constexpr std::uint64_t kSession = 1;
 // When buttons go down [s].
 constexpr double kGrabTime = 0.05;
@@ -78,6 +97,7 @@ struct Stylus {
         up(link, 100 + seed),
         down(link, 200 + seed),
         contact(dt, std::llround(1e9 * dt)),
+        busy(setup.bridge_overruns, 300 + seed + 1000 * setup.seed),
         filter({.needed_success = setup.needed_success}, setup.guards) {
     filter.arm();
   }
@@ -86,6 +106,7 @@ struct Stylus {
   Way<Up> up;
   Way<Down> down;
   BridgeContact contact;
+  Busy busy;
   SafetyFilter filter;
   ForceDemand asked;
   Vector3 shown = Vector3::Zero();
@@ -101,7 +122,11 @@ struct Stylus {
 class Loop {
  public:
   Loop(const LoopSetup& setup, LoopMode mode, const LoopLink& link)
-      : setup_(setup), mode_(mode), simulation_(setup.config), dt_(simulation_.dt()) {
+      : setup_(setup),
+        mode_(mode),
+        simulation_(setup.config),
+        dt_(simulation_.dt()),
+        busy_(setup.server_overruns, 400 + 1000 * setup.seed) {
     if (setup.needed_success > 0.0) lead_ = static_cast<int>(std::lround(kLinkTime / dt_));
     const std::size_t count = setup.hands.size();
     for (std::size_t s = 0; s < count; ++s) {
@@ -119,10 +144,10 @@ class Loop {
     for (int t = 0; t < lead_ + setup_.steps; ++t) {
       const double now = (t + 1) * dt_;
       for (std::size_t s = 0; s < styluses_.size(); ++s) bridge(s, t, now);
-      serve(t, now);
+      if (!busy_.at(now, dt_)) serve(t, now);
       for (std::size_t s = 0; s < styluses_.size(); ++s) {
         styluses_[s]->down.deliver(now, [&](const Down& message) { take(s, message, now); });
-        if (setup_.filtered) filter(s, now);
+        if (setup_.filtered && mode_ != LoopMode::kPredict) filter(s, now);
         run_.force[s].push_back(styluses_[s]->shown);
       }
     }
@@ -148,13 +173,25 @@ class Loop {
     stylus.energy -= stylus.shown.dot(tip - before);
     run_.lowest_energy[s] = std::min(run_.lowest_energy[s], stylus.energy);
     run_.tip[s].push_back(tip);
+    run_.fastest_hand = std::max(run_.fastest_hand, (tip - before).norm() / dt_);
+    if (stylus.busy.at(now, dt_)) return;
     const bool grab = setup_.hands[s].grab && script_time > kGrabTime;
     Up message{static_cast<std::uint64_t>(t), now, grab ? kGrabButton : 0, tip, {}};
-    if (mode_ == LoopMode::kPredict && stylus.contact.tick(to_ns(now), tip)) {
-      message.applied = stylus.contact.applied();
+    if (mode_ == LoopMode::kPredict) {
+      const bool news = stylus.contact.tick(to_ns(now), tip);
+      want(s, now);
+      if (setup_.filtered) filter(s, now);
+      stylus.contact.shown(share(stylus));
+      if (news) message.applied = stylus.contact.applied();
     }
-    if (mode_ == LoopMode::kPredict) want(s, now);
     stylus.up.send(now, message);
+  }
+
+  // As ServoLoop has it.
+  static double share(const Stylus& stylus) {
+    const Vector3& solved = stylus.contact.wanted().force;
+    const double squared = solved.squaredNorm();
+    return squared > 0.0 ? std::clamp(stylus.shown.dot(solved) / squared, 0.0, 1.0) : 1.0;
   }
 
   // Without a filter, what is too old is shown no more.
@@ -219,7 +256,27 @@ class Loop {
                                       stylus.history);
     }
     simulation_.step(commands_, record_);
+    judge();
     for (std::size_t s = 0; s < styluses_.size(); ++s) answer(s, t, now);
+  }
+
+  void judge() {
+    const SimulationObject& object = setup_.config.objects[0];
+    const ObjectRecord& now = record_.object[0];
+    const BodyProperties& body = object.model->body;
+    const Vector3 spin = now.orientation.conjugate() * now.angular_velocity;
+    double excess = 0.5 * body.mass * now.velocity.squaredNorm() +
+                    0.5 * spin.dot(body.inertia * spin) -
+                    body.mass * setup_.config.gravity.dot(now.position - object.position);
+    for (const auto& stylus : styluses_) excess -= stylus->energy;
+    run_.energy_from_nowhere = std::max(run_.energy_from_nowhere, excess);
+    run_.fastest_object = std::max(run_.fastest_object, now.velocity.norm());
+    for (std::size_t s = 0; s < styluses_.size(); ++s) {
+      run_.peak_on_object = std::max(run_.peak_on_object, record_.stylus[s].force.norm());
+    }
+    for (const LateForce& late : record_.late.view()) {
+      run_.peak_on_object = std::max(run_.peak_on_object, late.force.norm());
+    }
   }
 
   void answer(std::size_t s, int t, double now) {
@@ -246,6 +303,7 @@ class Loop {
   LoopMode mode_;
   Simulation simulation_;
   double dt_;
+  Busy busy_;
   int lead_ = 0;  ///< steps before all begins
   std::vector<std::unique_ptr<Stylus>> styluses_;
   std::vector<BridgedStylus> bridged_;

@@ -24,6 +24,12 @@ struct LoopLink {
   double loss = 0.0;    ///< share of messages
 };
 
+/// A side that does nothing for a while, as on a busy machine.
+struct Overruns {
+  double every = 0.0;    ///< on average [s]; 0: never
+  double longest = 0.0;  ///< each takes up to so long [s]
+};
+
 /// A hand, what it wants, and its button.
 struct LoopHand {
   HandParameters hand = {};
@@ -42,6 +48,9 @@ struct LoopSetup {
   std::int64_t hold_horizon_ns = ForceDemand::kHoldHorizonNs;  ///< of a held force, for it
   /// Of the link, for it to arm [share]; if any, all begins kLinkTime later, when it may have.
   double needed_success = 0.0;
+  Overruns server_overruns;
+  Overruns bridge_overruns;  ///< of each bridge; the device goes on showing its force
+  std::uint64_t seed = 0;    ///< of the overruns
 };
 
 /// What happened, per hand and step.
@@ -54,6 +63,11 @@ struct LoopRun {
   int unknown = 0;                          ///< steps whose newest model was too old
   int late = 0;                             ///< forces that the server entered afterwards
   int lost = 0;                             ///< forces that came too late for that, or never
+  double peak_on_object = 0.0;              ///< largest force that is recorded or entered late [N]
+  double fastest_object = 0.0;              ///< [m/s]
+  double fastest_hand = 0.0;                ///< [m/s]
+  /// Largest excess of the rigid motion's energy, with that of its weight, over what hands did [J].
+  double energy_from_nowhere = 0.0;
 };
 
 /// Runs hands, bridges, link and server on one virtual clock.

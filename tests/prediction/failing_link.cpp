@@ -130,10 +130,11 @@ void FailingLink::bridge() {
   const StylusSample sample = loop_.take_sample(bridge_clock());
   intake_.sent(sample);
   samples_.emplace_back(now_ns_ + kWay, sample);
-  if (const AppliedForces* applied = loop_.end_steps(bridge_clock())) {
+  loop_.end_steps(bridge_clock());
+  loop_.apply(bridge_clock(), intake_.input());
+  if (const AppliedForces* applied = loop_.applied()) {
     applied_.emplace_back(now_ns_ + kWay, *applied);
   }
-  loop_.apply(bridge_clock(), intake_.input());
 }
 
 // Bytes come in order, as on any stream.

@@ -211,7 +211,8 @@ TEST_CASE("prediction: two hands on one object", "[slow]") {
   }
 }
 
-// The hand feels what the filter makes of the force; the object gets the force itself.
+// Object and hand get what the filter makes of the force, so that the same bridge without delay is
+// what it has to be like.
 TEST_CASE("prediction: behind the safety filter the device's port gives no energy", "[slow]") {
   for (const double aside : {0.0, 0.03}) {
     for (const double E : kStiffnesses) {
@@ -219,11 +220,12 @@ TEST_CASE("prediction: behind the safety filter the device's port gives no energ
       setup.filtered = true;
       setup.hold_horizon_ns = irdm::FilterLimits{}.max_horizon_ns;  // else 20 ms show nothing
       const LoopRun direct = run_loop(setup, LoopMode::kDirect);
+      const LoopRun near = run_loop(setup, LoopMode::kPredict);
       for (const double delay : {0.005, 0.02}) {
         CAPTURE(aside, E, delay);
-        const Compared predict = compare(setup, direct, LoopMode::kPredict, {.delay = delay});
-        CHECK(predict.run.lowest_energy[0] > -1e-6);
-        CHECK(predict.error < (aside == 0.0 ? 1e-3 : 0.2));
+        const Compared predict = compare(setup, near, LoopMode::kPredict, {.delay = delay});
+        CHECK(predict.run.lowest_energy[0] > -irdm::PassivityLimits{}.credit);
+        CHECK(predict.error < (aside == 0.0 ? 2e-3 : 0.2));
         // Held forces are wrong, but they no longer run away.
         CHECK(error(setup, direct, LoopMode::kHold, {.delay = delay}) < 1.0);
       }

@@ -1,0 +1,42 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <iostream>
+
+#include "tests/prediction/harsh_loop.hpp"
+
+// Whatever link and machines do, the object gets no blow: no more than a device can show.
+
+using namespace irdm;
+using namespace irdm::test;
+
+namespace {
+
+void check_loops(std::uint64_t count) {
+  int shown = 0;
+  int above = 0;
+  double most = 0.0;
+  for (std::uint64_t seed = 0; seed < count; ++seed) {
+    const HarshLoop loop(seed);
+    CAPTURE(loop.words);
+    const LoopRun run = run_loop(loop.setup, LoopMode::kPredict, loop.link);
+    CHECK(run.refused == 0);
+    CHECK(run.peak_on_object <= FilterLimits{}.max_force * (1 + 1e-9));
+    if (peak(run) > 0.0) ++shown;
+    if (run.energy_from_nowhere > 0.02) ++above;
+    most = std::max(most, run.energy_from_nowhere);
+  }
+  CHECK(static_cast<std::uint64_t>(2 * shown) > count);
+  // Hands on one object over a delay shake it; what they feel is not bounded in energy yet.
+  std::cout << count << " harsh loops: above 20 mJ that no hand did " << above << ", at most "
+            << most << " J\n";
+}
+
+}  // namespace
+
+TEST_CASE("harsh loops: the object gets no more than a device shows", "[slow]") {
+  check_loops(200);
+}
+
+TEST_CASE("harsh loops: the same two thousand times", "[exhaustive]") {
+  check_loops(2000);
+}

@@ -16,7 +16,7 @@ constexpr std::int64_t kTolerance = 8;
 // Ahead of the server, beyond which nothing fits together any more [steps].
 constexpr std::uint64_t kFarthest = 200;
 // For how many steps all forces have to be early before some of that is given up.
-constexpr int kPatience = 100;
+constexpr std::uint64_t kPatience = 100;
 
 }  // namespace
 
@@ -31,7 +31,7 @@ void StepPacer::hear(std::uint64_t step, std::optional<std::uint64_t> newest, bo
   const std::uint64_t reached = step_ + due_count(now_ns);
   if (step >= reached || reached - step > kFarthest) return begin(step, now_ns);
   if (!newest || *newest < settled_from_ || *newest > step_) return;
-  keep_pace(static_cast<std::int64_t>(*newest - step), in_contact);
+  keep_pace(step, static_cast<std::int64_t>(*newest - step), in_contact);
 }
 
 void StepPacer::begin(std::uint64_t step, std::int64_t now_ns) noexcept {
@@ -39,26 +39,26 @@ void StepPacer::begin(std::uint64_t step, std::int64_t now_ns) noexcept {
   step_ = step + kFirstLead - 1;
   next_end_ns_ = now_ns + tick_ns_;
   settled_from_ = step_ + 1;
-  heard_ = 0;
+  first_heard_.reset();
 }
 
-void StepPacer::keep_pace(std::int64_t lead, bool in_contact) noexcept {
+void StepPacer::keep_pace(std::uint64_t step, std::int64_t lead, bool in_contact) noexcept {
   const std::int64_t tolerance = in_contact ? kTolerance : 0;
-  least_lead_ = heard_ == 0 ? lead : std::min(least_lead_, lead);
-  ++heard_;
+  least_lead_ = first_heard_ ? std::min(least_lead_, lead) : lead;
+  if (!first_heard_) first_heard_ = step;
   std::int64_t change = 0;
   if (lead < kLeast - tolerance) {
     change = std::min<std::int64_t>(kLeast - lead, kMost);
-  } else if (heard_ >= kPatience) {
+  } else if (step >= *first_heard_ + kPatience) {
     const std::int64_t wanted = kLeast + kReserve;
     if (least_lead_ > wanted + tolerance) change = wanted - least_lead_;
-    heard_ = 0;
+    first_heard_.reset();
   }
   if (change == 0) return;
   next_end_ns_ -= change * dt_ns_;
   settled_from_ = step_ + 1;
   if (change > 0) settled_from_ += static_cast<std::uint64_t>(change);
-  heard_ = 0;
+  first_heard_.reset();
 }
 
 std::uint64_t StepPacer::due_count(std::int64_t now_ns) const noexcept {

@@ -38,7 +38,7 @@ class StepPacer {
  private:
   void begin(std::uint64_t step, std::int64_t now_ns) noexcept;
   std::uint64_t due_count(std::int64_t now_ns) const noexcept;
-  void keep_pace(std::int64_t lead, bool in_contact) noexcept;
+  void keep_pace(std::uint64_t step, std::int64_t lead, bool in_contact) noexcept;
 
   std::int64_t dt_ns_;
   std::int64_t tick_ns_;
@@ -46,8 +46,8 @@ class StepPacer {
   std::uint64_t step_ = 0;
   std::int64_t next_end_ns_ = 0;    ///< of step_ + 1
   std::uint64_t settled_from_ = 0;  ///< forces of earlier steps know nothing of the last change
-  std::int64_t least_lead_ = 0;     ///< since then
-  int heard_ = 0;                   ///< since then
+  std::optional<std::uint64_t> first_heard_;  ///< step, since then
+  std::int64_t least_lead_ = 0;               ///< since then
 };
 
 }  // namespace irdm

@@ -204,15 +204,21 @@ void ForceThread::step() noexcept {
   predict_horizon();
 }
 
-// After all else: who waits for a force has it by now.
+// After all else: who waits for a force has it by now. Styluses whose contact moves take turns, so
+// that a step is not longer with many of them; a bridge goes on with an older model meanwhile.
 void ForceThread::predict_horizon() noexcept {
   const std::int64_t begin = monotonic_ns();
+  const std::size_t first = next_prediction_;
+  int budget = 1;
   bool any = false;
-  for (std::size_t s = 0; s < bridged_.size(); ++s) {
+  for (std::size_t i = 0; i < bridged_.size(); ++i) {
+    const std::size_t s = (first + i) % bridged_.size();
     StylusPort& port = network_.port(static_cast<int>(s));
     if (!commands_[s].present || !port.in.front().predicts) continue;
     port.model.back().session = port.in.front().session;
-    bridged_[s].predict_horizon(port.model.back().value);
+    const int left = budget;
+    if (!bridged_[s].predict_horizon(port.model.back().value, budget)) continue;
+    if (budget < left) next_prediction_ = (s + 1) % bridged_.size();
     port.model.publish();
     any = true;
   }

@@ -98,6 +98,7 @@ class ForceThread {
   std::uint64_t paused_steps_ = 0;  ///< since the pause began
   std::optional<ViewerStylus> viewer_stylus_;
   std::vector<BridgedStylus> bridged_;   ///< of the network's styluses
+  std::size_t next_prediction_ = 0;      ///< whose turn it is to have one made anew
   std::vector<StylusCommand> commands_;  ///< of the network's styluses, and perhaps the viewers'
   StepRecord record_;
   ForceThreadReport report_;

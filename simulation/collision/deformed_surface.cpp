@@ -14,25 +14,61 @@ constexpr std::size_t kMaxCandidates = 64;
 DeformedSurface::DeformedSurface(const RestSurface& rest)
     : rest_(rest),
       known_in_(static_cast<std::size_t>(rest.node_count()), 0),
+      change_then_(static_cast<std::size_t>(rest.node_count()), 0.0),
+      seen_in_(static_cast<std::size_t>(rest.node_count()), 0),
       positions_(static_cast<std::size_t>(rest.node_count()), Vector3::Zero()) {
   seen_.reserve(positions_.size());
   for (int i = 0; i < rest.node_count(); ++i) rest_box_.extend(rest.node(i));
 }
 
-void DeformedSurface::begin_step(const ResponseEngine& engine) noexcept {
+void DeformedSurface::begin_step(const ResponseEngine& engine, double change) noexcept {
   engine_ = &engine;
   ++step_;
   seen_.clear();
+  if (change == 0.0) return;
+  ++state_;
+  looked_ = false;
+  if (std::isfinite(change)) {
+    change_ += change;
+  } else {
+    bounded_since_ = state_;
+    change_ = 0.0;
+  }
+}
+
+void DeformedSurface::look_at(std::size_t node) noexcept {
+  if (seen_in_[node] == step_) return;
+  seen_in_[node] = step_;
+  seen_.push_back(static_cast<int>(node));
+  looked_ = true;
 }
 
 const Vector3& DeformedSurface::node(int i) noexcept {
   const auto index = static_cast<std::size_t>(i);
-  if (known_in_[index] != step_) {
+  if (known_in_[index] != state_) {
     positions_[index] = rest_.node(i) + engine_->free_displacement(i);
-    known_in_[index] = step_;
-    seen_.push_back(i);
+    known_in_[index] = state_;
+    change_then_[index] = change_;
   }
+  look_at(index);
   return positions_[index];
+}
+
+// At least so far is a point from a triangle, by what is known without computing a node.
+double DeformedSurface::least_distance(int triangle, const Vector3& p) noexcept {
+  constexpr double kRounding = 1e-9;
+  TriangleCorners then;
+  double change = 0.0;
+  const std::array<int, 3>& nodes = rest_.topology().corners(triangle);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto index = static_cast<std::size_t>(nodes[i]);
+    if (known_in_[index] < bounded_since_) return 0.0;
+    then[i] = positions_[index];
+    change = std::max(change, change_ - change_then_[index]);
+  }
+  for (const int node : nodes) look_at(static_cast<std::size_t>(node));
+  const double distance = (p - at(then, closest_point(then, p))).norm();
+  return (1.0 - kRounding) * distance - (1.0 + kRounding) * std::sqrt(3.0) * change;
 }
 
 TriangleCorners DeformedSurface::corners(int triangle) noexcept {
@@ -67,6 +103,7 @@ SurfaceHit DeformedSurface::descend(SurfaceHit best, const Vector3& p) noexcept 
   for (int move = 0; move < kMaxSlides; ++move) {
     const int here = best.triangle;
     visit_neighbours(here, [&](int neighbour) {
+      if (least_distance(neighbour, p) >= best.signed_distance) return;
       const SurfaceHit hit = hit_on(neighbour, p);
       if (hit.signed_distance < best.signed_distance) best = hit;
     });
@@ -104,8 +141,8 @@ Vector3 DeformedSurface::pseudonormal(const SurfaceHit& hit) noexcept {
 
 // A little more, so that no rounding makes it less.
 double DeformedSurface::bound() noexcept {
-  if (bound_known_in_ != step_) bound_ = (1.0 + 1e-9) * engine_->free_displacement_bound();
-  bound_known_in_ = step_;
+  if (bound_known_in_ != state_) bound_ = (1.0 + 1e-9) * engine_->free_displacement_bound();
+  bound_known_in_ = state_;
   return bound_;
 }
 
@@ -133,7 +170,9 @@ std::optional<SurfaceHit> DeformedSurface::first_crossing(const Vector3& from, c
                                                           const SurfaceHit& near) noexcept {
   std::optional<SurfaceHit> found;
   double earliest = 2.0;
+  const double length = (to - from).norm();
   const auto consider = [&](int candidate) {
+    if (least_distance(candidate, to) > length) return;
     const TriangleCorners deformed = corners(candidate);
     const std::optional<Crossing> here = crossing(deformed, from, to);
     if (!here || here->fraction >= earliest) return;

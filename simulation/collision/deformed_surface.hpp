@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -31,14 +32,21 @@ class DeformedSurface {
   /// @param rest must outlive this object
   explicit DeformedSurface(const RestSurface& rest);
 
-  /// Starts a step: forgets the nodes of the last one. @param engine must outlive the step
-  void begin_step(const ResponseEngine& engine) noexcept;
+  /// Starts a step: no node was looked at in it.
+  /// @param engine must outlive the step
+  /// @param change what no component of any node's displacement has changed by since the last call
+  /// [m]; 0: what is known stays; infinite: nothing is known any more
+  void begin_step(const ResponseEngine& engine, double change = kUnknown) noexcept;
+  static constexpr double kUnknown = std::numeric_limits<double>::infinity();
 
   /// r_i = X_i + h_i of a surface node [m], B.
   const Vector3& node(int i) noexcept;
 
-  /// Nodes that were looked at in this step.
+  /// Nodes that were looked at since begin_step().
   std::span<const int> seen() const noexcept { return seen_; }
+
+  /// Whether any node was looked at in this state of the engine.
+  bool looked() const noexcept { return looked_; }
 
   /// Whether the way from `from` to `to` stays outside of all that the surface can fill, which is
   /// known without looking at any node. False: it may not.
@@ -57,6 +65,8 @@ class DeformedSurface {
 
  private:
   TriangleCorners corners(int triangle) noexcept;
+  double least_distance(int triangle, const Vector3& p) noexcept;
+  void look_at(std::size_t node) noexcept;
   SurfaceHit hit_on(int triangle, const Vector3& p) noexcept;
   SurfaceHit descend(SurfaceHit best, const Vector3& p) noexcept;
   Vector3 pseudonormal(const SurfaceHit& hit) noexcept;
@@ -68,8 +78,14 @@ class DeformedSurface {
   const RestSurface& rest_;
   Eigen::AlignedBox3d rest_box_;
   const ResponseEngine* engine_ = nullptr;
+  std::uint64_t state_ = 1;
   std::uint64_t step_ = 0;
-  std::vector<std::uint64_t> known_in_;  ///< step in which positions_ of a node was computed
+  bool looked_ = false;
+  std::uint64_t bounded_since_ = 1;      ///< state since which changes are bounded
+  double change_ = 0.0;                  ///< the sum of all such bounds [m]
+  std::vector<std::uint64_t> known_in_;  ///< state in which positions_ of a node was computed
+  std::vector<double> change_then_;      ///< change_ in that state
+  std::vector<std::uint64_t> seen_in_;   ///< step in which a node was looked at
   std::vector<Vector3> positions_;
   std::vector<int> seen_;
   std::uint64_t bound_known_in_ = 0;  ///< as known_in_

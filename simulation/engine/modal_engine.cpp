@@ -1,6 +1,8 @@
 #include "simulation/engine/modal_engine.hpp"
 
 #include <algorithm>
+#include <array>
+#include <limits>
 #include <utility>
 
 #include "common/response/modal_response.hpp"
@@ -163,6 +165,24 @@ double ModalEngine<Scalar>::free_displacement_bound() const noexcept {
          gravity_.rest_bound();
 }
 
+// Before the step's forces moved it, the coordinate at its end was what had been foreseen.
+template <typename Scalar>
+double ModalEngine<Scalar>::free_change_bound() const noexcept {
+  if (was_loaded_) return std::numeric_limits<double>::infinity();
+  double sum = 0.0;
+  std::array<double, kSlice> change;
+  for (std::size_t first = 0; first < modes_; first += kSlice) {
+    const std::size_t count = std::min(kSlice, modes_ - first);
+    for (std::size_t j = 0; j < count; ++j) {
+      const std::size_t i = first + j;
+      change[j] = free_coordinate_[i] - coordinate_[i];
+      if (forced_) change[j] += b1_[i] * modal_force_[i];
+    }
+    sum += dot_magnitudes(change.data(), &largest_shape_[first], count);
+  }
+  return sum;
+}
+
 // Three nodes at a time; where fewer are left, the last ones count with weight 0.
 template <typename Scalar>
 void ModalEngine<Scalar>::mean_shape(const ContactPatch& patch, int axis, const ModeRange& modes,
@@ -306,6 +326,7 @@ void ModalEngine<Scalar>::advance(std::span<const NodalForce> forces) noexcept {
   velocity_.swap(free_velocity_);
   state_ = (state_ | 1) + 1;
   const bool loaded = std::exchange(loaded_, false);
+  was_loaded_ = loaded;
   forced_ = loaded || !forces.empty();
   only_ = loaded || forces.empty() ? nullptr : horizon_.find_only(forces, only_force_);
   if (forces.empty()) {

@@ -33,10 +33,14 @@ class ModalEngine final : public ResponseEngine,
   void set_angular_velocity(const Vector3& w) noexcept override;
   Vector3 free_displacement(int node) const noexcept override;
   double free_displacement_bound() const noexcept override;
+  double free_change_bound() const noexcept override;
   void predict(std::span<const ContactPatch> patches, std::span<Vector3> h,
                ContactMatrix& compliance) noexcept override;
   void predict_horizon(const ContactPatch& patch, std::span<const NodalForce> held,
                        std::span<Vector3> path, std::span<Matrix3> response) noexcept override;
+  bool keeps_horizon(const ContactPatch& patch, std::size_t steps) const noexcept override {
+    return horizon_.keeps(patch, state_, steps);
+  }
   void add_delayed_force(std::span<const NodalForce> forces, int age) noexcept override;
   void advance(std::span<const NodalForce> forces) noexcept override;
   using ResponseEngine::displacement;
@@ -84,6 +88,7 @@ class ModalEngine final : public ResponseEngine,
   AlignedNumbers held_force_;     ///< (r), of predict_horizon()
   AlignedNumbers inertial_load_;  ///< (r), of the coming step
   bool loaded_ = false;           ///< inertial_load_ means something
+  bool was_loaded_ = false;       ///< in the last step
   bool forced_ = false;      ///< modal_force_ is all that acted in the last step; else nothing did
   std::uint64_t state_ = 2;  ///< ModalHorizon::State::number
   ModalHorizon horizon_;

@@ -5,8 +5,8 @@
 namespace irdm {
 namespace {
 
-// Modes at a time: what their products are multiplied with stays in the first level of the cache.
-constexpr std::size_t kPart = 512;
+// Modes at a time: their products stay in the first level of the cache.
+constexpr std::size_t kPart = 256;
 
 bool same(const ContactPatch& a, const ContactPatch& b) noexcept {
   return a.count == b.count &&
@@ -14,44 +14,43 @@ bool same(const ContactPatch& a, const ContactPatch& b) noexcept {
          std::equal(a.weights.begin(), a.weights.begin() + a.count, b.weights.begin());
 }
 
-template <std::size_t K>
-Sums<K> dots(const double* a, const double* b, std::size_t n) noexcept {
-  static_assert(K == 3 || K == 6);
-  if constexpr (K == 3) {
-    return dot_three(a, b, n);
-  } else {
-    return dot_six(a, b, n);
-  }
-}
-
-Vector3 vector(const Sums<3>& sums) noexcept {
-  return {sums[0], sums[1], sums[2]};
+Vector3 vector(const CourseSums<3>& sums, std::size_t n) noexcept {
+  return {sums[0][n], sums[1][n], sums[2][n]};
 }
 
 }  // namespace
 
 ModalHorizon::ModalHorizon(std::size_t modes)
-    : modes_(modes),
-      from_(2 * (kMaxHorizon + 1) * modes),
+    : kernels_(course_kernels()[0]),
+      modes_(modes),
+      falls_(kCourse * kBlocks * modes),
+      rises_(kCourse * kBlocks * modes),
+      first_fall_(modes),
+      ends_(2 * kMaxHorizon * modes),
       compliance_(modes),
-      products_(6 * kPart),
+      products_(12 * kPart),
       factors_(kPart) {
   for (Contact& contact : contacts_) contact.shapes.assign(3 * modes, 0.0);
 }
 
 void ModalHorizon::set_transitions(const Transitions& A, const double* omega) noexcept {
-  const auto row = [&](std::size_t n, std::size_t from) { return &from_[(2 * n + from) * modes_]; };
-  // How fast modes move is not kept: it is in the shapes of a contact that nobody needs any more.
   forget();
-  double* const velocity = contacts_[0].shapes.data();
-  for (std::size_t from = 0; from < 2; ++from) {
-    std::fill_n(row(0, from), modes_, from == 0 ? 1.0 : 0.0);
-    std::fill_n(velocity, modes_, from == 0 ? 0.0 : 1.0);
-    for (std::size_t n = 0; n < kMaxHorizon; ++n) {
-      transit(A, row(n, from), velocity, row(n + 1, from), velocity, modes_);
+  for (std::size_t i = 0; i < modes_; ++i) {
+    const Transitions of_mode{A.a11 + i, A.a12 + i, A.a21 + i, A.a22 + i};
+    for (const std::size_t from : {0, 1}) {  // a coordinate, or a velocity
+      double q = from == 0 ? 1.0 : 0.0;
+      double v = 1.0 - q;
+      for (std::size_t n = 0; n < kBlocks * kCourse; ++n) {
+        if (from == 0 && n == 1) first_fall_[i] = 1.0 - q;
+        if (n < kMaxHorizon) ends_[(2 * n + from) * modes_ + i] = q;
+        const double before = q;
+        transit(of_mode, &q, &v, &q, &v, 1);
+        const std::size_t at = (n / kCourse * modes_ + i) * kCourse + n % kCourse;
+        (from == 0 ? falls_ : rises_)[at] = static_cast<float>(from == 0 ? before - q : q - before);
+      }
     }
+    compliance_[i] = 1.0 / (omega[i] * omega[i]);
   }
-  for (std::size_t i = 0; i < modes_; ++i) compliance_[i] = 1.0 / (omega[i] * omega[i]);
 }
 
 void ModalHorizon::forget() noexcept {
@@ -62,6 +61,13 @@ ModalHorizon::Contact* ModalHorizon::find(const ContactPatch& patch) noexcept {
   const auto found = std::find_if(contacts_.begin(), contacts_.end(),
                                   [&](const Contact& c) { return same(c.patch, patch); });
   return found == contacts_.end() ? nullptr : &*found;
+}
+
+bool ModalHorizon::keeps(const ContactPatch& patch, std::uint64_t number,
+                         std::size_t steps) const noexcept {
+  return std::any_of(contacts_.begin(), contacts_.end(), [&](const Contact& c) {
+    return c.steps == steps && (c.state == number || goes_on(c, number)) && same(c.patch, patch);
+  });
 }
 
 const ModalHorizon::Contact* ModalHorizon::find_only(std::span<const NodalForce> forces,
@@ -96,30 +102,13 @@ void ModalHorizon::update(Contact& contact, const State& state, std::size_t step
   contact.used = state.number;
   if (contact.steps != steps) {
     contact.steps = steps;
-    respond(contact);
-    compute_path(contact, state, 0);
-  } else if (contact.state % 2 == 0 && contact.state + 2 == state.number) {
+    compute(contact, state, true);
+  } else if (goes_on(contact, state.number)) {
     shift_path(contact, state);
   } else if (contact.state != state.number) {
-    compute_path(contact, state, 0);
+    compute(contact, state, false);
   }
   contact.state = state.number;
-}
-
-// sums[m] = sum_i c_m[i] products[k][i] for m = first..last.
-// @param products writes those of some modes, (K, count)
-template <std::size_t K, typename Products>
-void ModalHorizon::sum_free(std::size_t first, std::size_t last, const Products& products,
-                            std::array<Sums<K>, kMaxHorizon + 1>& sums) noexcept {
-  for (std::size_t m = first; m <= last; ++m) sums[m].fill(0.0);
-  for (std::size_t i = 0; i < modes_; i += kPart) {
-    const std::size_t count = std::min(kPart, modes_ - i);
-    products(i, count, products_.data());
-    for (std::size_t m = first; m <= last; ++m) {
-      const Sums<K> part = dots<K>(from_coordinate(m) + i, products_.data(), count);
-      for (std::size_t k = 0; k < K; ++k) sums[m][k] += part[k];
-    }
-  }
 }
 
 void ModalHorizon::multiply_shapes(const Contact& contact, std::size_t first, std::size_t count,
@@ -129,86 +118,129 @@ void ModalHorizon::multiply_shapes(const Contact& contact, std::size_t first, st
   }
 }
 
-// R[n] = Phi diag((c_n - c_{n+1}) / omega^2) Phi^T.
-void ModalHorizon::respond(Contact& contact) noexcept {
-  const auto products = [&](std::size_t first, std::size_t count, double* to) {
-    for (std::size_t j = 0; j < 3; ++j) {
-      multiply(&contact.shapes[j * modes_ + first], &compliance_[first], factors_.data(), count);
-      for (std::size_t k = 0; k <= j; ++k, to += count) {
-        multiply(&contact.shapes[k * modes_ + first], factors_.data(), to, count);
-      }
+// Products of two shapes over omega^2: (0, 0), (1, 0), (1, 1), (2, 0), (2, 1), (2, 2).
+void ModalHorizon::square_shapes(const Contact& contact, std::size_t first, std::size_t count,
+                                 double* products) noexcept {
+  for (std::size_t j = 0; j < 3; ++j) {
+    multiply(&contact.shapes[j * modes_ + first], &compliance_[first], factors_.data(), count);
+    for (std::size_t k = 0; k <= j; ++k, products += count) {
+      multiply(&contact.shapes[k * modes_ + first], factors_.data(), products, count);
     }
-  };
-  std::array<Sums<6>, kMaxHorizon + 1> free;
-  sum_free<6>(0, contact.steps, products, free);
-  for (std::size_t n = 0; n < contact.steps; ++n) {
-    Sums<6> r;
-    for (std::size_t k = 0; k < 6; ++k) r[k] = free[n][k] - free[n + 1][k];
-    contact.response[n] << r[0], r[1], r[3], r[1], r[2], r[4], r[3], r[4], r[5];
   }
 }
 
-// A force that goes on moves the place where a mode is at rest; about that it swings freely.
-void ModalHorizon::compute_path(Contact& contact, const State& state, std::size_t first) noexcept {
-  Vector3 rest = Vector3::Zero();
-  std::fill(contact.path.begin() + static_cast<std::ptrdiff_t>(first),
-            contact.path.begin() + static_cast<std::ptrdiff_t>(contact.steps), Vector3::Zero());
-  double* const velocities = products_.data() + 3 * kPart;
+// moves[n] = R[n] force of a modal force, n < steps.
+void ModalHorizon::respond_to(const Contact& contact, const double* force, std::size_t steps,
+                              Path& moves) noexcept {
+  BlockSums<3> sums{};
   for (std::size_t i = 0; i < modes_; i += kPart) {
     const std::size_t count = std::min(kPart, modes_ - i);
-    const double* swing = state.coordinate + i;
-    if (state.force != nullptr) {
-      multiply(state.force + i, &compliance_[i], factors_.data(), count);
-      multiply_shapes(contact, i, count, factors_.data(), products_.data());
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        for (std::size_t j = 0; j < count; ++j) {
-          rest[static_cast<Eigen::Index>(axis)] += products_[axis * count + j];
-        }
-      }
-      for (std::size_t j = 0; j < count; ++j) factors_[j] = state.coordinate[i + j] - factors_[j];
-      swing = factors_.data();
-    }
-    multiply_shapes(contact, i, count, swing, products_.data());
-    multiply_shapes(contact, i, count, state.velocity + i, velocities);
-    for (std::size_t n = first; n < contact.steps; ++n) {
-      contact.path[n] += vector(dot_three(from_coordinate(n) + i, products_.data(), count)) +
-                         vector(dot_three(from_velocity(n) + i, velocities, count));
+    multiply(force + i, &compliance_[i], factors_.data(), count);
+    multiply_shapes(contact, i, count, factors_.data(), products_.data());
+    for (std::size_t block = 0; kCourse * block < steps; ++block) {
+      kernels_.add_three(falls(block, i), products_.data(), count, sums[block]);
     }
   }
-  for (std::size_t n = first; n < contact.steps; ++n) contact.path[n] += rest;
+  for (std::size_t n = 0; n < steps; ++n) moves[n] = vector(sums[n / kCourse], n % kCourse);
+}
+
+// A force that goes on moves the place where a mode is at rest; it swings freely about that.
+const double* ModalHorizon::swing(const State& state, std::size_t first,
+                                  std::size_t count) noexcept {
+  const double* const coordinate = state.coordinate + first;
+  if (state.force == nullptr) return coordinate;
+  multiply(state.force + first, &compliance_[first], factors_.data(), count);
+  for (std::size_t j = 0; j < count; ++j) factors_[j] = coordinate[j] - factors_[j];
+  return factors_.data();
+}
+
+// The path, each place from the one before, and the response,
+// R[n] = Phi diag((c_n - c_{n+1}) / omega^2) Phi^T.
+void ModalHorizon::compute(Contact& contact, const State& state, bool respond) noexcept {
+  const std::size_t steps = contact.steps;
+  BlockSums<3> fallen{};
+  BlockSums<3> risen{};
+  BlockSums<6> yields{};
+  Sums<6> first{};
+  contact.path[0].setZero();
+  double* const coordinates = products_.data() + 6 * kPart;
+  double* const velocities = products_.data() + 9 * kPart;
+  for (std::size_t i = 0; i < modes_; i += kPart) {
+    const std::size_t count = std::min(kPart, modes_ - i);
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      contact.path[0][axis] += dot(&contact.shapes[static_cast<std::size_t>(axis) * modes_ + i],
+                                   state.coordinate + i, count);
+    }
+    multiply_shapes(contact, i, count, swing(state, i, count), coordinates);
+    multiply_shapes(contact, i, count, state.velocity + i, velocities);
+    for (std::size_t block = 0; kCourse * block + 1 < steps; ++block) {
+      kernels_.add_three(falls(block, i), coordinates, count, fallen[block]);
+      kernels_.add_three(rises(block, i), velocities, count, risen[block]);
+    }
+    if (!respond) continue;
+    square_shapes(contact, i, count, products_.data());
+    const Sums<6> part = dot_six(&first_fall_[i], products_.data(), count);
+    for (std::size_t k = 0; k < 6; ++k) first[k] += part[k];
+    for (std::size_t block = 0; kCourse * block < steps; ++block) {
+      kernels_.add_six(falls(block, i), products_.data(), count, yields[block]);
+    }
+  }
+  for (std::size_t n = 0; n + 1 < steps; ++n) {
+    const std::size_t block = n / kCourse;
+    contact.path[n + 1] =
+        contact.path[n] + vector(risen[block], n % kCourse) - vector(fallen[block], n % kCourse);
+  }
+  for (std::size_t n = 0; respond && n < steps; ++n) {
+    const auto r = [&](std::size_t k) {
+      return n == 0 ? first[k] : yields[n / kCourse][k][n % kCourse];
+    };
+    contact.response[n] << r(0), r(1), r(3), r(1), r(2), r(4), r(3), r(4), r(5);
+  }
+}
+
+// Not from the place before: rounding would add up from step to step.
+Vector3 ModalHorizon::end_of_path(const Contact& contact, const State& state) noexcept {
+  const double* const c = &ends_[2 * (contact.steps - 1) * modes_];
+  const double* const s = c + modes_;
+  Vector3 end = Vector3::Zero();
+  for (std::size_t i = 0; i < modes_; i += kPart) {
+    const std::size_t count = std::min(kPart, modes_ - i);
+    const double* const about = swing(state, i, count);
+    double* const moved = products_.data();
+    for (std::size_t j = 0; j < count; ++j) {
+      const double rest = state.coordinate[i + j] - about[j];
+      moved[j] = rest + c[i + j] * about[j] + s[i + j] * state.velocity[i + j];
+    }
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      end[axis] += dot(&contact.shapes[static_cast<std::size_t>(axis) * modes_ + i], moved, count);
+    }
+  }
+  return end;
 }
 
 // The last step's force f adds R[n + 1] f to where the place is n + 1 steps on.
 void ModalHorizon::shift_path(Contact& contact, const State& state) noexcept {
   auto& path = contact.path;
-  std::shift_left(path.begin(), path.begin() + static_cast<std::ptrdiff_t>(contact.steps), 1);
+  const std::size_t steps = contact.steps;
+  std::shift_left(path.begin(), path.begin() + static_cast<std::ptrdiff_t>(steps), 1);
   if (state.only == &contact) {
-    for (std::size_t n = 0; n + 1 < contact.steps; ++n) {
+    for (std::size_t n = 0; n + 1 < steps; ++n) {
       path[n] += contact.response[n + 1] * state.only_force;
     }
   } else if (state.last != nullptr) {
-    const auto products = [&](std::size_t first, std::size_t count, double* to) {
-      multiply(state.last + first, &compliance_[first], factors_.data(), count);
-      multiply_shapes(contact, first, count, factors_.data(), to);
-    };
-    std::array<Sums<3>, kMaxHorizon + 1> free;
-    sum_free<3>(1, contact.steps, products, free);
-    for (std::size_t n = 0; n + 1 < contact.steps; ++n) {
-      path[n] += vector(free[n + 1]) - vector(free[n + 2]);
-    }
+    Path moves;
+    respond_to(contact, state.last, steps, moves);
+    for (std::size_t n = 0; n + 1 < steps; ++n) path[n] += moves[n + 1];
   }
-  compute_path(contact, state, contact.steps - 1);
+  path[steps - 1] = end_of_path(contact, state);
 }
 
 void ModalHorizon::add_held(const Contact& contact, const double* force,
                             std::span<Vector3> path) noexcept {
-  const auto products = [&](std::size_t first, std::size_t count, double* to) {
-    multiply(force + first, &compliance_[first], factors_.data(), count);
-    multiply_shapes(contact, first, count, factors_.data(), to);
-  };
-  std::array<Sums<3>, kMaxHorizon + 1> free;
-  sum_free<3>(0, path.size(), products, free);
-  for (std::size_t n = 0; n < path.size(); ++n) path[n] += vector(free[0]) - vector(free[n + 1]);
+  Path moves;
+  respond_to(contact, force, path.size(), moves);
+  Vector3 moved = Vector3::Zero();
+  for (std::size_t n = 0; n < path.size(); ++n) path[n] += moved += moves[n];
 }
 
 }  // namespace irdm

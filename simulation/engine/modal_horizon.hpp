@@ -4,9 +4,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "common/contact/contact_model.hpp"
 #include "simulation/contact/contact_patch.hpp"
+#include "simulation/engine/course_kernels.hpp"
 #include "simulation/engine/kernels.hpp"
 #include "simulation/engine/response_engine.hpp"
 
@@ -17,7 +19,9 @@ namespace irdm {
 /// and the path shifts by a step, with what the last step's force adds and one new end. All follow
 /// from c_n and s_n, the coordinate of a mode n steps after a coordinate of 1, or a velocity of 1,
 /// without a force: a force of 1 that is held from the start has moved it to (1 - c_n) / omega^2 by
-/// then. Real-time safe after construction; one thread.
+/// then. Kept in single precision are their changes from step to step, since sums of those lose
+/// nothing to cancellation: responses and paths are exact to some 1e-7, their first steps to 1e-14.
+/// Real-time safe after construction; one thread.
 class ModalHorizon {
  public:
   /// One contact.
@@ -51,6 +55,9 @@ class ModalHorizon {
 
   /// The contact on this patch, with its shapes; null: it is not known.
   Contact* find(const ContactPatch& patch) noexcept;
+  /// Whether update() of it would go on from what is known.
+  /// @param number of the state  @param steps as for update()
+  bool keeps(const ContactPatch& patch, std::uint64_t number, std::size_t steps) const noexcept;
   /// The contact on whose patch these forces are the share of one force each; null: none.
   const Contact* find_only(std::span<const NodalForce> forces, Vector3& force) const noexcept;
   /// In place of the contact that was not asked about for longest; its shapes are to be written.
@@ -61,22 +68,40 @@ class ModalHorizon {
   void add_held(const Contact& contact, const double* force, std::span<Vector3> path) noexcept;
 
  private:
+  static constexpr std::size_t kBlocks = (kMaxHorizon + kCourse - 1) / kCourse;
+  template <std::size_t K>
+  using BlockSums = std::array<CourseSums<K>, kBlocks>;
+  using Path = std::array<Vector3, kMaxHorizon>;
+
   void forget() noexcept;
-  void respond(Contact& contact) noexcept;
-  void compute_path(Contact& contact, const State& state, std::size_t first) noexcept;
+  static bool goes_on(const Contact& contact, std::uint64_t number) noexcept {
+    return contact.state % 2 == 0 && contact.state + 2 == number;
+  }
+  void compute(Contact& contact, const State& state, bool respond) noexcept;
+  Vector3 end_of_path(const Contact& contact, const State& state) noexcept;
   void shift_path(Contact& contact, const State& state) noexcept;
-  template <std::size_t K, typename Products>
-  void sum_free(std::size_t first, std::size_t last, const Products& products,
-                std::array<Sums<K>, kMaxHorizon + 1>& sums) noexcept;
+  void respond_to(const Contact& contact, const double* force, std::size_t steps,
+                  Path& moves) noexcept;
   void multiply_shapes(const Contact& contact, std::size_t first, std::size_t count,
                        const double* factors, double* products) const noexcept;
-  const double* from_coordinate(std::size_t n) const noexcept { return &from_[2 * n * modes_]; }
-  const double* from_velocity(std::size_t n) const noexcept { return &from_[(2 * n + 1) * modes_]; }
+  void square_shapes(const Contact& contact, std::size_t first, std::size_t count,
+                     double* products) noexcept;
+  const double* swing(const State& state, std::size_t first, std::size_t count) noexcept;
+  const float* falls(std::size_t block, std::size_t mode) const noexcept {
+    return &falls_[(block * modes_ + mode) * kCourse];
+  }
+  const float* rises(std::size_t block, std::size_t mode) const noexcept {
+    return &rises_[(block * modes_ + mode) * kCourse];
+  }
 
+  CourseKernels kernels_;
   std::size_t modes_;
-  AlignedNumbers from_;        ///< (kMaxHorizon + 1, 2, r): c_n and s_n
+  std::vector<float> falls_;   ///< (kBlocks, r, kCourse): c_n - c_{n+1}, n = 0, 1, ...
+  std::vector<float> rises_;   ///< the same of s_{n+1} - s_n
+  AlignedNumbers first_fall_;  ///< (r) c_0 - c_1
+  AlignedNumbers ends_;        ///< (kMaxHorizon, 2, r): c_n and s_n
   AlignedNumbers compliance_;  ///< (r) 1 / omega^2
-  AlignedNumbers products_;    ///< (6, kPart): of shapes with what c_n or s_n meet
+  AlignedNumbers products_;    ///< (12, kPart): of shapes with what they meet
   AlignedNumbers factors_;     ///< (kPart)
   std::array<Contact, kMaxContacts> contacts_;
 };

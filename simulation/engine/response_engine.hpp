@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 
@@ -112,6 +113,13 @@ class ResponseEngine {
   /// than a node or two; otherwise infinite.
   virtual double free_displacement_bound() const noexcept = 0;
 
+  /// By what no component of any node's free displacement was changed by the last advance() [m],
+  /// where that takes no longer than a node or two; otherwise infinite. Nothing else has changed it
+  /// since.
+  virtual double free_change_bound() const noexcept {
+    return std::numeric_limits<double>::infinity();
+  }
+
   /// For contacts a = 0..m-1 (m <= kMaxContacts): their mean free displacement h_a at the end of
   /// the coming step [m], and the compliance between them within it, the blocks sum_ij w_i w_j
   /// R_ij[0] of the (3m, 3m) matrix [m/N].
@@ -124,6 +132,10 @@ class ResponseEngine {
   /// R_ij[n] [m/N]. Spin that is held acts in the coming step only.
   virtual void predict_horizon(const ContactPatch& patch, std::span<const NodalForce> held,
                                std::span<Vector3> path, std::span<Matrix3> response) noexcept = 0;
+  /// Whether predict_horizon() would find most of that kept from the step before: little work.
+  virtual bool keeps_horizon(const ContactPatch&, std::size_t /*steps*/) const noexcept {
+    return true;
+  }
 
   /// These forces were held, besides the others, during the step `age` steps before the last one
   /// (0: the last one itself). @param age below kMaxHorizon; what is older is left out

@@ -105,18 +105,18 @@ int Simulation::touched_by(std::size_t s, const Vector3& tip) noexcept {
   return nearest;
 }
 
-void Simulation::predict_horizon(std::size_t s, const Vector3& tip, int horizon,
-                                 ContactModel& model) noexcept {
+bool Simulation::predict_horizon(std::size_t s, const Vector3& tip, int horizon,
+                                 ContactModel& model, int& budget) noexcept {
   const NoDenormals here;
   model.valid = false;
   model.step = next_step_ - 1;
   model.dt = dt_;
   local_model_object_[s] = -1;
-  if (next_step_ == 0 || !tip.allFinite()) return;
+  if (next_step_ == 0 || !tip.allFinite()) return true;
   local_model_object_[s] = touched_by(s, tip);
-  if (local_model_object_[s] < 0) return;
-  objects_[static_cast<std::size_t>(local_model_object_[s])]->predict_horizon(s, tip, horizon,
-                                                                              model);
+  if (local_model_object_[s] < 0) return true;
+  SoftObject& touched = *objects_[static_cast<std::size_t>(local_model_object_[s])];
+  return touched.predict_horizon(s, tip, horizon, model, budget);
 }
 
 bool Simulation::insert_delayed_force(std::size_t s, const AppliedForce& applied,

@@ -37,8 +37,15 @@ class Simulation {
   /// For the bridge of stylus s, between steps: how its contact goes on after the last step.
   /// @param tip where the stylus was in the last step [m], W
   /// @param horizon steps to predict, 1 to kMaxHorizon
+  /// @param budget of predictions that are made anew, since the contact moved or a force came late;
+  /// 1 is taken by one. False: there was none left, and the model means nothing
+  bool predict_horizon(std::size_t s, const Vector3& tip, int horizon, ContactModel& model,
+                       int& budget) noexcept;
   void predict_horizon(std::size_t s, const Vector3& tip, int horizon,
-                       ContactModel& model) noexcept;
+                       ContactModel& model) noexcept {
+    int budget = 1;
+    predict_horizon(s, tip, horizon, model, budget);
+  }
 
   /// Between steps: stylus s exerted this force on the object, besides what is known, in the
   /// step `age` steps before the last one. False: that is too long ago, it touched

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "simulation/step/settings.hpp"
 
@@ -29,19 +30,21 @@ SoftObject::SoftObject(const SimulationObject& object, const SimulationConfig& c
 }
 
 void SoftObject::reset() noexcept {
+  change_ = Change::kUnknown;
   body_.reset();
   contacts_.reset();
   if (floor_) floor_->reset();
 }
 
 void SoftObject::set(const Vector3& gravity, const ObjectSettings& settings) noexcept {
+  change_ = Change::kUnknown;
   friction_ = settings.friction;
   body_.set(gravity, settings);
 }
 
 void SoftObject::step(std::span<const StylusCommand> commands, ObjectRecord& record) noexcept {
   body_.begin_step(record);
-  surface_.begin_step(body_.engine());
+  look(!record.spin.isZero(0.0));
   prefetch_columns(commands);
   const int floor_count = find_contacts(commands);
   solve(commands, floor_count, record);
@@ -134,6 +137,7 @@ void SoftObject::end_step(ObjectRecord& record) noexcept {
   }
   cache_nodes();
   body_.end_step(nodal_.view(), forces, record);
+  if (change_ == Change::kNone) change_ = Change::kStep;
 }
 
 // What this step looked at, the next one will look at again.
@@ -145,6 +149,18 @@ void SoftObject::cache_nodes() noexcept {
     const ContactPatch& patch = contacts_.patch(a);
     caching->cache_nodes(std::span(patch.nodes).first(static_cast<std::size_t>(patch.count)));
   }
+}
+
+// What is found of the surface between steps the coming step need not find again.
+// @param loaded by its own motion, which changes the response, too
+void SoftObject::look(bool loaded) noexcept {
+  const Change change = std::exchange(change_, loaded ? Change::kUnknown : Change::kNone);
+  double bound = DeformedSurface::kUnknown;
+  if (!loaded && change == Change::kNone) bound = 0.0;
+  if (!loaded && change == Change::kStep && surface_.looked()) {
+    bound = body_.engine().free_change_bound();
+  }
+  surface_.begin_step(body_.engine(), bound);
 }
 
 // What acts on the object besides one stylus: into nodal_, and its sums into the model.
@@ -162,30 +178,35 @@ void SoftObject::collect_others(std::size_t s, ContactModel& model) noexcept {
   contacts_.add_others(s, problem_, nodal_, model);
 }
 
-void SoftObject::predict_horizon(std::size_t s, const Vector3& tip, int horizon,
-                                 ContactModel& model) noexcept {
+bool SoftObject::predict_horizon(std::size_t s, const Vector3& tip, int horizon,
+                                 ContactModel& model, int& budget) noexcept {
   model.state = contacts_.state(s);
   model.valid = contacts_.may_touch(s);
-  if (!model.valid) return;
+  if (!model.valid) return true;
   model.horizon = std::clamp(horizon, 1, kMaxHorizon);
   model.friction = friction_;
   model.body = this->model().body;
   model.motion = state();
   model.free_forces = body_.free_forces();
-  surface_.begin_step(body_.engine());
+  look(false);
   ContactPatch patch;
   contacts_.locate(s, body_.next_motion().to_body(tip), model, patch);
-  collect_others(s, model);
   const auto count = static_cast<std::size_t>(model.horizon);
+  if (!body_.engine().keeps_horizon(patch, count)) {
+    if (budget <= 0) return false;
+    --budget;
+  }
+  collect_others(s, model);
   body_.engine().predict_horizon(patch, nodal_.view(), {model.path.data(), count},
                                  {model.response.data(), count});
   model.valid = contacts_.write_series(s, body_.rigid().mobility(), model);
+  return true;
 }
 
 bool SoftObject::insert_delayed_force(std::size_t s, const AppliedForce& applied,
                                       LateForce& entry) noexcept {
   if (entry.age >= body_.past().count()) return false;
-  surface_.begin_step(body_.engine());
+  look(false);
   const Vector3 tip = body_.next_motion().to_body(applied.tip);
   if (!contacts_.locate_delayed(s, tip, applied.arm, entry)) return false;
   entry.force = body_.past().halfway(entry.age).conjugate() * applied.force;
@@ -198,11 +219,12 @@ bool SoftObject::insert_delayed_force(const LateForce& entry) noexcept {
   nodal_.clear();
   contacts_.spread(static_cast<std::size_t>(entry.stylus), entry.point, entry.force, nodal_);
   body_.insert_delayed_force(nodal_.view(), entry.force, entry.arm, entry.age);
+  change_ = Change::kUnknown;
   return true;
 }
 
 double SoftObject::distance(const Vector3& tip) noexcept {
-  surface_.begin_step(body_.engine());
+  look(false);
   return surface_.closest(body_.next_motion().to_body(tip)).signed_distance;
 }
 

@@ -37,8 +37,10 @@ class SoftObject {
   /// were on average over the last while. Between steps.
   /// @param tip where the stylus was in the last step [m], W
   /// @param horizon steps to predict, 1 to kMaxHorizon
-  void predict_horizon(std::size_t s, const Vector3& tip, int horizon,
-                       ContactModel& model) noexcept;
+  /// @param budget of predictions that are made anew, since the contact moved or a force came late;
+  /// 1 is taken by one. False: there was none left, and the model means nothing
+  bool predict_horizon(std::size_t s, const Vector3& tip, int horizon, ContactModel& model,
+                       int& budget) noexcept;
   /// What stylus s exerted, besides what is known, in the step `age` steps before the last one: at
   /// the contact that it had then, or else where the tip was near the surface. Between steps.
   /// False: neither.
@@ -70,10 +72,14 @@ class SoftObject {
   void end_step(ObjectRecord& record) noexcept;
   void cache_nodes() noexcept;
   void collect_others(std::size_t s, ContactModel& model) noexcept;
+  void look(bool loaded) noexcept;
 
   DeformableBody body_;
   RestSurface rest_;
   DeformedSurface surface_;
+  /// What has changed the response since surface_ was looked at.
+  enum class Change { kNone, kStep, kUnknown };
+  Change change_ = Change::kUnknown;
   Friction friction_;  ///< of tips on its surface
   StylusContacts contacts_;
   std::unique_ptr<FloorContacts> floor_;  ///< null: no floor

@@ -244,8 +244,10 @@ TEST_CASE("no node's free displacement is beyond its bound, where an engine know
         engine->capabilities().inertial_loading->set_angular_velocity(
             Vector3(0.1 * (k - 100), 2.0, -1.0));
       double largest = 0.0;
+      std::vector<Vector3> before;
       for (int node = 0; node < nodes; ++node) {
-        largest = std::max(largest, engine->free_displacement(node).cwiseAbs().maxCoeff());
+        before.push_back(engine->free_displacement(node));
+        largest = std::max(largest, before.back().cwiseAbs().maxCoeff());
       }
       const double bound = engine->free_displacement_bound();
       REQUIRE(largest <= (1.0 + 1e-12) * bound);
@@ -254,6 +256,17 @@ TEST_CASE("no node's free displacement is beyond its bound, where an engine know
         largest_share = std::max(largest_share, largest / bound);
       }
       engine->advance(k < 200 ? contacts.next() : std::vector<NodalForce>());
+      double change = 0.0;
+      for (int node = 0; node < nodes; ++node) {
+        const Vector3 now = engine->free_displacement(node);
+        change =
+            std::max(change, (now - before[static_cast<std::size_t>(node)]).cwiseAbs().maxCoeff());
+      }
+      const double change_bound = engine->free_change_bound();
+      REQUIRE(change <= (1.0 + 1e-12) * change_bound);
+      const bool loaded = k > 100 && k < 150;
+      CHECK(std::isfinite(change_bound) == (!by_history && !loaded));
+      if (std::isfinite(change_bound) && change > 0.0) CHECK(change > 0.02 * change_bound);
     }
     // The last force is 100 steps old, and T is 50.
     if (by_history) CHECK(engine->free_displacement_bound() == 0.0);

@@ -292,11 +292,13 @@ TEST_CASE("gravity: path and prediction are what stepping on brings") {
     engine->predict({&patch, 1}, {&h, 1}, W);
     const Vector3 free = mean(patch, [&](int node) { return engine->free_displacement(node); });
     CHECK((h - free).norm() <= 1e-13 * free.norm());
-    for (const Vector3& place : path) {
+    double largest = 0.0;
+    for (const Vector3& place : path) largest = std::max(largest, place.norm());
+    for (std::size_t n = 0; n < path.size(); ++n) {
       engine->advance(held);
       const Points u = displaced_surface_of(*engine);
       const Vector3 there = mean(patch, [&](int i) { return Vector3(u.row(i).transpose()); });
-      REQUIRE((place - there).norm() < 1e-11 * there.norm());
+      REQUIRE((path[n] - there).norm() < 1e-6 * largest);  // tables in single precision
     }
   }
 }

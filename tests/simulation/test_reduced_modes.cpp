@@ -112,8 +112,11 @@ TEST_CASE("reduced modes: the engine answers as R does that the model stands for
     modal->predict_horizon(patches[0], forces, path, response);
     dense->predict_horizon(patches[0], forces, expected_path, expected_response);
     for (std::size_t n = 0; n < path.size(); ++n) {
-      REQUIRE((path[n] - expected_path[n]).norm() <= 1e-10 * (scale + expected_path[n].norm()));
-      REQUIRE((response[n] - expected_response[n]).norm() <= 1e-10 * expected_response[0].norm());
+      constexpr double kSingle = 1e-6;  // what tables in single precision may cost
+      const double precision = n == 0 ? 1e-10 : kSingle;
+      REQUIRE((path[n] - expected_path[n]).norm() <= kSingle * (scale + expected_path[n].norm()));
+      REQUIRE((response[n] - expected_response[n]).norm() <=
+              precision * expected_response[0].norm());
     }
   }
   // What the bridge is told of the first step is what the step itself uses.

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -32,6 +33,9 @@ class FakeEngine final : public ResponseEngine {
   void advance(std::span<const NodalForce>) noexcept override {}
   void displacement(Points&, double) const override {}
   void reset() noexcept override {}
+  void move(const std::vector<Vector3>& by) {
+    for (std::size_t i = 0; i < u_.size(); ++i) u_[i] += by[i];
+  }
   mutable int evaluations = 0;
   double bound = std::numeric_limits<double>::infinity();
 
@@ -293,5 +297,46 @@ TEST_CASE("a god-object is the same whether far ways are known to be far or not"
     }
   }
   CHECK(touches > 1000);
+  CHECK(bounded.evaluations < searching.evaluations);
+}
+
+// What is known of nodes from steps before may only spare work.
+TEST_CASE("deformed surface: with bounded changes the hits are those without") {
+  const Model model = test::synthetic_cube(6, 1, 1);
+  const RestSurface rest(model.mesh);
+  FakeEngine searching(model.mesh, [](const Vector3& x) -> Vector3 {
+    return 0.01 * Vector3(std::sin(40.0 * x.y()), std::cos(30.0 * x.z()), x.x() / 0.06);
+  });
+  FakeEngine bounded = searching;
+  DeformedSurface plain(rest);
+  DeformedSurface sparing(rest);
+  std::mt19937 random(7);
+  Vector3 tip(0.01, 0.08, -0.02);
+  int crossings = 0;
+  for (int k = 0; k < 5000; ++k) {
+    const double change = k % 1000 < 500 ? 1e-5 : 1e-3;
+    std::vector<Vector3> moves;
+    for (int i = 0; i < rest.node_count(); ++i) moves.push_back(random_point(random, change));
+    searching.move(moves);
+    bounded.move(moves);
+    plain.begin_step(searching);
+    sparing.begin_step(bounded, k % 300 == 0 ? DeformedSurface::kUnknown : change);
+    const Vector3 before = tip;
+    tip = k % 50 == 0 ? random_point(random, 0.12) : Vector3(tip + random_point(random, 0.003));
+    const SurfaceHit expected = plain.closest(tip);
+    const SurfaceHit hit = sparing.closest(tip);
+    REQUIRE(hit.triangle == expected.triangle);
+    REQUIRE(hit.position == expected.position);
+    REQUIRE(hit.signed_distance == expected.signed_distance);
+    const auto expected_crossing = plain.first_crossing(before, tip, expected);
+    const auto crossing = sparing.first_crossing(before, tip, hit);
+    REQUIRE(crossing.has_value() == expected_crossing.has_value());
+    if (crossing) {
+      ++crossings;
+      REQUIRE(crossing->position == expected_crossing->position);
+    }
+    REQUIRE(std::ranges::equal(sparing.seen(), plain.seen()));
+  }
+  CHECK(crossings > 100);
   CHECK(bounded.evaluations < searching.evaluations);
 }

@@ -160,6 +160,7 @@ ClientSettings client_settings(const BridgeConfig& config) {
   ClientSettings settings{
       .server = *config.server,
       .predict = config.predict,
+      .simulated_link = config.link.has_value(),
       .udp = config.udp,
       .connect_timeout_ms = static_cast<int>(std::ceil(1e3 * config.connect_timeout)),
       .scheduling = config.realtime};
@@ -183,6 +184,10 @@ BridgeReport run_bridge(const BridgeConfig& config, StopSignal& stop_signal, dou
     simulated = simulated && device->simulated();
   }
 
+  if (config.link && !simulated) {
+    throw Error("bridge.link", "is simulated, and a device is not",
+                "use virtual devices, or remove the table");
+  }
   EventFd done;
   ServoLink link(loops.size());
   ClientSettings settings = client_settings(config);
@@ -194,6 +199,7 @@ BridgeReport run_bridge(const BridgeConfig& config, StopSignal& stop_signal, dou
                     {.rate = config.rate,
                      .scheduling = config.realtime,
                      .duration = std::min(duration, longest),
+                     .link = config.link,
                      .log = black_box.ticks()},
                     done);
   const std::string memory = lock_memory(config.realtime);

@@ -106,6 +106,26 @@ DeviceConfig read_device(TomlTable table, const BridgeOverrides& overrides) {
   return device;
 }
 
+Overruns read_overruns(TomlTable table) {
+  Overruns overruns;
+  overruns.every = table.number("every", between(0.0, 1000.0), overruns.every);
+  overruns.longest = table.number("longest", between(0.0, 1.0), overruns.longest);
+  table.finish();
+  return overruns;
+}
+
+SimulatedLink read_link(TomlTable table) {
+  SimulatedLink link;
+  link.way.delay = table.number("delay", between(0.0, 1.0), link.way.delay);
+  link.way.jitter = table.number("jitter", between(0.0, 1.0), link.way.jitter);
+  link.way.loss = table.number("loss", between(0.0, 0.9), link.way.loss);
+  link.server_overruns = read_overruns(table.table("server_overruns"));
+  link.bridge_overruns = read_overruns(table.table("bridge_overruns"));
+  link.seed = static_cast<std::uint64_t>(table.integer("seed", 0, 1'000'000'000, 1));
+  table.finish();
+  return link;
+}
+
 void read_bridge(TomlTable table, const std::string& file, BridgeConfig& config) {
   const std::string server = table.text("server", "");
   if (!server.empty()) config.server = parse_server_address(server, file + ": bridge.server");
@@ -116,6 +136,7 @@ void read_bridge(TomlTable table, const std::string& file, BridgeConfig& config)
       table.number("continuous_force", {.lowest = 0.0, .highest = 40.0, .lowest_included = false},
                    config.continuous_force);
   config.predict = table.choice("mode", {"predict", "hold"}, "predict") == "predict";
+  if (table.has("link")) config.link = read_link(table.table("link"));
   config.udp = table.choice("stream", {"tcp", "udp"}, "tcp") == "udp";
   config.connect_timeout =
       table.number("connect_timeout", between(0.01, 0.1), config.connect_timeout);

@@ -9,6 +9,7 @@
 #include "common/blackbox/black_box.hpp"
 #include "common/config/toml_reader.hpp"
 #include "common/realtime/scheduling.hpp"
+#include "device_bridge/link/link_simulation.hpp"
 #include "device_bridge/servo_loop.hpp"
 #include "device_bridge/virtual_stylus.hpp"
 
@@ -54,6 +55,11 @@ struct BridgeConfig {
   /// key `bridge.mode`: "predict": the contact is solved here, so that delay is not felt | "hold":
   /// the server's forces are held. In lockstep there is no delay, and forces are held.
   bool predict = true;
+  /// table `bridge.link`: a link that is simulated, in lockstep; none: there is none
+  std::optional<SimulatedLink> link;
+  // link.delay, link.jitter [s], 0 to 1; link.loss, 0 to 0.9; link.seed, from 0, default 1
+  // link.server_overruns, link.bridge_overruns: tables with every [s], 0 to 1000, longest [s], 0 to
+  // 1
   /// key `bridge.stream`: "tcp" | "udp"; how samples, forces and contact models go. Where UDP does
   /// not get through, by TCP.
   bool udp = false;

@@ -112,7 +112,7 @@ void ServoThread::run_real_time() noexcept {
     report_.missed = schedule.missed();
     if (!tick(now_ns)) return;
     if (report_.lockstep) {
-      report_.end = run_lockstep();
+      report_.end = settings_.link ? run_linked() : run_lockstep();
       return;
     }
   }
@@ -133,7 +133,7 @@ void ServoThread::wait_for_session(std::int64_t now_ns) noexcept {
   link_.state.receive();
   const LinkState& state = link_.state.front();
   if (state.sessions > 0 && !stop_) {
-    for (ServoLoop& loop : loops_) loop.restart(!state.lockstep);
+    for (ServoLoop& loop : loops_) loop.restart(!state.lockstep || settings_.link);
     report_.lockstep = state.lockstep;
     start_ns_ = now_ns;
     if (!state.lockstep) phase_ = Phase::kRunning;
@@ -264,11 +264,48 @@ ServoEnd ServoThread::run_lockstep() noexcept {
     if (!wait_for_forces(k)) break;
     report_.round_trip.add(monotonic_ns() - given_ns);
     report_.ticks = k + 1;
-    report_.session_time = static_cast<double>(k + 1) * dt;
-    // Half a step of tolerance: the product above is rounded.
-    if (report_.session_time + 0.5 * dt > settings_.duration) return ServoEnd::kFinished;
+    if (finished(static_cast<double>(k + 1) * dt)) return ServoEnd::kFinished;
   }
   return lockstep_end();
+}
+
+// Half a step of tolerance: times are sums.
+bool ServoThread::finished(double time) noexcept {
+  report_.session_time = time;
+  return time + 0.5 * link_.state.front().dt > settings_.duration;
+}
+
+// The server's steps come with its overruns; between them the servo loops run on.
+ServoEnd ServoThread::run_linked() {
+  report_.lockstep = true;
+  begin_session(link_.state.front());
+  LinkSimulation link(loops_, *settings_.link, link_.state.front().dt, settings_.rate);
+  for (std::uint64_t k = 0; !stop_;) {
+    if (link.run_step()) {
+      if (!exchange(link, k)) break;
+      report_.ticks = ++k;
+    }
+    if (finished(link.time())) return ServoEnd::kFinished;
+  }
+  return lockstep_end();
+}
+
+bool ServoThread::exchange(LinkSimulation& link, std::uint64_t k) {
+  for (std::size_t i = 0; i < loops_.size(); ++i) {
+    ServoLink::Stylus& stylus = link_.styluses[i];
+    stylus.sample.put(link.sample(i, k));
+    if (const AppliedForces* applied = link.applied(i)) stylus.applied.put({session_, *applied});
+  }
+  const std::int64_t given_ns = monotonic_ns();
+  link_.samples_ready.signal();
+  if (!wait_for_forces(k)) return false;
+  report_.round_trip.add(monotonic_ns() - given_ns);
+  for (std::size_t i = 0; i < loops_.size(); ++i) {
+    ServoLink::Stylus& stylus = link_.styluses[i];
+    const bool any = stylus.model.receive() && stylus.model.front().session == session_;
+    link.answer(i, stylus.input.front(), any ? &stylus.model.front().value : nullptr);
+  }
+  return true;
 }
 
 // The end of the session is what stops the bridge, and may come together with the stop.

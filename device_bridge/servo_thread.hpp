@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "common/realtime/histogram.hpp"
 #include "common/realtime/scheduling.hpp"
 #include "device_bridge/blackbox/tick_log.hpp"
+#include "device_bridge/link/link_simulation.hpp"
 #include "device_bridge/servo_link.hpp"
 #include "device_bridge/servo_loop.hpp"
 
@@ -19,7 +21,8 @@ struct ServoSettings {
   double rate = 1000.0;  ///< ticks a second, > 0
   RealTimeScheduling scheduling = RealTimeScheduling::kIgnore;
   double duration = 0.0;  ///< of a session's time, after which the thread ends [s]; infinity: never
-  TickLog* log = nullptr;  ///< is told of every tick in real time; null: nobody is
+  std::optional<SimulatedLink> link = {};  ///< in lockstep; none: no delay, and forces are held
+  TickLog* log = nullptr;                  ///< is told of every tick in real time; null: nobody is
 };
 
 enum class ServoEnd {
@@ -78,6 +81,9 @@ class ServoThread {
   void run() noexcept;
   void run_real_time() noexcept;
   ServoEnd run_lockstep() noexcept;
+  ServoEnd run_linked();
+  bool exchange(LinkSimulation& link, std::uint64_t k);
+  bool finished(double time) noexcept;
   ServoEnd lockstep_end() noexcept;
   bool tick(std::int64_t now_ns) noexcept;
   void wait_for_session(std::int64_t now_ns) noexcept;

@@ -113,6 +113,7 @@ void ServerSession::start(std::function<void(const SessionEnd&)> ended) {
   std::uint32_t capabilities = wire::kCapabilityReport | wire::kCapabilityStatus;
   if (shared_.settings.predict) capabilities |= wire::kCapabilityContactModel;
   if (shared_.settings.udp) capabilities |= wire::kCapabilityDatagrams;
+  if (shared_.settings.simulated_link) capabilities |= wire::kCapabilitySimulatedLink;
   connection_->send(
       wire::Hello{.capabilities = capabilities,
                   .styluses = static_cast<std::uint16_t>(shared_.link.styluses.size()),
@@ -154,6 +155,13 @@ void ServerSession::receive(const wire::Frame& frame) {
 void ServerSession::welcomed(const wire::Welcome& welcome) {
   if (welcome.lockstep && !shared_.settings.lockstep) {
     unexpected("lockstep, which was not offered");
+  }
+  if (shared_.settings.simulated_link &&
+      (welcome.capabilities & wire::kCapabilitySimulatedLink) == 0) {
+    end_.failure = shared_.server +
+                   ": the server does not run in lockstep, and bridge.link is simulated; start it "
+                   "with --lockstep, or remove the table";
+    return leave();
   }
   state_ = State::kLinked;
   end_.welcomed = true;
@@ -248,14 +256,8 @@ void ServerSession::take(const wire::Datagrams& offer) {
                                                  monotonic_ns());
 }
 
+// In lockstep a sample is what the server waits for: all else comes first.
 void ServerSession::send_samples() {
-  for (std::size_t i = 0; i < intakes_.size(); ++i) {
-    TripleBuffer<StylusSample>& box = shared_.link.styluses[i].sample;
-    if (!box.receive() || state_ != State::kLinked) continue;
-    intakes_[i].sent(box.front());
-    connection_->send_newest(i, wire::SampleMessage{slot(i), box.front()});
-    ++shared_.report.samples;
-  }
   for (std::size_t i = 0; i < intakes_.size(); ++i) {
     TripleBuffer<OfSession<AppliedForces>>& box = shared_.link.styluses[i].applied;
     if (!box.receive() || state_ != State::kLinked || !link_state_.predict) continue;
@@ -265,6 +267,13 @@ void ServerSession::send_samples() {
       message.applied.count = std::min(message.applied.count, wire::kForcesInDatagram);
     }
     connection_->send_newest(2 * intakes_.size() + i, message);
+  }
+  for (std::size_t i = 0; i < intakes_.size(); ++i) {
+    TripleBuffer<StylusSample>& box = shared_.link.styluses[i].sample;
+    if (!box.receive() || state_ != State::kLinked) continue;
+    intakes_[i].sent(box.front());
+    connection_->send_newest(i, wire::SampleMessage{slot(i), box.front()});
+    ++shared_.report.samples;
   }
 }
 

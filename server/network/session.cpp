@@ -95,7 +95,9 @@ void Session::greet(const wire::Hello& hello) {
                   "the server has " + std::to_string(settings.styluses) + " styluses");
   }
   std::uint32_t capabilities = wire::kCapabilityReport;
-  if (!settings.lockstep) capabilities |= wire::kCapabilityContactModel;
+  const bool simulated_link = (hello.capabilities & wire::kCapabilitySimulatedLink) != 0;
+  if (!settings.lockstep || simulated_link) capabilities |= wire::kCapabilityContactModel;
+  if (settings.lockstep) capabilities |= wire::kCapabilitySimulatedLink;
   if (!settings.lockstep) capabilities |= wire::kCapabilityStatus;
   if (shared_.datagrams != nullptr) capabilities |= wire::kCapabilityDatagrams;
   capabilities &= hello.capabilities;
@@ -216,7 +218,9 @@ void Session::release() {
   count_ = 0;
 }
 
+// In lockstep a force is what the bridge waits for: the model comes first.
 void Session::send_forces() {
+  for (int slot = first_; predicts_ && slot < first_ + count_; ++slot) send_model(slot);
   for (int slot = first_; slot < first_ + count_; ++slot) {
     std::optional<StylusForce> force = shared_.slots.take_force(slot);
     if (!force) continue;
@@ -233,7 +237,6 @@ void Session::send_forces() {
     if (replaced) shared_.stats.forces_replaced.fetch_add(1);
     shared_.stats.forces.fetch_add(1);
   }
-  for (int slot = first_; predicts_ && slot < first_ + count_; ++slot) send_model(slot);
 }
 
 void Session::send_model(int slot) {

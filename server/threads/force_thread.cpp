@@ -190,7 +190,8 @@ void ForceThread::step() noexcept {
   if (record_.reset) ++report_.resets;
   const std::size_t bridges = static_cast<std::size_t>(network_.styluses());
   for (std::size_t s = 0; s < commands_.size(); ++s) {
-    if (!commands_[s].present) continue;
+    // In lockstep a new bridge's first sample wants an answer, too.
+    if (!commands_[s].present && !clock_.lockstep()) continue;
     report_.peak_force = std::max(report_.peak_force, record_.stylus[s].force.norm());
     if (s >= bridges) continue;
     StylusPort& port = network_.port(static_cast<int>(s));

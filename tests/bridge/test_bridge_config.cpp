@@ -128,6 +128,23 @@ TEST_CASE("bridge configuration takes every key") {
   CHECK(config.devices[1].type == "openhaptics");
 }
 
+TEST_CASE("bridge configuration takes a simulated link") {
+  CHECK_FALSE(ConfigFile("[[device]]\nscript = \"/a.csv\"\n").load().link);
+  const BridgeConfig config =
+      ConfigFile(
+          "[bridge.link]\ndelay = 0.01\njitter = 0.002\nloss = 0.1\nseed = 5\n"
+          "bridge_overruns = { every = 2, longest = 0.02 }\n[[device]]\nscript = \"/a.csv\"\n")
+          .load();
+  REQUIRE(config.link);
+  CHECK(config.link->way.delay == 0.01);
+  CHECK(config.link->way.jitter == 0.002);
+  CHECK(config.link->way.loss == 0.1);
+  CHECK(config.link->seed == 5);
+  CHECK(config.link->bridge_overruns.every == 2.0);
+  CHECK(config.link->bridge_overruns.longest == 0.02);
+  CHECK(config.link->server_overruns.every == 0.0);
+}
+
 TEST_CASE("the command line names server, device and script") {
   const BridgeConfig config = ConfigFile("[[device]]\ntype = \"openhaptics\"\n")
                                   .load({.server = "h:1", .device = "virtual", .script = "b.csv"});
@@ -145,6 +162,10 @@ TEST_CASE("bridge configuration refuses what does not fit") {
   check_refused(kDevice + "speed = 1\n", "speed is not a known key");
   check_refused("[bridge]\nx = 1\n" + kDevice, "bridge.x is not a known key");
   check_refused("[[device]]\ntype = \"magic\"\n", "type is 'magic'");
+  check_refused("[bridge.link]\nloss = 1\n" + kDevice, "loss is 1");
+  check_refused("[bridge.link]\ndelay = -1\n" + kDevice, "delay is -1");
+  check_refused("[bridge.link]\nserver_overruns = { often = 1 }\n" + kDevice,
+                "often is not a known key");
   check_refused(kDevice + "hand = 3\n", "not a table");
   check_refused(kDevice + "hand = { mass = 0 }\n", "mass is 0");
   check_refused(kDevice + "hand = { mass = nan }\n", "mass is nan");

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <random>
 
 #include "device_bridge/contact/bridge_contact.hpp"
 #include "device_bridge/safety/safety_filter.hpp"
@@ -11,62 +10,6 @@
 
 namespace irdm::test {
 namespace {
-
-/// From one side to the other; messages may overtake one another.
-template <typename Message>
-class Way {
- public:
-  Way(const LoopLink& link, std::uint64_t seed) : link_(link), random_(seed) {}
-
-  void send(double now, Message message) {
-    const double luck = uniform();
-    const double late = link_.jitter * uniform();
-    if (luck < link_.loss) return;
-    under_way_.push_back({now + link_.delay + late, std::move(message)});
-  }
-  template <typename Receive>
-  void deliver(double now, const Receive& receive) {
-    constexpr double kRounding = 1e-9;
-    for (std::size_t i = 0; i < under_way_.size();) {
-      if (under_way_[i].time > now + kRounding) {
-        ++i;
-        continue;
-      }
-      receive(under_way_[i].message);
-      under_way_.erase(under_way_.begin() + static_cast<std::ptrdiff_t>(i));
-    }
-  }
-
- private:
-  struct Timed {
-    double time;
-    Message message;
-  };
-  double uniform() { return static_cast<double>(random_() >> 11) * 0x1p-53; }
-
-  LoopLink link_;
-  std::mt19937_64 random_;
-  std::vector<Timed> under_way_;
-};
-
-/// Whether a side is in an overrun.
-class Busy {
- public:
-  Busy(const Overruns& overruns, std::uint64_t seed) : overruns_(overruns), random_(seed) {}
-  bool at(double now, double dt) {
-    if (now < until_) return true;
-    if (overruns_.every > 0.0 && uniform() < dt / overruns_.every) {
-      until_ = now + overruns_.longest * uniform();
-    }
-    return now < until_;
-  }
-
- private:
-  double uniform() { return static_cast<double>(random_() >> 11) * 0x1p-53; }
-  Overruns overruns_;
-  std::mt19937_64 random_;
-  double until_ = 0.0;
-};
 
 constexpr std::uint64_t kSession = 1;
 // When buttons go down [s].
@@ -103,10 +46,10 @@ struct Stylus {
   }
 
   VirtualHand hand;
-  Way<Up> up;
-  Way<Down> down;
+  SimulatedWay<Up> up;
+  SimulatedWay<Down> down;
   BridgeContact contact;
-  Busy busy;
+  SimulatedOverruns busy;
   SafetyFilter filter;
   ForceDemand asked;
   Vector3 shown = Vector3::Zero();
@@ -303,7 +246,7 @@ class Loop {
   LoopMode mode_;
   Simulation simulation_;
   double dt_;
-  Busy busy_;
+  SimulatedOverruns busy_;
   int lead_ = 0;  ///< steps before all begins
   std::vector<std::unique_ptr<Stylus>> styluses_;
   std::vector<BridgedStylus> bridged_;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "common/contact/applied_forces.hpp"
+#include "device_bridge/link/simulated_link.hpp"
 #include "device_bridge/safety/guards.hpp"
 #include "device_bridge/safety/safety_filter.hpp"
 #include "device_bridge/virtual_stylus.hpp"
@@ -17,18 +18,7 @@ enum class LoopMode {
   kPredict,  ///< the contact is solved at the bridge
 };
 
-/// What lies between bridge and server, each way on its own.
-struct LoopLink {
-  double delay = 0.0;   ///< one way [s]
-  double jitter = 0.0;  ///< up to so much more, each message anew [s]
-  double loss = 0.0;    ///< share of messages
-};
-
-/// A side that does nothing for a while, as on a busy machine.
-struct Overruns {
-  double every = 0.0;    ///< on average [s]; 0: never
-  double longest = 0.0;  ///< each takes up to so long [s]
-};
+using LoopLink = LinkParameters;
 
 /// A hand, what it wants, and its button.
 struct LoopHand {

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <random>
+#include <utility>
+#include <vector>
+
+namespace irdm {
+
+/// What lies between bridge and server on the simulated clock, each way on its own.
+struct LinkParameters {
+  double delay = 0.0;   ///< one way [s]
+  double jitter = 0.0;  ///< up to so much more, each message anew [s]
+  double loss = 0.0;    ///< share of messages
+};
+
+/// A side that does nothing for a while, as on a busy machine.
+struct Overruns {
+  double every = 0.0;    ///< on average [s]; 0: never
+  double longest = 0.0;  ///< each takes up to so long [s]
+};
+
+/// One way between the two; messages may overtake one another. The same seed, the same way.
+template <typename Message>
+class SimulatedWay {
+ public:
+  SimulatedWay(const LinkParameters& link, std::uint64_t seed) : link_(link), random_(seed) {}
+
+  /// @param now simulated time [s]
+  void send(double now, Message message) {
+    const double luck = uniform();
+    const double late = link_.jitter * uniform();
+    if (luck < link_.loss) return;
+    under_way_.push_back({now + link_.delay + late, std::move(message)});
+  }
+  /// Gives what has arrived by now to `receive`, in the order in which it was sent.
+  template <typename Receive>
+  void deliver(double now, const Receive& receive) {
+    constexpr double kRounding = 1e-9;
+    for (std::size_t i = 0; i < under_way_.size();) {
+      if (under_way_[i].time > now + kRounding) {
+        ++i;
+        continue;
+      }
+      receive(under_way_[i].message);
+      under_way_.erase(under_way_.begin() + static_cast<std::ptrdiff_t>(i));
+    }
+  }
+
+ private:
+  struct Timed {
+    double time;
+    Message message;
+  };
+  double uniform() { return static_cast<double>(random_() >> 11) * 0x1p-53; }
+
+  LinkParameters link_;
+  std::mt19937_64 random_;
+  std::vector<Timed> under_way_;
+};
+
+/// Whether a side is in an overrun, period by period. The same seed, the same overruns.
+class SimulatedOverruns {
+ public:
+  SimulatedOverruns(const Overruns& overruns, std::uint64_t seed)
+      : overruns_(overruns), random_(seed) {}
+
+  /// @param now simulated time at the end of a period of dt [s]
+  bool at(double now, double dt) {
+    if (now < until_) return true;
+    if (overruns_.every > 0.0 && uniform() < dt / overruns_.every) {
+      until_ = now + overruns_.longest * uniform();
+    }
+    return now < until_;
+  }
+
+ private:
+  double uniform() { return static_cast<double>(random_() >> 11) * 0x1p-53; }
+
+  Overruns overruns_;
+  std::mt19937_64 random_;
+  double until_ = 0.0;
+};
+
+}  // namespace irdm

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "common/realtime/clock.hpp"
 #include "common/realtime/real_time_scope.hpp"
@@ -128,6 +129,9 @@ void ForceThread::watch_health(std::int64_t begin_ns, std::int64_t end_ns) noexc
   window_.unsolved = report_.unsolved;
   window_.missed = clock_.missed();
   window_.cache_misses = simulation_.cache_misses();
+  pace_.look(report_.steps - std::exchange(steps_before_, report_.steps),
+             window_.missed - std::exchange(missed_before_, window_.missed));
+  window_.prediction_period = pace_.period();
   health_.put(window_);  // some 10 kB each, once a second
   status_.put(window_);
   window_ = ForceHealth{};
@@ -208,6 +212,7 @@ void ForceThread::step() noexcept {
 // After all else: who waits for a force has it by now. Styluses whose contact moves take turns, so
 // that a step is not longer with many of them; a bridge goes on with an older model meanwhile.
 void ForceThread::predict_horizon() noexcept {
+  if (!pace_.due(report_.steps)) return;
   const std::int64_t begin = monotonic_ns();
   const std::size_t first = next_prediction_;
   int budget = 1;

@@ -12,6 +12,7 @@
 #include "common/realtime/triple_buffer.hpp"
 #include "server/blackbox/step_log.hpp"
 #include "server/network/network_server.hpp"
+#include "server/threads/prediction_pace.hpp"
 #include "server/threads/run_control.hpp"
 #include "server/threads/step_clock.hpp"
 #include "server/threads/viewer_stylus.hpp"
@@ -42,8 +43,9 @@ struct ForceHealth {
   std::uint64_t unsolved = 0;
   std::uint64_t missed = 0;  ///< deadlines
   std::uint64_t cache_misses = 0;
-  Histogram step_time;     ///< of the last kHealthPeriodNs [ns]
-  Histogram wakeup_delay;  ///< of the last kHealthPeriodNs [ns]; empty in lockstep
+  int prediction_period = 1;  ///< PredictionPace's
+  Histogram step_time;        ///< of the last kHealthPeriodNs [ns]
+  Histogram wakeup_delay;     ///< of the last kHealthPeriodNs [ns]; empty in lockstep
 };
 
 /// Takes the newest stylus samples, makes the force step and hands on what came of it, once for
@@ -97,7 +99,10 @@ class ForceThread {
   bool continued_ = false;          ///< it was paused before this step
   std::uint64_t paused_steps_ = 0;  ///< since the pause began
   std::optional<ViewerStylus> viewer_stylus_;
-  std::vector<BridgedStylus> bridged_;   ///< of the network's styluses
+  std::vector<BridgedStylus> bridged_;  ///< of the network's styluses
+  PredictionPace pace_;
+  std::uint64_t missed_before_ = 0;      ///< deadlines, until the last look of pace_
+  std::uint64_t steps_before_ = 0;       ///< steps, until then
   std::size_t next_prediction_ = 0;      ///< whose turn it is to have one made anew
   std::vector<StylusCommand> commands_;  ///< of the network's styluses, and perhaps the viewers'
   StepRecord record_;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iomanip>
 #include <sstream>
+#include <utility>
 
 #include "common/realtime/clock.hpp"
 
@@ -50,6 +51,7 @@ void StatusThread::run() {
   while (!stop_.wait(kStatusPeriodMs)) {
     const wire::Status status = gather();
     parts_.network.status().put(status);
+    tell_of_pace();
     if (log_period_ns_ == 0 || gathered_ns_ - logged_ns < log_period_ns_) continue;
     logged_ns = gathered_ns_;
     spdlog::info("{}", status_line(status, parts_.network.stats(),
@@ -70,6 +72,17 @@ wire::Status StatusThread::gather() {
   status.wakeup_delay = quantiles(force.wakeup_delay);
   status.surface_rate = surface_rate();
   return status;
+}
+
+// Who predicts feels it.
+void StatusThread::tell_of_pace() {
+  const int period = parts_.force.status().front().prediction_period;
+  if (period == std::exchange(prediction_period_, period)) return;
+  if (period == 1) {
+    spdlog::info("contact models in each step again");
+  } else {
+    spdlog::warn("steps miss their deadlines: contact models only every {} steps", period);
+  }
 }
 
 // Since the last time.

@@ -34,8 +34,10 @@ class StatusThread {
   void run();
   wire::Status gather();
   float surface_rate();
+  void tell_of_pace();
 
   Parts parts_;
+  int prediction_period_ = 1;  ///< that was told last
   std::int64_t log_period_ns_;
   std::uint64_t frames_ = 0;  ///< and the next: at the last gathering
   std::int64_t gathered_ns_ = 0;

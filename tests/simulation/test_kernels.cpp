@@ -5,6 +5,7 @@
 #include <random>
 
 #include "simulation/engine/active_modes.hpp"
+#include "simulation/engine/course_kernels.hpp"
 #include "simulation/engine/force_history.hpp"
 #include "simulation/engine/kernels.hpp"
 #include "simulation/engine/wide_kernels.hpp"
@@ -336,4 +337,31 @@ TEST_CASE("modes that are left out move no node by more than the tolerance") {
   if (tolerance == 0.0) CHECK(ranges.size() == 1);
   if (tolerance == 0.3) CHECK(last < kModes);
   if (tolerance == 1e9) CHECK(ranges.empty());
+}
+
+TEST_CASE("courses of modes are summed by each set of kernels") {
+  const std::size_t n = GENERATE(0UL, 1UL, 2UL, 7UL, 256UL);
+  std::vector<float> courses;
+  for (const double number : random_numbers(kCourse * n, 21)) {
+    courses.push_back(static_cast<float>(number));
+  }
+  const std::vector<double> weights = random_numbers(6 * n, 22);
+  for (const CourseKernels& kernels : course_kernels()) {
+    CourseSums<3> three;
+    CourseSums<6> six;
+    for (auto& row : three) row.fill(0.5);
+    for (auto& row : six) row.fill(-0.25);
+    kernels.add_three(courses.data(), weights.data(), n, three);
+    kernels.add_six(courses.data(), weights.data(), n, six);
+    for (std::size_t k = 0; k < 6; ++k) {
+      for (std::size_t l = 0; l < kCourse; ++l) {
+        double sum = 0.0;
+        for (std::size_t i = 0; i < n; ++i) {
+          sum += weights[k * n + i] * static_cast<double>(courses[kCourse * i + l]);
+        }
+        CHECK(six[k][l] == Approx(sum - 0.25).margin(1e-12));
+        if (k < 3) CHECK(three[k][l] == Approx(sum + 0.5).margin(1e-12));
+      }
+    }
+  }
 }

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+
+namespace irdm {
+
+/// How often contact models are made: each step, or each second, fourth or eighth while steps miss
+/// their deadlines. A second with more than kTooMany of them halves it, kGood seconds in a row with
+/// fewer than kFew double it. Pure, real-time safe.
+class PredictionPace {
+ public:
+  static constexpr double kTooMany = 0.01;  ///< of the steps that should have been
+  static constexpr double kFew = 0.001;     ///< the same
+  static constexpr int kGood = 5;           ///< [s]
+  static constexpr int kRarest = 8;         ///< [steps]
+
+  /// After each second. @param steps made in it  @param missed deadlines in it
+  void look(std::uint64_t steps, std::uint64_t missed) noexcept {
+    const auto due = static_cast<double>(steps + missed);
+    const auto late = static_cast<double>(missed);
+    good_ = late < kFew * due ? good_ + 1 : 0;
+    if (late > kTooMany * due && period_ < kRarest) period_ *= 2;
+    if (good_ < kGood) return;
+    good_ = 0;
+    if (period_ > 1) period_ /= 2;
+  }
+  /// Whether models are made in this step.
+  bool due(std::uint64_t step) const noexcept {
+    return step % static_cast<std::uint64_t>(period_) == 0;
+  }
+  /// From one to the next [steps].
+  int period() const noexcept { return period_; }
+
+ private:
+  int period_ = 1;
+  int good_ = 0;
+};
+
+}  // namespace irdm

@@ -1,27 +1,9 @@
 #include "simulation/step/bridged_stylus.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace irdm {
-namespace {
-
-// No contact model is good for longer [s].
-constexpr double kLongestHorizon = 0.05;
-// A horizon is a multiple of that, since each other one is computed anew [steps].
-constexpr int kHorizonUnit = 8;
-// So long a horizon has to be longer than it must be before it becomes shorter [s].
-constexpr double kPatience = 1.0;
-
-}  // namespace
-
-BridgedStylus::BridgedStylus(Simulation& simulation, std::size_t s)
-    : simulation_(simulation),
-      s_(s),
-      longest_(
-          std::clamp(static_cast<int>(kLongestHorizon / simulation.dt() + 1e-6), 1, kMaxHorizon)),
-      horizon_(longest_) {}
 
 const AppliedForce* BridgedStylus::find(const AppliedHistory& history,
                                         std::uint64_t step) const noexcept {
@@ -53,7 +35,7 @@ StylusCommand BridgedStylus::next(const StylusCommand& command, std::uint64_t se
     first_ = history.newest();  // the only one that surely rests on a model from after it
   }
   const bool any = history.newest() != kNoStep && history.newest() >= first_;
-  if (any) follow_lead(history);
+  if (any) horizon_.follow(history);
   if (any && !bridged_) begin(command, history);
   newest_ = any ? history.newest() : kNoStep;
   if (!bridged_) {
@@ -107,16 +89,6 @@ void BridgedStylus::insert_delayed_force(const AppliedHistory& history, std::uin
   }
 }
 
-void BridgedStylus::follow_lead(const AppliedHistory& history) noexcept {
-  lead_ = history.newest() > history.base() ? history.newest() - history.base() : 0;
-  lead_ = std::min<std::uint64_t>(lead_, kMaxHorizon);
-  const double needed = static_cast<double>(lead_) + kOverrun / simulation_.dt();
-  const int units = static_cast<int>(std::ceil(needed / kHorizonUnit - 1e-6));
-  const int wanted = std::min(kHorizonUnit * units, longest_);
-  too_long_ = wanted < horizon_ ? too_long_ + 1 : 0;
-  if (wanted > horizon_ || too_long_ * simulation_.dt() >= kPatience) horizon_ = wanted;
-}
-
 // Whether tip and surface would meet at the bridge within twice the steps without news, going on as
 // they did since the last.
 bool BridgedStylus::touches_soon(const ContactModel& model) noexcept {
@@ -129,13 +101,13 @@ bool BridgedStylus::touches_soon(const ContactModel& model) noexcept {
   const Vector3 place = object.position + object.orientation * (model.place + model.path[0]);
   const Vector3 gap = tip_ - place;
   const double moved = (gap - std::exchange(gap_, gap).value_or(Vector3::Zero())).norm();
-  return gap.norm() < kNear + static_cast<double>(2 * kRareNews + lead_) * moved;
+  return gap.norm() < kNear + static_cast<double>(2 * kRareNews + horizon_.lead()) * moved;
 }
 
 bool BridgedStylus::predict_horizon(ContactModel& model, int& budget) noexcept {
   const std::uint64_t k = simulation_.next_step();
   if (k < next_news_) return false;
-  if (!simulation_.predict_horizon(s_, tip_, horizon_, model, budget)) return false;
+  if (!simulation_.predict_horizon(s_, tip_, horizon_.steps(), model, budget)) return false;
   next_news_ = touches_soon(model) ? k : k + kRareNews;
   model.missing = ~known_ & ((std::uint64_t{1} << kMaxHorizon) - 1);
   model.newest = newest_;

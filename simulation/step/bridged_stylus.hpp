@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "common/contact/applied_forces.hpp"
+#include "simulation/step/horizon_length.hpp"
 #include "simulation/step/simulation.hpp"
 
 namespace irdm {
@@ -14,12 +15,11 @@ namespace irdm {
 /// its first force on the stylus is the bridge's. Pure, real-time safe.
 class BridgedStylus {
  public:
-  /// For how long a bridge can go on when no newer model comes [s].
-  static constexpr double kOverrun = 0.02;
   static constexpr std::uint64_t kRareNews = 4;  ///< [steps]
 
   /// @param s its number in the simulation
-  BridgedStylus(Simulation& simulation, std::size_t s);
+  BridgedStylus(Simulation& simulation, std::size_t s)
+      : simulation_(simulation), s_(s), horizon_(simulation.dt()) {}
 
   /// Before each step: enters forces that were late for theirs.
   /// @param command of the newest sample
@@ -27,9 +27,8 @@ class BridgedStylus {
   StylusCommand next(const StylusCommand& command, std::uint64_t session,
                      const AppliedHistory& history) noexcept;
 
-  /// After the step of next(): how the contact goes on, for as long as the bridge is ahead of the
-  /// server and kOverrun more. False: there is no news. A tip that can touch nothing soon has some
-  /// every kRareNews steps only.
+  /// After the step of next(): how the contact goes on. False: there is no news. A tip that can
+  /// touch nothing soon has some every kRareNews steps only.
   /// @param budget as for Simulation::predict_horizon()
   bool predict_horizon(ContactModel& model, int& budget) noexcept;
   void predict_horizon(ContactModel& model) noexcept {
@@ -49,7 +48,6 @@ class BridgedStylus {
  private:
   Vector3 bounded(const Vector3& force) noexcept;
   bool touches_soon(const ContactModel& model) noexcept;
-  void follow_lead(const AppliedHistory& history) noexcept;
   void begin(const StylusCommand& command, const AppliedHistory& history) noexcept;
   void insert_delayed_force(const AppliedHistory& history, std::uint64_t k) noexcept;
   const AppliedForce* find(const AppliedHistory& history, std::uint64_t step) const noexcept;
@@ -61,10 +59,7 @@ class BridgedStylus {
   std::uint64_t known_ = ~std::uint64_t{0};  ///< bit i: the force of the last step less i is in
   std::uint64_t first_ = 0;                  ///< forces of steps before it are of no use
   std::uint64_t newest_ = kNoStep;           ///< step of the newest force at the last step
-  std::uint64_t lead_ = 0;  ///< of the bridge, to the model that its newest force rests on [steps]
-  int longest_;             ///< horizon that there may be [steps]
-  int horizon_;             ///< of the contact model [steps]
-  int too_long_ = 0;        ///< steps since which it has been longer than it must be
+  HorizonLength horizon_;
   bool bridged_ = false;
   Vector3 tip_ = Vector3::Zero();  ///< in the last step
   std::uint64_t next_news_ = 0;    ///< no news before this step

@@ -247,3 +247,24 @@ TEST_CASE("bridged stylus: the other's force is in its contact model as the mean
     CHECK((model.other_torque - tips[other].cross(expected)).norm() < 1e-12);
   }
 }
+
+TEST_CASE("bridged stylus: the horizon covers the bridge's lead and an overrun, longer at once") {
+  constexpr double kStep = 0.001;
+  HorizonLength horizon(kStep);
+  CHECK(horizon.steps() == 50);
+  const auto told = [](std::uint64_t newest, std::uint64_t base) {
+    AppliedHistory history(1);
+    history.take({.step = newest, .base = base, .count = 1, .past = {}});
+    return history;
+  };
+  for (int k = 0; k < 999; ++k) horizon.follow(told(103, 100));
+  CHECK(horizon.steps() == 50);
+  horizon.follow(told(103, 100));
+  CHECK(horizon.steps() == 24);
+  CHECK(horizon.lead() == 3);
+  horizon.follow(told(111, 100));
+  CHECK(horizon.steps() == 32);
+  horizon.follow(told(190, 100));
+  CHECK(horizon.steps() == 50);
+  CHECK(horizon.lead() == kMaxHorizon);
+}

@@ -116,9 +116,9 @@ Overruns read_overruns(TomlTable table) {
 
 SimulatedLink read_link(TomlTable table) {
   SimulatedLink link;
-  link.way.delay = table.number("delay", between(0.0, 1.0), link.way.delay);
-  link.way.jitter = table.number("jitter", between(0.0, 1.0), link.way.jitter);
-  link.way.loss = table.number("loss", between(0.0, 0.9), link.way.loss);
+  link.channel.delay = table.number("delay", between(0.0, 1.0), link.channel.delay);
+  link.channel.jitter = table.number("jitter", between(0.0, 1.0), link.channel.jitter);
+  link.channel.loss = table.number("loss", between(0.0, 0.9), link.channel.loss);
   link.server_overruns = read_overruns(table.table("server_overruns"));
   link.bridge_overruns = read_overruns(table.table("bridge_overruns"));
   link.seed = static_cast<std::uint64_t>(table.integer("seed", 0, 1'000'000'000, 1));

@@ -9,7 +9,7 @@
 #include "common/blackbox/black_box.hpp"
 #include "common/config/toml_reader.hpp"
 #include "common/realtime/scheduling.hpp"
-#include "device_bridge/link/link_simulation.hpp"
+#include "device_bridge/link/simulated_link.hpp"
 #include "device_bridge/servo_loop.hpp"
 #include "device_bridge/virtual_stylus.hpp"
 
@@ -53,13 +53,13 @@ struct BridgeConfig {
   double max_force = 3.3;               ///< key `bridge.max_force`: shown at most [N], (0, 40]
   double continuous_force = 0.88;       ///< key `bridge.continuous_force`: for long [N], (0, 40]
   /// key `bridge.mode`: "predict": the contact is solved here, so that delay is not felt | "hold":
-  /// the server's forces are held. In lockstep there is no delay, and forces are held.
+  /// the server's forces are held. In lockstep without a `link` there is no delay, and forces are
+  /// held.
   bool predict = true;
   /// table `bridge.link`: a link that is simulated, in lockstep; none: there is none
   std::optional<SimulatedLink> link;
   // link.delay, link.jitter [s], 0 to 1; link.loss, 0 to 0.9; link.seed, from 0, default 1
-  // link.server_overruns, link.bridge_overruns: tables with every [s], 0 to 1000, longest [s], 0 to
-  // 1
+  // link.server_overruns, link.bridge_overruns: tables, every [s], 0 to 1000; longest [s], 0 to 1
   /// key `bridge.stream`: "tcp" | "udp"; how samples, forces and contact models go. Where UDP does
   /// not get through, by TCP.
   bool udp = false;

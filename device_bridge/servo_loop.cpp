@@ -53,11 +53,11 @@ void ServoLoop::receive(const ContactModel& model, std::int64_t now_ns) noexcept
 }
 
 void ServoLoop::end_steps(std::int64_t now_ns) noexcept {
-  news_ = contact_ && contact_->tick(now_ns, pose_.tip);
+  steps_ended_ = contact_ && contact_->tick(now_ns, pose_.tip);
 }
 
 // Along the force that was solved: what the filter adds beside it is between hand and device.
-void ServoLoop::tell_shown(const Vector3& solved) noexcept {
+void ServoLoop::report_shown(const Vector3& solved) noexcept {
   if (!contact_) return;
   const double squared = solved.squaredNorm();
   contact_->shown(squared > 0.0 ? std::clamp(shown_.dot(solved) / squared, 0.0, 1.0) : 1.0);
@@ -121,7 +121,7 @@ void ServoLoop::apply(std::int64_t now_ns, const ServoInput& input) noexcept {
   applied_ns_ = now_ns;
   peak_force_ = std::max(peak_force_, force.norm());
   show(force);
-  tell_shown(solved);
+  report_shown(solved);
 }
 
 FilterCounts ServoLoop::counts() const noexcept {

@@ -53,7 +53,9 @@ class ServoLoop {
   /// The same. Ends the steps that are due, with the stylus where it was read last.
   void end_steps(std::int64_t now_ns) noexcept;
   /// After apply(): what is news for the server of the steps that ended; null when there is none.
-  const AppliedForces* applied() const noexcept { return news_ ? &contact_->applied() : nullptr; }
+  const AppliedForces* applied() const noexcept {
+    return contact_ && steps_ended_ ? &contact_->applied() : nullptr;
+  }
 
   /// Shows what the filter makes of the force; none before the first read(). What it shows of a
   /// force that was solved here is what the object gets.
@@ -85,7 +87,7 @@ class ServoLoop {
   const DeviceState& device_state() const noexcept { return device_state_; }
 
  private:
-  void tell_shown(const Vector3& solved) noexcept;
+  void report_shown(const Vector3& solved) noexcept;
   ForceDemand demand(std::int64_t now_ns, const ServoInput& input) noexcept;
   void update_device_state() noexcept;
   void show(const Vector3& force) noexcept {
@@ -99,7 +101,7 @@ class ServoLoop {
   SafetyFilter filter_;
   Clutch clutch_;
   std::optional<BridgeContact> contact_;  ///< none: the server's forces are held
-  bool news_ = false;                     ///< steps ended in this tick
+  bool steps_ended_ = false;              ///< in this tick
   StylusPose pose_;                       ///< the last good one, W; buttons as on the wire
   /// Tip as it was read last, not a number if of no use; none since restart() [m], D.
   std::optional<Vector3> reading_;

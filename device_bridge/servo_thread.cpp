@@ -6,6 +6,7 @@
 #include "common/error.hpp"
 #include "common/realtime/clock.hpp"
 #include "common/realtime/real_time_scope.hpp"
+#include "device_bridge/link/link_simulation.hpp"
 
 namespace irdm {
 namespace {
@@ -112,7 +113,7 @@ void ServoThread::run_real_time() noexcept {
     report_.missed = schedule.missed();
     if (!tick(now_ns)) return;
     if (report_.lockstep) {
-      report_.end = settings_.link ? run_linked() : run_lockstep();
+      report_.end = settings_.link ? run_over_link() : run_lockstep();
       return;
     }
   }
@@ -162,7 +163,7 @@ void ServoThread::render_tick(std::int64_t now_ns) noexcept {
     end_steps(i, now_ns);
     link_.styluses[i].input.receive();
     loops_[i].apply(now_ns, link_.styluses[i].input.front());
-    hand_on_applied(i);
+    publish_applied(i);
     write_down(i, now_ns);
     lost = lost || loops_[i].device_state().lost;
     const SafetyFilter& filter = loops_[i].filter();
@@ -223,7 +224,7 @@ void ServoThread::end_steps(std::size_t i, std::int64_t now_ns) noexcept {
   loops_[i].end_steps(now_ns);
 }
 
-void ServoThread::hand_on_applied(std::size_t i) noexcept {
+void ServoThread::publish_applied(std::size_t i) noexcept {
   ServoLink::Stylus& stylus = link_.styluses[i];
   const AppliedForces* applied = loops_[i].applied();
   if (applied == nullptr) return;
@@ -276,7 +277,7 @@ bool ServoThread::finished(double time) noexcept {
 }
 
 // The server's steps come with its overruns; between them the servo loops run on.
-ServoEnd ServoThread::run_linked() {
+ServoEnd ServoThread::run_over_link() {
   report_.lockstep = true;
   begin_session(link_.state.front());
   LinkSimulation link(loops_, *settings_.link, link_.state.front().dt, settings_.rate);

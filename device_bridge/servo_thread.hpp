@@ -11,11 +11,13 @@
 #include "common/realtime/histogram.hpp"
 #include "common/realtime/scheduling.hpp"
 #include "device_bridge/blackbox/tick_log.hpp"
-#include "device_bridge/link/link_simulation.hpp"
+#include "device_bridge/link/simulated_link.hpp"
 #include "device_bridge/servo_link.hpp"
 #include "device_bridge/servo_loop.hpp"
 
 namespace irdm {
+
+class LinkSimulation;
 
 struct ServoSettings {
   double rate = 1000.0;  ///< ticks a second, > 0
@@ -81,7 +83,7 @@ class ServoThread {
   void run() noexcept;
   void run_real_time() noexcept;
   ServoEnd run_lockstep() noexcept;
-  ServoEnd run_linked();
+  ServoEnd run_over_link();
   bool exchange(LinkSimulation& link, std::uint64_t k);
   bool finished(double time) noexcept;
   ServoEnd lockstep_end() noexcept;
@@ -93,7 +95,7 @@ class ServoThread {
   void end(ServoEnd end, std::int64_t now_ns) noexcept;
   void begin_session(const LinkState& state) noexcept;
   void end_steps(std::size_t i, std::int64_t now_ns) noexcept;
-  void hand_on_applied(std::size_t i) noexcept;
+  void publish_applied(std::size_t i) noexcept;
   void step(std::uint64_t k) noexcept;
   bool wait_for_forces(std::uint64_t k) noexcept;
 

@@ -20,8 +20,12 @@ LinkSimulation::LinkSimulation(std::vector<ServoLoop>& loops, const SimulatedLin
       server_overruns_(link.server_overruns, 4 * link.seed) {
   for (std::size_t i = 0; i < loops.size(); ++i) {
     const std::uint64_t seed = 4 * (link.seed + 1000 * i);
-    styluses_.push_back(
-        {{link.way, seed + 1}, {link.way, seed + 2}, {link.bridge_overruns, seed + 3}, {}, {}, {}});
+    styluses_.push_back({{link.channel, seed + 1},
+                         {link.channel, seed + 2},
+                         {link.bridge_overruns, seed + 3},
+                         {},
+                         {},
+                         {}});
     styluses_[i].input.linked = true;
     loops[i].read(0.0);
     styluses_[i].sample = loops[i].take_sample(0);

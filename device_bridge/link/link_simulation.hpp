@@ -10,14 +10,6 @@
 
 namespace irdm {
 
-/// Key `bridge.link`: what lies between bridge and server in lockstep.
-struct SimulatedLink {
-  LinkParameters way = {};
-  Overruns server_overruns = {};
-  Overruns bridge_overruns = {};  ///< of each stylus; its device goes on showing its force
-  std::uint64_t seed = 1;
-};
-
 /// The servo loops of a lockstep run behind a simulated link, on the simulated clock: they run as
 /// in real time, and server and bridge hear of one another when a message would have arrived. One
 /// thread; not real-time safe. The same parameters and answers, the same run to the bit.
@@ -49,8 +41,8 @@ class LinkSimulation {
     std::optional<ContactModel> model;
   };
   struct Stylus {
-    SimulatedWay<Up> up;
-    SimulatedWay<Down> down;
+    SimulatedChannel<Up> up;
+    SimulatedChannel<Down> down;
     SimulatedOverruns overruns;
     ServoInput input;       ///< at the bridge
     StylusSample sample;    ///< at the server, and the next

@@ -8,8 +8,8 @@
 
 namespace irdm {
 
-/// What lies between bridge and server on the simulated clock, each way on its own.
-struct LinkParameters {
+/// One direction between bridge and server on the simulated clock.
+struct ChannelParameters {
   double delay = 0.0;   ///< one way [s]
   double jitter = 0.0;  ///< up to so much more, each message anew [s]
   double loss = 0.0;    ///< share of messages
@@ -21,11 +21,21 @@ struct Overruns {
   double longest = 0.0;  ///< each takes up to so long [s]
 };
 
-/// One way between the two; messages may overtake one another. The same seed, the same way.
+/// Table `bridge.link`: what lies between bridge and server in lockstep.
+struct SimulatedLink {
+  ChannelParameters channel = {};
+  Overruns server_overruns = {};
+  Overruns bridge_overruns = {};  ///< of each stylus; its device goes on showing its force
+  std::uint64_t seed = 1;
+};
+
+/// One direction between the two; messages may overtake one another. The same seed, the same
+/// channel.
 template <typename Message>
-class SimulatedWay {
+class SimulatedChannel {
  public:
-  SimulatedWay(const LinkParameters& link, std::uint64_t seed) : link_(link), random_(seed) {}
+  SimulatedChannel(const ChannelParameters& link, std::uint64_t seed)
+      : link_(link), random_(seed) {}
 
   /// @param now simulated time [s]
   void send(double now, Message message) {
@@ -55,7 +65,7 @@ class SimulatedWay {
   };
   double uniform() { return static_cast<double>(random_() >> 11) * 0x1p-53; }
 
-  LinkParameters link_;
+  ChannelParameters link_;
   std::mt19937_64 random_;
   std::vector<Timed> under_way_;
 };

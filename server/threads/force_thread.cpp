@@ -129,9 +129,9 @@ void ForceThread::watch_health(std::int64_t begin_ns, std::int64_t end_ns) noexc
   window_.unsolved = report_.unsolved;
   window_.missed = clock_.missed();
   window_.cache_misses = simulation_.cache_misses();
-  pace_.look(report_.steps - std::exchange(steps_before_, report_.steps),
-             window_.missed - std::exchange(missed_before_, window_.missed));
-  window_.prediction_period = pace_.period();
+  throttle_.update(report_.steps - std::exchange(steps_before_, report_.steps),
+                   window_.missed - std::exchange(missed_before_, window_.missed));
+  window_.prediction_period = throttle_.period();
   health_.put(window_);  // some 10 kB each, once a second
   status_.put(window_);
   window_ = ForceHealth{};
@@ -194,11 +194,11 @@ void ForceThread::step() noexcept {
   if (record_.reset) ++report_.resets;
   const std::size_t bridges = static_cast<std::size_t>(network_.styluses());
   for (std::size_t s = 0; s < commands_.size(); ++s) {
-    // In lockstep a new bridge's first sample wants an answer, too.
-    if (!commands_[s].present && !clock_.lockstep()) continue;
     report_.peak_force = std::max(report_.peak_force, record_.stylus[s].force.norm());
     if (s >= bridges) continue;
+    // A sample is answered, also where its stylus takes no part in this step.
     StylusPort& port = network_.port(static_cast<int>(s));
+    if (!port.in.front().present) continue;
     port.out.put(to_answer(record_, record_.stylus[s], port.in.front().sample));
   }
   network_.forces_ready().signal();
@@ -212,7 +212,7 @@ void ForceThread::step() noexcept {
 // After all else: who waits for a force has it by now. Styluses whose contact moves take turns, so
 // that a step is not longer with many of them; a bridge goes on with an older model meanwhile.
 void ForceThread::predict_horizon() noexcept {
-  if (!pace_.due(report_.steps)) return;
+  if (!throttle_.due(report_.steps)) return;
   const std::int64_t begin = monotonic_ns();
   const std::size_t first = next_prediction_;
   int budget = 1;

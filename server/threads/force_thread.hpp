@@ -12,7 +12,7 @@
 #include "common/realtime/triple_buffer.hpp"
 #include "server/blackbox/step_log.hpp"
 #include "server/network/network_server.hpp"
-#include "server/threads/prediction_pace.hpp"
+#include "server/threads/prediction_throttle.hpp"
 #include "server/threads/run_control.hpp"
 #include "server/threads/step_clock.hpp"
 #include "server/threads/viewer_stylus.hpp"
@@ -43,7 +43,7 @@ struct ForceHealth {
   std::uint64_t unsolved = 0;
   std::uint64_t missed = 0;  ///< deadlines
   std::uint64_t cache_misses = 0;
-  int prediction_period = 1;  ///< PredictionPace's
+  int prediction_period = 1;  ///< PredictionThrottle's
   Histogram step_time;        ///< of the last kHealthPeriodNs [ns]
   Histogram wakeup_delay;     ///< of the last kHealthPeriodNs [ns]; empty in lockstep
 };
@@ -100,8 +100,8 @@ class ForceThread {
   std::uint64_t paused_steps_ = 0;  ///< since the pause began
   std::optional<ViewerStylus> viewer_stylus_;
   std::vector<BridgedStylus> bridged_;  ///< of the network's styluses
-  PredictionPace pace_;
-  std::uint64_t missed_before_ = 0;      ///< deadlines, until the last look of pace_
+  PredictionThrottle throttle_;
+  std::uint64_t missed_before_ = 0;      ///< deadlines, until the last update of throttle_
   std::uint64_t steps_before_ = 0;       ///< steps, until then
   std::size_t next_prediction_ = 0;      ///< whose turn it is to have one made anew
   std::vector<StylusCommand> commands_;  ///< of the network's styluses, and perhaps the viewers'

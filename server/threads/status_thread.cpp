@@ -51,7 +51,7 @@ void StatusThread::run() {
   while (!stop_.wait(kStatusPeriodMs)) {
     const wire::Status status = gather();
     parts_.network.status().put(status);
-    tell_of_pace();
+    log_prediction_period();
     if (log_period_ns_ == 0 || gathered_ns_ - logged_ns < log_period_ns_) continue;
     logged_ns = gathered_ns_;
     spdlog::info("{}", status_line(status, parts_.network.stats(),
@@ -74,14 +74,13 @@ wire::Status StatusThread::gather() {
   return status;
 }
 
-// Who predicts feels it.
-void StatusThread::tell_of_pace() {
+void StatusThread::log_prediction_period() {
   const int period = parts_.force.status().front().prediction_period;
   if (period == std::exchange(prediction_period_, period)) return;
   if (period == 1) {
-    spdlog::info("contact models in each step again");
+    spdlog::info("a contact model in each step again");
   } else {
-    spdlog::warn("steps miss their deadlines: contact models only every {} steps", period);
+    spdlog::warn("steps miss their deadlines: a contact model only every {} steps", period);
   }
 }
 

@@ -34,7 +34,7 @@ class StatusThread {
   void run();
   wire::Status gather();
   float surface_rate();
-  void tell_of_pace();
+  void log_prediction_period();
 
   Parts parts_;
   int prediction_period_ = 1;  ///< that was told last

@@ -9,6 +9,10 @@ namespace {
 constexpr int kMaxSlides = 16;
 // Triangles along the way of a tip in one step that are looked at.
 constexpr std::size_t kMaxCandidates = 64;
+// Sum of changes beyond which nothing is known of nodes from before; below it the sum is exact to
+// much less than kSlack [m].
+constexpr double kLargestChange = 1.0;
+constexpr double kSlack = 1e-12;
 }  // namespace
 
 DeformedSurface::DeformedSurface(const RestSurface& rest)
@@ -27,20 +31,18 @@ void DeformedSurface::begin_step(const ResponseEngine& engine, double change) no
   seen_.clear();
   if (change == 0.0) return;
   ++state_;
-  looked_ = false;
-  if (std::isfinite(change)) {
-    change_ += change;
-  } else {
-    bounded_since_ = state_;
-    change_ = 0.0;
-  }
+  queried_ = false;
+  change_ += change;
+  if (change_ < kLargestChange) return;
+  bounded_since_ = state_;
+  change_ = 0.0;
 }
 
-void DeformedSurface::look_at(std::size_t node) noexcept {
+void DeformedSurface::mark_seen(std::size_t node) noexcept {
   if (seen_in_[node] == step_) return;
   seen_in_[node] = step_;
   seen_.push_back(static_cast<int>(node));
-  looked_ = true;
+  queried_ = true;
 }
 
 const Vector3& DeformedSurface::node(int i) noexcept {
@@ -50,7 +52,7 @@ const Vector3& DeformedSurface::node(int i) noexcept {
     known_in_[index] = state_;
     change_then_[index] = change_;
   }
-  look_at(index);
+  mark_seen(index);
   return positions_[index];
 }
 
@@ -66,9 +68,9 @@ double DeformedSurface::least_distance(int triangle, const Vector3& p) noexcept 
     then[i] = positions_[index];
     change = std::max(change, change_ - change_then_[index]);
   }
-  for (const int node : nodes) look_at(static_cast<std::size_t>(node));
+  for (const int node : nodes) mark_seen(static_cast<std::size_t>(node));
   const double distance = (p - at(then, closest_point(then, p))).norm();
-  return (1.0 - kRounding) * distance - (1.0 + kRounding) * std::sqrt(3.0) * change;
+  return (1.0 - kRounding) * distance - (1.0 + kRounding) * std::sqrt(3.0) * change - kSlack;
 }
 
 TriangleCorners DeformedSurface::corners(int triangle) noexcept {

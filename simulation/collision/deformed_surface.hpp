@@ -45,8 +45,8 @@ class DeformedSurface {
   /// Nodes that were looked at since begin_step().
   std::span<const int> seen() const noexcept { return seen_; }
 
-  /// Whether any node was looked at in this state of the engine.
-  bool looked() const noexcept { return looked_; }
+  /// Whether any node was asked for in this state of the engine.
+  bool queried() const noexcept { return queried_; }
 
   /// Whether the way from `from` to `to` stays outside of all that the surface can fill, which is
   /// known without looking at any node. False: it may not.
@@ -66,7 +66,7 @@ class DeformedSurface {
  private:
   TriangleCorners corners(int triangle) noexcept;
   double least_distance(int triangle, const Vector3& p) noexcept;
-  void look_at(std::size_t node) noexcept;
+  void mark_seen(std::size_t node) noexcept;
   SurfaceHit hit_on(int triangle, const Vector3& p) noexcept;
   SurfaceHit descend(SurfaceHit best, const Vector3& p) noexcept;
   Vector3 pseudonormal(const SurfaceHit& hit) noexcept;
@@ -80,7 +80,7 @@ class DeformedSurface {
   const ResponseEngine* engine_ = nullptr;
   std::uint64_t state_ = 1;
   std::uint64_t step_ = 0;
-  bool looked_ = false;
+  bool queried_ = false;
   std::uint64_t bounded_since_ = 1;      ///< state since which changes are bounded
   double change_ = 0.0;                  ///< the sum of all such bounds [m]
   std::vector<std::uint64_t> known_in_;  ///< state in which positions_ of a node was computed

@@ -23,9 +23,9 @@ Vector3 vector(const CourseSums<3>& sums, std::size_t n) noexcept {
 ModalHorizon::ModalHorizon(std::size_t modes)
     : kernels_(course_kernels()[0]),
       modes_(modes),
-      falls_(kCourse * kBlocks * modes),
-      rises_(kCourse * kBlocks * modes),
-      first_fall_(modes),
+      decrements_(kCourse * kBlocks * modes),
+      increments_(kCourse * kBlocks * modes),
+      first_decrement_(modes),
       ends_(2 * kMaxHorizon * modes),
       compliance_(modes),
       products_(12 * kPart),
@@ -35,21 +35,34 @@ ModalHorizon::ModalHorizon(std::size_t modes)
 
 void ModalHorizon::set_transitions(const Transitions& A, const double* omega) noexcept {
   forget();
-  for (std::size_t i = 0; i < modes_; ++i) {
-    const Transitions of_mode{A.a11 + i, A.a12 + i, A.a21 + i, A.a22 + i};
-    for (const std::size_t from : {0, 1}) {  // a coordinate, or a velocity
-      double q = from == 0 ? 1.0 : 0.0;
-      double v = 1.0 - q;
+  double* const before = products_.data();
+  double* const coordinate = before + kPart;
+  double* const velocity = coordinate + kPart;
+  for (std::size_t first = 0; first < modes_; first += kPart) {
+    const std::size_t count = std::min(kPart, modes_ - first);
+    const Transitions of_part{A.a11 + first, A.a12 + first, A.a21 + first, A.a22 + first};
+    for (const std::size_t from : {0, 1}) {  // a coordinate of 1, or a velocity
+      std::fill_n(coordinate, count, from == 0 ? 1.0 : 0.0);
+      std::fill_n(velocity, count, from == 0 ? 0.0 : 1.0);
       for (std::size_t n = 0; n < kBlocks * kCourse; ++n) {
-        if (from == 0 && n == 1) first_fall_[i] = 1.0 - q;
-        if (n < kMaxHorizon) ends_[(2 * n + from) * modes_ + i] = q;
-        const double before = q;
-        transit(of_mode, &q, &v, &q, &v, 1);
-        const std::size_t at = (n / kCourse * modes_ + i) * kCourse + n % kCourse;
-        (from == 0 ? falls_ : rises_)[at] = static_cast<float>(from == 0 ? before - q : q - before);
+        if (n < kMaxHorizon) {
+          std::copy_n(coordinate, count, &ends_[(2 * n + from) * modes_ + first]);
+        }
+        std::copy_n(coordinate, count, before);
+        transit(of_part, coordinate, velocity, coordinate, velocity, count);
+        auto& changes = from == 0 ? decrements_ : increments_;
+        float* const to = &changes[(n / kCourse * modes_ + first) * kCourse + n % kCourse];
+        const double sign = from == 0 ? -1.0 : 1.0;
+        for (std::size_t j = 0; j < count; ++j) {
+          to[kCourse * j] = static_cast<float>(sign * (coordinate[j] - before[j]));
+        }
+        if (from != 0 || n != 0) continue;
+        for (std::size_t j = 0; j < count; ++j) first_decrement_[first + j] = 1.0 - coordinate[j];
       }
     }
-    compliance_[i] = 1.0 / (omega[i] * omega[i]);
+    for (std::size_t i = first; i < first + count; ++i) {
+      compliance_[i] = 1.0 / (omega[i] * omega[i]);
+    }
   }
 }
 
@@ -138,15 +151,15 @@ void ModalHorizon::respond_to(const Contact& contact, const double* force, std::
     multiply(force + i, &compliance_[i], factors_.data(), count);
     multiply_shapes(contact, i, count, factors_.data(), products_.data());
     for (std::size_t block = 0; kCourse * block < steps; ++block) {
-      kernels_.add_three(falls(block, i), products_.data(), count, sums[block]);
+      kernels_.add_three(decrements(block, i), products_.data(), count, sums[block]);
     }
   }
   for (std::size_t n = 0; n < steps; ++n) moves[n] = vector(sums[n / kCourse], n % kCourse);
 }
 
 // A force that goes on moves the place where a mode is at rest; it swings freely about that.
-const double* ModalHorizon::swing(const State& state, std::size_t first,
-                                  std::size_t count) noexcept {
+const double* ModalHorizon::relative_coordinate(const State& state, std::size_t first,
+                                                std::size_t count) noexcept {
   const double* const coordinate = state.coordinate + first;
   if (state.force == nullptr) return coordinate;
   multiply(state.force + first, &compliance_[first], factors_.data(), count);
@@ -158,9 +171,9 @@ const double* ModalHorizon::swing(const State& state, std::size_t first,
 // R[n] = Phi diag((c_n - c_{n+1}) / omega^2) Phi^T.
 void ModalHorizon::compute(Contact& contact, const State& state, bool respond) noexcept {
   const std::size_t steps = contact.steps;
-  BlockSums<3> fallen{};
-  BlockSums<3> risen{};
-  BlockSums<6> yields{};
+  BlockSums<3> decrease{};
+  BlockSums<3> increase{};
+  BlockSums<6> compliances{};
   Sums<6> first{};
   contact.path[0].setZero();
   double* const coordinates = products_.data() + 6 * kPart;
@@ -171,28 +184,28 @@ void ModalHorizon::compute(Contact& contact, const State& state, bool respond) n
       contact.path[0][axis] += dot(&contact.shapes[static_cast<std::size_t>(axis) * modes_ + i],
                                    state.coordinate + i, count);
     }
-    multiply_shapes(contact, i, count, swing(state, i, count), coordinates);
+    multiply_shapes(contact, i, count, relative_coordinate(state, i, count), coordinates);
     multiply_shapes(contact, i, count, state.velocity + i, velocities);
     for (std::size_t block = 0; kCourse * block + 1 < steps; ++block) {
-      kernels_.add_three(falls(block, i), coordinates, count, fallen[block]);
-      kernels_.add_three(rises(block, i), velocities, count, risen[block]);
+      kernels_.add_three(decrements(block, i), coordinates, count, decrease[block]);
+      kernels_.add_three(increments(block, i), velocities, count, increase[block]);
     }
     if (!respond) continue;
     square_shapes(contact, i, count, products_.data());
-    const Sums<6> part = dot_six(&first_fall_[i], products_.data(), count);
+    const Sums<6> part = dot_six(&first_decrement_[i], products_.data(), count);
     for (std::size_t k = 0; k < 6; ++k) first[k] += part[k];
     for (std::size_t block = 0; kCourse * block < steps; ++block) {
-      kernels_.add_six(falls(block, i), products_.data(), count, yields[block]);
+      kernels_.add_six(decrements(block, i), products_.data(), count, compliances[block]);
     }
   }
   for (std::size_t n = 0; n + 1 < steps; ++n) {
     const std::size_t block = n / kCourse;
-    contact.path[n + 1] =
-        contact.path[n] + vector(risen[block], n % kCourse) - vector(fallen[block], n % kCourse);
+    contact.path[n + 1] = contact.path[n] + vector(increase[block], n % kCourse) -
+                          vector(decrease[block], n % kCourse);
   }
   for (std::size_t n = 0; respond && n < steps; ++n) {
     const auto r = [&](std::size_t k) {
-      return n == 0 ? first[k] : yields[n / kCourse][k][n % kCourse];
+      return n == 0 ? first[k] : compliances[n / kCourse][k][n % kCourse];
     };
     contact.response[n] << r(0), r(1), r(3), r(1), r(2), r(4), r(3), r(4), r(5);
   }
@@ -205,7 +218,7 @@ Vector3 ModalHorizon::end_of_path(const Contact& contact, const State& state) no
   Vector3 end = Vector3::Zero();
   for (std::size_t i = 0; i < modes_; i += kPart) {
     const std::size_t count = std::min(kPart, modes_ - i);
-    const double* const about = swing(state, i, count);
+    const double* const about = relative_coordinate(state, i, count);
     double* const moved = products_.data();
     for (std::size_t j = 0; j < count; ++j) {
       const double rest = state.coordinate[i + j] - about[j];

@@ -86,23 +86,24 @@ class ModalHorizon {
                        const double* factors, double* products) const noexcept;
   void square_shapes(const Contact& contact, std::size_t first, std::size_t count,
                      double* products) noexcept;
-  const double* swing(const State& state, std::size_t first, std::size_t count) noexcept;
-  const float* falls(std::size_t block, std::size_t mode) const noexcept {
-    return &falls_[(block * modes_ + mode) * kCourse];
+  const double* relative_coordinate(const State& state, std::size_t first,
+                                    std::size_t count) noexcept;
+  const float* decrements(std::size_t block, std::size_t mode) const noexcept {
+    return &decrements_[(block * modes_ + mode) * kCourse];
   }
-  const float* rises(std::size_t block, std::size_t mode) const noexcept {
-    return &rises_[(block * modes_ + mode) * kCourse];
+  const float* increments(std::size_t block, std::size_t mode) const noexcept {
+    return &increments_[(block * modes_ + mode) * kCourse];
   }
 
   CourseKernels kernels_;
   std::size_t modes_;
-  std::vector<float> falls_;   ///< (kBlocks, r, kCourse): c_n - c_{n+1}, n = 0, 1, ...
-  std::vector<float> rises_;   ///< the same of s_{n+1} - s_n
-  AlignedNumbers first_fall_;  ///< (r) c_0 - c_1
-  AlignedNumbers ends_;        ///< (kMaxHorizon, 2, r): c_n and s_n
-  AlignedNumbers compliance_;  ///< (r) 1 / omega^2
-  AlignedNumbers products_;    ///< (12, kPart): of shapes with what they meet
-  AlignedNumbers factors_;     ///< (kPart)
+  std::vector<float> decrements_;   ///< (kBlocks, r, kCourse): c_n - c_{n+1}, n = 0, 1, ...
+  std::vector<float> increments_;   ///< the same of s_{n+1} - s_n
+  AlignedNumbers first_decrement_;  ///< (r) c_0 - c_1
+  AlignedNumbers ends_;             ///< (kMaxHorizon, 2, r): c_n and s_n
+  AlignedNumbers compliance_;       ///< (r) 1 / omega^2
+  AlignedNumbers products_;         ///< (12, kPart): of shapes with what they meet
+  AlignedNumbers factors_;          ///< (kPart)
   std::array<Contact, kMaxContacts> contacts_;
 };
 

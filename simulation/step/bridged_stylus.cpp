@@ -89,8 +89,8 @@ void BridgedStylus::insert_delayed_force(const AppliedHistory& history, std::uin
   }
 }
 
-// Whether tip and surface would meet at the bridge within twice the steps without news, going on as
-// they did since the last.
+// Whether tip and surface would meet at the bridge within two periods, going on as they did since
+// the last model.
 bool BridgedStylus::touches_soon(const ContactModel& model) noexcept {
   constexpr double kNear = 1e-3;  // [m]
   if (!model.valid || model.state != ContactState::kFree) {
@@ -101,14 +101,14 @@ bool BridgedStylus::touches_soon(const ContactModel& model) noexcept {
   const Vector3 place = object.position + object.orientation * (model.place + model.path[0]);
   const Vector3 gap = tip_ - place;
   const double moved = (gap - std::exchange(gap_, gap).value_or(Vector3::Zero())).norm();
-  return gap.norm() < kNear + static_cast<double>(2 * kRareNews + horizon_.lead()) * moved;
+  return gap.norm() < kNear + static_cast<double>(2 * kFarModelPeriod + horizon_.lead()) * moved;
 }
 
 bool BridgedStylus::predict_horizon(ContactModel& model, int& budget) noexcept {
   const std::uint64_t k = simulation_.next_step();
-  if (k < next_news_) return false;
+  if (k < next_model_) return false;
   if (!simulation_.predict_horizon(s_, tip_, horizon_.steps(), model, budget)) return false;
-  next_news_ = touches_soon(model) ? k : k + kRareNews;
+  next_model_ = touches_soon(model) ? k : k + kFarModelPeriod;
   model.missing = ~known_ & ((std::uint64_t{1} << kMaxHorizon) - 1);
   model.newest = newest_;
   model.paused = false;
@@ -117,7 +117,7 @@ bool BridgedStylus::predict_horizon(ContactModel& model, int& budget) noexcept {
 
 void BridgedStylus::forget(const AppliedHistory& history) noexcept {
   bridged_ = false;
-  next_news_ = 0;
+  next_model_ = 0;
   gap_.reset();
   known_ = ~std::uint64_t{0};
   first_ = history.newest() == kNoStep ? 0 : history.newest() + 1;

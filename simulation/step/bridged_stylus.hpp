@@ -15,7 +15,8 @@ namespace irdm {
 /// its first force on the stylus is the bridge's. Pure, real-time safe.
 class BridgedStylus {
  public:
-  static constexpr std::uint64_t kRareNews = 4;  ///< [steps]
+  /// From one contact model to the next while the tip can touch nothing soon [steps].
+  static constexpr std::uint64_t kFarModelPeriod = 4;
 
   /// @param s its number in the simulation
   BridgedStylus(Simulation& simulation, std::size_t s)
@@ -27,8 +28,7 @@ class BridgedStylus {
   StylusCommand next(const StylusCommand& command, std::uint64_t session,
                      const AppliedHistory& history) noexcept;
 
-  /// After the step of next(): how the contact goes on. False: there is no news. A tip that can
-  /// touch nothing soon has some every kRareNews steps only.
+  /// After the step of next(): how the contact goes on. False: no model is due.
   /// @param budget as for Simulation::predict_horizon()
   bool predict_horizon(ContactModel& model, int& budget) noexcept;
   void predict_horizon(ContactModel& model) noexcept {
@@ -62,8 +62,8 @@ class BridgedStylus {
   HorizonLength horizon_;
   bool bridged_ = false;
   Vector3 tip_ = Vector3::Zero();  ///< in the last step
-  std::uint64_t next_news_ = 0;    ///< no news before this step
-  std::optional<Vector3> gap_;     ///< from the surface to the tip, when there last was [m], W
+  std::uint64_t next_model_ = 0;   ///< no model before this step
+  std::optional<Vector3> gap_;     ///< from the surface to the tip, at the last model [m], W
   std::uint64_t late_ = 0;
   std::uint64_t lost_ = 0;
   std::uint64_t bounded_ = 0;

@@ -44,7 +44,7 @@ void SoftObject::set(const Vector3& gravity, const ObjectSettings& settings) noe
 
 void SoftObject::step(std::span<const StylusCommand> commands, ObjectRecord& record) noexcept {
   body_.begin_step(record);
-  look(!record.spin.isZero(0.0));
+  update_surface(!record.spin.isZero(0.0));
   prefetch_columns(commands);
   const int floor_count = find_contacts(commands);
   solve(commands, floor_count, record);
@@ -153,11 +153,11 @@ void SoftObject::cache_nodes() noexcept {
 
 // What is found of the surface between steps the coming step need not find again.
 // @param loaded by its own motion, which changes the response, too
-void SoftObject::look(bool loaded) noexcept {
+void SoftObject::update_surface(bool loaded) noexcept {
   const Change change = std::exchange(change_, loaded ? Change::kUnknown : Change::kNone);
   double bound = DeformedSurface::kUnknown;
   if (!loaded && change == Change::kNone) bound = 0.0;
-  if (!loaded && change == Change::kStep && surface_.looked()) {
+  if (!loaded && change == Change::kStep && surface_.queried()) {
     bound = body_.engine().free_change_bound();
   }
   surface_.begin_step(body_.engine(), bound);
@@ -188,7 +188,7 @@ bool SoftObject::predict_horizon(std::size_t s, const Vector3& tip, int horizon,
   model.body = this->model().body;
   model.motion = state();
   model.free_forces = body_.free_forces();
-  look(false);
+  update_surface(false);
   ContactPatch patch;
   contacts_.locate(s, body_.next_motion().to_body(tip), model, patch);
   const auto count = static_cast<std::size_t>(model.horizon);
@@ -206,7 +206,7 @@ bool SoftObject::predict_horizon(std::size_t s, const Vector3& tip, int horizon,
 bool SoftObject::insert_delayed_force(std::size_t s, const AppliedForce& applied,
                                       LateForce& entry) noexcept {
   if (entry.age >= body_.past().count()) return false;
-  look(false);
+  update_surface(false);
   const Vector3 tip = body_.next_motion().to_body(applied.tip);
   if (!contacts_.locate_delayed(s, tip, applied.arm, entry)) return false;
   entry.force = body_.past().halfway(entry.age).conjugate() * applied.force;
@@ -224,7 +224,7 @@ bool SoftObject::insert_delayed_force(const LateForce& entry) noexcept {
 }
 
 double SoftObject::distance(const Vector3& tip) noexcept {
-  look(false);
+  update_surface(false);
   return surface_.closest(body_.next_motion().to_body(tip)).signed_distance;
 }
 

@@ -72,12 +72,12 @@ class SoftObject {
   void end_step(ObjectRecord& record) noexcept;
   void cache_nodes() noexcept;
   void collect_others(std::size_t s, ContactModel& model) noexcept;
-  void look(bool loaded) noexcept;
+  void update_surface(bool loaded) noexcept;
 
   DeformableBody body_;
   RestSurface rest_;
   DeformedSurface surface_;
-  /// What has changed the response since surface_ was looked at.
+  /// What has changed the response since update_surface().
   enum class Change { kNone, kStep, kUnknown };
   Change change_ = Change::kUnknown;
   Friction friction_;  ///< of tips on its surface

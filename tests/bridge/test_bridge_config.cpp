@@ -136,9 +136,9 @@ TEST_CASE("bridge configuration takes a simulated link") {
           "bridge_overruns = { every = 2, longest = 0.02 }\n[[device]]\nscript = \"/a.csv\"\n")
           .load();
   REQUIRE(config.link);
-  CHECK(config.link->way.delay == 0.01);
-  CHECK(config.link->way.jitter == 0.002);
-  CHECK(config.link->way.loss == 0.1);
+  CHECK(config.link->channel.delay == 0.01);
+  CHECK(config.link->channel.jitter == 0.002);
+  CHECK(config.link->channel.loss == 0.1);
   CHECK(config.link->seed == 5);
   CHECK(config.link->bridge_overruns.every == 2.0);
   CHECK(config.link->bridge_overruns.longest == 0.02);

@@ -37,8 +37,8 @@ struct Stylus {
   Stylus(const LoopHand& loop_hand, const LoopLink& link, std::uint64_t seed, double dt,
          const LoopSetup& setup)
       : hand(loop_hand.hand, loop_hand.target(0.0)),
-        up(link, 100 + seed),
-        down(link, 200 + seed),
+        up(link, 100 + seed + 1000 * setup.seed),
+        down(link, 200 + seed + 1000 * setup.seed),
         contact(dt, std::llround(1e9 * dt)),
         busy(setup.bridge_overruns, 300 + seed + 1000 * setup.seed),
         filter({.needed_success = setup.needed_success}, setup.guards) {
@@ -46,8 +46,8 @@ struct Stylus {
   }
 
   VirtualHand hand;
-  SimulatedWay<Up> up;
-  SimulatedWay<Down> down;
+  SimulatedChannel<Up> up;
+  SimulatedChannel<Down> down;
   BridgeContact contact;
   SimulatedOverruns busy;
   SafetyFilter filter;

@@ -18,7 +18,7 @@ enum class LoopMode {
   kPredict,  ///< the contact is solved at the bridge
 };
 
-using LoopLink = LinkParameters;
+using LoopLink = ChannelParameters;
 
 /// A hand, what it wants, and its button.
 struct LoopHand {
@@ -40,7 +40,7 @@ struct LoopSetup {
   double needed_success = 0.0;
   Overruns server_overruns;
   Overruns bridge_overruns;  ///< of each bridge; the device goes on showing its force
-  std::uint64_t seed = 0;    ///< of the overruns
+  std::uint64_t seed = 0;    ///< of overruns and link
 };
 
 /// What happened, per hand and step.

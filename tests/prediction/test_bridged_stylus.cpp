@@ -206,9 +206,10 @@ TEST_CASE("bridged stylus: a force is bounded, and one that is never told of is 
   Served silent(1);
   for (int k = 0; k < 5; ++k) silent.step(kAbove, Vector3::Zero());
   silent.step(kAbove, Vector3::Zero(), false);
-  for (std::uint64_t i = 1; i < BridgedStylus::kRareNews; ++i) silent.step(kAbove, Vector3::Zero());
+  for (std::uint64_t i = 1; i < BridgedStylus::kFarModelPeriod; ++i)
+    silent.step(kAbove, Vector3::Zero());
   const std::uint64_t after = silent.model.step - 5;  // of the one that was not told
-  REQUIRE(after < BridgedStylus::kRareNews);
+  REQUIRE(after < BridgedStylus::kFarModelPeriod);
   CHECK(silent.model.missing == std::uint64_t{1} << after);
   for (int k = 0; k < 60; ++k) silent.step(kAbove, Vector3::Zero());
   CHECK(silent.bridged.lost() == 1);

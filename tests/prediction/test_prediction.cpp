@@ -185,8 +185,19 @@ TEST_CASE("prediction: a tip that slides on a surface", "[slow]") {
       CHECK(test::rms_error(predict.run, direct) < 0.5 * tooth);
       const bool soft = E < 2e3;
       const double slow_link = soft && link.delay > 0.01 ? 0.2 : 0.1;
-      // With jitter and loss a tooth comes some steps early or late: by the dice 0.07 to 0.34.
-      CHECK(predict.error < (link.loss > 0.0 ? 0.4 : slow_link));
+      if (link.loss == 0.0) CHECK(predict.error < slow_link);
+      if (link.loss == 0.0) continue;
+      // A tooth comes some steps early or late there, by the seed.
+      LoopSetup other = setup;
+      std::vector<double> errors{predict.error};
+      for (other.seed = 1; errors.size() < 7; ++other.seed) {
+        const Compared again = compare(other, direct, LoopMode::kPredict, link);
+        CHECK(test::rms_error(again.run, direct) < 0.5 * tooth);
+        errors.push_back(again.error);
+      }
+      std::sort(errors.begin(), errors.end());
+      CHECK(errors[errors.size() / 2] < (soft ? 0.23 : 0.19));
+      CHECK(errors.back() < 0.4);
     }
   }
 }

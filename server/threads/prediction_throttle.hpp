@@ -7,7 +7,7 @@ namespace irdm {
 /// How often contact models are made: each step, or each second, fourth or eighth while steps miss
 /// their deadlines. A second with more than kTooMany of them halves it, kGood seconds in a row with
 /// fewer than kFew double it. Pure, real-time safe.
-class PredictionPace {
+class PredictionThrottle {
  public:
   static constexpr double kTooMany = 0.01;  ///< of the steps that should have been
   static constexpr double kFew = 0.001;     ///< the same
@@ -15,7 +15,7 @@ class PredictionPace {
   static constexpr int kRarest = 8;         ///< [steps]
 
   /// After each second. @param steps made in it  @param missed deadlines in it
-  void look(std::uint64_t steps, std::uint64_t missed) noexcept {
+  void update(std::uint64_t steps, std::uint64_t missed) noexcept {
     const auto due = static_cast<double>(steps + missed);
     const auto late = static_cast<double>(missed);
     good_ = late < kFew * due ? good_ + 1 : 0;

@@ -80,6 +80,7 @@ ForceDemand ServoLoop::demand(std::int64_t now_ns, const ServoInput& input) noex
           .horizon_ns = wanted.horizon_ns,
           .solved_here = true,
           .solved_ns = wanted.solved_ns,
+          .energy = wanted.energy,
           .contact = wanted.contact,
           .force = wanted.force,
           .normal = wanted.normal};
@@ -109,6 +110,7 @@ void ServoLoop::apply(std::int64_t now_ns, const ServoInput& input) noexcept {
   ForceDemand wanted = demand(now_ns, input);
   const Vector3 solved = mapping_.workspace.to_device(wanted.force);
   wanted.force = clutch_.gain(now_ns) * solved;
+  wanted.energy *= mapping_.workspace.force_scale / mapping_.workspace.scale;
   wanted.normal = mapping_.workspace.direction_to_device(wanted.normal);
   const Vector3 force = filter_.step(
       now_ns, {.tip = *reading_, .motor_temperature = device_state_.motor_temperature}, wanted);

@@ -16,8 +16,8 @@ bool all_finite(const ContactModel& model) noexcept {
   const FreeForces& forces = model.free_forces;
   bool finite = model.place.allFinite() && model.normal.allFinite() && model.series.allFinite() &&
                 model.other_force.allFinite() && model.other_torque.allFinite() &&
-                forces.gravity.allFinite() && forces.home_position.allFinite() &&
-                forces.home_orientation.coeffs().allFinite();
+                std::isfinite(model.energy) && forces.gravity.allFinite() &&
+                forces.home_position.allFinite() && forces.home_orientation.coeffs().allFinite();
   for (const double number : {forces.damping.linear, forces.damping.angular,
                               forces.tether.stiffness, forces.tether.angular_stiffness}) {
     finite = finite && std::isfinite(number) && number >= 0.0;
@@ -67,11 +67,12 @@ ContactModelFault check_stiffness(const ContactModel& model, const Matrix3& rigi
   if (!symmetric(within, scale) || !symmetric(model.series, model.series.norm())) {
     return ContactModelFault::kAsymmetric;
   }
-  const auto elastic = Solver(within, Eigen::EigenvaluesOnly).eigenvalues();
+  const Matrix3 own = within + rigid;
+  const auto moved = Solver(own, Eigen::EigenvaluesOnly).eigenvalues();
   const auto series = Solver(model.series, Eigen::EigenvaluesOnly).eigenvalues();
-  const auto whole = Solver(within + rigid + model.series, Eigen::EigenvaluesOnly).eigenvalues();
+  const auto whole = Solver(own + model.series, Eigen::EigenvaluesOnly).eigenvalues();
   const double rounding = kAsymmetry * scale;
-  if (!(elastic[0] >= -rounding) || !(series[0] >= -1e-9 * model.series.norm()) ||
+  if (!(moved[0] >= -rounding) || !(series[0] >= -1e-9 * model.series.norm()) ||
       !(whole[0] * limits.stiffest >= 1.0) || !(whole[2] * limits.softest <= 1.0)) {
     return ContactModelFault::kStiffness;
   }
@@ -80,8 +81,9 @@ ContactModelFault check_stiffness(const ContactModel& model, const Matrix3& rigi
     if (!(model.path[i].norm() <= limits.farthest)) return ContactModelFault::kFar;
     const Matrix3& response = model.response[i];
     if (!symmetric(response, scale)) return ContactModelFault::kAsymmetric;
-    const auto eigenvalues = Solver(response, Eigen::EigenvaluesOnly).eigenvalues();
-    const double most = kGrowthMargin * (2 * n + 1) * elastic[2];
+    const double count = 2 * n + 1;
+    const auto eigenvalues = Solver(response + count * rigid, Eigen::EigenvaluesOnly).eigenvalues();
+    const double most = kGrowthMargin * count * moved[2];
     if (!(eigenvalues.cwiseAbs().maxCoeff() <= most)) return ContactModelFault::kGrowing;
   }
   return ContactModelFault::kNone;

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 
 #include "common/contact/contact_problem.hpp"
@@ -34,6 +36,9 @@ struct ContactModel {
   std::uint64_t newest = kNoStep;
   /// The run is paused: what is felt is to fade. Nothing else means anything then.
   bool paused = false;
+  /// What hands gave the object and may have back [J]: their work until the newest step up to K
+  /// whose force is in it, see newest_known().
+  double energy = 0.0;
   double dt = 0.0;  ///< of a step [s], > 0
   int horizon = 0;  ///< H, 1 to kMaxHorizon
 
@@ -56,6 +61,11 @@ struct ContactModel {
   /// response[n]: its elastic displacement at the end of step i + n per force in step i [m/N]; the
   /// first H. Symmetric.
   std::array<Matrix3, kMaxHorizon> response = zeros<Matrix3>();
+
+  /// The newest step up to K whose force is in it.
+  std::uint64_t newest_known() const noexcept {
+    return step - std::min<std::uint64_t>(step, static_cast<unsigned>(std::countr_one(missing)));
+  }
 };
 
 /// The longest dt of a model that a bridge renders [s].

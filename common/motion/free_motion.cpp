@@ -94,6 +94,21 @@ FreeMotion free_motion(const RigidBody& body, const FreeForces& forces,
   return motion;
 }
 
+double rigid_energy(const RigidBody& body, const FreeForces& forces,
+                    const RigidState& state) noexcept {
+  if (!body.moves()) return 0.0;
+  const Tether& tether = forces.tether;
+  const Vector3 turned =
+      tether.angular_stiffness > 0
+          ? rotation_vector(state.orientation * forces.home_orientation.conjugate())
+          : Vector3::Zero();
+  return 0.5 * (body.mass() * state.velocity.squaredNorm() +
+                state.angular_momentum.dot(body.angular_velocity(state)) +
+                tether.stiffness * (state.position - forces.home_position).squaredNorm() +
+                tether.angular_stiffness * turned.squaredNorm()) -
+         body.mass() * forces.gravity.dot(state.position);
+}
+
 RigidState end_of_step(const RigidBody& body, const FreeForces& forces, const FreeMotion& motion,
                        const Vector3& force, const Vector3& torque) noexcept {
   RigidState end = body.advance(motion.start, motion.force + force, motion.torque + torque);

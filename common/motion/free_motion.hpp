@@ -55,6 +55,10 @@ struct FreeMotion {
   }
   /// A point of that frame in W.
   Vector3 to_world(const Vector3& x) const noexcept { return position + orientation * x; }
+  /// The way of a point of the body in the step [m], W.
+  Vector3 way(const Vector3& x) const noexcept {
+    return to_world(x) - (start.position + start.orientation * x);
+  }
 };
 
 /// The coming step of a body from a state. The tether's force is that half-way. Pure, real-time
@@ -66,6 +70,11 @@ FreeMotion free_motion(const RigidBody& body, const FreeForces& forces,
 /// centre of mass [N m] besides, both W. Pure, real-time safe.
 RigidState end_of_step(const RigidBody& body, const FreeForces& forces, const FreeMotion& motion,
                        const Vector3& force, const Vector3& torque) noexcept;
+
+/// Kinetic energy of a state, with the potentials of gravity (0 at the origin) and tether [J]. Of a
+/// fixed body: 0.
+double rigid_energy(const RigidBody& body, const FreeForces& forces,
+                    const RigidState& state) noexcept;
 
 /// The last steps of a rigid motion, so that a force that is heard of late can be entered in its
 /// own step: from there on the motion is computed again. Forces keep their direction in W and their

@@ -125,6 +125,7 @@ void encode(const ContactModelMessage& message, ByteWriter& out) {
   out.put(model.newest);
   out.put(model.dt);
   if (!model.valid) return out.put_zeros(kContactModelSize - 40);
+  out.put(model.energy);
   put_body(model, out);
   put_drives(model, out);
   out.put(model.place);
@@ -166,6 +167,7 @@ ContactModelMessage decode_contact_model(ByteReader& in) {
   model.newest = in.get<std::uint64_t>();
   model.dt = get_finite(in, "dt");
   if (!model.valid) return message;
+  model.energy = get_finite(in, "the energy");
   get_body(in, model);
   get_drives(in, model);
   model.place = get_finite_vector(in, "the place");

@@ -47,13 +47,13 @@ enum class MessageType : std::uint16_t {
 };
 
 /// Bits of Hello::capabilities and Welcome::capabilities.
-inline constexpr std::uint32_t kCapabilityContactModel = 1u << 0;  ///< types 16 and 17
-inline constexpr std::uint32_t kCapabilityStatus = 1u << 1;        ///< type 18
-inline constexpr std::uint32_t kCapabilityCommand = 1u << 2;       ///< reserved: type 19
-inline constexpr std::uint32_t kCapabilityReport = 1u << 3;        ///< type 7
-inline constexpr std::uint32_t kCapabilityDatagrams = 1u << 4;     ///< type 20
+inline constexpr std::uint32_t kCapabilityStatus = 1u << 1;     ///< type 18
+inline constexpr std::uint32_t kCapabilityCommand = 1u << 2;    ///< reserved: type 19
+inline constexpr std::uint32_t kCapabilityReport = 1u << 3;     ///< type 7
+inline constexpr std::uint32_t kCapabilityDatagrams = 1u << 4;  ///< type 20
 /// Contact models in lockstep too: the bridge simulates the link.
 inline constexpr std::uint32_t kCapabilitySimulatedLink = 1u << 5;
+inline constexpr std::uint32_t kCapabilityContactModel = 1u << 6;  ///< types 16 and 17
 
 /// What goes before every payload. The CRC32C that ends it is the codec's business.
 struct Header {

@@ -12,7 +12,7 @@
 namespace irdm::wire {
 
 /// The largest payload that this version writes.
-inline constexpr std::size_t kLargestPayload = 4072;
+inline constexpr std::size_t kLargestPayload = 4080;
 
 MessageType type_of(const Message& message) noexcept;
 /// The fixed size of a type's payload; nothing for a type that this version does not know.
@@ -25,7 +25,7 @@ Message decode_payload(MessageType type, std::span<const std::uint8_t> payload);
 
 // Of the contact that is solved at the bridge (contact_payload.cpp).
 
-inline constexpr std::size_t kContactModelSize = 4072;
+inline constexpr std::size_t kContactModelSize = 4080;
 inline constexpr std::size_t kAppliedForcesSize = 24 + 72 * AppliedForces::kSteps;
 
 void encode(const ContactModelMessage& message, ByteWriter& out);

@@ -24,8 +24,11 @@ void BridgeContact::receive(const ContactModel& model, std::int64_t now_ns) noex
     predictor_.reset();
     in_contact_ = false;
     last_tip_.reset();
+    history_ = AppliedHistory{};
   }
   newest_model_ = model.step;
+  energy_ = model.energy;
+  known_ = model.newest_known();
   horizon_ns_ = std::llround(1e9 * dt_ * (model.valid ? model.horizon : kMaxHorizon));
   pacer_.hear(model.step, model.newest == kNoStep ? std::nullopt : std::optional(model.newest),
               in_contact_, now_ns);
@@ -51,6 +54,8 @@ bool BridgeContact::tick(std::int64_t now_ns, const Vector3& tip) noexcept {
   }
   if (count > 0) last_tip_ = tip;
   ended_ = std::min(count, steps_a_tick_);
+  history_.take(applied_);
+  wanted_.energy = energy_left();
   return count > 0;
 }
 
@@ -61,6 +66,7 @@ void BridgeContact::shown(double share) noexcept {
     predictor_.scale(step, share);
     applied_.past[static_cast<std::size_t>(i)].force = predictor_.applied(step);
   }
+  history_.take(applied_);
 }
 
 void BridgeContact::solve(std::uint64_t k, std::int64_t now_ns, const Vector3& tip) noexcept {
@@ -85,6 +91,17 @@ void BridgeContact::remember(std::uint64_t k, const Vector3& tip) noexcept {
   applied_.step = k;
   applied_.base = newest_model_;
   applied_.count = follows ? std::min(applied_.count + 1, AppliedForces::kSteps) : 1;
+}
+
+// The model's, with the hand's work since: a force is shown after its step.
+double BridgeContact::energy_left() const noexcept {
+  double left = energy_;
+  for (std::uint64_t k = known_; k < applied_.step && k < known_ + AppliedHistory::kKept; ++k) {
+    const AppliedForce* const shown = history_.find(k);
+    const AppliedForce* const next = history_.find(k + 1);
+    if (shown != nullptr && next != nullptr) left += shown->force.dot(next->tip - shown->tip);
+  }
+  return left;
 }
 
 std::uint64_t BridgeContact::lookahead() const noexcept {

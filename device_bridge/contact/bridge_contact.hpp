@@ -20,6 +20,7 @@ class BridgeContact {
     bool paused = false;          ///< the run is paused: what was felt is to fade
     std::int64_t content_ns = 0;  ///< end of the last step that the server knew everything of
     std::int64_t horizon_ns = 0;  ///< how long after that it is good
+    double energy = 0.0;          ///< that the device may give [J], W
     std::int64_t solved_ns = 0;   ///< when it was solved, with the tip of then
     ContactState contact = ContactState::kFree;
     Vector3 force = Vector3::Zero();   ///< on the stylus [N], W
@@ -48,17 +49,21 @@ class BridgeContact {
  private:
   void solve(std::uint64_t k, std::int64_t now_ns, const Vector3& tip) noexcept;
   void remember(std::uint64_t k, const Vector3& tip) noexcept;
+  double energy_left() const noexcept;
 
   StepPacer pacer_;
   double dt_;
   ContactPredictor predictor_;
   std::uint64_t newest_model_ = 0;  ///< step of the newest model; while the pacer runs
   std::int64_t horizon_ns_ = 0;     ///< of that model
+  double energy_ = 0.0;             ///< of that model [J] ...
+  std::uint64_t known_ = 0;         ///< ... with the hand's work until the end of this step
   ForceCommand wanted_;
   int steps_a_tick_;         ///< at least 1
   int ended_ = 0;            ///< steps that were solved in the last tick
   bool in_contact_ = false;  ///< in the last step that anything is known of
   AppliedForces applied_;
+  AppliedHistory history_;           ///< of what was in applied_
   std::optional<Vector3> last_tip_;  ///< at the end of the last step; none: it begins anew
 };
 

@@ -56,6 +56,10 @@ void Passivity::grant(double energy) noexcept {
   energy_ = std::min(limits_.most, energy_ + energy);
 }
 
+void Passivity::bound(double energy) noexcept {
+  if (energy < energy_) energy_ = std::max(limits_.least, energy);
+}
+
 Vector3 Passivity::withheld(const Vector3& force) const noexcept {
   const Vector3 way = 2.0 * last_ - before_;
   const double left = std::max(0.0, energy_ + limits_.credit);

@@ -70,6 +70,9 @@ class Passivity {
 
   /// The world gave this of its own, by another hand or a weight, and the device may [J], >= 0.
   void grant(double energy) noexcept;
+  /// By the account of both ends the device may give no more than this [J]. What is not a number
+  /// bounds nothing.
+  void bound(double energy) noexcept;
 
   /// What may be shown of a force that answers the tip as it is now [N], D: no more along the way
   /// of the coming tick than gives half of what is left above -credit. That way goes on from the

@@ -118,6 +118,7 @@ void SafetyFilter::grant(const ForceDemand& demand) noexcept {
   const std::int64_t time_ns = demand.solved_here ? demand.solved_ns : demand.sample_time_ns;
   const double energy = world_.answer(time_ns, demand.force);
   passivity_.grant(energy);
+  if (demand.solved_here) passivity_.bound(demand.energy);
   oscillation_.grant(energy);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 #include "common/geometry.hpp"
@@ -38,6 +39,7 @@ struct DeviceReading {
 /// The force that the world asks for at one tick, and what it rests on. Nothing in it is trusted.
 struct ForceDemand {
   static constexpr std::int64_t kHoldHorizonNs = 20'000'000;
+  static constexpr double kMostEnergy = std::numeric_limits<double>::max();  ///< no bound [J]
 
   bool linked = false;                       ///< a session is on
   bool any = false;                          ///< the rest means something
@@ -45,6 +47,7 @@ struct ForceDemand {
   std::int64_t horizon_ns = kHoldHorizonNs;  ///< how long after that it is good
   bool solved_here = false;                  ///< from a tip of its own, not from that sample's
   std::int64_t solved_ns = 0;                ///< when that tip was read; if solved_here
+  double energy = kMostEnergy;               ///< that the device may give [J], D; if solved_here
   ContactState contact = ContactState::kFree;
   Vector3 force = Vector3::Zero();   ///< on the stylus [N], D
   Vector3 normal = Vector3::Zero();  ///< outward, of the surface; unit, D; zero: not known

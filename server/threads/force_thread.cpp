@@ -76,6 +76,7 @@ void ForceThread::run() noexcept {
     report_.lost += stylus.lost();
     report_.bounded += stylus.bounded();
   }
+  report_.limited = simulation_.limited();
   report_.cache_misses = simulation_.cache_misses();
   finished_.signal();
 }

@@ -30,6 +30,7 @@ struct ForceThreadReport {
   std::uint64_t late = 0;          ///< forces of bridges that came after their step, and entered it
   std::uint64_t lost = 0;          ///< forces of bridges that came too late for that, or never
   std::uint64_t bounded = 0;       ///< forces of bridges above their stylus' max_force
+  std::uint64_t limited = 0;       ///< Simulation::limited()
   std::uint64_t cache_misses = 0;  ///< Simulation::cache_misses()
   double peak_force = 0.0;         ///< largest |force| on a stylus [N]
   Histogram step_time;             ///< from the clock's go to all that is handed over [ns]

@@ -40,8 +40,8 @@ CompressedEngine::CompressedEngine(std::shared_ptr<const Model> model)
       response_(&std::get<CompressedResponse>(model_->response)),
       history_(model_->mesh.surface_node_count(), response_->fir_steps),
       tail_(*response_) {
-  contact_shapes_.assign(3 * tail_.shape_count(), 0.0);
-  products_.assign(6 * tail_.shape_count(), 0.0);
+  contact_shapes_.assign(6 * tail_.shape_count(), 0.0);
+  products_.assign(9 * tail_.shape_count(), 0.0);
   held_force_.assign(tail_.shape_count(), 0.0);
 }
 
@@ -92,14 +92,13 @@ void CompressedEngine::predict(std::span<const ContactPatch> patches, std::span<
   }
 }
 
-void CompressedEngine::mean_shapes(const ContactPatch& patch) noexcept {
+void CompressedEngine::mean_shapes(const ContactPatch& patch, double* to) const noexcept {
   const std::size_t shapes = tail_.shape_count();
-  std::fill(contact_shapes_.begin(), contact_shapes_.end(), 0.0);
+  std::fill_n(to, 3 * shapes, 0.0);
   for (std::size_t i = 0; i < static_cast<std::size_t>(patch.count); ++i) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const float* row = tail_.shape_row(3 * patch.nodes[i] + static_cast<int>(axis));
-      accumulate({patch.weights[i], 0.0, 0.0}, row, row, row,
-                 contact_shapes_.data() + axis * shapes, shapes);
+      accumulate({patch.weights[i], 0.0, 0.0}, row, row, row, to + axis * shapes, shapes);
     }
   }
 }
@@ -109,7 +108,7 @@ void CompressedEngine::predict_horizon(const ContactPatch& patch, std::span<cons
                                        std::span<Matrix3> response) noexcept {
   const std::size_t shapes = tail_.shape_count();
   const auto fir_steps = static_cast<std::size_t>(response_->fir_steps);
-  mean_shapes(patch);
+  mean_shapes(patch, contact_shapes_.data());
   tail_.collect(held, held_force_.data());
   Vector3 by_held = Vector3::Zero();
   tail_.begin_path();
@@ -139,6 +138,28 @@ void CompressedEngine::predict_horizon(const ContactPatch& patch, std::span<cons
     } else {
       const Sums<6> r = dot_six(tail_.after(n), products_.data(), shapes);
       response[n] << r[0], r[1], r[3], r[1], r[2], r[4], r[3], r[4], r[5];
+    }
+  }
+}
+
+void CompressedEngine::cross_response(const ContactPatch& to, const ContactPatch& from,
+                                      std::span<Matrix3> response) noexcept {
+  const std::size_t shapes = tail_.shape_count();
+  double* const rows = contact_shapes_.data();
+  mean_shapes(to, rows);
+  mean_shapes(from, rows + 3 * shapes);
+  for (std::size_t k = 0; k < 9; ++k) {
+    multiply(rows + k / 3 * shapes, rows + (3 + k % 3) * shapes, products_.data() + k * shapes,
+             shapes);
+  }
+  for (std::size_t n = 0; n < response.size(); ++n) {
+    if (n < static_cast<std::size_t>(response_->fir_steps)) {
+      response[n] = block(*response_, to, from, n);
+      continue;
+    }
+    for (std::size_t k = 0; k < 9; ++k) {
+      response[n](static_cast<Eigen::Index>(k / 3), static_cast<Eigen::Index>(k % 3)) =
+          dot(tail_.after(n), products_.data() + k * shapes, shapes);
     }
   }
 }

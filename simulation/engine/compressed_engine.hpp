@@ -24,6 +24,8 @@ class CompressedEngine final : public ResponseEngine {
                ContactMatrix& compliance) noexcept override;
   void predict_horizon(const ContactPatch& patch, std::span<const NodalForce> held,
                        std::span<Vector3> path, std::span<Matrix3> response) noexcept override;
+  void cross_response(const ContactPatch& to, const ContactPatch& from,
+                      std::span<Matrix3> response) noexcept override;
   void add_delayed_force(std::span<const NodalForce> forces, int age) noexcept override;
   void advance(std::span<const NodalForce> forces) noexcept override;
   using ResponseEngine::displacement;
@@ -35,15 +37,15 @@ class CompressedEngine final : public ResponseEngine {
   /// of the n-th coming one.
   Vector3 fir(int node, int shift) const noexcept;
   Vector3 tail(int node, const double* coordinate) const noexcept;
-  /// Rows sum_i w_i B_i of the patch's three axes, (3, r).
-  void mean_shapes(const ContactPatch& patch) noexcept;
+  /// Rows sum_i w_i B_i of the patch's three axes. @param shapes (3, r)
+  void mean_shapes(const ContactPatch& patch, double* shapes) const noexcept;
 
   std::shared_ptr<const Model> model_;
   const CompressedResponse* response_;
   ForceHistory history_;  ///< of m steps
   RecursiveTail tail_;
-  std::vector<double> contact_shapes_;  ///< (3, r)
-  std::vector<double> products_;        ///< (6, r)
+  std::vector<double> contact_shapes_;  ///< (6, r), of two contacts
+  std::vector<double> products_;        ///< (9, r)
   std::vector<double> held_force_;      ///< (r)
 };
 

@@ -92,6 +92,14 @@ void DenseEngine<Scalar>::predict_horizon(const ContactPatch& patch,
 }
 
 template <typename Scalar>
+void DenseEngine<Scalar>::cross_response(const ContactPatch& to, const ContactPatch& from,
+                                         std::span<Matrix3> response) noexcept {
+  for (std::size_t n = 0; n < response.size(); ++n) {
+    response[n] = n < R_.steps ? after(n, to, from) : Matrix3::Zero();
+  }
+}
+
+template <typename Scalar>
 void DenseEngine<Scalar>::cache_nodes(std::span<const int> nodes) noexcept {
   for (const int node : nodes) {
     past_.cache_node(node);

@@ -268,10 +268,9 @@ void ModalEngine<Scalar>::collect_modal_forces(std::span<const NodalForce> force
   }
 }
 
+// Of a patch, with its shapes.
 template <typename Scalar>
-void ModalEngine<Scalar>::predict_horizon(const ContactPatch& patch,
-                                          std::span<const NodalForce> held, std::span<Vector3> path,
-                                          std::span<Matrix3> response) noexcept {
+ModalHorizon::Contact& ModalEngine<Scalar>::horizon_contact(const ContactPatch& patch) noexcept {
   ModalHorizon::Contact* contact = horizon_.find(patch);
   if (contact == nullptr) {
     contact = &horizon_.begin(patch);
@@ -279,6 +278,23 @@ void ModalEngine<Scalar>::predict_horizon(const ContactPatch& patch,
       mean_shape(patch, static_cast<int>(i), {0, modes_}, &contact->shapes[i * modes_]);
     }
   }
+  contact->used = state_;
+  return *contact;
+}
+
+template <typename Scalar>
+void ModalEngine<Scalar>::cross_response(const ContactPatch& to, const ContactPatch& from,
+                                         std::span<Matrix3> response) noexcept {
+  const ModalHorizon::Contact& one = horizon_contact(to);
+  horizon_.cross_response(one, horizon_contact(from), response);
+  if (!response.empty()) response[0] += residual_.compliance(to, from);
+}
+
+template <typename Scalar>
+void ModalEngine<Scalar>::predict_horizon(const ContactPatch& patch,
+                                          std::span<const NodalForce> held, std::span<Vector3> path,
+                                          std::span<Matrix3> response) noexcept {
+  ModalHorizon::Contact* const contact = &horizon_contact(patch);
   horizon_.update(*contact,
                   {.number = state_,
                    .coordinate = free_coordinate_.data(),

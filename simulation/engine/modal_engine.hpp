@@ -38,6 +38,8 @@ class ModalEngine final : public ResponseEngine,
                ContactMatrix& compliance) noexcept override;
   void predict_horizon(const ContactPatch& patch, std::span<const NodalForce> held,
                        std::span<Vector3> path, std::span<Matrix3> response) noexcept override;
+  void cross_response(const ContactPatch& to, const ContactPatch& from,
+                      std::span<Matrix3> response) noexcept override;
   bool keeps_horizon(const ContactPatch& patch, std::size_t steps) const noexcept override {
     return horizon_.keeps(patch, state_, steps);
   }
@@ -60,6 +62,7 @@ class ModalEngine final : public ResponseEngine,
   void add_gravity() noexcept;
   void settle() noexcept;
   void go_on() noexcept;
+  ModalHorizon::Contact& horizon_contact(const ContactPatch& patch) noexcept;
   void mean_shape(const ContactPatch& patch, int axis, const ModeRange& modes,
                   double* shape) const noexcept;
   void add_slice(std::span<const ContactPatch> patches, const ModeRange& modes,

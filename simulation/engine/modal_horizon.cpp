@@ -68,6 +68,7 @@ void ModalHorizon::set_transitions(const Transitions& A, const double* omega) no
 
 void ModalHorizon::forget() noexcept {
   for (Contact& contact : contacts_) contact.patch.count = 0;
+  for (Cross& cross : crosses_) cross.to = 0;
 }
 
 ModalHorizon::Contact* ModalHorizon::find(const ContactPatch& patch) noexcept {
@@ -107,6 +108,7 @@ ModalHorizon::Contact& ModalHorizon::begin(const ContactPatch& patch) noexcept {
       *std::min_element(contacts_.begin(), contacts_.end(),
                         [](const Contact& a, const Contact& b) { return a.used < b.used; });
   contact.patch = patch;
+  contact.made = ++made_;
   contact.steps = 0;
   return contact;
 }
@@ -246,6 +248,52 @@ void ModalHorizon::shift_path(Contact& contact, const State& state) noexcept {
     for (std::size_t n = 0; n + 1 < steps; ++n) path[n] += moves[n + 1];
   }
   path[steps - 1] = end_of_path(contact, state);
+}
+
+// R_ab[n] is R_ba[n] transposed.
+void ModalHorizon::cross_response(const Contact& to, const Contact& from,
+                                  std::span<Matrix3> response) noexcept {
+  Cross* kept = &crosses_[0];
+  for (Cross& cross : crosses_) {
+    const bool same = cross.to == to.made && cross.from == from.made;
+    const bool turned = cross.to == from.made && cross.from == to.made;
+    if ((same || turned) && cross.steps >= response.size()) {
+      cross.used = ++asked_;
+      for (std::size_t n = 0; n < response.size(); ++n) {
+        response[n] = cross.response[n];
+        if (turned) response[n].transposeInPlace();
+      }
+      return;
+    }
+    if (cross.used < kept->used) kept = &cross;
+  }
+  kept->to = to.made;
+  kept->from = from.made;
+  kept->used = ++asked_;
+  kept->steps = response.size();
+  compute(to, from, response);
+  std::copy(response.begin(), response.end(), kept->response.begin());
+}
+
+void ModalHorizon::compute(const Contact& to, const Contact& from,
+                           std::span<Matrix3> response) noexcept {
+  std::array<BlockSums<3>, 3> sums{};
+  for (std::size_t i = 0; i < modes_; i += kPart) {
+    const std::size_t count = std::min(kPart, modes_ - i);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      multiply(&from.shapes[axis * modes_ + i], &compliance_[i], factors_.data(), count);
+      multiply_shapes(to, i, count, factors_.data(), products_.data());
+      for (std::size_t block = 0; kCourse * block < response.size(); ++block) {
+        kernels_.add_three(decrements(block, i), products_.data(), count, sums[axis][block]);
+      }
+    }
+  }
+  for (std::size_t n = 0; n < response.size(); ++n) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      response[n].col(static_cast<Eigen::Index>(axis)) =
+          vector(sums[axis][n / kCourse], n % kCourse);
+    }
+  }
 }
 
 void ModalHorizon::add_held(const Contact& contact, const double* force,

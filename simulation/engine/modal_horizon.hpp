@@ -28,6 +28,7 @@ class ModalHorizon {
   struct Contact {
     ContactPatch patch;
     AlignedNumbers shapes;                  ///< (3, r): rows sum_i w_i Phi_i
+    std::uint64_t made = 0;                 ///< number of its begin()
     std::uint64_t used = 0;                 ///< number of the state that it was last asked about
     std::uint64_t state = 0;                ///< that the path goes on from
     std::size_t steps = 0;                  ///< of path and response
@@ -64,6 +65,9 @@ class ModalHorizon {
   Contact& begin(const ContactPatch& patch) noexcept;
   /// Makes path and response those of the first `steps` coming steps.
   void update(Contact& contact, const State& state, std::size_t steps) noexcept;
+  /// How one answers a force on the other, as ResponseEngine::cross_response(). Kept while both
+  /// stay.
+  void cross_response(const Contact& to, const Contact& from, std::span<Matrix3> response) noexcept;
   /// Adds what a modal force (r) that is held in all coming steps does.
   void add_held(const Contact& contact, const double* force, std::span<Vector3> path) noexcept;
 
@@ -72,7 +76,17 @@ class ModalHorizon {
   template <std::size_t K>
   using BlockSums = std::array<CourseSums<K>, kBlocks>;
   using Path = std::array<Vector3, kMaxHorizon>;
+  static constexpr std::size_t kMostCrosses = kMaxContacts * (kMaxContacts - 1) / 2;
+  /// How a contact answers a force on another one.
+  struct Cross {
+    std::uint64_t to = 0;    ///< Contact::made; 0: nothing
+    std::uint64_t from = 0;  ///< the same
+    std::uint64_t used = 0;  ///< number of the call that it was last asked for in
+    std::size_t steps = 0;
+    std::array<Matrix3, kMaxHorizon> response;
+  };
 
+  void compute(const Contact& to, const Contact& from, std::span<Matrix3> response) noexcept;
   void forget() noexcept;
   static bool goes_on(const Contact& contact, std::uint64_t number) noexcept {
     return contact.state % 2 == 0 && contact.state + 2 == number;
@@ -105,6 +119,9 @@ class ModalHorizon {
   AlignedNumbers products_;         ///< (12, kPart): of shapes with what they meet
   AlignedNumbers factors_;          ///< (kPart)
   std::array<Contact, kMaxContacts> contacts_;
+  std::array<Cross, kMostCrosses> crosses_;
+  std::uint64_t made_ = 0;   ///< contacts so far
+  std::uint64_t asked_ = 0;  ///< calls of cross_response() so far
 };
 
 }  // namespace irdm

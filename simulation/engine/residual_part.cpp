@@ -50,14 +50,19 @@ void ResidualPart::add_compliance(std::span<const ContactPatch> patches,
 }
 
 Matrix3 ResidualPart::compliance(const ContactPatch& patch) noexcept {
+  const Matrix3 sum = compliance(patch, patch);
+  return 0.5 * (sum + sum.transpose());
+}
+
+Matrix3 ResidualPart::compliance(const ContactPatch& to, const ContactPatch& from) noexcept {
   Matrix3 sum = Matrix3::Zero();
   if (compliance_.empty()) return sum;
-  spread(patch);
-  for (std::size_t i = 0; i < index(patch.count); ++i) {
-    sum += patch.weights[i] * field_[index(patch.nodes[i])];
+  spread(to);
+  for (std::size_t i = 0; i < index(from.count); ++i) {
+    sum += from.weights[i] * field_[index(from.nodes[i])];
   }
-  clear(patch);
-  return 0.5 * (sum + sum.transpose());
+  clear(to);
+  return sum;
 }
 
 Vector3 ResidualPart::displacement(const ContactPatch& patch,

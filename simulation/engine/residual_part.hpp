@@ -21,8 +21,9 @@ class ResidualPart {
 
   /// Adds the blocks sum_ij w_i w_j G_ij between the contacts to a (3m, 3m) matrix [m/N].
   void add_compliance(std::span<const ContactPatch> patches, ContactMatrix& compliance) noexcept;
-  /// The same block of a single contact [m/N].
+  /// The same block of a single contact, and of one per force on another [m/N].
   Matrix3 compliance(const ContactPatch& patch) noexcept;
+  Matrix3 compliance(const ContactPatch& to, const ContactPatch& from) noexcept;
   /// Mean displacement of a contact under forces [m].
   Vector3 displacement(const ContactPatch& patch, std::span<const NodalForce> forces) noexcept;
 

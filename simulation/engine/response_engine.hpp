@@ -132,6 +132,11 @@ class ResponseEngine {
   /// R_ij[n] [m/N]. Spin that is held acts in the coming step only.
   virtual void predict_horizon(const ContactPatch& patch, std::span<const NodalForce> held,
                                std::span<Vector3> path, std::span<Matrix3> response) noexcept = 0;
+  /// How one contact answers a force on another in the next response.size() steps (kMaxHorizon at
+  /// most): response[n] the blocks sum_ij w_i w_j R_ij[n] of nodes i of `to` per force on nodes j
+  /// of `from` [m/N].
+  virtual void cross_response(const ContactPatch& to, const ContactPatch& from,
+                              std::span<Matrix3> response) noexcept = 0;
   /// Whether predict_horizon() would find most of that kept from the step before: little work.
   virtual bool keeps_horizon(const ContactPatch&, std::size_t /*steps*/) const noexcept {
     return true;

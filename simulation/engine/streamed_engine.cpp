@@ -151,6 +151,19 @@ void StreamedEngine<Scalar>::predict_horizon(const ContactPatch& patch,
 }
 
 template <typename Scalar>
+void StreamedEngine<Scalar>::cross_response(const ContactPatch& to, const ContactPatch& from,
+                                            std::span<Matrix3> response) noexcept {
+  for (int i = 0; i < to.count; ++i) columns_.borrow(to.nodes[static_cast<std::size_t>(i)]);
+  for (int i = 0; i < from.count; ++i) columns_.borrow(from.nodes[static_cast<std::size_t>(i)]);
+  for (std::size_t n = 0; n < response.size(); ++n) {
+    response[n] = n < columns_.frame().steps
+                      ? patch_response(to, from, [&](int a, int b) { return entry(n, a, b); })
+                      : Matrix3::Zero();
+  }
+  columns_.return_borrowed();
+}
+
+template <typename Scalar>
 void StreamedEngine<Scalar>::add_delayed_force(std::span<const NodalForce> forces,
                                                int age) noexcept {
   if (age >= kMaxHorizon) return;

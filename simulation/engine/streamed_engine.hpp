@@ -43,6 +43,8 @@ class StreamedEngine final : public ResponseEngine,
   double free_displacement_bound() const noexcept override;
   void predict(std::span<const ContactPatch> patches, std::span<Vector3> h,
                ContactMatrix& compliance) noexcept override;
+  void cross_response(const ContactPatch& to, const ContactPatch& from,
+                      std::span<Matrix3> response) noexcept override;
   void predict_horizon(const ContactPatch& patch, std::span<const NodalForce> held,
                        std::span<Vector3> path, std::span<Matrix3> response) noexcept override;
   void add_delayed_force(std::span<const NodalForce> forces, int age) noexcept override;

@@ -45,6 +45,8 @@ class DeformableBody {
   const RigidBody& rigid() const noexcept { return rigid_; }
   /// At the end of the last step.
   const RigidState& state() const noexcept { return state_; }
+  /// Of its rigid motion, in gravity and on its tether [J].
+  double energy() const noexcept { return rigid_energy(rigid_, free_forces_, state_); }
   const RigidStateHistory& past() const noexcept { return past_; }
   const FreeForces& free_forces() const noexcept { return free_forces_; }
   /// Of the step under way.

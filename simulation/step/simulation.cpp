@@ -46,6 +46,12 @@ std::uint64_t Simulation::cache_misses() const noexcept {
   return sum;
 }
 
+std::uint64_t Simulation::limited() const noexcept {
+  std::uint64_t sum = 0;
+  for (const auto& object : objects_) sum += object->limited();
+  return sum;
+}
+
 void Simulation::reset() noexcept {
   for (const auto& object : objects_) object->reset();
   late_.count = 0;

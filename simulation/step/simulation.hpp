@@ -37,7 +37,7 @@ class Simulation {
   /// For the bridge of stylus s, between steps: how its contact goes on after the last step.
   /// @param tip where the stylus was in the last step [m], W
   /// @param horizon steps to predict, 1 to kMaxHorizon
-  /// @param budget of predictions that are made anew, since the contact moved or a force came late;
+  /// @param budget of predictions that take long: made anew, or with another contact in them;
   /// 1 is taken by one. False: there was none left, and the model means nothing
   bool predict_horizon(std::size_t s, const Vector3& tip, int horizon, ContactModel& model,
                        int& budget) noexcept;
@@ -71,6 +71,8 @@ class Simulation {
   std::uint64_t next_step() const noexcept { return next_step_; }
   /// Nodes that forces began to act on while their columns of R were not there, so far.
   std::uint64_t cache_misses() const noexcept;
+  /// SoftObject::limited() of all objects.
+  std::uint64_t limited() const noexcept;
   int object_count() const noexcept { return static_cast<int>(objects_.size()); }
   const SoftObject& object(int i = 0) const noexcept {
     return *objects_[static_cast<std::size_t>(i)];

@@ -23,6 +23,7 @@ SoftObject::SoftObject(const SimulationObject& object, const SimulationConfig& c
       problem_(kMaxContacts + (config.floor ? kMaxFloorContacts : 0)),
       solver_(problem_.capacity()),
       nodal_(kMaxContacts * kMaxPatchNodes + kMaxFloorContacts) {
+  account_.begin(body_.energy());
   check_inertial_loading(model(), object.inertial_loading, "object");
   if (config.floor && body_.rigid().moves()) {
     floor_ = std::make_unique<FloorContacts>(*config.floor, rest_, model());
@@ -32,6 +33,7 @@ SoftObject::SoftObject(const SimulationObject& object, const SimulationConfig& c
 void SoftObject::reset() noexcept {
   change_ = Change::kUnknown;
   body_.reset();
+  account_.begin(body_.energy());
   contacts_.reset();
   if (floor_) floor_->reset();
 }
@@ -40,6 +42,7 @@ void SoftObject::set(const Vector3& gravity, const ObjectSettings& settings) noe
   change_ = Change::kUnknown;
   friction_ = settings.friction;
   body_.set(gravity, settings);
+  account_.set_energy(body_.energy());
 }
 
 void SoftObject::step(std::span<const StylusCommand> commands, ObjectRecord& record) noexcept {
@@ -53,6 +56,7 @@ void SoftObject::step(std::span<const StylusCommand> commands, ObjectRecord& rec
   contacts_.update(commands, body_.motion(), problem_);
   if (floor_) floor_->update_contacts(body_.motion(), problem_);
   end_step(record);
+  account_.settle(contacts_.work(), body_.energy());
   for (ContactRecord& contact : record.contact) {
     if (contact.state != ContactState::kFree) {
       contact.proxy = state().position + state().orientation * contact.proxy;
@@ -88,7 +92,8 @@ void SoftObject::solve(std::span<const StylusCommand> commands, int floor_count,
   problem_.rigid = body_.rigid().mobility();
   contacts_.predict(body_.engine());
   if (floor_count > 0) pose_floor();
-  contacts_.pose(commands, body_.motion(), friction_, floor_count, problem_);
+  contacts_.pose(commands, body_.motion(), friction_, account_.driving_share(), floor_count,
+                 problem_);
   const ContactSolution solution =
       solver_.solve(problem_, floor_count > 0 ? kFloorLimits : SolverLimits{});
   contacts_.solve_bridged(problem_);
@@ -178,6 +183,20 @@ void SoftObject::collect_others(std::size_t s, ContactModel& model) noexcept {
   contacts_.add_others(s, problem_, nodal_, model);
 }
 
+// The balance, and what the object may lose to hands within the horizon, as it comes or falls: one
+// part for each stylus that touches it.
+double SoftObject::available_energy(const ContactModel& model) const noexcept {
+  const RigidBody& body = body_.rigid();
+  if (!body.moves()) return account_.balance() + EnergyAccount::kAllowance;
+  const RigidState& motion = model.motion;
+  const double kinetic = 0.5 * (body.mass() * motion.velocity.squaredNorm() +
+                                motion.angular_momentum.dot(body.angular_velocity(motion)));
+  const double power = body.mass() * model.free_forces.gravity.dot(motion.velocity);
+  const double falling = std::max(0.0, power) * model.horizon * model.dt;
+  return account_.balance() + EnergyAccount::kAllowance +
+         (kinetic + falling) / std::max(1, contacts_.count());
+}
+
 bool SoftObject::predict_horizon(std::size_t s, const Vector3& tip, int horizon,
                                  ContactModel& model, int& budget) noexcept {
   model.state = contacts_.state(s);
@@ -188,17 +207,22 @@ bool SoftObject::predict_horizon(std::size_t s, const Vector3& tip, int horizon,
   model.body = this->model().body;
   model.motion = state();
   model.free_forces = body_.free_forces();
+  model.energy = available_energy(model);
   update_surface(false);
   ContactPatch patch;
   contacts_.locate(s, body_.next_motion().to_body(tip), model, patch);
   const auto count = static_cast<std::size_t>(model.horizon);
-  if (!body_.engine().keeps_horizon(patch, count)) {
+  const bool among_others = contacts_.find_other(s, friction_, problem_, other_);
+  if (among_others || !body_.engine().keeps_horizon(patch, count)) {
     if (budget <= 0) return false;
     --budget;
   }
   collect_others(s, model);
   body_.engine().predict_horizon(patch, nodal_.view(), {model.path.data(), count},
                                  {model.response.data(), count});
+  if (among_others) {
+    assembly_.answer(other_, model, patch, contacts_.average(s), nodal_.view(), body_.engine());
+  }
   model.valid = contacts_.write_series(s, body_.rigid().mobility(), model);
   return true;
 }
@@ -207,9 +231,14 @@ bool SoftObject::insert_delayed_force(std::size_t s, const AppliedForce& applied
                                       LateForce& entry) noexcept {
   if (entry.age >= body_.past().count()) return false;
   update_surface(false);
-  const Vector3 tip = body_.next_motion().to_body(applied.tip);
+  const FreeMotion motion = body_.next_motion();
+  const Vector3 tip = motion.to_body(applied.tip);
   if (!contacts_.locate_delayed(s, tip, applied.arm, entry)) return false;
   entry.force = body_.past().halfway(entry.age).conjugate() * applied.force;
+  if (account_.driving_share() < 1.0 && applied.force.dot(motion.way(entry.arm)) > 0.0) {
+    entry.force *= account_.driving_share();
+    ++limited_late_;
+  }
   return insert_delayed_force(entry);
 }
 

@@ -7,7 +7,9 @@
 #include "common/contact/applied_forces.hpp"
 #include "common/contact/contact_model.hpp"
 #include "simulation/collision/deformed_surface.hpp"
+#include "simulation/step/assembly_horizon.hpp"
 #include "simulation/step/deformable_body.hpp"
+#include "simulation/step/energy_account.hpp"
 #include "simulation/step/floor_contacts.hpp"
 #include "simulation/step/nodal_forces.hpp"
 #include "simulation/step/simulation_config.hpp"
@@ -34,10 +36,11 @@ class SoftObject {
 
   /// What a bridge needs to solve the contact of stylus s by itself in the coming steps. The forces
   /// of the floor are taken to stay as they were in the last step, those of other styluses as they
-  /// were on average over the last while. Between steps.
+  /// were on average over the last while, but for the strongest, which answers (AssemblyHorizon).
+  /// Between steps.
   /// @param tip where the stylus was in the last step [m], W
   /// @param horizon steps to predict, 1 to kMaxHorizon
-  /// @param budget of predictions that are made anew, since the contact moved or a force came late;
+  /// @param budget of predictions that take long: made anew, or with another contact in them;
   /// 1 is taken by one. False: there was none left, and the model means nothing
   bool predict_horizon(std::size_t s, const Vector3& tip, int horizon, ContactModel& model,
                        int& budget) noexcept;
@@ -51,6 +54,9 @@ class SoftObject {
   /// From the surface to a point of W, positive outside [m]. Between steps.
   double distance(const Vector3& tip) noexcept;
   ContactState contact_state(std::size_t s) const noexcept { return contacts_.state(s); }
+
+  /// Forces of bridges that EnergyAccount has let act in part or not at all, so far.
+  std::uint64_t limited() const noexcept { return contacts_.limited() + limited_late_; }
 
   const Model& model() const noexcept { return body_.model(); }
   const RigidState& state() const noexcept { return body_.state(); }
@@ -71,6 +77,7 @@ class SoftObject {
   void write_floor(ObjectRecord& record) noexcept;
   void end_step(ObjectRecord& record) noexcept;
   void cache_nodes() noexcept;
+  double available_energy(const ContactModel& model) const noexcept;
   void collect_others(std::size_t s, ContactModel& model) noexcept;
   void update_surface(bool loaded) noexcept;
 
@@ -86,6 +93,10 @@ class SoftObject {
   ContactProblem problem_;                ///< of the step; the floor's contacts come first
   ContactSolver solver_;
   NodalForces nodal_;
+  EnergyAccount account_;
+  std::uint64_t limited_late_ = 0;
+  AssemblyHorizon assembly_;
+  AssemblyHorizon::Contact other_;  ///< that answers in a contact model
 };
 
 }  // namespace irdm

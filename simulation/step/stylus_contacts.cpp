@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "common/contact/contact_problem.hpp"
 #include "common/error.hpp"
@@ -33,6 +34,11 @@ constexpr double kAverageTime = 0.2;
 // In which a contact catches up with a tip that has passed an edge [s].
 constexpr double kEdgeTime = 0.06;
 
+// Over which the velocity of a tip is smoothed [s].
+constexpr double kVelocityTime = 0.004;
+// For how many steps others may be told of a contact where it was.
+constexpr std::uint64_t kPredictedFor = 8;
+
 // Rounds of finding where a contact begins, and when it is found [m].
 constexpr int kProjectionRounds = 8;
 constexpr double kProjected = 1e-6;
@@ -61,15 +67,20 @@ void StylusContacts::reset() noexcept {
     stylus.displacement = {};
     stylus.last.any = false;
     stylus.last.average.setZero();
+    stylus.position.reset();
+    stylus.shown.setZero();
+    stylus.predicted.count = 0;
   }
 }
 
 void StylusContacts::find(std::span<const StylusCommand> commands,
                           const FreeMotion& motion) noexcept {
   count_ = 0;
+  work_ = 0.0;
   for (std::size_t s = 0; s < styluses_.size(); ++s) {
     const StylusCommand& command = commands[s];
     Stylus& stylus = styluses_[s];
+    follow(stylus, command);
     if (!command.present || !command.tip.allFinite()) {
       stylus.proxy.forget();
       continue;
@@ -88,6 +99,27 @@ void StylusContacts::find(std::span<const StylusCommand> commands,
     stylus.proxy.set_inset(place.position -
                            mean(patches_[a], [&](int i) { return rest_.node(i); }));
   }
+}
+
+// The way of its tip, and the work of a bridge's force on it. A step that nothing is told of leaves
+// tip and force as they were; the next one has the way of both.
+void StylusContacts::follow(Stylus& stylus, const StylusCommand& command) noexcept {
+  if (!command.present || !command.tip.allFinite()) {
+    stylus.position.reset();
+    stylus.velocity.setZero();
+    stylus.shown.setZero();
+    return;
+  }
+  stylus.way = command.tip - std::exchange(stylus.position, command.tip).value_or(command.tip);
+  stylus.velocity += std::min(1.0, dt_ / kVelocityTime) * (stylus.way / dt_ - stylus.velocity);
+  if (!command.bridged) {
+    stylus.shown.setZero();
+    return;
+  }
+  work_ += stylus.shown.dot(stylus.way);
+  const bool ours = command.bridged->object == object_;
+  if (command.bridged->force.isZero(0.0) && stylus.way.isZero(0.0)) return;
+  stylus.shown = ours ? command.bridged->force : Vector3::Zero();
 }
 
 // Of one stylus that is there. False: none.
@@ -163,7 +195,8 @@ void StylusContacts::predict(ResponseEngine& engine) noexcept {
 }
 
 void StylusContacts::pose(std::span<const StylusCommand> commands, const FreeMotion& motion,
-                          const Friction& friction, int first, ContactProblem& problem) noexcept {
+                          const Friction& friction, double driving_share, int first,
+                          ContactProblem& problem) noexcept {
   first_ = first;
   for (int a = 0; a < count_; ++a) {
     for (int b = 0; b < count_; ++b) {
@@ -171,13 +204,13 @@ void StylusContacts::pose(std::span<const StylusCommand> commands, const FreeMot
     }
     Contact& contact = contacts_[static_cast<std::size_t>(a)];
     pose_contact(contact, commands[static_cast<std::size_t>(contact.stylus)], motion, friction,
-                 first + a, problem);
+                 driving_share, first + a, problem);
   }
 }
 
 void StylusContacts::pose_contact(Contact& contact, const StylusCommand& command,
-                                  const FreeMotion& motion, const Friction& friction, int row,
-                                  ContactProblem& problem) noexcept {
+                                  const FreeMotion& motion, const Friction& friction,
+                                  double driving_share, int row, ContactProblem& problem) noexcept {
   const Stylus& stylus = stylus_of(contact);
   const PersistentContact& state = stylus.proxy.contact();
   ContactConstraint& posed = problem.contact(row);
@@ -204,7 +237,11 @@ void StylusContacts::pose_contact(Contact& contact, const StylusCommand& command
   contact.law = posed.law;
   posed.law = ContactLaw::kGiven;
   posed.force = motion.halfway.conjugate() * command.bridged->force;
-  if (!posed.force.isZero(0.0)) posed.arm = accepted_arm(command.bridged->arm, posed.arm);
+  if (posed.force.isZero(0.0)) return;
+  posed.arm = accepted_arm(command.bridged->arm, posed.arm);
+  if (driving_share == 1.0 || command.bridged->force.dot(motion.way(posed.arm)) <= 0.0) return;
+  posed.force *= driving_share;
+  ++limited_;
 }
 
 // The bridge knows best where it pushed: the surface here may lack forces that are still under way.
@@ -293,6 +330,7 @@ void StylusContacts::end_step(const ContactProblem& problem, const Quaternion& h
     const Contact& contact = contacts_[static_cast<std::size_t>(a)];
     nodal.add(patch(a), solved.force);
     Stylus& stylus = stylus_of(contact);
+    if (!contact.bridged) work_ += (halfway * solved.force).dot(stylus.way);
     stylus.displacement.remember(steps_, contact.moved);
     LastContact& last = stylus.last;
     if (!last.any || last.last_step + 1 != steps_) last.first_step = steps_;
@@ -318,6 +356,8 @@ void StylusContacts::locate(std::size_t s, const Vector3& tip, ContactModel& mod
   SurfacePoint point = stylus.proxy.point();
   if (model.state == ContactState::kFree) point = surface_.closest(tip).point;
   stylus.mask.spread(point, patch);
+  stylus.predicted = patch;
+  stylus.predicted_step = steps_;
   if (model.state == ContactState::kHeld) {
     model.place = stylus.proxy.offset() + mean(patch, [&](int i) { return rest_.node(i); });
   } else {
@@ -353,6 +393,55 @@ void StylusContacts::add_others(std::size_t s, const ContactProblem& problem, No
     model.other_force += force;
     model.other_torque += solved.arm.cross(force);
   }
+}
+
+// Of those that go on the one that exerts most: more of them would cost more than a step has.
+std::optional<std::size_t> StylusContacts::strongest_other(
+    std::size_t s, const ContactProblem& problem) const noexcept {
+  std::optional<std::size_t> strongest;
+  for (int a = 0; first_ + a < problem.count(); ++a) {
+    const auto other = static_cast<std::size_t>(contacts_[static_cast<std::size_t>(a)].stylus);
+    const Stylus& stylus = styluses_[other];
+    const PersistentContact& contact = stylus.proxy.contact();
+    const bool goes_on = problem.contact(first_ + a).mode != ContactMode::kOpen && contact.any() &&
+                         !contact.releasing() && stylus.position.has_value();
+    if (other == s || !goes_on) continue;
+    const double force = stylus.last.average.squaredNorm();
+    if (!strongest || force > styluses_[*strongest].last.average.squaredNorm()) strongest = other;
+  }
+  return strongest;
+}
+
+bool StylusContacts::find_other(std::size_t s, const Friction& friction,
+                                const ContactProblem& problem,
+                                AssemblyHorizon::Contact& found) noexcept {
+  const std::optional<std::size_t> other = strongest_other(s, problem);
+  if (!other) return false;
+  Stylus& stylus = styluses_[*other];
+  const PersistentContact& contact = stylus.proxy.contact();
+  if (stylus.predicted.count == 0 || steps_ > stylus.predicted_step + kPredictedFor) {
+    stylus.mask.spread(stylus.proxy.point(), stylus.predicted);
+    stylus.predicted_step = steps_;
+  }
+  found.patch = stylus.predicted;
+  found.law = ContactLaw::kHeld;
+  found.friction = friction;
+  if (contact.slipping()) found.friction.static_ = friction.kinetic;
+  if (contact.state() == ContactState::kTouching) {
+    const SmoothedSurface::Place place = stylus.felt.at(stylus.proxy.point());
+    found.law = ContactLaw::kTouching;
+    found.normal = place.normal;
+    found.place = place.position;
+  } else {
+    ContactPatch now;
+    stylus.mask.spread(stylus.proxy.point(), now);
+    found.place = stylus.proxy.offset() + mean(now, [&](int i) { return rest_.node(i); });
+  }
+  found.tip = *stylus.position;
+  found.velocity = stylus.velocity;
+  found.force = stylus.last.average;
+  found.series = stylus.tip.coupling_stiffness > 0 ? 1.0 / stylus.tip.coupling_stiffness : 0.0;
+  return true;
 }
 
 bool StylusContacts::locate_delayed(std::size_t s, const Vector3& tip, const Vector3& arm,

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "simulation/contact/pressure_mask.hpp"
 #include "simulation/contact/smoothed_surface.hpp"
 #include "simulation/engine/response_engine.hpp"
+#include "simulation/step/assembly_horizon.hpp"
 #include "simulation/step/god_object.hpp"
 #include "simulation/step/nodal_forces.hpp"
 #include "simulation/step/simulation_config.hpp"
@@ -37,8 +39,10 @@ class StylusContacts {
   /// Where their places would be without force, and the elastic compliance between them.
   void predict(ResponseEngine& engine) noexcept;
   /// Writes them into the problem, from row `first` on; those of the floor come before.
+  /// @param driving_share EnergyAccount::driving_share(), for forces of bridges
   void pose(std::span<const StylusCommand> commands, const FreeMotion& motion,
-            const Friction& friction, int first, ContactProblem& problem) noexcept;
+            const Friction& friction, double driving_share, int first,
+            ContactProblem& problem) noexcept;
   /// What the contacts of bridges would do by themselves among the others' forces: that is how they
   /// slip and end.
   void solve_bridged(ContactProblem& problem) noexcept;
@@ -50,6 +54,12 @@ class StylusContacts {
   /// Adds their forces to those of the step, which ends here.
   void end_step(const ContactProblem& problem, const Quaternion& halfway, NodalForces& nodal,
                 RigidStateHistory::Forces& forces) noexcept;
+
+  /// Of all tips against the object in the step that has ended [J]: for a bridge's force, which the
+  /// device shows after its step, that of the step before.
+  double work() const noexcept { return work_; }
+  /// Forces of bridges that acted in part, or not at all, by their driving share, so far.
+  std::uint64_t limited() const noexcept { return limited_; }
 
   int count() const noexcept { return count_; }
   const ContactPatch& patch(int a) const noexcept { return patches_[static_cast<std::size_t>(a)]; }
@@ -71,6 +81,12 @@ class StylusContacts {
   /// @param problem of the last step
   void add_others(std::size_t s, const ContactProblem& problem, NodalForces& nodal,
                   ContactModel& model) const noexcept;
+  /// The contact of another stylus that answers in the model of this one, if there is any: that
+  /// which exerts most on average. What is being released stays with the forces of add_others().
+  bool find_other(std::size_t s, const Friction& friction, const ContactProblem& problem,
+                  AssemblyHorizon::Contact& found) noexcept;
+  /// The force of stylus s on average over the last while [N].
+  const Vector3& average(std::size_t s) const noexcept { return styluses_[s].last.average; }
   /// Where a force acted `entry.age` steps before the last one: at the contact of then, or else at
   /// the tip, if that is near the surface. Point and arm are written. False: neither.
   /// @param tip in the coming step [m]  @param arm where the bridge says that it was [m]
@@ -97,6 +113,12 @@ class StylusContacts {
     GodObject proxy = {};
     ContactDisplacement displacement = {};  ///< of its contact's place
     LastContact last = {};
+    std::optional<Vector3> position = {};  ///< of its tip in the last step [m], W; none: not there
+    Vector3 way = Vector3::Zero();         ///< of its tip in that step [m], W
+    Vector3 velocity = Vector3::Zero();    ///< of its tip, smoothed [m/s], W
+    Vector3 shown = Vector3::Zero();       ///< by its bridge: the last force on the object [N], W
+    ContactPatch predicted = {};           ///< for which others were told of it ...
+    std::uint64_t predicted_step = 0;      ///< ... since this step
   };
   /// A contact of this step.
   struct Contact {
@@ -116,12 +138,16 @@ class StylusContacts {
   Stylus& stylus_of(const Contact& contact) noexcept {
     return styluses_[static_cast<std::size_t>(contact.stylus)];
   }
+  std::optional<std::size_t> strongest_other(std::size_t s,
+                                             const ContactProblem& problem) const noexcept;
+  void follow(Stylus& stylus, const StylusCommand& command) noexcept;
   bool find_contact(Stylus& stylus, const StylusCommand& command, const Vector3& tip) noexcept;
   void apply_remote_contact(Stylus& stylus, const BridgedForce& bridged,
                             const Vector3& tip) noexcept;
   bool project_initial_contact(Stylus& stylus, const Vector3& tip) noexcept;
   void pose_contact(Contact& contact, const StylusCommand& command, const FreeMotion& motion,
-                    const Friction& friction, int row, ContactProblem& problem) noexcept;
+                    const Friction& friction, double driving_share, int row,
+                    ContactProblem& problem) noexcept;
   Vector3 accepted_arm(const Vector3& arm, const Vector3& own) const noexcept;
 
   const RestSurface& rest_;
@@ -132,6 +158,8 @@ class StylusContacts {
   double size_ = 0.0;  ///< largest distance of the surface from the centre of mass [m]
   std::vector<Stylus> styluses_;
   std::uint64_t steps_ = 0;  ///< made so far
+  double work_ = 0.0;
+  std::uint64_t limited_ = 0;
 
   // Of the step under way.
   int count_ = 0;

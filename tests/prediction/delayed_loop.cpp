@@ -148,6 +148,7 @@ class Loop {
                     .horizon_ns = wanted.horizon_ns,
                     .solved_here = true,
                     .solved_ns = wanted.solved_ns,
+                    .energy = wanted.energy,
                     .contact = wanted.contact,
                     .force = wanted.force,
                     .normal = wanted.normal};

@@ -64,6 +64,14 @@ TEST_CASE("foresight: path and response are what stepping on brings") {
     std::vector<Vector3> path(kSteps);
     std::vector<Matrix3> response(kSteps);
     engine->predict_horizon(patch, held, path, response);
+    const ContactPatch far(SurfacePoint{{0, 5, 7}, {0.2, 0.5, 0.3}});
+    std::vector<Matrix3> cross(kSteps);
+    std::vector<Matrix3> back(kSteps);
+    engine->cross_response(far, patch, cross);
+    engine->cross_response(patch, far, back);
+    for (std::size_t n = 0; n < kSteps; ++n) {
+      CHECK((cross[n] - back[n].transpose()).norm() < 1e-6 * response[0].norm());
+    }
     const auto other = make_engine(cube);
     if (other->capabilities().damping != nullptr)
       other->capabilities().damping->scale_damping(damping);
@@ -79,6 +87,9 @@ TEST_CASE("foresight: path and response are what stepping on brings") {
       other->advance(n == 0 ? pushed : std::vector<NodalForce>{});
       const Points v = displacement(*other);
       const Vector3 mean_v = mean(patch, [&](int i) { return Vector3(v.row(i)); });
+      const Vector3 far_v = mean(far, [&](int i) { return Vector3(v.row(i)); });
+      CHECK((cross[static_cast<std::size_t>(n)] * force - far_v).norm() <
+            1e-5 * (response[0] * force).norm());
       CHECK((response[static_cast<std::size_t>(n)] * force - mean_v).norm() <
             1e-5 * (response[0] * force).norm());
     }

@@ -78,6 +78,20 @@ LoopSetup by_two(double youngs_modulus) {
   return setup;
 }
 
+// Two fingers press a cube from either side, and sway it together.
+LoopSetup pinched(double youngs_modulus) {
+  LoopSetup setup = cube(youngs_modulus);
+  setup.config.styluses = {{0.0, 2000.0, 0.005}, {0.0, 2000.0, 0.005}};
+  for (const double side : {-1.0, 1.0}) {
+    setup.hands.push_back({.target = [side](double t) {
+      const double in = 0.012 * smooth(t, 0.1, 0.5);
+      const double up = 0.03 * smooth(t, 0.7, 1.0) * std::sin(2 * M_PI * (t - 0.7));
+      return Vector3(side * (kPredictedHalf + 0.004 - in), up, 0.0);
+    }});
+  }
+  return setup;
+}
+
 struct Compared {
   double peak = 0.0;
   LoopRun run;
@@ -202,8 +216,7 @@ TEST_CASE("prediction: a tip that slides on a surface", "[slow]") {
   }
 }
 
-// Each hand learns of the other's forces by the link only. A stiff object between two hands that
-// hold it is beyond that from 5 ms one way on, one of 1e6 N/m^2 from 2 ms.
+// Each hand learns of the other's motion by the link only.
 TEST_CASE("prediction: two hands on one object", "[slow]") {
   for (const double E : {1e3, 2e3}) {
     const LoopSetup setup = by_two(E);
@@ -220,6 +233,24 @@ TEST_CASE("prediction: two hands on one object", "[slow]") {
     CHECK(error(setup, direct, LoopMode::kPredict, {.delay = 0.002}) < 0.05);
     CHECK(error(setup, direct, LoopMode::kHold, {.delay = 0.002}) > 1.0);
   }
+}
+
+// Each bridge's model has the other finger's contact in it, as it answers.
+TEST_CASE("prediction: a pinch by two bridges", "[slow]") {
+  for (const double E : {2e3, 2e4}) {
+    const LoopSetup setup = pinched(E);
+    const LoopRun direct = run_loop(setup, LoopMode::kDirect);
+    for (const LoopLink& link : {LoopLink{.delay = 0.002}, LoopLink{.delay = 0.005},
+                                 LoopLink{.delay = 0.005, .jitter = 0.001}}) {
+      CAPTURE(E, link.delay, link.jitter);
+      const Compared predict = compare(setup, direct, LoopMode::kPredict, link);
+      CHECK(predict.error < 0.1);
+      CHECK(predict.run.energy_from_nowhere < 1e-3);
+    }
+  }
+  const LoopSetup stiff = pinched(1e5);
+  CHECK(error(stiff, run_loop(stiff, LoopMode::kDirect), LoopMode::kPredict, {.delay = 0.002}) <
+        0.1);
 }
 
 // Object and hand get what the filter makes of the force, so that the same bridge without delay is

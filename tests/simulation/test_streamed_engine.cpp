@@ -81,6 +81,9 @@ void check_same_answers(ResponseEngine& streamed, ResponseEngine& dense, int nod
   dense.predict_horizon(patches[0], held, expected_path, expected_response);
   CHECK(path == expected_path);
   CHECK(response == expected_response);
+  streamed.cross_response(patches[0], patches[1], response);
+  dense.cross_response(patches[0], patches[1], expected_response);
+  CHECK(response == expected_response);
 }
 
 template <typename Scalar>

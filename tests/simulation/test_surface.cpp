@@ -29,6 +29,8 @@ class FakeEngine final : public ResponseEngine {
                ContactMatrix&) noexcept override {}
   void predict_horizon(const ContactPatch&, std::span<const NodalForce>, std::span<Vector3>,
                        std::span<Matrix3>) noexcept override {}
+  void cross_response(const ContactPatch&, const ContactPatch&,
+                      std::span<Matrix3>) noexcept override {}
   void add_delayed_force(std::span<const NodalForce>, int) noexcept override {}
   void advance(std::span<const NodalForce>) noexcept override {}
   void displacement(Points&, double) const override {}

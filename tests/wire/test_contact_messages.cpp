@@ -84,6 +84,7 @@ ContactModelMessage numbered() {
   model.missing = 0x1112131415161718;
   model.newest = 0x2122232425262728;
   model.dt = 0.002;
+  model.energy = ++next;
   model.body.mass = ++next;
   model.body.inertia = symmetric();
   model.motion.position = vector();
@@ -126,13 +127,13 @@ AppliedForcesMessage forces(int count) {
 
 TEST_CASE("a contact model has its documented fields, in their order") {
   const Bytes payload = payload_of(numbered());
-  REQUIRE(payload.size() == 4072);
+  REQUIRE(payload.size() == 4080);
   const Bytes head{3, 0, 1, 0, 1, 0, 50, 0, 8, 7, 6, 5, 4, 3, 2, 1};
   CHECK(std::equal(head.begin(), head.end(), payload.begin()));
   CHECK(payload[16] == 0x18);
   CHECK(payload[24] == 0x28);
   CHECK(number_at(payload, 32) == 0.002);
-  for (std::size_t i = 0; i < (4072 - 40) / 8; ++i) {
+  for (std::size_t i = 0; i < (4080 - 40) / 8; ++i) {
     CHECK(number_at(payload, 40 + 8 * i) == static_cast<double>(i + 1));
   }
   CHECK(payload_of(read_back<ContactModelMessage>(payload)) == payload);
@@ -144,7 +145,7 @@ TEST_CASE("a contact model's flags and horizon come back, and what is beyond the
   message.model.body.support = Support::kFixed;
   message.model.horizon = 7;
   const Bytes payload = payload_of(message);
-  CHECK(number_at(payload, 472 + 72 * 7) == 0.0);
+  CHECK(number_at(payload, 480 + 72 * 7) == 0.0);
   const ContactModel back = read_back<ContactModelMessage>(payload).model;
   CHECK(back.slipping);
   CHECK_FALSE(back.paused);
@@ -167,12 +168,12 @@ TEST_CASE("a contact model is refused for each number that is not finite, and fo
   using M = ContactModelMessage;
   const Bytes good = payload_of(numbered());
   for (std::size_t at = 32; at < good.size(); at += 8) {
-    const bool friction = at == 408 || at == 416;
+    const bool friction = at == 416 || at == 424;
     if (friction) continue;
     CHECK(fault_of<M>(with(good, at, kNoNumber)) == ProtocolFault::kNotFinite);
     CHECK(fault_of<M>(with(good, at, kEndless)) == ProtocolFault::kNotFinite);
   }
-  CHECK(read_back<M>(with(good, 408, kEndless)).model.friction.static_ == kEndless);
+  CHECK(read_back<M>(with(good, 416, kEndless)).model.friction.static_ == kEndless);
   CHECK(fault_of<M>(with(good, 2, std::uint16_t{0x11})) == ProtocolFault::kBadValue);
   CHECK(fault_of<M>(with(good, 4, std::uint16_t{3})) == ProtocolFault::kBadValue);
   CHECK(fault_of<M>(with(good, 6, std::uint16_t{51})) == ProtocolFault::kBadValue);

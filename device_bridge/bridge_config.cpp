@@ -110,6 +110,8 @@ Overruns read_overruns(TomlTable table) {
   Overruns overruns;
   overruns.every = table.number("every", between(0.0, 1000.0), overruns.every);
   overruns.longest = table.number("longest", between(0.0, 1.0), overruns.longest);
+  overruns.pause_at = table.number("pause_at", between(0.0, 1e6), overruns.pause_at);
+  overruns.pause = table.number("pause", between(0.0, 1000.0), overruns.pause);
   table.finish();
   return overruns;
 }
@@ -119,6 +121,7 @@ SimulatedLink read_link(TomlTable table) {
   link.channel.delay = table.number("delay", between(0.0, 1.0), link.channel.delay);
   link.channel.jitter = table.number("jitter", between(0.0, 1.0), link.channel.jitter);
   link.channel.loss = table.number("loss", between(0.0, 0.9), link.channel.loss);
+  link.channel.bandwidth = table.number("bandwidth", between(0.0, 1e12), link.channel.bandwidth);
   link.server_overruns = read_overruns(table.table("server_overruns"));
   link.bridge_overruns = read_overruns(table.table("bridge_overruns"));
   link.seed = static_cast<std::uint64_t>(table.integer("seed", 0, 1'000'000'000, 1));

@@ -3,8 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/wire/payload.hpp"
+
 namespace irdm {
 namespace {
+
+// Of a message with its header.
+std::size_t bytes_of(wire::MessageType type) {
+  return wire::kHeaderSize + wire::payload_size(type).value();
+}
 
 std::int64_t simulated_ns(double seconds) {
   return std::llround(1e9 * seconds);
@@ -65,8 +72,12 @@ void LinkSimulation::tick(std::size_t i, double now) {
   });
   loop.end_steps(now_ns);
   loop.apply(now_ns, stylus.input);
-  if (const AppliedForces* applied = loop.applied()) message.applied = *applied;
-  stylus.up.send(now, message);
+  std::size_t bytes = bytes_of(wire::MessageType::kSample);
+  if (const AppliedForces* applied = loop.applied()) {
+    message.applied = *applied;
+    bytes += bytes_of(wire::MessageType::kAppliedForces);
+  }
+  stylus.up.send(now, message, bytes);
 }
 
 StylusSample LinkSimulation::sample(std::size_t stylus, std::uint64_t k) const {
@@ -81,7 +92,9 @@ const AppliedForces* LinkSimulation::applied(std::size_t stylus) {
 
 void LinkSimulation::answer(std::size_t stylus, const ServoInput& input,
                             const ContactModel* model) {
-  styluses_[stylus].down.send(time_, {input, model ? std::optional(*model) : std::nullopt});
+  std::size_t bytes = bytes_of(wire::MessageType::kForce);
+  if (model != nullptr) bytes += bytes_of(wire::MessageType::kContactModel);
+  styluses_[stylus].down.send(time_, {input, model ? std::optional(*model) : std::nullopt}, bytes);
 }
 
 }  // namespace irdm

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <random>
@@ -10,15 +11,18 @@ namespace irdm {
 
 /// One direction between bridge and server on the simulated clock.
 struct ChannelParameters {
-  double delay = 0.0;   ///< one way [s]
-  double jitter = 0.0;  ///< up to so much more, each message anew [s]
-  double loss = 0.0;    ///< share of messages
+  double delay = 0.0;      ///< one way [s]
+  double jitter = 0.0;     ///< up to so much more, each message anew [s]
+  double loss = 0.0;       ///< share of messages
+  double bandwidth = 0.0;  ///< [bit/s]; 0: no bound. What finds it busy waits
 };
 
 /// A side that does nothing for a while, as on a busy machine.
 struct Overruns {
-  double every = 0.0;    ///< on average [s]; 0: never
-  double longest = 0.0;  ///< each takes up to so long [s]
+  double every = 0.0;     ///< on average [s]; 0: never
+  double longest = 0.0;   ///< each takes up to so long [s]
+  double pause_at = 0.0;  ///< the process is stopped then [s] ...
+  double pause = 0.0;     ///< ... for so long [s]
 };
 
 /// Table `bridge.link`: what lies between bridge and server in lockstep.
@@ -37,12 +41,14 @@ class SimulatedChannel {
   SimulatedChannel(const ChannelParameters& link, std::uint64_t seed)
       : link_(link), random_(seed) {}
 
-  /// @param now simulated time [s]
-  void send(double now, Message message) {
+  /// @param now simulated time [s]  @param bytes of the message, headers included
+  void send(double now, Message message, std::size_t bytes = 0) {
     const double luck = uniform();
     const double late = link_.jitter * uniform();
+    sent_ = std::max(now, sent_);
+    if (link_.bandwidth > 0.0) sent_ += 8.0 * static_cast<double>(bytes) / link_.bandwidth;
     if (luck < link_.loss) return;
-    under_way_.push_back({now + link_.delay + late, std::move(message)});
+    under_way_.push_back({sent_ + link_.delay + late, std::move(message)});
   }
   /// Gives what has arrived by now to `receive`, in the order in which it was sent.
   template <typename Receive>
@@ -68,6 +74,7 @@ class SimulatedChannel {
   ChannelParameters link_;
   std::mt19937_64 random_;
   std::vector<Timed> under_way_;
+  double sent_ = 0.0;  ///< when the last message was on its way [s]
 };
 
 /// Whether a side is in an overrun, period by period. The same seed, the same overruns.
@@ -78,6 +85,7 @@ class SimulatedOverruns {
 
   /// @param now simulated time at the end of a period of dt [s]
   bool at(double now, double dt) {
+    if (now >= overruns_.pause_at && now < overruns_.pause_at + overruns_.pause) return true;
     if (now < until_) return true;
     if (overruns_.every > 0.0 && uniform() < dt / overruns_.every) {
       until_ = now + overruns_.longest * uniform();

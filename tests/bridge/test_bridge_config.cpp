@@ -132,14 +132,18 @@ TEST_CASE("bridge configuration takes a simulated link") {
   CHECK_FALSE(ConfigFile("[[device]]\nscript = \"/a.csv\"\n").load().link);
   const BridgeConfig config =
       ConfigFile(
-          "[bridge.link]\ndelay = 0.01\njitter = 0.002\nloss = 0.1\nseed = 5\n"
-          "bridge_overruns = { every = 2, longest = 0.02 }\n[[device]]\nscript = \"/a.csv\"\n")
+          "[bridge.link]\ndelay = 0.01\njitter = 0.002\nloss = 0.1\nbandwidth = 2e7\nseed = 5\n"
+          "bridge_overruns = { every = 2, longest = 0.02, pause_at = 3, pause = 0.5 "
+          "}\n[[device]]\nscript = \"/a.csv\"\n")
           .load();
   REQUIRE(config.link);
   CHECK(config.link->channel.delay == 0.01);
   CHECK(config.link->channel.jitter == 0.002);
   CHECK(config.link->channel.loss == 0.1);
+  CHECK(config.link->channel.bandwidth == 2e7);
   CHECK(config.link->seed == 5);
+  CHECK(config.link->bridge_overruns.pause_at == 3.0);
+  CHECK(config.link->bridge_overruns.pause == 0.5);
   CHECK(config.link->bridge_overruns.every == 2.0);
   CHECK(config.link->bridge_overruns.longest == 0.02);
   CHECK(config.link->server_overruns.every == 0.0);

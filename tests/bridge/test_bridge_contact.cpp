@@ -36,6 +36,7 @@ class Bench {
       if (served && now_ns % (2 * kMs) == 0) {
         // The server has heard of the touch by then.
         ContactModel model = wall(server_step++);
+        model.energy = energy;
         if (yields_later) model.response[1] = 0.5 * model.response[0];
         // What it does not know of is taken to be at the bridge alone.
         if (yields_later) model.missing = ~std::uint64_t{0} >> (64 - kMaxHorizon);
@@ -52,6 +53,7 @@ class Bench {
   BridgeContact contact{kDt, kMs};
   std::int64_t now_ns = 0;
   std::uint64_t server_step = 100;
+  double energy = 0.0;
   double share = 1.0;  ///< of the force that the device shows
   bool yields_later = false;
 };
@@ -81,6 +83,18 @@ TEST_CASE("contact at the bridge: a wall pushes by its stiffness, and the server
   CHECK(applied.step == bench.server_step - 1 + bench.contact.lookahead());
   CHECK((applied.past[3].force - Vector3(0, -1, 0)).norm() < 1e-12);
   CHECK(applied.past[3].tip == Vector3(0, -0.001, 0));
+}
+
+TEST_CASE(
+    "contact at the bridge: its device may give the model's energy and its hand's work since") {
+  Bench bench;
+  bench.energy = 0.01;
+  bench.ticks(140, -0.001);
+  CHECK(bench.contact.wanted().energy == Approx(0.01));
+  bench.ticks(2, -0.0015, false);  // half a millimetre against one newton
+  CHECK(bench.contact.wanted().energy == Approx(0.0105));
+  bench.ticks(2, -0.0005, false);  // back by a millimetre with one and a half
+  CHECK(bench.contact.wanted().energy == Approx(0.009));
 }
 
 TEST_CASE("contact at the bridge: without newer models what it asks for ages by its own clock") {

@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <limits>
 
 #include "device_bridge/safety/passivity.hpp"
 
@@ -30,5 +31,19 @@ TEST_CASE("passivity observer: energy is kept between its two bounds, however lo
   CHECK(passivity.energy() == Approx(-0.01));
   CHECK(passivity.damping(kPush, Vector3(0, 0.1, 0), 1e-3) > 0.0);
   for (int i = 0; i < 100; ++i) take_in(passivity, -0.01);
+  CHECK(passivity.energy() == limits.least);
+}
+
+TEST_CASE("passivity observer: the account of both ends bounds what the device may give") {
+  const PassivityLimits limits;
+  Passivity passivity(limits);
+  take_in(passivity, 0.05);
+  passivity.bound(0.2);
+  CHECK(passivity.energy() == Approx(0.05));
+  passivity.bound(std::numeric_limits<double>::quiet_NaN());
+  CHECK(passivity.energy() == Approx(0.05));
+  passivity.bound(0.01);
+  CHECK(passivity.energy() == 0.01);
+  passivity.bound(-1.0);
   CHECK(passivity.energy() == limits.least);
 }

@@ -2,7 +2,9 @@
 #include <cmath>
 
 #include "simulation/step/simulation.hpp"
+#include "tests/support/allocation_guard.hpp"
 #include "tests/support/fem_cube.hpp"
+#include "tests/support/left_out.hpp"
 
 // What a bridge is told of its contact has the other contacts in it as they answer: the same as the
 // simulation does when it goes on with them.
@@ -107,5 +109,20 @@ TEST_CASE("assembly: a contact among others goes as the simulation goes on") {
         CHECK(error / way < 0.02);
       }
     }
+  }
+}
+
+TEST_CASE("assembly: a model with another contact in it allocates nothing") {
+  if (!AllocationGuard::active()) return leave_out(kNotCounted);
+  for (const ResponseKind kind :
+       {ResponseKind::kModal, ResponseKind::kDense, ResponseKind::kCompressed}) {
+    Scene scene(kind, 2e4, Other::kPresses);
+    const AllocationGuard guard;
+    for (int k = 0; k < 10; ++k) {
+      scene.simulation.step(std::array{Scene::command(-kHalf, true), Scene::command(0.057, false)},
+                            scene.record);
+      scene.simulation.predict_horizon(0, Vector3(-kHalf, 0, 0), kHorizon, scene.model);
+    }
+    CHECK(guard.count() == 0);
   }
 }

@@ -89,6 +89,31 @@ TEST_CASE("simulated link: press, grab and swing feel over it as without it") {
   CHECK(held.peak_shown != Approx(near.peak_shown).epsilon(0.1));
 }
 
+TEST_CASE("simulated link: a process that is stopped for a while gives no blow when it goes on") {
+  const Stage stage;
+  const Run near = play(stage, "");
+  for (const std::string side : {"bridge", "server"}) {
+    CAPTURE(side);
+    const Run run =
+        play(stage, "delay = 0.002\n" + side + "_overruns = { pause_at = 1.0, pause = 0.3 }\n");
+    CHECK(run.peak_shown > 0.3);
+    // A hand that goes on against the force of before may come back far from what it holds.
+    CHECK(run.peak_shown <= 3.3);  // bridge.max_force
+    CHECK(peak(run) < 1.1 * near.peak_shown);
+  }
+}
+
+TEST_CASE("simulated link: one that cannot carry the contact models gives no force at either end") {
+  const Stage stage;
+  const Run near = play(stage, "");
+  const Run enough = play(stage, "bandwidth = 40e6\n");
+  CHECK(enough.peak_shown == Approx(near.peak_shown).epsilon(0.1));
+  CHECK(peak(enough) == Approx(near.peak_shown).epsilon(0.1));
+  const Run narrow = play(stage, "bandwidth = 5e6\n");  // a model each step takes 16 Mbit/s
+  CHECK(narrow.peak_shown == 0.0);
+  CHECK(peak(narrow) == 0.0);
+}
+
 TEST_CASE("simulated link: a server in real time is not one for it") {
   const Stage stage;
   stage.write("bridge.toml", file_content(stage.path("bridge.toml")) + "[bridge.link]\n");

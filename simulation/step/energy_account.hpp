@@ -10,7 +10,8 @@ namespace irdm {
 /// the hands did. Beyond kMost it is forgotten, as if lost to damping. Pure.
 class EnergyAccount {
  public:
-  static constexpr double kMost = 0.2;  ///< that is remembered [J]
+  static constexpr double kMost = 0.2;     ///< that is remembered [J]
+  static constexpr double kLeast = -0.05;  ///< the same, below zero
   /// By this much it may be below zero [J]: what rounding, steps and late news make of a passive
   /// object's. As much again below that, no bridge's force puts in any more.
   static constexpr double kAllowance = 0.005;
@@ -24,7 +25,7 @@ class EnergyAccount {
   void set_energy(double energy) noexcept { energy_ = energy; }
   /// At the end of a step. @param work of all hands in it [J]  @param energy at its end [J]
   void settle(double work, double energy) noexcept {
-    balance_ = std::min(kMost, balance_ + work - (energy - energy_));
+    balance_ = std::clamp(balance_ + work - (energy - energy_), kLeast, kMost);
     energy_ = energy;
   }
 

@@ -23,7 +23,7 @@ TEST_CASE("energy account: what hands gave is remembered, and no more than that 
   CHECK(account.driving_share() == 0.0);
   account.set_energy(0.0);  // another gravity is nobody's work
   account.settle(0.0, 0.0);
-  CHECK(account.balance() == Approx(-1.0 - 1.5 * EnergyAccount::kAllowance));
+  CHECK(account.balance() == EnergyAccount::kLeast);
   account.settle(10.0, 0.0);
   CHECK(account.balance() == EnergyAccount::kMost);
 }

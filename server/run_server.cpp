@@ -96,7 +96,8 @@ int print_report(const FinishedRun& run, const ServerOptions& options) {
   faults("forces of bridges that came late, entered at their own step", force.late);
   faults("forces of bridges that were lost", force.lost);
   faults("forces of bridges above their stylus' max_force, lowered to it", force.bounded);
-  faults("forces of bridges lowered: the object had no energy of hands for them", force.limited);
+  faults("forces of bridges reduced, since they would put in more energy than hands gave",
+         force.limited);
   if (run.columns.any()) {
     std::cout << "nodes whose columns were read: " << run.columns.loaded()
               << ", cache misses: " << force.cache_misses << '\n';

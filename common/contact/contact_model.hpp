@@ -36,8 +36,8 @@ struct ContactModel {
   std::uint64_t newest = kNoStep;
   /// The run is paused: what is felt is to fade. Nothing else means anything then.
   bool paused = false;
-  /// What hands gave the object and may have back [J]: their work until the newest step up to K
-  /// whose force is in it, see newest_known().
+  /// What the device may give from the end of newest_known() on, but for its hand's work since [J]:
+  /// EnergyAccount's balance and allowance, and a part of the object's kinetic energy.
   double energy = 0.0;
   double dt = 0.0;  ///< of a step [s], > 0
   int horizon = 0;  ///< H, 1 to kMaxHorizon

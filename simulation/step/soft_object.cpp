@@ -188,10 +188,8 @@ void SoftObject::collect_others(std::size_t s, ContactModel& model) noexcept {
 double SoftObject::available_energy(const ContactModel& model) const noexcept {
   const RigidBody& body = body_.rigid();
   if (!body.moves()) return account_.balance() + EnergyAccount::kAllowance;
-  const RigidState& motion = model.motion;
-  const double kinetic = 0.5 * (body.mass() * motion.velocity.squaredNorm() +
-                                motion.angular_momentum.dot(body.angular_velocity(motion)));
-  const double power = body.mass() * model.free_forces.gravity.dot(motion.velocity);
+  const double kinetic = rigid_energy(body, FreeForces{}, model.motion);
+  const double power = body.mass() * model.free_forces.gravity.dot(model.motion.velocity);
   const double falling = std::max(0.0, power) * model.horizon * model.dt;
   return account_.balance() + EnergyAccount::kAllowance +
          (kinetic + falling) / std::max(1, contacts_.count());

@@ -36,7 +36,7 @@ void check_loops(std::uint64_t count) {
 
 }  // namespace
 
-TEST_CASE("harsh loops: no more force than a device shows, no more energy than hands give",
+TEST_CASE("harsh loops: no more force than a device shows, hardly more energy than hands give",
           "[slow]") {
   check_loops(200);
 }

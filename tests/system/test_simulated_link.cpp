@@ -89,7 +89,7 @@ TEST_CASE("simulated link: press, grab and swing feel over it as without it") {
   CHECK(held.peak_shown != Approx(near.peak_shown).epsilon(0.1));
 }
 
-TEST_CASE("simulated link: a process that is stopped for a while gives no blow when it goes on") {
+TEST_CASE("simulated link: a process that was stopped gives the object no blow when it goes on") {
   const Stage stage;
   const Run near = play(stage, "");
   for (const std::string side : {"bridge", "server"}) {

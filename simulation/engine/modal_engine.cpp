@@ -59,8 +59,8 @@ void ModalEngine<Scalar>::set_transitions(double damping) noexcept {
     b1_[i] = step.b1;
     b2_[i] = step.b2;
   }
-  horizon_.set_transitions({a11_.data(), a12_.data(), a21_.data(), a22_.data()},
-                           response.angular_frequency.data());
+  horizon_.set_transitions({a11_.data(), a12_.data(), a21_.data(), a22_.data()}, b1_.data(),
+                           b2_.data(), response.angular_frequency.data());
   tabulate_delayed();
 }
 
@@ -275,7 +275,7 @@ ModalHorizon::Contact& ModalEngine<Scalar>::horizon_contact(const ContactPatch& 
   if (contact == nullptr) {
     contact = &horizon_.begin(patch);
     for (std::size_t i = 0; i < 3; ++i) {
-      mean_shape(patch, static_cast<int>(i), {0, modes_}, &contact->shapes[i * modes_]);
+      mean_shape(patch, static_cast<int>(i), {0, modes_}, &contact->shapes[i * horizon_.stride()]);
     }
   }
   contact->used = state_;

@@ -5,65 +5,54 @@
 namespace irdm {
 namespace {
 
-// Modes at a time: their products stay in the first level of the cache.
-constexpr std::size_t kPart = 256;
-
 bool same(const ContactPatch& a, const ContactPatch& b) noexcept {
   return a.count == b.count &&
          std::equal(a.nodes.begin(), a.nodes.begin() + a.count, b.nodes.begin()) &&
          std::equal(a.weights.begin(), a.weights.begin() + a.count, b.weights.begin());
 }
 
-Vector3 vector(const CourseSums<3>& sums, std::size_t n) noexcept {
-  return {sums[0][n], sums[1][n], sums[2][n]};
+Vector3 vector(const std::array<double, 3>& sums) noexcept {
+  return {sums[0], sums[1], sums[2]};
 }
 
 }  // namespace
 
 ModalHorizon::ModalHorizon(std::size_t modes)
-    : kernels_(course_kernels()[0]),
+    : add_three_(course_kernels()[0]),
       modes_(modes),
-      decrements_(kCourse * kBlocks * modes),
-      increments_(kCourse * kBlocks * modes),
-      first_decrement_(modes),
+      stride_((modes + kCourseLanes - 1) / kCourseLanes * kCourseLanes),
       ends_(2 * kMaxHorizon * modes),
       compliance_(modes),
-      products_(12 * kPart),
-      factors_(kPart) {
-  for (Contact& contact : contacts_) contact.shapes.assign(3 * modes, 0.0);
+      trace_(kPart),
+      determinant_(kPart),
+      now_(kPart),
+      next_(kPart),
+      factors_(kPart),
+      products_(3 * kPart) {
+  static_assert(kPart % kCourseLanes == 0);
+  for (Contact& contact : contacts_) contact.shapes.assign(3 * stride_, 0.0);
 }
 
-void ModalHorizon::set_transitions(const Transitions& A, const double* omega) noexcept {
+void ModalHorizon::set_transitions(const Transitions& A, const double* b1, const double* b2,
+                                   const double* omega) noexcept {
   forget();
-  double* const before = products_.data();
-  double* const coordinate = before + kPart;
-  double* const velocity = coordinate + kPart;
-  for (std::size_t first = 0; first < modes_; first += kPart) {
-    const std::size_t count = std::min(kPart, modes_ - first);
-    const Transitions of_part{A.a11 + first, A.a12 + first, A.a21 + first, A.a22 + first};
-    for (const std::size_t from : {0, 1}) {  // a coordinate of 1, or a velocity
-      std::fill_n(coordinate, count, from == 0 ? 1.0 : 0.0);
+  A_ = A;
+  b1_ = b1;
+  b2_ = b2;
+  for (const std::size_t from : {0, 1}) {  // a coordinate of 1, or a velocity
+    const auto end = [&](std::size_t n) { return &ends_[(2 * n + from) * modes_]; };
+    std::fill_n(end(0), modes_, from == 0 ? 1.0 : 0.0);
+    for (std::size_t first = 0; first < modes_; first += kPart) {
+      const std::size_t count = std::min(kPart, modes_ - first);
+      const Transitions of_part{A.a11 + first, A.a12 + first, A.a21 + first, A.a22 + first};
+      double* const velocity = next_.data();
       std::fill_n(velocity, count, from == 0 ? 0.0 : 1.0);
-      for (std::size_t n = 0; n < kBlocks * kCourse; ++n) {
-        if (n < kMaxHorizon) {
-          std::copy_n(coordinate, count, &ends_[(2 * n + from) * modes_ + first]);
-        }
-        std::copy_n(coordinate, count, before);
-        transit(of_part, coordinate, velocity, coordinate, velocity, count);
-        auto& changes = from == 0 ? decrements_ : increments_;
-        float* const to = &changes[(n / kCourse * modes_ + first) * kCourse + n % kCourse];
-        const double sign = from == 0 ? -1.0 : 1.0;
-        for (std::size_t j = 0; j < count; ++j) {
-          to[kCourse * j] = static_cast<float>(sign * (coordinate[j] - before[j]));
-        }
-        if (from != 0 || n != 0) continue;
-        for (std::size_t j = 0; j < count; ++j) first_decrement_[first + j] = 1.0 - coordinate[j];
+      for (std::size_t n = 0; n + 1 < kMaxHorizon; ++n) {
+        transit(of_part, end(n) + first, velocity, end(n + 1) + first, velocity, count);
       }
     }
-    for (std::size_t i = first; i < first + count; ++i) {
-      compliance_[i] = 1.0 / (omega[i] * omega[i]);
-    }
   }
+  for (std::size_t i = 0; i < modes_; ++i) compliance_[i] = 1.0 / (omega[i] * omega[i]);
 }
 
 void ModalHorizon::forget() noexcept {
@@ -115,101 +104,125 @@ ModalHorizon::Contact& ModalHorizon::begin(const ContactPatch& patch) noexcept {
 
 void ModalHorizon::update(Contact& contact, const State& state, std::size_t steps) noexcept {
   contact.used = state.number;
-  if (contact.steps != steps) {
-    contact.steps = steps;
-    compute(contact, state, true);
-  } else if (goes_on(contact, state.number)) {
+  const bool responds = contact.steps == steps;
+  contact.steps = steps;
+  if (!responds) find_response(contact);
+  if (responds && goes_on(contact, state.number)) {
     shift_path(contact, state);
-  } else if (contact.state != state.number) {
-    compute(contact, state, false);
+  } else if (!responds || contact.state != state.number) {
+    find_path(contact, state);
   }
   contact.state = state.number;
 }
 
-void ModalHorizon::multiply_shapes(const Contact& contact, std::size_t first, std::size_t count,
-                                   const double* factors, double* products) const noexcept {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    multiply(&contact.shapes[axis * modes_ + first], factors, products + axis * count, count);
+// Calls it with each part of the modes, whose traces and determinants are at hand then.
+template <typename Function>
+void ModalHorizon::for_parts(Function&& function) noexcept {
+  for (std::size_t first = 0; first < modes_; first += kPart) {
+    const Part part{first, std::min(kPart, modes_ - first)};
+    for (std::size_t j = 0; j < part.count; ++j) {
+      const std::size_t i = first + j;
+      trace_[j] = A_.a11[i] + A_.a22[i];
+      determinant_[j] = A_.a11[i] * A_.a22[i] - A_.a12[i] * A_.a21[i];
+    }
+    for (AlignedNumbers* of_part : {&trace_, &determinant_, &now_, &next_}) {
+      std::fill(of_part->begin() + static_cast<std::ptrdiff_t>(part.count), of_part->end(), 0.0);
+    }
+    function(part);
   }
 }
 
-// Products of two shapes over omega^2: (0, 0), (1, 0), (1, 1), (2, 0), (2, 1), (2, 2).
-void ModalHorizon::square_shapes(const Contact& contact, std::size_t first, std::size_t count,
-                                 double* products) noexcept {
-  for (std::size_t j = 0; j < 3; ++j) {
-    multiply(&contact.shapes[j * modes_ + first], &compliance_[first], factors_.data(), count);
-    for (std::size_t k = 0; k <= j; ++k, products += count) {
-      multiply(&contact.shapes[k * modes_ + first], factors_.data(), products, count);
-    }
+// Courses without a force, from where the modes are. @param coordinate (part.count)
+void ModalHorizon::begin_free(const Part& part, const double* coordinate,
+                              const double* velocity) noexcept {
+  const double* const a11 = A_.a11 + part.first;
+  const double* const a12 = A_.a12 + part.first;
+  for (std::size_t j = 0; j < part.count; ++j) {
+    now_[j] = coordinate[j];
+    next_[j] = a11[j] * coordinate[j] + a12[j] * velocity[j];
   }
+}
+
+// Courses that a force during one step leaves; the end of that step comes first.
+// @param force on the modes (part.count)
+void ModalHorizon::begin_pushed(const Part& part, const double* force) noexcept {
+  const double* const a11 = A_.a11 + part.first;
+  const double* const a12 = A_.a12 + part.first;
+  const double* const b1 = b1_ + part.first;
+  const double* const b2 = b2_ + part.first;
+  for (std::size_t j = 0; j < part.count; ++j) {
+    now_[j] = b1[j] * force[j];
+    next_[j] = (a11[j] * b1[j] + a12[j] * b2[j]) * force[j];
+  }
+}
+
+// Of those that begin in now_ and next_.
+void ModalHorizon::add_courses(const Part& part, const double* weights, std::size_t stride,
+                               std::size_t steps, Sums& sums) noexcept {
+  const std::size_t width = (part.count + kCourseLanes - 1) / kCourseLanes * kCourseLanes;
+  add_three_({trace_.data(), determinant_.data(), now_.data(), next_.data()}, weights, stride,
+             width, std::span(sums).first((steps + kCourse - 1) / kCourse * kCourse));
 }
 
 // moves[n] = R[n] force of a modal force, n < steps.
 void ModalHorizon::respond_to(const Contact& contact, const double* force, std::size_t steps,
                               Path& moves) noexcept {
-  BlockSums<3> sums{};
-  for (std::size_t i = 0; i < modes_; i += kPart) {
-    const std::size_t count = std::min(kPart, modes_ - i);
-    multiply(force + i, &compliance_[i], factors_.data(), count);
-    multiply_shapes(contact, i, count, factors_.data(), products_.data());
-    for (std::size_t block = 0; kCourse * block < steps; ++block) {
-      kernels_.add_three(decrements(block, i), products_.data(), count, sums[block]);
-    }
-  }
-  for (std::size_t n = 0; n < steps; ++n) moves[n] = vector(sums[n / kCourse], n % kCourse);
+  Sums sums{};
+  for_parts([&](const Part& part) {
+    begin_pushed(part, force + part.first);
+    add_courses(part, shape(contact, 0, part), stride_, steps, sums);
+  });
+  std::transform(sums.begin(), sums.begin() + static_cast<std::ptrdiff_t>(steps), moves.begin(),
+                 vector);
 }
 
 // A force that goes on moves the place where a mode is at rest; it swings freely about that.
-const double* ModalHorizon::relative_coordinate(const State& state, std::size_t first,
-                                                std::size_t count) noexcept {
-  const double* const coordinate = state.coordinate + first;
+const double* ModalHorizon::relative_coordinate(const State& state, const Part& part) noexcept {
+  const double* const coordinate = state.coordinate + part.first;
   if (state.force == nullptr) return coordinate;
-  multiply(state.force + first, &compliance_[first], factors_.data(), count);
-  for (std::size_t j = 0; j < count; ++j) factors_[j] = coordinate[j] - factors_[j];
+  for (std::size_t j = 0; j < part.count; ++j) {
+    const std::size_t i = part.first + j;
+    factors_[j] = coordinate[j] - compliance_[i] * state.force[i];
+  }
   return factors_.data();
 }
 
-// The path, each place from the one before, and the response,
-// R[n] = Phi diag((c_n - c_{n+1}) / omega^2) Phi^T.
-void ModalHorizon::compute(Contact& contact, const State& state, bool respond) noexcept {
-  const std::size_t steps = contact.steps;
-  BlockSums<3> decrease{};
-  BlockSums<3> increase{};
-  BlockSums<6> compliances{};
-  Sums<6> first{};
-  contact.path[0].setZero();
-  double* const coordinates = products_.data() + 6 * kPart;
-  double* const velocities = products_.data() + 9 * kPart;
-  for (std::size_t i = 0; i < modes_; i += kPart) {
-    const std::size_t count = std::min(kPart, modes_ - i);
-    for (Eigen::Index axis = 0; axis < 3; ++axis) {
-      contact.path[0][axis] += dot(&contact.shapes[static_cast<std::size_t>(axis) * modes_ + i],
-                                   state.coordinate + i, count);
+void ModalHorizon::find_path(Contact& contact, const State& state) noexcept {
+  Sums sums{};
+  Vector3 rest = Vector3::Zero();
+  for_parts([&](const Part& part) {
+    begin_free(part, relative_coordinate(state, part), state.velocity + part.first);
+    add_courses(part, shape(contact, 0, part), stride_, contact.steps, sums);
+    if (state.force == nullptr) return;
+    multiply(&compliance_[part.first], state.force + part.first, factors_.data(), part.count);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      rest[static_cast<Eigen::Index>(axis)] +=
+          dot(shape(contact, axis, part), factors_.data(), part.count);
     }
-    multiply_shapes(contact, i, count, relative_coordinate(state, i, count), coordinates);
-    multiply_shapes(contact, i, count, state.velocity + i, velocities);
-    for (std::size_t block = 0; kCourse * block + 1 < steps; ++block) {
-      kernels_.add_three(decrements(block, i), coordinates, count, decrease[block]);
-      kernels_.add_three(increments(block, i), velocities, count, increase[block]);
-    }
-    if (!respond) continue;
-    square_shapes(contact, i, count, products_.data());
-    const Sums<6> part = dot_six(&first_decrement_[i], products_.data(), count);
-    for (std::size_t k = 0; k < 6; ++k) first[k] += part[k];
-    for (std::size_t block = 0; kCourse * block < steps; ++block) {
-      kernels_.add_six(decrements(block, i), products_.data(), count, compliances[block]);
-    }
-  }
-  for (std::size_t n = 0; n + 1 < steps; ++n) {
-    const std::size_t block = n / kCourse;
-    contact.path[n + 1] = contact.path[n] + vector(increase[block], n % kCourse) -
-                          vector(decrease[block], n % kCourse);
-  }
-  for (std::size_t n = 0; respond && n < steps; ++n) {
-    const auto r = [&](std::size_t k) {
-      return n == 0 ? first[k] : compliances[n / kCourse][k][n % kCourse];
-    };
-    contact.response[n] << r(0), r(1), r(3), r(1), r(2), r(4), r(3), r(4), r(5);
+  });
+  for (std::size_t n = 0; n < contact.steps; ++n) contact.path[n] = rest + vector(sums[n]);
+}
+
+// R[n] = Phi diag(x[n]) Phi^T, with the courses x that a force of 1 leaves.
+void ModalHorizon::find_response(Contact& contact) noexcept {
+  Sums first{};  // R_00, R_10, R_20
+  Sums rest{};   // R_11, R_12, R_22
+  for_parts([&](const Part& part) {
+    begin_pushed(part, shape(contact, 0, part));
+    add_courses(part, shape(contact, 0, part), stride_, contact.steps, first);
+    std::fill_n(factors_.data(), part.count, 1.0);
+    begin_pushed(part, factors_.data());
+    const double* const y = shape(contact, 1, part);
+    const double* const z = shape(contact, 2, part);
+    multiply(y, y, products_.data(), part.count);
+    multiply(y, z, products_.data() + kPart, part.count);
+    multiply(z, z, products_.data() + 2 * kPart, part.count);
+    add_courses(part, products_.data(), kPart, contact.steps, rest);
+  });
+  for (std::size_t n = 0; n < contact.steps; ++n) {
+    const auto& [xx, xy, xz] = first[n];
+    const auto& [yy, yz, zz] = rest[n];
+    contact.response[n] << xx, xy, xz, xy, yy, yz, xz, yz, zz;
   }
 }
 
@@ -218,16 +231,17 @@ Vector3 ModalHorizon::end_of_path(const Contact& contact, const State& state) no
   const double* const c = &ends_[2 * (contact.steps - 1) * modes_];
   const double* const s = c + modes_;
   Vector3 end = Vector3::Zero();
-  for (std::size_t i = 0; i < modes_; i += kPart) {
-    const std::size_t count = std::min(kPart, modes_ - i);
-    const double* const about = relative_coordinate(state, i, count);
+  for (std::size_t first = 0; first < modes_; first += kPart) {
+    const Part part{first, std::min(kPart, modes_ - first)};
+    const double* const about = relative_coordinate(state, part);
     double* const moved = products_.data();
-    for (std::size_t j = 0; j < count; ++j) {
-      const double rest = state.coordinate[i + j] - about[j];
-      moved[j] = rest + c[i + j] * about[j] + s[i + j] * state.velocity[i + j];
+    for (std::size_t j = 0; j < part.count; ++j) {
+      const std::size_t i = first + j;
+      const double rest = state.coordinate[i] - about[j];
+      moved[j] = rest + c[i] * about[j] + s[i] * state.velocity[i];
     }
-    for (Eigen::Index axis = 0; axis < 3; ++axis) {
-      end[axis] += dot(&contact.shapes[static_cast<std::size_t>(axis) * modes_ + i], moved, count);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      end[static_cast<Eigen::Index>(axis)] += dot(shape(contact, axis, part), moved, part.count);
     }
   }
   return end;
@@ -277,21 +291,16 @@ void ModalHorizon::cross_response(const Contact& to, const Contact& from,
 
 void ModalHorizon::compute(const Contact& to, const Contact& from,
                            std::span<Matrix3> response) noexcept {
-  std::array<BlockSums<3>, 3> sums{};
-  for (std::size_t i = 0; i < modes_; i += kPart) {
-    const std::size_t count = std::min(kPart, modes_ - i);
+  std::array<Sums, 3> sums{};
+  for_parts([&](const Part& part) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      multiply(&from.shapes[axis * modes_ + i], &compliance_[i], factors_.data(), count);
-      multiply_shapes(to, i, count, factors_.data(), products_.data());
-      for (std::size_t block = 0; kCourse * block < response.size(); ++block) {
-        kernels_.add_three(decrements(block, i), products_.data(), count, sums[axis][block]);
-      }
+      begin_pushed(part, shape(from, axis, part));
+      add_courses(part, shape(to, 0, part), stride_, response.size(), sums[axis]);
     }
-  }
+  });
   for (std::size_t n = 0; n < response.size(); ++n) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      response[n].col(static_cast<Eigen::Index>(axis)) =
-          vector(sums[axis][n / kCourse], n % kCourse);
+      response[n].col(static_cast<Eigen::Index>(axis)) = vector(sums[axis][n]);
     }
   }
 }

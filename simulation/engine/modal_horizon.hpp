@@ -16,18 +16,17 @@ namespace irdm {
 
 /// What contacts on modal responses will do in the coming steps. Per contact it keeps the mean
 /// shape of its patch, the response and the free path: while the patch stays, the response stays,
-/// and the path shifts by a step, with what the last step's force adds and one new end. All follow
-/// from c_n and s_n, the coordinate of a mode n steps after a coordinate of 1, or a velocity of 1,
-/// without a force: a force of 1 that is held from the start has moved it to (1 - c_n) / omega^2 by
-/// then. Kept in single precision are their changes from step to step, since sums of those lose
-/// nothing to cancellation: responses and paths are exact to some 1e-7, their first steps to 1e-14.
-/// Real-time safe after construction; one thread.
+/// and the path shifts by a step, with what the last step's force adds and one new end. What is
+/// computed anew follows from the course of each mode (course_kernels.hpp), for which nothing is
+/// read that a step does not read as well; the new end from c_n and s_n, the coordinate of a mode n
+/// steps after a coordinate of 1, or a velocity of 1, without a force. Real-time safe after
+/// construction; one thread.
 class ModalHorizon {
  public:
   /// One contact.
   struct Contact {
     ContactPatch patch;
-    AlignedNumbers shapes;                  ///< (3, r): rows sum_i w_i Phi_i
+    AlignedNumbers shapes;                  ///< (3, stride()): rows sum_i w_i Phi_i
     std::uint64_t made = 0;                 ///< number of its begin()
     std::uint64_t used = 0;                 ///< number of the state that it was last asked about
     std::uint64_t state = 0;                ///< that the path goes on from
@@ -51,8 +50,14 @@ class ModalHorizon {
   /// @param modes r, > 0
   explicit ModalHorizon(std::size_t modes);
 
-  /// How modes go on; forgets all contacts. @param omega angular frequency (r) [rad/s]
-  void set_transitions(const Transitions& A, const double* omega) noexcept;
+  /// Of a row of shapes: r, and zeros.
+  std::size_t stride() const noexcept { return stride_; }
+
+  /// How modes go on, and what a unit force does in a step: (r), which stay there. Forgets all
+  /// contacts.
+  /// @param omega angular frequency (r) [rad/s]
+  void set_transitions(const Transitions& A, const double* b1, const double* b2,
+                       const double* omega) noexcept;
 
   /// The contact on this patch, with its shapes; null: it is not known.
   Contact* find(const ContactPatch& patch) noexcept;
@@ -72,10 +77,15 @@ class ModalHorizon {
   void add_held(const Contact& contact, const double* force, std::span<Vector3> path) noexcept;
 
  private:
-  static constexpr std::size_t kBlocks = (kMaxHorizon + kCourse - 1) / kCourse;
-  template <std::size_t K>
-  using BlockSums = std::array<CourseSums<K>, kBlocks>;
   using Path = std::array<Vector3, kMaxHorizon>;
+  static constexpr std::size_t kMostSteps = (kMaxHorizon + kCourse - 1) / kCourse * kCourse;
+  using Sums = std::array<std::array<double, 3>, kMostSteps>;
+  /// Modes at a time: what is read of them several times stays in the first level of the cache.
+  static constexpr std::size_t kPart = 256;
+  struct Part {
+    std::size_t first;
+    std::size_t count;
+  };
   static constexpr std::size_t kMostCrosses = kMaxContacts * (kMaxContacts - 1) / 2;
   /// How a contact answers a force on another one.
   struct Cross {
@@ -91,33 +101,38 @@ class ModalHorizon {
   static bool goes_on(const Contact& contact, std::uint64_t number) noexcept {
     return contact.state % 2 == 0 && contact.state + 2 == number;
   }
-  void compute(Contact& contact, const State& state, bool respond) noexcept;
+  void find_path(Contact& contact, const State& state) noexcept;
+  void find_response(Contact& contact) noexcept;
   Vector3 end_of_path(const Contact& contact, const State& state) noexcept;
   void shift_path(Contact& contact, const State& state) noexcept;
   void respond_to(const Contact& contact, const double* force, std::size_t steps,
                   Path& moves) noexcept;
-  void multiply_shapes(const Contact& contact, std::size_t first, std::size_t count,
-                       const double* factors, double* products) const noexcept;
-  void square_shapes(const Contact& contact, std::size_t first, std::size_t count,
-                     double* products) noexcept;
-  const double* relative_coordinate(const State& state, std::size_t first,
-                                    std::size_t count) noexcept;
-  const float* decrements(std::size_t block, std::size_t mode) const noexcept {
-    return &decrements_[(block * modes_ + mode) * kCourse];
+  template <typename Function>
+  void for_parts(Function&& function) noexcept;
+  void begin_free(const Part& part, const double* coordinate, const double* velocity) noexcept;
+  void begin_pushed(const Part& part, const double* force) noexcept;
+  void add_courses(const Part& part, const double* weights, std::size_t stride, std::size_t steps,
+                   Sums& sums) noexcept;
+  const double* shape(const Contact& contact, std::size_t axis, const Part& part) const noexcept {
+    return &contact.shapes[axis * stride_ + part.first];
   }
-  const float* increments(std::size_t block, std::size_t mode) const noexcept {
-    return &increments_[(block * modes_ + mode) * kCourse];
-  }
+  const double* relative_coordinate(const State& state, const Part& part) noexcept;
 
-  CourseKernels kernels_;
+  AddCourses add_three_;
   std::size_t modes_;
-  std::vector<float> decrements_;   ///< (kBlocks, r, kCourse): c_n - c_{n+1}, n = 0, 1, ...
-  std::vector<float> increments_;   ///< the same of s_{n+1} - s_n
-  AlignedNumbers first_decrement_;  ///< (r) c_0 - c_1
-  AlignedNumbers ends_;             ///< (kMaxHorizon, 2, r): c_n and s_n
-  AlignedNumbers compliance_;       ///< (r) 1 / omega^2
-  AlignedNumbers products_;         ///< (12, kPart): of shapes with what they meet
-  AlignedNumbers factors_;          ///< (kPart)
+  std::size_t stride_;
+  Transitions A_{};
+  const double* b1_ = nullptr;
+  const double* b2_ = nullptr;
+  AlignedNumbers ends_;        ///< (kMaxHorizon, 2, r): c_n and s_n
+  AlignedNumbers compliance_;  ///< (r) 1 / omega^2
+  // Of a part of the modes; what is beyond the last one is zero.
+  AlignedNumbers trace_;
+  AlignedNumbers determinant_;
+  AlignedNumbers now_;
+  AlignedNumbers next_;
+  AlignedNumbers factors_;
+  AlignedNumbers products_;  ///< (3, kPart)
   std::array<Contact, kMaxContacts> contacts_;
   std::array<Cross, kMostCrosses> crosses_;
   std::uint64_t made_ = 0;   ///< contacts so far

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdint>
 #include <random>
+#include <utility>
 
 #include "simulation/engine/active_modes.hpp"
 #include "simulation/engine/course_kernels.hpp"
@@ -339,28 +340,35 @@ TEST_CASE("modes that are left out move no node by more than the tolerance") {
   if (tolerance == 1e9) CHECK(ranges.empty());
 }
 
-TEST_CASE("courses of modes are summed by each set of kernels") {
-  const std::size_t n = GENERATE(0UL, 1UL, 2UL, 7UL, 256UL);
-  std::vector<float> courses;
-  for (const double number : random_numbers(kCourse * n, 21)) {
-    courses.push_back(static_cast<float>(number));
-  }
-  const std::vector<double> weights = random_numbers(6 * n, 22);
-  for (const CourseKernels& kernels : course_kernels()) {
-    CourseSums<3> three;
-    CourseSums<6> six;
-    for (auto& row : three) row.fill(0.5);
-    for (auto& row : six) row.fill(-0.25);
-    kernels.add_three(courses.data(), weights.data(), n, three);
-    kernels.add_six(courses.data(), weights.data(), n, six);
-    for (std::size_t k = 0; k < 6; ++k) {
-      for (std::size_t l = 0; l < kCourse; ++l) {
-        double sum = 0.0;
-        for (std::size_t i = 0; i < n; ++i) {
-          sum += weights[k * n + i] * static_cast<double>(courses[kCourse * i + l]);
-        }
-        CHECK(six[k][l] == Approx(sum - 0.25).margin(1e-12));
-        if (k < 3) CHECK(three[k][l] == Approx(sum + 0.5).margin(1e-12));
+TEST_CASE("courses of modes are summed by each kernel") {
+  const std::size_t n = GENERATE(0UL, 8UL, 16UL, 256UL);
+  const std::size_t steps = kCourse * GENERATE(1UL, 8UL);
+  const std::size_t stride = n + 3;
+  const std::vector<double> trace = random_numbers(n, 21);
+  const std::vector<double> determinant = random_numbers(n, 22);
+  const std::vector<double> begin = random_numbers(n, 23);
+  const std::vector<double> then = random_numbers(n, 24);
+  const std::vector<double> weights = random_numbers(3 * stride, 25);
+  for (const AddCourses add : course_kernels()) {
+    std::vector<double> now = begin;
+    std::vector<double> next = then;
+    std::vector<std::array<double, 3>> sums(steps, {0.5, -0.25, 0.0});
+    add({trace.data(), determinant.data(), now.data(), next.data()}, weights.data(), stride, n,
+        sums);
+    std::vector<std::array<double, 3>> expected(steps, {0.5, -0.25, 0.0});
+    for (std::size_t i = 0; i < n; ++i) {
+      double x = begin[i];
+      double after = then[i];
+      for (std::size_t s = 0; s < steps; ++s) {
+        for (std::size_t k = 0; k < 3; ++k) expected[s][k] += weights[k * stride + i] * x;
+        x = std::exchange(after, trace[i] * after - determinant[i] * x);
+      }
+      CHECK(now[i] == Approx(x).margin(1e-12));
+      CHECK(next[i] == Approx(after).margin(1e-12));
+    }
+    for (std::size_t s = 0; s < steps; ++s) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        CHECK(sums[s][k] == Approx(expected[s][k]).margin(1e-12));
       }
     }
   }

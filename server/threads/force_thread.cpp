@@ -218,20 +218,21 @@ void ForceThread::predict_horizon() noexcept {
   const std::size_t first = next_prediction_;
   int budget = 1;
   bool any = false;
+  bool tried = false;
   for (std::size_t i = 0; i < bridged_.size(); ++i) {
     const std::size_t s = (first + i) % bridged_.size();
     StylusPort& port = network_.port(static_cast<int>(s));
     if (!commands_[s].present || !port.in.front().predicts) continue;
     port.model.back().session = port.in.front().session;
     const int left = budget;
+    tried = true;
     if (!bridged_[s].predict_horizon(port.model.back().value, budget)) continue;
     if (budget < left) next_prediction_ = (s + 1) % bridged_.size();
     port.model.publish();
     any = true;
   }
-  if (!any) return;
-  network_.forces_ready().signal();
-  report_.prediction_time.add(monotonic_ns() - begin);
+  if (any) network_.forces_ready().signal();
+  if (tried) report_.prediction_time.add(monotonic_ns() - begin);
 }
 
 }  // namespace irdm

@@ -11,7 +11,8 @@
 namespace irdm {
 namespace {
 
-constexpr std::size_t kBlock = 16;   // rows of Phi that a thread takes at a time
+constexpr std::size_t kBlock = 16;  // rows of Phi that a thread takes at a time
+constexpr std::size_t kMostHeld = kMaxContacts * kMaxPatchNodes;
 constexpr std::size_t kSlice = 512;  // modes whose shapes under a contact fill a part of the cache
 
 void add_to(double* sum, const double* numbers, std::size_t n) noexcept {
@@ -39,6 +40,7 @@ ModalEngine<Scalar>::ModalEngine(std::shared_ptr<const Model> model)
         &free_velocity_, &modal_force_, &held_force_, &inertial_load_}) {
     values->assign(modes_, 0.0);
   }
+  held_.reserve(kMostHeld);
   contact_shapes_.assign(3 * kMaxContacts * modes_, 0.0);
   coordinate_after_.assign(kMaxHorizon * modes_, 0.0);
   velocity_after_.assign(kMaxHorizon * modes_, 0.0);
@@ -294,27 +296,42 @@ template <typename Scalar>
 void ModalEngine<Scalar>::predict_horizon(const ContactPatch& patch,
                                           std::span<const NodalForce> held, std::span<Vector3> path,
                                           std::span<Matrix3> response) noexcept {
-  ModalHorizon::Contact* const contact = &horizon_contact(patch);
-  horizon_.update(*contact,
-                  {.number = state_,
-                   .coordinate = free_coordinate_.data(),
-                   .velocity = free_velocity_.data(),
-                   .force = gravity_.acts() ? gravity_.force().data() : nullptr,
-                   .last = forced_ ? modal_force_.data() : nullptr,
-                   .only = only_,
-                   .only_force = only_force_},
-                  path.size());
-  std::copy_n(contact->path.begin(), path.size(), path.begin());
-  std::copy_n(contact->response.begin(), response.size(), response.begin());
+  ModalHorizon::Contact& contact = horizon_contact(patch);
+  const ModalHorizon::State state{.number = state_,
+                                  .coordinate = free_coordinate_.data(),
+                                  .velocity = free_velocity_.data(),
+                                  .force = gravity_.acts() ? gravity_.force().data() : nullptr,
+                                  .last = forced_ ? modal_force_.data() : nullptr,
+                                  .only = only_,
+                                  .only_force = only_force_};
+  if (held.empty()) {
+    horizon_.update(contact, state, path.size());
+    std::copy_n(contact.path.begin(), path.size(), path.begin());
+  } else {
+    if (contact.steps != path.size()) horizon_.find_response(contact, path.size());
+    hold(held);
+    horizon_.find_path(contact, state, held_force_.data(), path);
+  }
+  std::copy_n(contact.response.begin(), response.size(), response.begin());
   Vector3 at_once = residual_.displacement(patch, held);
   if (gravity_.adds_rest()) {
     at_once += mean(patch, [&](int node) { return gravity_.rest(node); });
   }
   for (Vector3& place : path) place += at_once;
   if (!response.empty()) response[0] += residual_.compliance(patch);
-  if (held.empty()) return;
-  collect_modal_forces(held, {0, modes_}, held_force_.data());
-  horizon_.add_held(*contact, held_force_.data(), path);
+}
+
+// Makes held_force_ that of these forces, which several contacts may share.
+template <typename Scalar>
+void ModalEngine<Scalar>::hold(std::span<const NodalForce> forces) noexcept {
+  const bool same = std::equal(forces.begin(), forces.end(), held_.begin(), held_.end(),
+                               [](const NodalForce& a, const NodalForce& b) {
+                                 return a.node == b.node && a.force == b.force;
+                               });
+  if (same) return;
+  held_.clear();
+  if (forces.size() <= held_.capacity()) held_.assign(forces.begin(), forces.end());
+  collect_modal_forces(forces, {0, modes_}, held_force_.data());
 }
 
 template <typename Scalar>

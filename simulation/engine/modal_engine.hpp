@@ -40,6 +40,16 @@ class ModalEngine final : public ResponseEngine,
                        std::span<Vector3> path, std::span<Matrix3> response) noexcept override;
   void cross_response(const ContactPatch& to, const ContactPatch& from,
                       std::span<Matrix3> response) noexcept override;
+  bool keeps_response(const ContactPatch& patch, std::size_t steps) const noexcept override {
+    return horizon_.keeps_response(patch, steps);
+  }
+  void prepare_response(const ContactPatch& patch, std::size_t steps) noexcept override {
+    horizon_.find_response(horizon_contact(patch), steps);
+  }
+  bool keeps_cross_response(const ContactPatch& to, const ContactPatch& from,
+                            std::size_t steps) const noexcept override {
+    return horizon_.keeps_cross_response(to, from, steps);
+  }
   bool keeps_horizon(const ContactPatch& patch, std::size_t steps) const noexcept override {
     return horizon_.keeps(patch, state_, steps);
   }
@@ -63,6 +73,7 @@ class ModalEngine final : public ResponseEngine,
   void settle() noexcept;
   void go_on() noexcept;
   ModalHorizon::Contact& horizon_contact(const ContactPatch& patch) noexcept;
+  void hold(std::span<const NodalForce> forces) noexcept;
   void mean_shape(const ContactPatch& patch, int axis, const ModeRange& modes,
                   double* shape) const noexcept;
   void add_slice(std::span<const ContactPatch> patches, const ModeRange& modes,
@@ -89,6 +100,7 @@ class ModalEngine final : public ResponseEngine,
   /// one in which a modal force of 1 acted.
   AlignedNumbers coordinate_after_, velocity_after_;
   AlignedNumbers held_force_;     ///< (r), of predict_horizon()
+  std::vector<NodalForce> held_;  ///< that it is of; empty: not known
   AlignedNumbers inertial_load_;  ///< (r), of the coming step
   bool loaded_ = false;           ///< inertial_load_ means something
   bool was_loaded_ = false;       ///< in the last step

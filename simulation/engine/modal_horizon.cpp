@@ -1,6 +1,7 @@
 #include "simulation/engine/modal_horizon.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace irdm {
 namespace {
@@ -60,17 +61,26 @@ void ModalHorizon::forget() noexcept {
   for (Cross& cross : crosses_) cross.to = 0;
 }
 
-ModalHorizon::Contact* ModalHorizon::find(const ContactPatch& patch) noexcept {
+const ModalHorizon::Contact* ModalHorizon::find(const ContactPatch& patch) const noexcept {
   const auto found = std::find_if(contacts_.begin(), contacts_.end(),
                                   [&](const Contact& c) { return same(c.patch, patch); });
   return found == contacts_.end() ? nullptr : &*found;
 }
 
+ModalHorizon::Contact* ModalHorizon::find(const ContactPatch& patch) noexcept {
+  return const_cast<Contact*>(std::as_const(*this).find(patch));
+}
+
 bool ModalHorizon::keeps(const ContactPatch& patch, std::uint64_t number,
                          std::size_t steps) const noexcept {
-  return std::any_of(contacts_.begin(), contacts_.end(), [&](const Contact& c) {
-    return c.steps == steps && (c.state == number || goes_on(c, number)) && same(c.patch, patch);
-  });
+  const Contact* const contact = find(patch);
+  return contact != nullptr && contact->steps == steps &&
+         (contact->state == number || goes_on(*contact, number));
+}
+
+bool ModalHorizon::keeps_response(const ContactPatch& patch, std::size_t steps) const noexcept {
+  const Contact* const contact = find(patch);
+  return contact != nullptr && contact->steps == steps;
 }
 
 const ModalHorizon::Contact* ModalHorizon::find_only(std::span<const NodalForce> forces,
@@ -99,18 +109,17 @@ ModalHorizon::Contact& ModalHorizon::begin(const ContactPatch& patch) noexcept {
   contact.patch = patch;
   contact.made = ++made_;
   contact.steps = 0;
+  contact.state = kNoPath;
   return contact;
 }
 
 void ModalHorizon::update(Contact& contact, const State& state, std::size_t steps) noexcept {
   contact.used = state.number;
-  const bool responds = contact.steps == steps;
-  contact.steps = steps;
-  if (!responds) find_response(contact);
-  if (responds && goes_on(contact, state.number)) {
+  if (contact.steps != steps) find_response(contact, steps);
+  if (goes_on(contact, state.number)) {
     shift_path(contact, state);
-  } else if (!responds || contact.state != state.number) {
-    find_path(contact, state);
+  } else if (contact.state != state.number) {
+    find_path(contact, state, nullptr, std::span(contact.path).first(steps));
   }
   contact.state = state.number;
 }
@@ -156,6 +165,17 @@ void ModalHorizon::begin_pushed(const Part& part, const double* force) noexcept 
   }
 }
 
+// The same with a force that is held from now on, about where it takes the modes. It changes the
+// end of the coming step by (b_1 - 1 / omega^2) f, and the velocity there by b_2 f.
+void ModalHorizon::push_on(const Part& part, const double* force) noexcept {
+  for (std::size_t j = 0; j < part.count; ++j) {
+    const std::size_t i = part.first + j;
+    const double moved = b1_[i] - compliance_[i];
+    now_[j] += moved * force[j];
+    next_[j] += (A_.a11[i] * moved + A_.a12[i] * b2_[i]) * force[j];
+  }
+}
+
 // Of those that begin in now_ and next_.
 void ModalHorizon::add_courses(const Part& part, const double* weights, std::size_t stride,
                                std::size_t steps, Sums& sums) noexcept {
@@ -187,24 +207,34 @@ const double* ModalHorizon::relative_coordinate(const State& state, const Part& 
   return factors_.data();
 }
 
-void ModalHorizon::find_path(Contact& contact, const State& state) noexcept {
+// With the rest q_0 of all that is held, the end of the coming step lies at q + b_1 f - q_0 from
+// it.
+void ModalHorizon::find_path(const Contact& contact, const State& state, const double* held,
+                             std::span<Vector3> path) noexcept {
   Sums sums{};
   Vector3 rest = Vector3::Zero();
   for_parts([&](const Part& part) {
     begin_free(part, relative_coordinate(state, part), state.velocity + part.first);
-    add_courses(part, shape(contact, 0, part), stride_, contact.steps, sums);
-    if (state.force == nullptr) return;
-    multiply(&compliance_[part.first], state.force + part.first, factors_.data(), part.count);
+    if (held != nullptr) push_on(part, held + part.first);
+    add_courses(part, shape(contact, 0, part), stride_, path.size(), sums);
+    if (state.force == nullptr && held == nullptr) return;
+    for (std::size_t j = 0; j < part.count; ++j) {
+      const std::size_t i = part.first + j;
+      factors_[j] = compliance_[i] * ((state.force == nullptr ? 0.0 : state.force[i]) +
+                                      (held == nullptr ? 0.0 : held[i]));
+    }
     for (std::size_t axis = 0; axis < 3; ++axis) {
       rest[static_cast<Eigen::Index>(axis)] +=
           dot(shape(contact, axis, part), factors_.data(), part.count);
     }
   });
-  for (std::size_t n = 0; n < contact.steps; ++n) contact.path[n] = rest + vector(sums[n]);
+  for (std::size_t n = 0; n < path.size(); ++n) path[n] = rest + vector(sums[n]);
 }
 
 // R[n] = Phi diag(x[n]) Phi^T, with the courses x that a force of 1 leaves.
-void ModalHorizon::find_response(Contact& contact) noexcept {
+void ModalHorizon::find_response(Contact& contact, std::size_t steps) noexcept {
+  contact.steps = steps;
+  contact.state = kNoPath;
   Sums first{};  // R_00, R_10, R_20
   Sums rest{};   // R_11, R_12, R_22
   for_parts([&](const Part& part) {
@@ -264,29 +294,41 @@ void ModalHorizon::shift_path(Contact& contact, const State& state) noexcept {
   path[steps - 1] = end_of_path(contact, state);
 }
 
+const ModalHorizon::Cross* ModalHorizon::find(const Contact& to, const Contact& from,
+                                              std::size_t steps) const noexcept {
+  const auto found = std::find_if(crosses_.begin(), crosses_.end(), [&](const Cross& cross) {
+    const bool same = cross.to == to.made && cross.from == from.made;
+    const bool turned = cross.to == from.made && cross.from == to.made;
+    return (same || turned) && cross.steps >= steps;
+  });
+  return found == crosses_.end() ? nullptr : &*found;
+}
+
+bool ModalHorizon::keeps_cross_response(const ContactPatch& to, const ContactPatch& from,
+                                        std::size_t steps) const noexcept {
+  const Contact* const one = find(to);
+  const Contact* const other = find(from);
+  return one != nullptr && other != nullptr && find(*one, *other, steps) != nullptr;
+}
+
 // R_ab[n] is R_ba[n] transposed.
 void ModalHorizon::cross_response(const Contact& to, const Contact& from,
                                   std::span<Matrix3> response) noexcept {
-  Cross* kept = &crosses_[0];
-  for (Cross& cross : crosses_) {
-    const bool same = cross.to == to.made && cross.from == from.made;
-    const bool turned = cross.to == from.made && cross.from == to.made;
-    if ((same || turned) && cross.steps >= response.size()) {
-      cross.used = ++asked_;
-      for (std::size_t n = 0; n < response.size(); ++n) {
-        response[n] = cross.response[n];
-        if (turned) response[n].transposeInPlace();
-      }
-      return;
-    }
-    if (cross.used < kept->used) kept = &cross;
+  Cross* kept = const_cast<Cross*>(find(to, from, response.size()));
+  if (kept == nullptr) {
+    kept = &*std::min_element(crosses_.begin(), crosses_.end(),
+                              [](const Cross& a, const Cross& b) { return a.used < b.used; });
+    kept->to = to.made;
+    kept->from = from.made;
+    kept->steps = response.size();
+    compute(to, from, {kept->response.data(), kept->steps});
   }
-  kept->to = to.made;
-  kept->from = from.made;
   kept->used = ++asked_;
-  kept->steps = response.size();
-  compute(to, from, response);
-  std::copy(response.begin(), response.end(), kept->response.begin());
+  const bool turned = kept->to != to.made;
+  for (std::size_t n = 0; n < response.size(); ++n) {
+    response[n] = kept->response[n];
+    if (turned) response[n].transposeInPlace();
+  }
 }
 
 void ModalHorizon::compute(const Contact& to, const Contact& from,
@@ -303,14 +345,6 @@ void ModalHorizon::compute(const Contact& to, const Contact& from,
       response[n].col(static_cast<Eigen::Index>(axis)) = vector(sums[axis][n]);
     }
   }
-}
-
-void ModalHorizon::add_held(const Contact& contact, const double* force,
-                            std::span<Vector3> path) noexcept {
-  Path moves;
-  respond_to(contact, force, path.size(), moves);
-  Vector3 moved = Vector3::Zero();
-  for (std::size_t n = 0; n < path.size(); ++n) path[n] += moved += moves[n];
 }
 
 }  // namespace irdm

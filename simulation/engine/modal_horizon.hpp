@@ -23,13 +23,14 @@ namespace irdm {
 /// construction; one thread.
 class ModalHorizon {
  public:
+  static constexpr std::uint64_t kNoPath = ~std::uint64_t{0};
   /// One contact.
   struct Contact {
     ContactPatch patch;
     AlignedNumbers shapes;                  ///< (3, stride()): rows sum_i w_i Phi_i
     std::uint64_t made = 0;                 ///< number of its begin()
     std::uint64_t used = 0;                 ///< number of the state that it was last asked about
-    std::uint64_t state = 0;                ///< that the path goes on from
+    std::uint64_t state = kNoPath;          ///< that the path goes on from
     std::size_t steps = 0;                  ///< of path and response
     std::array<Vector3, kMaxHorizon> path;  ///< path[n]: displacement n + 1 steps on [m]
     std::array<Matrix3, kMaxHorizon> response;
@@ -60,6 +61,7 @@ class ModalHorizon {
                        const double* omega) noexcept;
 
   /// The contact on this patch, with its shapes; null: it is not known.
+  const Contact* find(const ContactPatch& patch) const noexcept;
   Contact* find(const ContactPatch& patch) noexcept;
   /// Whether update() of it would go on from what is known.
   /// @param number of the state  @param steps as for update()
@@ -68,13 +70,21 @@ class ModalHorizon {
   const Contact* find_only(std::span<const NodalForce> forces, Vector3& force) const noexcept;
   /// In place of the contact that was not asked about for longest; its shapes are to be written.
   Contact& begin(const ContactPatch& patch) noexcept;
+  /// Whether the response to a force on this patch is known for so many steps.
+  bool keeps_response(const ContactPatch& patch, std::size_t steps) const noexcept;
+  /// Makes the response that of the first `steps` coming steps.
+  void find_response(Contact& contact, std::size_t steps) noexcept;
   /// Makes path and response those of the first `steps` coming steps.
   void update(Contact& contact, const State& state, std::size_t steps) noexcept;
   /// How one answers a force on the other, as ResponseEngine::cross_response(). Kept while both
   /// stay.
   void cross_response(const Contact& to, const Contact& from, std::span<Matrix3> response) noexcept;
-  /// Adds what a modal force (r) that is held in all coming steps does.
-  void add_held(const Contact& contact, const double* force, std::span<Vector3> path) noexcept;
+  /// Whether that is known.
+  bool keeps_cross_response(const ContactPatch& to, const ContactPatch& from,
+                            std::size_t steps) const noexcept;
+  /// The path anew, with this modal force (r), too, that is held in all coming steps; null: none.
+  void find_path(const Contact& contact, const State& state, const double* held,
+                 std::span<Vector3> path) noexcept;
 
  private:
   using Path = std::array<Vector3, kMaxHorizon>;
@@ -97,12 +107,11 @@ class ModalHorizon {
   };
 
   void compute(const Contact& to, const Contact& from, std::span<Matrix3> response) noexcept;
+  const Cross* find(const Contact& to, const Contact& from, std::size_t steps) const noexcept;
   void forget() noexcept;
   static bool goes_on(const Contact& contact, std::uint64_t number) noexcept {
     return contact.state % 2 == 0 && contact.state + 2 == number;
   }
-  void find_path(Contact& contact, const State& state) noexcept;
-  void find_response(Contact& contact) noexcept;
   Vector3 end_of_path(const Contact& contact, const State& state) noexcept;
   void shift_path(Contact& contact, const State& state) noexcept;
   void respond_to(const Contact& contact, const double* force, std::size_t steps,
@@ -111,6 +120,7 @@ class ModalHorizon {
   void for_parts(Function&& function) noexcept;
   void begin_free(const Part& part, const double* coordinate, const double* velocity) noexcept;
   void begin_pushed(const Part& part, const double* force) noexcept;
+  void push_on(const Part& part, const double* force) noexcept;
   void add_courses(const Part& part, const double* weights, std::size_t stride, std::size_t steps,
                    Sums& sums) noexcept;
   const double* shape(const Contact& contact, std::size_t axis, const Part& part) const noexcept {

@@ -137,8 +137,20 @@ class ResponseEngine {
   /// of `from` [m/N].
   virtual void cross_response(const ContactPatch& to, const ContactPatch& from,
                               std::span<Matrix3> response) noexcept = 0;
-  /// Whether predict_horizon() would find most of that kept from the step before: little work.
+
+  // What of that is kept from before takes little work.
+  /// Whether predict_horizon() would find path and response.
   virtual bool keeps_horizon(const ContactPatch&, std::size_t /*steps*/) const noexcept {
+    return true;
+  }
+  /// Whether it would find the response. If not, prepare_response() finds that alone.
+  virtual bool keeps_response(const ContactPatch&, std::size_t /*steps*/) const noexcept {
+    return true;
+  }
+  virtual void prepare_response(const ContactPatch&, std::size_t /*steps*/) noexcept {}
+  /// Whether cross_response() would find all.
+  virtual bool keeps_cross_response(const ContactPatch&, const ContactPatch&,
+                                    std::size_t /*steps*/) const noexcept {
     return true;
   }
 

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 #include "common/contact/applied_forces.hpp"
@@ -32,7 +33,7 @@ class BridgedStylus {
   /// @param budget as for Simulation::predict_horizon()
   bool predict_horizon(ContactModel& model, int& budget) noexcept;
   void predict_horizon(ContactModel& model) noexcept {
-    int budget = 1;
+    int budget = std::numeric_limits<int>::max();
     predict_horizon(model, budget);
   }
 

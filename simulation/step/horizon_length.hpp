@@ -19,7 +19,7 @@ class HorizonLength {
   static constexpr double kLongest = 0.05;  ///< [s]
   static constexpr double kPatience = 1.0;  ///< [s]
   /// It is a multiple of that, since each other one is computed anew [steps].
-  static constexpr int kUnit = 8;
+  static constexpr int kUnit = 4;
 
   /// @param dt of a step [s]
   explicit HorizonLength(double dt) noexcept

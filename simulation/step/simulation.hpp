@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -37,13 +38,14 @@ class Simulation {
   /// For the bridge of stylus s, between steps: how its contact goes on after the last step.
   /// @param tip where the stylus was in the last step [m], W
   /// @param horizon steps to predict, 1 to kMaxHorizon
-  /// @param budget of predictions that take long: made anew, or with another contact in them;
-  /// 1 is taken by one. False: there was none left, and the model means nothing
+  /// @param budget of computations that take long: of a response that is not known, or of a path
+  /// anew, or with another contact in it; each takes 1. False: there was too little left, the model
+  /// means nothing, and a later call goes on from there
   bool predict_horizon(std::size_t s, const Vector3& tip, int horizon, ContactModel& model,
                        int& budget) noexcept;
   void predict_horizon(std::size_t s, const Vector3& tip, int horizon,
                        ContactModel& model) noexcept {
-    int budget = 1;
+    int budget = std::numeric_limits<int>::max();
     predict_horizon(s, tip, horizon, model, budget);
   }
 

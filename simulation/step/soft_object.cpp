@@ -195,6 +195,24 @@ double SoftObject::available_energy(const ContactModel& model) const noexcept {
          (kinetic + falling) / std::max(1, contacts_.count());
 }
 
+// What takes long and rests on the patches alone is made ready first; the path comes last.
+bool SoftObject::prepare_horizon(const ContactPatch& patch, bool among_others, ContactModel& model,
+                                 int& budget) noexcept {
+  ResponseEngine& engine = body_.engine();
+  const auto steps = static_cast<std::size_t>(model.horizon);
+  const auto spend = [&] { return budget-- > 0; };
+  for (const ContactPatch* one : {&patch, among_others ? &other_.patch : &patch}) {
+    if (engine.keeps_response(*one, steps)) continue;
+    if (!spend()) return false;
+    engine.prepare_response(*one, steps);
+  }
+  if (among_others && !engine.keeps_cross_response(patch, other_.patch, steps)) {
+    if (!spend()) return false;
+    engine.cross_response(patch, other_.patch, {model.response.data(), steps});
+  }
+  return (!among_others && engine.keeps_horizon(patch, steps)) || spend();
+}
+
 bool SoftObject::predict_horizon(std::size_t s, const Vector3& tip, int horizon,
                                  ContactModel& model, int& budget) noexcept {
   model.state = contacts_.state(s);
@@ -208,13 +226,11 @@ bool SoftObject::predict_horizon(std::size_t s, const Vector3& tip, int horizon,
   model.energy = available_energy(model);
   update_surface(false);
   ContactPatch patch;
-  contacts_.locate(s, body_.next_motion().to_body(tip), model, patch);
+  if (!contacts_.locate(s, body_.next_motion().to_body(tip), model, patch, budget)) return false;
   const auto count = static_cast<std::size_t>(model.horizon);
   const bool among_others = contacts_.find_other(s, friction_, problem_, other_);
-  if (among_others || !body_.engine().keeps_horizon(patch, count)) {
-    if (budget <= 0) return false;
-    --budget;
-  }
+  if (!prepare_horizon(patch, among_others, model, budget)) return false;
+  contacts_.end_prediction(s);
   collect_others(s, model);
   body_.engine().predict_horizon(patch, nodal_.view(), {model.path.data(), count},
                                  {model.response.data(), count});

@@ -78,6 +78,8 @@ class SoftObject {
   void end_step(ObjectRecord& record) noexcept;
   void cache_nodes() noexcept;
   double available_energy(const ContactModel& model) const noexcept;
+  bool prepare_horizon(const ContactPatch& patch, bool among_others, ContactModel& model,
+                       int& budget) noexcept;
   void collect_others(std::size_t s, ContactModel& model) noexcept;
   void update_surface(bool loaded) noexcept;
 

@@ -36,7 +36,7 @@ constexpr double kEdgeTime = 0.06;
 
 // Over which the velocity of a tip is smoothed [s].
 constexpr double kVelocityTime = 0.004;
-// For how many steps others may be told of a contact where it was.
+// For how many steps it may be told of a contact where it was.
 constexpr std::uint64_t kPredictedFor = 8;
 
 // Rounds of finding where a contact begins, and when it is found [m].
@@ -69,7 +69,7 @@ void StylusContacts::reset() noexcept {
     stylus.last.average.setZero();
     stylus.position.reset();
     stylus.shown.setZero();
-    stylus.predicted.count = 0;
+    stylus.prediction = {};
   }
 }
 
@@ -348,23 +348,42 @@ bool StylusContacts::may_touch(std::size_t s) const noexcept {
   return state(s) != ContactState::kFree || styluses_[s].proxy.outside();
 }
 
-void StylusContacts::locate(std::size_t s, const Vector3& tip, ContactModel& model,
-                            ContactPatch& patch) noexcept {
+bool StylusContacts::locate(std::size_t s, const Vector3& tip, ContactModel& model,
+                            ContactPatch& patch, int& budget) noexcept {
   Stylus& stylus = styluses_[s];
   model.state = stylus.proxy.state();
   model.slipping = stylus.proxy.contact().slipping();
-  SurfacePoint point = stylus.proxy.point();
-  if (model.state == ContactState::kFree) point = surface_.closest(tip).point;
-  stylus.mask.spread(point, patch);
-  stylus.predicted = patch;
-  stylus.predicted_step = steps_;
-  if (model.state == ContactState::kHeld) {
-    model.place = stylus.proxy.offset() + mean(patch, [&](int i) { return rest_.node(i); });
-  } else {
-    const SmoothedSurface::Place place = stylus.felt.at(point);
-    model.normal = place.normal;
-    model.place = place.position;
+  Prediction& prediction = stylus.prediction;
+  const bool goes_on = prediction.under_way && prediction.state == model.state &&
+                       steps_ <= prediction.step + kPredictedFor;
+  if (!goes_on) {
+    const bool free = model.state == ContactState::kFree;
+    if (free && budget-- <= 0) return false;
+    begin_prediction(stylus, free ? surface_.closest(tip).point : stylus.proxy.point());
+    prediction.state = model.state;
+    prediction.under_way = true;
   }
+  patch = prediction.patch;
+  const SmoothedSurface::Place place = place_of(stylus, model.state, prediction.point);
+  if (model.state != ContactState::kHeld) model.normal = place.normal;
+  model.place = place.position;
+  return true;
+}
+
+void StylusContacts::begin_prediction(Stylus& stylus, const SurfacePoint& point) noexcept {
+  stylus.mask.spread(point, stylus.prediction.patch);
+  stylus.prediction.point = point;
+  stylus.prediction.step = steps_;
+}
+
+// Of a contact, or of where one would begin: what comes to the tip, object at rest. What is held
+// has no normal.
+SmoothedSurface::Place StylusContacts::place_of(Stylus& stylus, ContactState state,
+                                                const SurfacePoint& point) noexcept {
+  if (state != ContactState::kHeld) return stylus.felt.at(point);
+  ContactPatch patch;
+  stylus.mask.spread(point, patch);
+  return {stylus.proxy.offset() + mean(patch, [&](int i) { return rest_.node(i); }), {}};
 }
 
 bool StylusContacts::write_series(std::size_t s, const RigidMobility& mobility,
@@ -419,24 +438,19 @@ bool StylusContacts::find_other(std::size_t s, const Friction& friction,
   if (!other) return false;
   Stylus& stylus = styluses_[*other];
   const PersistentContact& contact = stylus.proxy.contact();
-  if (stylus.predicted.count == 0 || steps_ > stylus.predicted_step + kPredictedFor) {
-    stylus.mask.spread(stylus.proxy.point(), stylus.predicted);
-    stylus.predicted_step = steps_;
+  Prediction& prediction = stylus.prediction;
+  if (prediction.patch.count == 0 || steps_ > prediction.step + kPredictedFor) {
+    begin_prediction(stylus, stylus.proxy.point());
+    prediction.under_way = false;
   }
-  found.patch = stylus.predicted;
-  found.law = ContactLaw::kHeld;
+  found.patch = prediction.patch;
+  const bool touches = contact.state() == ContactState::kTouching;
+  found.law = touches ? ContactLaw::kTouching : ContactLaw::kHeld;
   found.friction = friction;
   if (contact.slipping()) found.friction.static_ = friction.kinetic;
-  if (contact.state() == ContactState::kTouching) {
-    const SmoothedSurface::Place place = stylus.felt.at(stylus.proxy.point());
-    found.law = ContactLaw::kTouching;
-    found.normal = place.normal;
-    found.place = place.position;
-  } else {
-    ContactPatch now;
-    stylus.mask.spread(stylus.proxy.point(), now);
-    found.place = stylus.proxy.offset() + mean(now, [&](int i) { return rest_.node(i); });
-  }
+  const SmoothedSurface::Place place = place_of(stylus, contact.state(), stylus.proxy.point());
+  if (touches) found.normal = place.normal;
+  found.place = place.position;
   found.tip = *stylus.position;
   found.velocity = stylus.velocity;
   found.force = stylus.last.average;

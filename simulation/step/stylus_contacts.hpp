@@ -70,9 +70,13 @@ class StylusContacts {
   ContactState state(std::size_t s) const noexcept { return styluses_[s].proxy.state(); }
   /// Whether a contact goes on, or may begin.
   bool may_touch(std::size_t s) const noexcept;
-  /// State, place and normal of its contact, or of where one would begin; and the patch there.
+  /// State, place and normal of its contact, or of where one would begin; and the patch there. The
+  /// place stays for some steps until end_prediction().
   /// @param tip in the coming step [m]
-  void locate(std::size_t s, const Vector3& tip, ContactModel& model, ContactPatch& patch) noexcept;
+  /// @param budget as for Simulation::predict_horizon(), for the point that is nearest to the tip
+  bool locate(std::size_t s, const Vector3& tip, ContactModel& model, ContactPatch& patch,
+              int& budget) noexcept;
+  void end_prediction(std::size_t s) noexcept { styluses_[s].prediction.under_way = false; }
   /// The compliance in series with the contact. False: what is left of a hold ends with this step.
   /// @param mobility of the body; the model has place, path and response
   bool write_series(std::size_t s, const RigidMobility& mobility, ContactModel& model) noexcept;
@@ -106,6 +110,14 @@ class StylusContacts {
     Vector3 arm = Vector3::Zero();      ///< of its force [m]
     Vector3 average = Vector3::Zero();  ///< of its force over the last while [N]
   };
+  /// What contact models are told of a contact; it may take several steps to compute one.
+  struct Prediction {
+    ContactPatch patch;
+    SurfacePoint point;      ///< that it lies about
+    std::uint64_t step = 0;  ///< in which it was there
+    ContactState state = ContactState::kFree;
+    bool under_way = false;
+  };
   struct Stylus {
     SimulationStylus tip;
     PressureMask mask;
@@ -117,8 +129,7 @@ class StylusContacts {
     Vector3 way = Vector3::Zero();         ///< of its tip in that step [m], W
     Vector3 velocity = Vector3::Zero();    ///< of its tip, smoothed [m/s], W
     Vector3 shown = Vector3::Zero();       ///< by its bridge: the last force on the object [N], W
-    ContactPatch predicted = {};           ///< for which others were told of it ...
-    std::uint64_t predicted_step = 0;      ///< ... since this step
+    Prediction prediction = {};
   };
   /// A contact of this step.
   struct Contact {
@@ -140,6 +151,9 @@ class StylusContacts {
   }
   std::optional<std::size_t> strongest_other(std::size_t s,
                                              const ContactProblem& problem) const noexcept;
+  void begin_prediction(Stylus& stylus, const SurfacePoint& point) noexcept;
+  SmoothedSurface::Place place_of(Stylus& stylus, ContactState state,
+                                  const SurfacePoint& point) noexcept;
   void follow(Stylus& stylus, const StylusCommand& command) noexcept;
   bool find_contact(Stylus& stylus, const StylusCommand& command, const Vector3& tip) noexcept;
   void apply_remote_contact(Stylus& stylus, const BridgedForce& bridged,

@@ -47,6 +47,48 @@ TEST_CASE("contact model: what a server says of a touch is believed") {
   }
 }
 
+TEST_CASE("contact model: computed in parts over several steps it is the same") {
+  const bool touching = GENERATE(true, false);
+  SimulationConfig config;
+  config.objects.resize(1);
+  config.objects[0].model = test::fem_cube({}, ResponseKind::kModal);
+  config.styluses = {{0.0, 2000.0, 0.0}};
+  Simulation in_parts(config);
+  Simulation at_once(config);
+  StepRecord record;
+  StylusCommand command;
+  command.present = true;
+  const auto step = [&](double height) {
+    command.tip = Vector3(0.01, height, 0.0);
+    for (Simulation* simulation : {&in_parts, &at_once}) simulation->step({&command, 1}, record);
+  };
+  for (int k = 0; k < 20; ++k) step((touching ? 0.062 : 0.072) - 5e-4 * k);
+  int begun = 0;
+  ContactModel model;
+  while (true) {
+    int budget = 1;
+    if (in_parts.predict_horizon(0, command.tip, 25, model, budget)) break;
+    CHECK(budget <= 0);
+    REQUIRE(++begun < 10);
+    step(touching ? 0.052 : 0.062);
+  }
+  // The point that is nearest, its response and the path; where it touches, the point is known.
+  CHECK(begun == (touching ? 1 : 2));
+  ContactModel whole;
+  at_once.predict_horizon(0, command.tip, 25, whole);
+  CHECK(model.step == whole.step);
+  CHECK((model.place - whole.place).norm() < 1e-4);
+  for (std::size_t n = 0; n < 25; ++n) {
+    if (!touching) break;  // the nearest point is that of two steps before
+    CHECK((model.path[n] - whole.path[n]).norm() < 1e-12);
+    CHECK((model.response[n] - whole.response[n]).norm() < 1e-12 * whole.response[0].norm());
+  }
+  // What stays costs nothing of the budget.
+  step(touching ? 0.052 : 0.062);
+  int budget = 0;
+  CHECK(in_parts.predict_horizon(0, command.tip, 25, model, budget) == touching);
+}
+
 TEST_CASE("contact model: each thing that can be wrong with one is found") {
   using Fault = ContactModelFault;
   struct Case {

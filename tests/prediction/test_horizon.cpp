@@ -165,8 +165,6 @@ TEST_CASE("foresight: a prediction that goes on is the one that is computed anew
       other.weights[0] = 0.6;
       other.weights[1] = 0.2;
       constexpr std::size_t kAhead = 20;
-      // Modal tables hold each step's change in single precision.
-      constexpr double kSingle = 1e-6;
       for (int k = 0; k < 60; ++k) {
         act(*engine, k);
         if (k % 13 == 12) continue;  // nobody looks
@@ -187,7 +185,7 @@ TEST_CASE("foresight: a prediction that goes on is the one that is computed anew
           for (const Vector3& place : expected) largest = std::max(largest, place.norm());
           CAPTURE(fixed, static_cast<int>(kind), k);
           for (std::size_t n = 0; n < kAhead; ++n) {
-            CHECK((path[n] - expected[n]).norm() <= kSingle * largest);
+            CHECK((path[n] - expected[n]).norm() <= 1e-11 * largest);
             CHECK((response[n] - expected_response[n]).norm() <= 1e-11 * response[0].norm());
           }
         }

@@ -30,6 +30,7 @@ ForceThread::ForceThread(Simulation& simulation, NetworkServer& network, RunCont
       clock_(clock),
       sinks_(std::move(sinks)),
       steps_(steps),
+      turns_(simulation.dt()),
       commands_(static_cast<std::size_t>(network.styluses())) {
   for (std::size_t s = 0; s < commands_.size(); ++s) bridged_.emplace_back(simulation, s);
 }
@@ -210,27 +211,22 @@ void ForceThread::step() noexcept {
   predict_horizon();
 }
 
-// After all else: who waits for a force has it by now. Styluses whose contact moves take turns, so
-// that a step is not longer with many of them; a bridge goes on with an older model meanwhile.
+// After all else: who waits for a force has it by now.
 void ForceThread::predict_horizon() noexcept {
   if (!throttle_.due(report_.steps)) return;
   const std::int64_t begin = monotonic_ns();
-  const std::size_t first = next_prediction_;
-  int budget = 1;
-  bool any = false;
   bool tried = false;
-  for (std::size_t i = 0; i < bridged_.size(); ++i) {
-    const std::size_t s = (first + i) % bridged_.size();
+  bool any = false;
+  turns_.step(bridged_.size(), [&](std::size_t s, int& budget) {
     StylusPort& port = network_.port(static_cast<int>(s));
-    if (!commands_[s].present || !port.in.front().predicts) continue;
-    port.model.back().session = port.in.front().session;
-    const int left = budget;
+    if (!commands_[s].present || !port.in.front().predicts) return false;
     tried = true;
-    if (!bridged_[s].predict_horizon(port.model.back().value, budget)) continue;
-    if (budget < left) next_prediction_ = (s + 1) % bridged_.size();
+    port.model.back().session = port.in.front().session;
+    if (!bridged_[s].predict_horizon(port.model.back().value, budget)) return false;
     port.model.publish();
     any = true;
-  }
+    return true;
+  });
   if (any) network_.forces_ready().signal();
   if (tried) report_.prediction_time.add(monotonic_ns() - begin);
 }

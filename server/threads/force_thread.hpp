@@ -17,6 +17,7 @@
 #include "server/threads/step_clock.hpp"
 #include "server/threads/viewer_stylus.hpp"
 #include "simulation/step/bridged_stylus.hpp"
+#include "simulation/step/prediction_turns.hpp"
 #include "simulation/step/simulation.hpp"
 #include "simulation/step/step_record.hpp"
 
@@ -102,9 +103,9 @@ class ForceThread {
   std::optional<ViewerStylus> viewer_stylus_;
   std::vector<BridgedStylus> bridged_;  ///< of the network's styluses
   PredictionThrottle throttle_;
-  std::uint64_t missed_before_ = 0;      ///< deadlines, until the last update of throttle_
-  std::uint64_t steps_before_ = 0;       ///< steps, until then
-  std::size_t next_prediction_ = 0;      ///< whose turn it is to have one made anew
+  std::uint64_t missed_before_ = 0;  ///< deadlines, until the last update of throttle_
+  std::uint64_t steps_before_ = 0;   ///< steps, until then
+  PredictionTurns turns_;
   std::vector<StylusCommand> commands_;  ///< of the network's styluses, and perhaps the viewers'
   StepRecord record_;
   ForceThreadReport report_;

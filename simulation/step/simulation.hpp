@@ -38,9 +38,9 @@ class Simulation {
   /// For the bridge of stylus s, between steps: how its contact goes on after the last step.
   /// @param tip where the stylus was in the last step [m], W
   /// @param horizon steps to predict, 1 to kMaxHorizon
-  /// @param budget of computations that take long: of a response that is not known, or of a path
-  /// anew, or with another contact in it; each takes 1. False: there was too little left, the model
-  /// means nothing, and a later call goes on from there
+  /// @param budget of computations that take long. For a contact 1 is all that is new, or has
+  /// another contact in it; for a free tip the nearest point, a response and a path take 1 each.
+  /// False: there was too little left, the model means nothing, and a later call goes on from there
   bool predict_horizon(std::size_t s, const Vector3& tip, int horizon, ContactModel& model,
                        int& budget) noexcept;
   void predict_horizon(std::size_t s, const Vector3& tip, int horizon,

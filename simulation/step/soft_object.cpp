@@ -195,12 +195,15 @@ double SoftObject::available_energy(const ContactModel& model) const noexcept {
          (kinetic + falling) / std::max(1, contacts_.count());
 }
 
-// What takes long and rests on the patches alone is made ready first; the path comes last.
+// What takes long and rests on the patches alone is made ready first; the path comes last. A
+// contact has all of it in one step, a free tip can wait for its parts.
 bool SoftObject::prepare_horizon(const ContactPatch& patch, bool among_others, ContactModel& model,
                                  int& budget) noexcept {
   ResponseEngine& engine = body_.engine();
   const auto steps = static_cast<std::size_t>(model.horizon);
-  const auto spend = [&] { return budget-- > 0; };
+  const bool in_parts = model.state == ContactState::kFree;
+  bool spent = false;
+  const auto spend = [&] { return (std::exchange(spent, true) && !in_parts) || budget-- > 0; };
   for (const ContactPatch* one : {&patch, among_others ? &other_.patch : &patch}) {
     if (engine.keeps_response(*one, steps)) continue;
     if (!spend()) return false;
@@ -230,7 +233,7 @@ bool SoftObject::predict_horizon(std::size_t s, const Vector3& tip, int horizon,
   const auto count = static_cast<std::size_t>(model.horizon);
   const bool among_others = contacts_.find_other(s, friction_, problem_, other_);
   if (!prepare_horizon(patch, among_others, model, budget)) return false;
-  contacts_.end_prediction(s);
+  contacts_.end_prediction(s, patch);
   collect_others(s, model);
   body_.engine().predict_horizon(patch, nodal_.view(), {model.path.data(), count},
                                  {model.response.data(), count});

@@ -353,21 +353,30 @@ bool StylusContacts::locate(std::size_t s, const Vector3& tip, ContactModel& mod
   Stylus& stylus = styluses_[s];
   model.state = stylus.proxy.state();
   model.slipping = stylus.proxy.contact().slipping();
-  Prediction& prediction = stylus.prediction;
-  const bool goes_on = prediction.under_way && prediction.state == model.state &&
-                       steps_ <= prediction.step + kPredictedFor;
-  if (!goes_on) {
-    const bool free = model.state == ContactState::kFree;
-    if (free && budget-- <= 0) return false;
-    begin_prediction(stylus, free ? surface_.closest(tip).point : stylus.proxy.point());
-    prediction.state = model.state;
-    prediction.under_way = true;
+  SurfacePoint point = stylus.proxy.point();
+  if (model.state == ContactState::kFree) {
+    Prediction& prediction = stylus.prediction;
+    if (!prediction.under_way || steps_ > prediction.step + kPredictedFor) {
+      if (budget-- <= 0) return false;
+      begin_prediction(stylus, surface_.closest(tip).point);
+      prediction.under_way = true;
+    }
+    point = prediction.point;
+    patch = prediction.patch;
+  } else {
+    stylus.mask.spread(point, patch);
   }
-  patch = prediction.patch;
-  const SmoothedSurface::Place place = place_of(stylus, model.state, prediction.point);
+  const SmoothedSurface::Place place = place_of(stylus, model.state, point);
   if (model.state != ContactState::kHeld) model.normal = place.normal;
   model.place = place.position;
   return true;
+}
+
+void StylusContacts::end_prediction(std::size_t s, const ContactPatch& patch) noexcept {
+  Prediction& prediction = styluses_[s].prediction;
+  prediction.patch = patch;
+  prediction.step = steps_;
+  prediction.under_way = false;
 }
 
 void StylusContacts::begin_prediction(Stylus& stylus, const SurfacePoint& point) noexcept {

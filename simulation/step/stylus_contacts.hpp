@@ -70,13 +70,13 @@ class StylusContacts {
   ContactState state(std::size_t s) const noexcept { return styluses_[s].proxy.state(); }
   /// Whether a contact goes on, or may begin.
   bool may_touch(std::size_t s) const noexcept;
-  /// State, place and normal of its contact, or of where one would begin; and the patch there. The
-  /// place stays for some steps until end_prediction().
+  /// State, place and normal of its contact, or of where one would begin, which stays for some
+  /// steps until end_prediction(); and the patch there.
   /// @param tip in the coming step [m]
   /// @param budget as for Simulation::predict_horizon(), for the point that is nearest to the tip
   bool locate(std::size_t s, const Vector3& tip, ContactModel& model, ContactPatch& patch,
               int& budget) noexcept;
-  void end_prediction(std::size_t s) noexcept { styluses_[s].prediction.under_way = false; }
+  void end_prediction(std::size_t s, const ContactPatch& patch) noexcept;
   /// The compliance in series with the contact. False: what is left of a hold ends with this step.
   /// @param mobility of the body; the model has place, path and response
   bool write_series(std::size_t s, const RigidMobility& mobility, ContactModel& model) noexcept;
@@ -110,13 +110,12 @@ class StylusContacts {
     Vector3 arm = Vector3::Zero();      ///< of its force [m]
     Vector3 average = Vector3::Zero();  ///< of its force over the last while [N]
   };
-  /// What contact models are told of a contact; it may take several steps to compute one.
+  /// Where a contact model has its contact.
   struct Prediction {
     ContactPatch patch;
-    SurfacePoint point;      ///< that it lies about
+    SurfacePoint point;      ///< that the patch of a free tip lies about
     std::uint64_t step = 0;  ///< in which it was there
-    ContactState state = ContactState::kFree;
-    bool under_way = false;
+    bool under_way = false;  ///< of a free tip; it may take several steps to compute a model
   };
   struct Stylus {
     SimulationStylus tip;

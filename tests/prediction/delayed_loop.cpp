@@ -7,6 +7,7 @@
 #include "device_bridge/contact/bridge_contact.hpp"
 #include "device_bridge/safety/safety_filter.hpp"
 #include "simulation/step/bridged_stylus.hpp"
+#include "simulation/step/prediction_turns.hpp"
 
 namespace irdm::test {
 namespace {
@@ -69,6 +70,7 @@ class Loop {
         mode_(mode),
         simulation_(setup.config),
         dt_(simulation_.dt()),
+        turns_(dt_),
         busy_(setup.server_overruns, 400 + 1000 * setup.seed) {
     if (setup.needed_success > 0.0) lead_ = static_cast<int>(std::lround(kLinkTime / dt_));
     const std::size_t count = setup.hands.size();
@@ -201,7 +203,17 @@ class Loop {
     }
     simulation_.step(commands_, record_);
     judge();
-    for (std::size_t s = 0; s < styluses_.size(); ++s) answer(s, t, now);
+    if (mode_ != LoopMode::kPredict) {
+      for (std::size_t s = 0; s < styluses_.size(); ++s) answer(s, t, now);
+      return;
+    }
+    turns_.step(styluses_.size(), [&](std::size_t s, int& budget) {
+      Down message;
+      if (!styluses_[s]->command.present) return false;
+      if (!bridged_[s].predict_horizon(message.model, budget)) return false;
+      styluses_[s]->down.send(now, message);
+      return true;
+    });
   }
 
   void judge() {
@@ -236,10 +248,6 @@ class Loop {
       stylus.asked.sample_time_ns = to_ns(now);
       return;
     }
-    if (mode_ == LoopMode::kPredict) {
-      if (!stylus.command.present) return;
-      bridged_[s].predict_horizon(message.model);
-    }
     stylus.down.send(now, message);
   }
 
@@ -247,6 +255,7 @@ class Loop {
   LoopMode mode_;
   Simulation simulation_;
   double dt_;
+  PredictionTurns turns_;
   SimulatedOverruns busy_;
   int lead_ = 0;  ///< steps before all begins
   std::vector<std::unique_ptr<Stylus>> styluses_;

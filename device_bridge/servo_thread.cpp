@@ -282,10 +282,12 @@ ServoEnd ServoThread::run_over_link() {
   begin_session(link_.state.front());
   LinkSimulation link(loops_, *settings_.link, link_.state.front().dt, settings_.rate);
   for (std::uint64_t k = 0; !stop_;) {
-    if (link.run_step()) {
-      if (!exchange(link, k)) break;
-      report_.ticks = ++k;
+    bool goes_on = true;
+    for (int due = link.run_ticks(); due > 0 && goes_on; --due) {
+      goes_on = exchange(link, k);
+      if (goes_on) report_.ticks = ++k;
     }
+    if (!goes_on) break;
     if (finished(link.time())) return ServoEnd::kFinished;
   }
   return lockstep_end();

@@ -61,7 +61,8 @@ int print_report(const FinishedRun& run, const ServerOptions& options) {
   if (run.clock != nullptr) {
     std::cout << "real-time scheduling: " << run.force.scheduling() << ", memory " << run.memory
               << '\n'
-              << "missed deadlines: " << run.clock->missed() << '\n'
+              << "missed deadlines: " << run.clock->missed() << ", made up for "
+              << run.clock->made_up() << '\n'
               << "wake-up delay: " << microseconds(run.clock->wakeup_delay()) << '\n';
   }
   char peak[32];

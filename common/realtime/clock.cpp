@@ -1,5 +1,6 @@
 #include "common/realtime/clock.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <ctime>
 
@@ -20,11 +21,14 @@ void sleep_until(std::int64_t deadline_ns) noexcept {
 
 std::int64_t PeriodicSchedule::next(std::int64_t now_ns) noexcept {
   deadline_ns_ += period_ns_;
-  const std::int64_t late = now_ns - deadline_ns_;
-  if (late >= period_ns_) {
-    const std::int64_t skipped = late / period_ns_;
-    deadline_ns_ += skipped * period_ns_;
-    missed_ += static_cast<std::uint64_t>(skipped);
+  const std::int64_t over = std::max<std::int64_t>(0, (now_ns - deadline_ns_) / period_ns_);
+  behind_ = over > 0 && over <= most_behind_;
+  if (behind_) {
+    ++missed_;
+    ++made_up_;
+  } else {
+    deadline_ns_ += over * period_ns_;
+    missed_ += static_cast<std::uint64_t>(over);
   }
   return deadline_ns_;
 }

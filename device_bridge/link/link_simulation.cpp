@@ -24,7 +24,7 @@ LinkSimulation::LinkSimulation(std::vector<ServoLoop>& loops, const SimulatedLin
     : loops_(loops),
       dt_(dt),
       ticks_(std::max(1, static_cast<int>(std::lround(dt * rate)))),
-      server_overruns_(link.server_overruns, 4 * link.seed) {
+      server_(link.server_overruns, dt, 4 * link.seed) {
   for (std::size_t i = 0; i < loops.size(); ++i) {
     const std::uint64_t seed = 4 * (link.seed + 1000 * i);
     styluses_.push_back({{link.channel, seed + 1},
@@ -39,7 +39,7 @@ LinkSimulation::LinkSimulation(std::vector<ServoLoop>& loops, const SimulatedLin
   }
 }
 
-bool LinkSimulation::run_step() {
+int LinkSimulation::run_ticks() {
   for (std::size_t i = 0; i < loops_.size(); ++i) {
     for (int t = 1; t <= ticks_; ++t) tick(i, time_ + t * dt_ / ticks_);
   }
@@ -53,7 +53,7 @@ bool LinkSimulation::run_step() {
       stylus.any_news = true;
     });
   }
-  return !server_overruns_.at(time_, dt_);
+  return server_.due(time_);
 }
 
 // As ServoThread::render_tick().

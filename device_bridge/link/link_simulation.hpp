@@ -19,8 +19,8 @@ class LinkSimulation {
   /// @param dt of the server's step [s]  @param rate of ticks [Hz]
   LinkSimulation(std::vector<ServoLoop>& loops, const SimulatedLink& link, double dt, double rate);
 
-  /// The ticks of dt. False: the server is in an overrun and makes no step now.
-  bool run_step();
+  /// The ticks of dt. Returns how many steps the server makes then.
+  int run_ticks();
   /// What the server knows of a stylus by now, as sample k.
   StylusSample sample(std::size_t stylus, std::uint64_t k) const;
   /// What has come of forces that were solved here since the last call; null: nothing.
@@ -54,7 +54,7 @@ class LinkSimulation {
   std::vector<ServoLoop>& loops_;
   double dt_;
   int ticks_;  ///< a step
-  SimulatedOverruns server_overruns_;
+  SimulatedSteps server_;
   std::vector<Stylus> styluses_;
   double time_ = 0.0;
 };

@@ -101,4 +101,29 @@ class SimulatedOverruns {
   double until_ = 0.0;
 };
 
+/// The server's steps with its overruns. What an overrun of at most kCatchUp has left out is made up
+/// for at its end, as RealTimeClock does.
+class SimulatedSteps {
+ public:
+  static constexpr double kCatchUp = 0.02;  ///< [s]
+
+  SimulatedSteps(const Overruns& overruns, double dt, std::uint64_t seed)
+      : overruns_(overruns, seed), dt_(dt) {}
+
+  /// How many steps are made now. @param now simulated time at the end of a period of dt [s]
+  int due(double now) {
+    if (overruns_.at(now, dt_)) {
+      ++behind_;
+      return 0;
+    }
+    const int behind = std::exchange(behind_, 0);
+    return behind * dt_ <= kCatchUp ? 1 + behind : 1;
+  }
+
+ private:
+  SimulatedOverruns overruns_;
+  double dt_;
+  int behind_ = 0;
+};
+
 }  // namespace irdm

@@ -213,7 +213,7 @@ void ForceThread::step() noexcept {
 
 // After all else: who waits for a force has it by now.
 void ForceThread::predict_horizon() noexcept {
-  if (!throttle_.due(report_.steps)) return;
+  if (clock_.behind() || !throttle_.due(report_.steps)) return;
   const std::int64_t begin = monotonic_ns();
   bool tried = false;
   bool any = false;

@@ -11,7 +11,8 @@ RealTimeClock::RealTimeClock(double dt)
 bool RealTimeClock::wait(std::uint64_t step) noexcept {
   if (stopped()) return false;
   if (step == 0) {
-    schedule_ = PeriodicSchedule(monotonic_ns(), period_ns_);
+    schedule_ = PeriodicSchedule(monotonic_ns(), period_ns_,
+                                 std::llround(kCatchUp * kNanosecondsPerSecond) / period_ns_);
     return true;
   }
   const std::int64_t deadline = schedule_.next(monotonic_ns());

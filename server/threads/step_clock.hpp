@@ -23,9 +23,10 @@ class StepClock {
   virtual bool lockstep() const noexcept { return false; }
   /// How late the last wait() ended [ns]; -1: no such thing. Force thread.
   virtual std::int64_t last_delay() const noexcept { return -1; }
-  /// Steps that were left out so far because an earlier one was late. Force thread, or after the
-  /// run.
+  /// Steps so far that could not begin within their period. Force thread, or after the run.
   virtual std::uint64_t missed() const noexcept { return 0; }
+  /// Whether the step that wait() has let through is one of these, and more are to follow at once.
+  virtual bool behind() const noexcept { return false; }
   /// Ends the wait; any thread.
   void stop() noexcept { stopped_.store(true, std::memory_order_relaxed); }
 
@@ -36,16 +37,22 @@ class StepClock {
   std::atomic<bool> stopped_{false};
 };
 
-/// One step every dt of the machine's clock, at absolute times from the first step on. Periods
-/// missed are skipped.
+/// One step every dt of the machine's clock, at absolute times from the first step on. After an
+/// overrun of at most kCatchUp the steps of the periods missed are made at once, so that the object
+/// stays with the hands; after a longer one they are left out.
 class RealTimeClock final : public StepClock {
  public:
+  static constexpr double kCatchUp = 0.02;  ///< [s]
+
   explicit RealTimeClock(double dt);
   bool wait(std::uint64_t step) noexcept override;
   /// How late the thread woke [ns]; after the run.
   const Histogram& wakeup_delay() const noexcept { return wakeup_delay_; }
   std::int64_t last_delay() const noexcept override { return last_delay_; }
   std::uint64_t missed() const noexcept override { return schedule_.missed(); }
+  bool behind() const noexcept override { return schedule_.behind(); }
+  /// Of the missed steps those that were made all the same.
+  std::uint64_t made_up() const noexcept { return schedule_.made_up(); }
 
  private:
   std::int64_t period_ns_;

@@ -71,7 +71,7 @@ class Loop {
         simulation_(setup.config),
         dt_(simulation_.dt()),
         turns_(dt_),
-        busy_(setup.server_overruns, 400 + 1000 * setup.seed) {
+        server_(setup.server_overruns, dt_, 400 + 1000 * setup.seed) {
     if (setup.needed_success > 0.0) lead_ = static_cast<int>(std::lround(kLinkTime / dt_));
     const std::size_t count = setup.hands.size();
     for (std::size_t s = 0; s < count; ++s) {
@@ -89,7 +89,7 @@ class Loop {
     for (int t = 0; t < lead_ + setup_.steps; ++t) {
       const double now = (t + 1) * dt_;
       for (std::size_t s = 0; s < styluses_.size(); ++s) bridge(s, t, now);
-      if (!busy_.at(now, dt_)) serve(t, now);
+      for (int due = server_.due(now); due > 0; --due) serve(t, now, due > 1);
       for (std::size_t s = 0; s < styluses_.size(); ++s) {
         styluses_[s]->down.deliver(now, [&](const Down& message) { take(s, message, now); });
         if (setup_.filtered && mode_ != LoopMode::kPredict) filter(s, now);
@@ -194,7 +194,8 @@ class Loop {
     });
   }
 
-  void serve(int t, double now) {
+  // While it is behind, no models.
+  void serve(int t, double now, bool behind) {
     for (std::size_t s = 0; s < styluses_.size(); ++s) {
       Stylus& stylus = *styluses_[s];
       receive(stylus, now);
@@ -207,6 +208,7 @@ class Loop {
       for (std::size_t s = 0; s < styluses_.size(); ++s) answer(s, t, now);
       return;
     }
+    if (behind) return;
     turns_.step(styluses_.size(), [&](std::size_t s, int& budget) {
       Down message;
       if (!styluses_[s]->command.present) return false;
@@ -256,7 +258,7 @@ class Loop {
   Simulation simulation_;
   double dt_;
   PredictionTurns turns_;
-  SimulatedOverruns busy_;
+  SimulatedSteps server_;
   int lead_ = 0;  ///< steps before all begins
   std::vector<std::unique_ptr<Stylus>> styluses_;
   std::vector<BridgedStylus> bridged_;

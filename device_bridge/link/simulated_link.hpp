@@ -101,8 +101,8 @@ class SimulatedOverruns {
   double until_ = 0.0;
 };
 
-/// The server's steps with its overruns. What an overrun of at most kCatchUp has left out is made up
-/// for at its end, as RealTimeClock does.
+/// The server's steps with its overruns. What an overrun of at most kCatchUp has left out is made
+/// up for at its end, as RealTimeClock does.
 class SimulatedSteps {
  public:
   static constexpr double kCatchUp = 0.02;  ///< [s]

@@ -18,6 +18,7 @@ struct CompareOptions {
   std::filesystem::path a, b;
   std::optional<std::filesystem::path> json;
   std::vector<double> hand;  // mass, damping, stiffness; or empty
+  double lag = 0.0;          ///< [s]
 };
 
 void write_text(const std::filesystem::path& path, const std::string& text) {
@@ -36,7 +37,7 @@ perception::Hand hand_of(const CompareOptions& options) {
 
 int compare(const CompareOptions& options) {
   const RunReader a(options.a);
-  const RunReader b(options.b);
+  const RunReader b(options.b, options.lag);
   const Comparison comparison = compare_runs(a, b);
   const Measures measures = measure_runs(a, b, comparison, hand_of(options));
   if (options.json) write_text(*options.json, comparison_json(comparison, measures));
@@ -52,6 +53,8 @@ Command add_compare_command(CLI::App& app) {
       app.add_subcommand("compare", "Says how far two runs of the same interaction are apart");
   command->add_option("a", options->a, "Run file that --output wrote")->required();
   command->add_option("b", options->b, "Another one, of the same scene")->required();
+  command->add_option("--lag", options->lag,
+                      "Time by which B is later, as by the way of a link (s; default: 0)");
   command->add_option("--json", options->json,
                       "File for all of it, frame by frame; must not exist");
   const auto refuse = [](const std::string&) {

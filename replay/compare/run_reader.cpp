@@ -60,8 +60,9 @@ hsize_t rows(const hdf5::File& file, const std::string& set, std::size_t rank) {
 
 }  // namespace
 
-RunReader::RunReader(const std::filesystem::path& path) : file_(open_run(path)) {
+RunReader::RunReader(const std::filesystem::path& path, double lag) : file_(open_run(path)) {
   times_ = file_.read<double>("/time", {rows(file_, "/time", 1)});
+  for (double& time : times_) time -= lag;
   styluses_ = count(file_, "styluses", kMaxStyluses);
   for (std::size_t i = 0; i < count(file_, "objects", kMaxObjects); ++i) {
     const std::string group = run::object_path(i);

@@ -32,7 +32,8 @@ struct RunPose {
 class RunReader {
  public:
   /// Throws Error when it is none.
-  explicit RunReader(const std::filesystem::path& path);
+  /// @param lag taken off the times of its frames [s]
+  explicit RunReader(const std::filesystem::path& path, double lag = 0.0);
 
   const std::string& name() const { return file_.name(); }
   const std::vector<double>& times() const { return times_; }  ///< of the frames [s]

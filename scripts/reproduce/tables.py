@@ -8,8 +8,9 @@ from results import figure_of, read_comparison
 
 PAPER = ["paper", "866", "1728", "1360", "5309", "1462 s", "9.9 MB"]
 VARIANTS = (("quadratic", "quadratic elements"), ("inertial", "with inertial loading"), ("1khz", "dt = 1 ms (1 kHz)"),
-            ("own-1", ""), ("own-2", ""), ("fem", "finite elements, led along the same path"), ("delay-0", "link without delay (must be the same)"),
-            ("delay-2", "link of 4 ms round trip, held forces"), ("delay-10", "link of 20 ms round trip, held forces"))
+            ("own-1", ""), ("own-2", ""), ("fem", "finite elements, led along the same path"), ("hold-2", "2 ms one way, held forces"),
+            ("hold-10", "10 ms one way, held forces"), ("predict-2", "2 ms one way, contact solved at the bridge"),
+            ("predict-10", "10 ms one way, contact solved at the bridge"))
 MEASURES = ("force", "compliance", "vibration", "onset")
 
 

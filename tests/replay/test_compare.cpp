@@ -120,6 +120,14 @@ TEST_CASE("frames are compared that both runs have") {
   CHECK_THROWS_WITH(TwoRuns({}, 11).compared(), Contains("no frame at a time"));
 }
 
+TEST_CASE("a run that is later is compared with what it lags behind") {
+  const TwoRuns runs;
+  const Comparison found = compare_runs(RunReader(runs.a), RunReader(runs.b, 0.1));
+  CHECK(found.times.size() == 3);
+  CHECK(found.alone == 2);
+  CHECK(found.forces.at(0).maximum() == Approx(1.0));
+}
+
 TEST_CASE("runs with other meshes are compared as bodies, with other objects not at all") {
   const TwoRuns runs;
   write_run(runs.folder.path() / "fine.h5", one_cube(3));

@@ -8,9 +8,9 @@ from results import figure_of, read_comparison
 
 PAPER = ["paper", "866", "1728", "1360", "5309", "1462 s", "9.9 MB"]
 VARIANTS = (("quadratic", "quadratic elements"), ("inertial", "with inertial loading"), ("1khz", "dt = 1 ms (1 kHz)"),
-            ("own-1", ""), ("own-2", ""), ("fem", "finite elements, led along the same path"), ("hold-2", "2 ms one way, held forces"),
-            ("hold-10", "10 ms one way, held forces"), ("predict-2", "2 ms one way, contact solved at the bridge"),
-            ("predict-10", "10 ms one way, contact solved at the bridge"))
+            ("own-1", ""), ("own-2", ""), ("fem", "finite elements, led along the same path"), ("hold-2", "2 ms one way, `hold`"),
+            ("hold-10", "10 ms one way, `hold`"), ("predict-2", "2 ms one way, `predict`"),
+            ("predict-10", "10 ms one way, `predict`"))
 MEASURES = ("force", "compliance", "vibration", "onset")
 
 

@@ -2,7 +2,7 @@
 """Live runs as a user has them: real server and bridge, real time, a recorder, a connected viewer.
 
   bench/live.py [--bin build/release/bin] [--out out/bench/live] [--seconds 10] [--runs 1]
-                [--dt 2 1 0.5] [--styluses 1 4] [--mode predict hold] [--busy 0 2]
+                [--dt 2 1 0.5] [--styluses 1 4] [--mode predict hold] [--busy 0 2] [--stop 0]
 
 The paper's cube with all modes and the demonstration's script; more styluses play it on other faces. One row a run:
 step and prediction of the server, round trip, missed deadlines, forces delayed and lost, how often the safety filter dropped the
@@ -14,6 +14,7 @@ import base64
 import os
 import pathlib
 import re
+import signal
 import socket
 import statistics
 import struct
@@ -55,6 +56,15 @@ class Viewer(threading.Thread):
             if time.monotonic() - heard > 5:
                 heard = time.monotonic()
                 self.send(0xA, b"")  # a pong: it is still there
+
+
+def stop_again_and_again(server, milliseconds):
+    """Stops the process so long, once a second."""
+    while server.poll() is None:
+        time.sleep(1)
+        server.send_signal(signal.SIGSTOP)
+        time.sleep(milliseconds / 1000)
+        server.send_signal(signal.SIGCONT)
 
 
 def make_model(args, dt):
@@ -107,6 +117,8 @@ def run(args, dt, styluses, mode, busy):
             time.sleep(0.05)
         viewer = Viewer(page.group(1))
         viewer.start()
+        if args.stop:
+            threading.Thread(target=stop_again_and_again, args=(server, args.stop), daemon=True).start()
         bridge = subprocess.run([args.bin / "irdm-bridge", args.out / "bridge.toml", "--server", address.group(1),
                                  "--duration", str(args.seconds)], capture_output=True, text=True)
         server.terminate()
@@ -149,6 +161,7 @@ def main():
     parser.add_argument("--styluses", type=int, nargs="+", default=[1, 4])
     parser.add_argument("--mode", nargs="+", default=["predict"])
     parser.add_argument("--busy", type=int, nargs="+", default=[0, 2], help="busy loops beside it")
+    parser.add_argument("--stop", type=float, default=0.0, help="the server is stopped for so long once a second [ms]")
     args = parser.parse_args()
     args.out.mkdir(parents=True, exist_ok=True)
     first = True

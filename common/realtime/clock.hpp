@@ -7,6 +7,8 @@ namespace irdm {
 inline constexpr std::int64_t kNanosecondsPerMillisecond = 1'000'000;
 inline constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
 inline constexpr double kNanosecond = 1e-9;  // [s]
+/// Longest overrun of the server whose steps are made up for, in real and in simulated time [s].
+inline constexpr double kCatchUp = 0.02;
 
 /// Monotonic time of this machine [ns]. Any thread, real-time safe.
 std::int64_t monotonic_ns() noexcept;

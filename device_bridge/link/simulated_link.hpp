@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "common/realtime/clock.hpp"
+
 namespace irdm {
 
 /// One direction between bridge and server on the simulated clock.
@@ -105,8 +107,6 @@ class SimulatedOverruns {
 /// up for at its end, as RealTimeClock does.
 class SimulatedSteps {
  public:
-  static constexpr double kCatchUp = 0.02;  ///< [s]
-
   SimulatedSteps(const Overruns& overruns, double dt, std::uint64_t seed)
       : overruns_(overruns, seed), dt_(dt) {}
 

@@ -42,8 +42,6 @@ class StepClock {
 /// stays with the hands; after a longer one they are left out.
 class RealTimeClock final : public StepClock {
  public:
-  static constexpr double kCatchUp = 0.02;  ///< [s]
-
   explicit RealTimeClock(double dt);
   bool wait(std::uint64_t step) noexcept override;
   /// How late the thread woke [ns]; after the run.

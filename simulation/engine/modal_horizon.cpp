@@ -1,7 +1,6 @@
 #include "simulation/engine/modal_horizon.hpp"
 
 #include <algorithm>
-#include <utility>
 
 namespace irdm {
 namespace {
@@ -10,6 +9,14 @@ bool same(const ContactPatch& a, const ContactPatch& b) noexcept {
   return a.count == b.count &&
          std::equal(a.nodes.begin(), a.nodes.begin() + a.count, b.nodes.begin()) &&
          std::equal(a.weights.begin(), a.weights.begin() + a.count, b.weights.begin());
+}
+
+template <typename Contacts>
+auto find_patch(Contacts& contacts, const ContactPatch& patch) noexcept
+    -> decltype(contacts.data()) {
+  const auto found = std::find_if(contacts.begin(), contacts.end(),
+                                  [&](const auto& c) { return same(c.patch, patch); });
+  return found == contacts.end() ? nullptr : &*found;
 }
 
 Vector3 vector(const std::array<double, 3>& sums) noexcept {
@@ -62,13 +69,11 @@ void ModalHorizon::forget() noexcept {
 }
 
 const ModalHorizon::Contact* ModalHorizon::find(const ContactPatch& patch) const noexcept {
-  const auto found = std::find_if(contacts_.begin(), contacts_.end(),
-                                  [&](const Contact& c) { return same(c.patch, patch); });
-  return found == contacts_.end() ? nullptr : &*found;
+  return find_patch(contacts_, patch);
 }
 
 ModalHorizon::Contact* ModalHorizon::find(const ContactPatch& patch) noexcept {
-  return const_cast<Contact*>(std::as_const(*this).find(patch));
+  return find_patch(contacts_, patch);
 }
 
 bool ModalHorizon::keeps(const ContactPatch& patch, std::uint64_t number,
@@ -154,7 +159,7 @@ void ModalHorizon::begin_free(const Part& part, const double* coordinate,
 
 // Courses that a force during one step leaves; the end of that step comes first.
 // @param force on the modes (part.count)
-void ModalHorizon::begin_pushed(const Part& part, const double* force) noexcept {
+void ModalHorizon::begin_impulse(const Part& part, const double* force) noexcept {
   const double* const a11 = A_.a11 + part.first;
   const double* const a12 = A_.a12 + part.first;
   const double* const b1 = b1_ + part.first;
@@ -167,7 +172,7 @@ void ModalHorizon::begin_pushed(const Part& part, const double* force) noexcept 
 
 // The same with a force that is held from now on, about where it takes the modes. It changes the
 // end of the coming step by (b_1 - 1 / omega^2) f, and the velocity there by b_2 f.
-void ModalHorizon::push_on(const Part& part, const double* force) noexcept {
+void ModalHorizon::add_held(const Part& part, const double* force) noexcept {
   for (std::size_t j = 0; j < part.count; ++j) {
     const std::size_t i = part.first + j;
     const double moved = b1_[i] - compliance_[i];
@@ -189,7 +194,7 @@ void ModalHorizon::respond_to(const Contact& contact, const double* force, std::
                               Path& moves) noexcept {
   Sums sums{};
   for_parts([&](const Part& part) {
-    begin_pushed(part, force + part.first);
+    begin_impulse(part, force + part.first);
     add_courses(part, shape(contact, 0, part), stride_, steps, sums);
   });
   std::transform(sums.begin(), sums.begin() + static_cast<std::ptrdiff_t>(steps), moves.begin(),
@@ -215,7 +220,7 @@ void ModalHorizon::find_path(const Contact& contact, const State& state, const d
   Vector3 rest = Vector3::Zero();
   for_parts([&](const Part& part) {
     begin_free(part, relative_coordinate(state, part), state.velocity + part.first);
-    if (held != nullptr) push_on(part, held + part.first);
+    if (held != nullptr) add_held(part, held + part.first);
     add_courses(part, shape(contact, 0, part), stride_, path.size(), sums);
     if (state.force == nullptr && held == nullptr) return;
     for (std::size_t j = 0; j < part.count; ++j) {
@@ -238,10 +243,10 @@ void ModalHorizon::find_response(Contact& contact, std::size_t steps) noexcept {
   Sums first{};  // R_00, R_10, R_20
   Sums rest{};   // R_11, R_12, R_22
   for_parts([&](const Part& part) {
-    begin_pushed(part, shape(contact, 0, part));
+    begin_impulse(part, shape(contact, 0, part));
     add_courses(part, shape(contact, 0, part), stride_, contact.steps, first);
     std::fill_n(factors_.data(), part.count, 1.0);
-    begin_pushed(part, factors_.data());
+    begin_impulse(part, factors_.data());
     const double* const y = shape(contact, 1, part);
     const double* const z = shape(contact, 2, part);
     multiply(y, y, products_.data(), part.count);
@@ -294,34 +299,35 @@ void ModalHorizon::shift_path(Contact& contact, const State& state) noexcept {
   path[steps - 1] = end_of_path(contact, state);
 }
 
-const ModalHorizon::Cross* ModalHorizon::find(const Contact& to, const Contact& from,
-                                              std::size_t steps) const noexcept {
-  const auto found = std::find_if(crosses_.begin(), crosses_.end(), [&](const Cross& cross) {
-    const bool same = cross.to == to.made && cross.from == from.made;
-    const bool turned = cross.to == from.made && cross.from == to.made;
-    return (same || turned) && cross.steps >= steps;
-  });
-  return found == crosses_.end() ? nullptr : &*found;
+bool ModalHorizon::Cross::is_of(const Contact& a, const Contact& b,
+                                std::size_t count) const noexcept {
+  const bool same = to == a.made && from == b.made;
+  const bool turned = to == b.made && from == a.made;
+  return (same || turned) && steps >= count;
 }
 
 bool ModalHorizon::keeps_cross_response(const ContactPatch& to, const ContactPatch& from,
                                         std::size_t steps) const noexcept {
   const Contact* const one = find(to);
   const Contact* const other = find(from);
-  return one != nullptr && other != nullptr && find(*one, *other, steps) != nullptr;
+  return one != nullptr && other != nullptr &&
+         std::any_of(crosses_.begin(), crosses_.end(),
+                     [&](const Cross& cross) { return cross.is_of(*one, *other, steps); });
 }
 
 // R_ab[n] is R_ba[n] transposed.
 void ModalHorizon::cross_response(const Contact& to, const Contact& from,
                                   std::span<Matrix3> response) noexcept {
-  Cross* kept = const_cast<Cross*>(find(to, from, response.size()));
-  if (kept == nullptr) {
-    kept = &*std::min_element(crosses_.begin(), crosses_.end(),
-                              [](const Cross& a, const Cross& b) { return a.used < b.used; });
+  auto kept = std::find_if(crosses_.begin(), crosses_.end(), [&](const Cross& cross) {
+    return cross.is_of(to, from, response.size());
+  });
+  if (kept == crosses_.end()) {
+    kept = std::min_element(crosses_.begin(), crosses_.end(),
+                            [](const Cross& a, const Cross& b) { return a.used < b.used; });
     kept->to = to.made;
     kept->from = from.made;
     kept->steps = response.size();
-    compute(to, from, {kept->response.data(), kept->steps});
+    find_cross_response(to, from, {kept->response.data(), kept->steps});
   }
   kept->used = ++asked_;
   const bool turned = kept->to != to.made;
@@ -331,12 +337,12 @@ void ModalHorizon::cross_response(const Contact& to, const Contact& from,
   }
 }
 
-void ModalHorizon::compute(const Contact& to, const Contact& from,
-                           std::span<Matrix3> response) noexcept {
+void ModalHorizon::find_cross_response(const Contact& to, const Contact& from,
+                                       std::span<Matrix3> response) noexcept {
   std::array<Sums, 3> sums{};
   for_parts([&](const Part& part) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      begin_pushed(part, shape(from, axis, part));
+      begin_impulse(part, shape(from, axis, part));
       add_courses(part, shape(to, 0, part), stride_, response.size(), sums[axis]);
     }
   });

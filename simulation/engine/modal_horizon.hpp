@@ -104,10 +104,13 @@ class ModalHorizon {
     std::uint64_t used = 0;  ///< number of the call that it was last asked for in
     std::size_t steps = 0;
     std::array<Matrix3, kMaxHorizon> response;
+
+    /// Of these two, one way or the other, for so many steps.
+    bool is_of(const Contact& a, const Contact& b, std::size_t count) const noexcept;
   };
 
-  void compute(const Contact& to, const Contact& from, std::span<Matrix3> response) noexcept;
-  const Cross* find(const Contact& to, const Contact& from, std::size_t steps) const noexcept;
+  void find_cross_response(const Contact& to, const Contact& from,
+                           std::span<Matrix3> response) noexcept;
   void forget() noexcept;
   static bool goes_on(const Contact& contact, std::uint64_t number) noexcept {
     return contact.state % 2 == 0 && contact.state + 2 == number;
@@ -119,8 +122,8 @@ class ModalHorizon {
   template <typename Function>
   void for_parts(Function&& function) noexcept;
   void begin_free(const Part& part, const double* coordinate, const double* velocity) noexcept;
-  void begin_pushed(const Part& part, const double* force) noexcept;
-  void push_on(const Part& part, const double* force) noexcept;
+  void begin_impulse(const Part& part, const double* force) noexcept;
+  void add_held(const Part& part, const double* force) noexcept;
   void add_courses(const Part& part, const double* weights, std::size_t stride, std::size_t steps,
                    Sums& sums) noexcept;
   const double* shape(const Contact& contact, std::size_t axis, const Part& part) const noexcept {

@@ -204,11 +204,13 @@ bool SoftObject::prepare_horizon(const ContactPatch& patch, bool among_others, C
   const bool in_parts = model.state == ContactState::kFree;
   bool spent = false;
   const auto spend = [&] { return (std::exchange(spent, true) && !in_parts) || budget-- > 0; };
-  for (const ContactPatch* one : {&patch, among_others ? &other_.patch : &patch}) {
-    if (engine.keeps_response(*one, steps)) continue;
+  const auto prepare = [&](const ContactPatch& one) {
+    if (engine.keeps_response(one, steps)) return true;
     if (!spend()) return false;
-    engine.prepare_response(*one, steps);
-  }
+    engine.prepare_response(one, steps);
+    return true;
+  };
+  if (!prepare(patch) || (among_others && !prepare(other_.patch))) return false;
   if (among_others && !engine.keeps_cross_response(patch, other_.patch, steps)) {
     if (!spend()) return false;
     engine.cross_response(patch, other_.patch, {model.response.data(), steps});

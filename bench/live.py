@@ -5,9 +5,9 @@
                 [--dt 2 1 0.5] [--styluses 1 4] [--mode predict hold] [--busy 0 2] [--stop 0]
 
 The paper's cube with all modes and the demonstration's script; more styluses play it on other faces. One row a run:
-step and prediction of the server, round trip, missed deadlines, forces delayed and lost, how often the safety filter dropped the
-force, peak force at the hand (bridge) and on the object (trace), impulse there. With several runs a row of medians
-follows. Times in us, forces in N, impulses in N s.
+step and prediction of the server, round trip, missed deadlines, forces delayed and lost, how often the safety filter
+dropped the force, peak force at the hand (bridge) and on the object (trace), impulse there. With several runs a row of
+medians follows. Times in us, forces in N, impulses in N s.
 """
 import argparse
 import base64

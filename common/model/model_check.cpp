@@ -10,7 +10,7 @@
 namespace irdm {
 namespace {
 
-using Fault = std::optional<std::string>;
+using FaultText = std::optional<std::string>;
 
 // Shares of the longest edge's power; precompute's own limit of a volume is 1e-9, which leaves no
 // smaller share of a face.
@@ -18,7 +18,7 @@ constexpr double kSmallestVolume = 5e-10;
 constexpr double kSmallestArea = 1e-9;
 constexpr double kMassError = 1e-6;  // of the nodes' sum, as a share
 
-Fault out_of(const Range& range, const char* name, double value) {
+FaultText out_of(const Range& range, const char* name, double value) {
   if (range.contains(value)) return {};
   return std::string(name) + " is " + number_text(value) + ", not " + describe(range);
 }
@@ -27,7 +27,7 @@ bool within(const int* begin, const int* end, Eigen::Index limit) {
   return std::all_of(begin, end, [limit](int i) { return i >= 0 && i < limit; });
 }
 
-Fault index_fault(const ModelMesh& mesh) {
+FaultText index_fault(const ModelMesh& mesh) {
   const auto& surface = mesh.surface_nodes;
   if (surface.empty() || mesh.triangles.rows() == 0) return "has no surface";
   if (mesh.tets.rows() == 0) return "/mesh/tets is empty";
@@ -51,7 +51,7 @@ double radius(const ModelMesh& mesh) {
   return mesh.nodes.rowwise().norm().maxCoeff();
 }
 
-Fault place_fault(const ModelMesh& mesh) {
+FaultText place_fault(const ModelMesh& mesh) {
   if (!mesh.nodes.allFinite()) return "/mesh/nodes has numbers that are not finite";
   if (!mesh.com_offset.allFinite()) return "/mesh com_offset is not finite";
   if (auto fault =
@@ -60,7 +60,7 @@ Fault place_fault(const ModelMesh& mesh) {
   return out_of(lab::kExtent, "the distance of the farthest of /mesh/nodes", radius(mesh));
 }
 
-Fault element_fault(const ModelMesh& mesh) {
+FaultText element_fault(const ModelMesh& mesh) {
   const auto at = [&](Eigen::Index e, int i) -> Vector3 { return mesh.nodes.row(mesh.tets(e, i)); };
   for (Eigen::Index e = 0; e < mesh.tets.rows(); ++e) {
     double longest = 0.0;
@@ -76,7 +76,7 @@ Fault element_fault(const ModelMesh& mesh) {
 }
 
 /// Flat triangles, open edges and one that faces inward, as a whole.
-Fault surface_fault(const ModelMesh& mesh) {
+FaultText surface_fault(const ModelMesh& mesh) {
   std::vector<std::pair<int, int>> edges;
   std::vector<std::pair<int, int>> back;
   double volume = 0.0;
@@ -104,7 +104,7 @@ Fault surface_fault(const ModelMesh& mesh) {
   return {};
 }
 
-Fault mass_fault(const Model& model) {
+FaultText mass_fault(const Model& model) {
   const Eigen::VectorXd& mass = model.mesh.node_mass;
   if (!mass.allFinite() || mass.minCoeff() <= 0.0) {
     return "/mesh/node_mass must be finite and positive";
@@ -118,7 +118,7 @@ Fault mass_fault(const Model& model) {
 
 // About the centre of mass no moment can be more than mass times the largest distance squared; the
 // bounds are far from that.
-Fault inertia_fault(const Model& model) {
+FaultText inertia_fault(const Model& model) {
   const Matrix3& inertia = model.body.inertia;
   if (!inertia.allFinite()) return "/body inertia has numbers that are not finite";
   if ((inertia - inertia.transpose()).norm() > 1e-9 * inertia.norm()) {
@@ -134,7 +134,7 @@ Fault inertia_fault(const Model& model) {
   return {};
 }
 
-Fault material_fault(const Material& material) {
+FaultText material_fault(const Material& material) {
   const struct {
     const char* name;
     double value;
@@ -152,7 +152,7 @@ Fault material_fault(const Material& material) {
   return {};
 }
 
-Fault step_fault(const Model& model) {
+FaultText step_fault(const Model& model) {
   if (auto fault = out_of(lab::kStepTime, "/response dt", model.dt)) return fault;
   if (model.steps >= 1 && model.steps <= lab::kMostSteps) return {};
   return "/response steps must be from 1 to " + std::to_string(lab::kMostSteps);
@@ -162,7 +162,7 @@ Fault step_fault(const Model& model) {
 
 std::optional<std::string> description_fault(const Model& model) {
   const ModelMesh& mesh = model.mesh;
-  Fault fault = index_fault(mesh);
+  FaultText fault = index_fault(mesh);
   if (!fault) fault = place_fault(mesh);
   if (!fault) fault = element_fault(mesh);
   if (!fault) fault = surface_fault(mesh);
@@ -245,14 +245,12 @@ template void DenseSamples::add(int, const double*);
 
 namespace {
 
-using Fault = std::optional<std::string>;
-
 // The largest share of a mode's mass that its rows at the surface may have; rightly at most 1.
 constexpr double kMostModalMass = 4.0;
 // A load as a multiple of the largest that a mode of modal mass 1 can feel.
 constexpr double kMostLoad = 10.0;
 
-Fault rate_fault(const ModalResponse& response) {
+FaultText rate_fault(const ModalResponse& response) {
   const Eigen::VectorXd& omega = response.angular_frequency;
   if (omega.size() == 0) return "/response/modal has no modes";
   if (!std::ranges::all_of(omega, [](double w) { return lab::kModeFrequency.contains(w); })) {
@@ -270,8 +268,8 @@ Fault rate_fault(const ModalResponse& response) {
 }
 
 template <typename Scalar>
-Fault shape_fault(const Model& model, const Eigen::VectorXd& omega,
-                  const RowMatrix<Scalar>& shapes) {
+FaultText shape_fault(const Model& model, const Eigen::VectorXd& omega,
+                      const RowMatrix<Scalar>& shapes) {
   if (!shapes.allFinite()) return "/response/modal/shapes has numbers that are not finite";
   const Eigen::RowVectorXd soft = omega.cwiseAbs2().cwiseInverse().transpose();
   Eigen::RowVectorXd modal_mass = Eigen::RowVectorXd::Zero(shapes.cols());
@@ -290,10 +288,10 @@ Fault shape_fault(const Model& model, const Eigen::VectorXd& omega,
   return {};
 }
 
-Fault load_fault(const Model& model, const ModalResponse& response) {
+FaultText load_fault(const Model& model, const ModalResponse& response) {
   const double unit = std::sqrt(model.body.mass);
   const double radius = model.mesh.nodes.rowwise().norm().maxCoeff();
-  const auto fault = [](const char* name, const auto& loads, double largest) -> Fault {
+  const auto fault = [](const char* name, const auto& loads, double largest) -> FaultText {
     if (!loads.allFinite()) return std::string(name) + " has numbers that are not finite";
     if (loads.size() == 0 || loads.cwiseAbs().maxCoeff() <= largest) return {};
     return std::string(name) + " has a load that no mode of this body can feel";
@@ -308,7 +306,7 @@ Fault load_fault(const Model& model, const ModalResponse& response) {
 }  // namespace
 
 std::optional<std::string> modal_fault(const Model& model, const ModalResponse& response) {
-  Fault fault = rate_fault(response);
+  FaultText fault = rate_fault(response);
   if (!fault) {
     fault = std::visit(
         [&](const auto& shapes) { return shape_fault(model, response.angular_frequency, shapes); },

@@ -124,7 +124,7 @@ void ForceThread::write_down(std::int64_t begin_ns, std::int64_t end_ns) noexcep
 void ForceThread::watch_health(std::int64_t begin_ns, std::int64_t end_ns) noexcept {
   if (report_.steps == 1) window_begin_ns_ = begin_ns;
   window_.step_time.add(end_ns - begin_ns);
-  if (clock_.last_delay() >= 0 && !clock_.behind()) window_.wakeup_delay.add(clock_.last_delay());
+  if (clock_.last_delay() >= 0) window_.wakeup_delay.add(clock_.last_delay());
   if (end_ns - window_begin_ns_ < kHealthPeriodNs) return;
   window_.steps = report_.steps;
   window_.resets = report_.resets;

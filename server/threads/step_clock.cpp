@@ -18,7 +18,7 @@ bool RealTimeClock::wait(std::uint64_t step) noexcept {
   const std::int64_t deadline = schedule_.next(monotonic_ns());
   sleep_until(deadline);
   last_delay_ = monotonic_ns() - deadline;
-  if (!schedule_.behind()) wakeup_delay_.add(last_delay_);
+  wakeup_delay_.add(last_delay_);
   return !stopped();
 }
 

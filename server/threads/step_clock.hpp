@@ -44,7 +44,7 @@ class RealTimeClock final : public StepClock {
  public:
   explicit RealTimeClock(double dt);
   bool wait(std::uint64_t step) noexcept override;
-  /// How late the thread woke [ns]; after the run.
+  /// How late the thread was for each step, those made up for as well [ns]; after the run.
   const Histogram& wakeup_delay() const noexcept { return wakeup_delay_; }
   std::int64_t last_delay() const noexcept override { return last_delay_; }
   std::uint64_t missed() const noexcept override { return schedule_.missed(); }

@@ -4,10 +4,10 @@
   bench/live.py [--bin build/release/bin] [--out out/bench/live] [--seconds 10] [--runs 1]
                 [--dt 2 1 0.5] [--styluses 1 4] [--mode predict hold] [--busy 0 2] [--stop 0]
 
-The paper's cube with all modes and the demonstration's script; more styluses play it on other faces. One row a run:
-step and prediction of the server, round trip, missed deadlines, forces delayed and lost, how often the safety filter
-dropped the force, peak force at the hand (bridge) and on the object (trace), impulse there. With several runs a row of
-medians follows. Times in us, forces in N, impulses in N s.
+The paper's cube with all modes and the demonstration's script, again and again; more styluses play it on other faces.
+One row a run: step and prediction of the server, round trip, missed deadlines, forces delayed and lost, how often the
+safety filter dropped the force, peak force at the hand (bridge) and on the object (trace), impulse there. With several
+runs a row of medians follows. Times in us, forces in N, impulses in N s.
 """
 import argparse
 import base64
@@ -30,6 +30,8 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 # Workspace rotations of the styluses: the script presses from +y; from -x, +x and +z.
 FACES = ["[1, 0, 0, 0]", "[0.7071067811865476, 0, 0, 0.7071067811865476]",
          "[0.7071067811865476, 0, 0, -0.7071067811865476]", "[0.7071067811865476, 0.7071067811865476, 0, 0]"]
+
+RESET = 4  # the button that puts the object back
 
 
 class Viewer(threading.Thread):
@@ -78,14 +80,31 @@ def make_model(args, dt):
     return model
 
 
+def write_script(args):
+    lines = (ROOT / "configs/scripts/demo.csv").read_text().splitlines()
+    rows = [line.split(",") for line in lines if line[:1].isdigit()]
+    period = float(rows[-1][0]) + 0.5
+    header = next(line for line in lines if line.startswith("time"))
+    path = args.out / "script.csv"
+    with path.open("w") as file:
+        print(header, file=file)
+        for again in range(max(1, round(args.seconds / period))):
+            for time_, *place, button in rows:
+                if again and float(time_) < 0.1:
+                    button = RESET
+                print(f"{float(time_) + again * period:g}", *place, button, sep=",", file=file)
+    return path.resolve()
+
+
 def write_configs(args, dt, styluses, mode):
     scene = (ROOT / "configs/scenes/paper-cube.toml").read_text()
     scene = scene.replace("styluses = 1", f"styluses = {styluses}")
     scene = scene.replace('"paper-cube.h5"', f'"{make_model(args, dt).resolve()}"')
     (args.out / "scene.toml").write_text(scene)
+    script = write_script(args)
     bridge = f'[bridge]\nmode = "{mode}"\n'
     for s in range(styluses):
-        bridge += (f'[[device]]\ntype = "virtual"\nscript = "{ROOT}/configs/scripts/demo.csv"\n'
+        bridge += (f'[[device]]\ntype = "virtual"\nscript = "{script}"\n'
                    "hand = { mass = 0.12, damping = 2.0, stiffness = 300.0 }\n"
                    f"workspace = {{ rotation = {FACES[s]} }}\n")
     (args.out / "bridge.toml").write_text(bridge)

@@ -40,6 +40,7 @@ struct ServoLink {
     std::atomic<bool> armed{false};                  ///< servo writes; and the next
     std::atomic<double> success_rate{0.0};           ///< LinkGate's
     std::atomic<double> gain{1.0};                   ///< of the OscillationDetector
+    std::atomic<double> energy_share{1.0};           ///< SafetyFilter's
   };
   explicit ServoLink(std::size_t count) : styluses(count) {}
 

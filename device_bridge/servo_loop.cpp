@@ -56,11 +56,8 @@ void ServoLoop::end_steps(std::int64_t now_ns) noexcept {
   steps_ended_ = contact_ && contact_->tick(now_ns, pose_.tip);
 }
 
-// Along the force that was solved: what the filter adds beside it is between hand and device.
-void ServoLoop::report_shown(const Vector3& solved) noexcept {
-  if (!contact_) return;
-  const double squared = solved.squaredNorm();
-  contact_->shown(squared > 0.0 ? std::clamp(shown_.dot(solved) / squared, 0.0, 1.0) : 1.0);
+void ServoLoop::report_shown() noexcept {
+  if (contact_) contact_->shown(mapping_.workspace.force_to_world(shown_));
 }
 
 // Force and normal in W.
@@ -103,13 +100,12 @@ void ServoLoop::update_device_state() noexcept {
 void ServoLoop::apply(std::int64_t now_ns, const ServoInput& input) noexcept {
   if (!reading_) {
     rest();
-    if (contact_) contact_->shown(0.0);
+    if (contact_) contact_->shown(Vector3::Zero());
     return;
   }
   update_device_state();
   ForceDemand wanted = demand(now_ns, input);
-  const Vector3 solved = mapping_.workspace.to_device(wanted.force);
-  wanted.force = clutch_.gain(now_ns) * solved;
+  wanted.force = clutch_.gain(now_ns) * mapping_.workspace.to_device(wanted.force);
   wanted.energy *= mapping_.workspace.force_scale / mapping_.workspace.scale;
   wanted.normal = mapping_.workspace.direction_to_device(wanted.normal);
   const Vector3 force = filter_.step(
@@ -123,7 +119,7 @@ void ServoLoop::apply(std::int64_t now_ns, const ServoInput& input) noexcept {
   applied_ns_ = now_ns;
   peak_force_ = std::max(peak_force_, force.norm());
   show(force);
-  report_shown(solved);
+  report_shown();
 }
 
 FilterCounts ServoLoop::counts() const noexcept {

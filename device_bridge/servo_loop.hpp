@@ -87,7 +87,7 @@ class ServoLoop {
   const DeviceState& device_state() const noexcept { return device_state_; }
 
  private:
-  void report_shown(const Vector3& solved) noexcept;
+  void report_shown() noexcept;
   ForceDemand demand(std::int64_t now_ns, const ServoInput& input) noexcept;
   void update_device_state() noexcept;
   void show(const Vector3& force) noexcept {

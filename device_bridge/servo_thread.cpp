@@ -170,6 +170,7 @@ void ServoThread::render_tick(std::int64_t now_ns) noexcept {
     link_.styluses[i].armed = filter.state() != FilterState::kDisarmed;
     link_.styluses[i].success_rate = filter.success_rate();
     link_.styluses[i].gain = filter.gain();
+    link_.styluses[i].energy_share = filter.energy_share();
   }
   link_.samples_ready.signal();
   if (lost) return end(ServoEnd::kDeviceLost, now_ns);

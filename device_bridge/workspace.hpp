@@ -75,6 +75,8 @@ struct Workspace {
   StylusPose to_world(const StylusPose& pose_D) const noexcept;
   /// A force in W as the device shows it [N], D.
   Vector3 to_device(const Vector3& force_W) const noexcept;
+  /// The force in W that the device shows as this one [N], D.
+  Vector3 force_to_world(const Vector3& force_D) const noexcept;
   /// A direction in W, in D.
   Vector3 direction_to_device(const Vector3& direction_W) const noexcept {
     return rotation.conjugate() * direction_W;

@@ -59,11 +59,11 @@ bool BridgeContact::tick(std::int64_t now_ns, const Vector3& tip) noexcept {
   return count > 0;
 }
 
-void BridgeContact::shown(double share) noexcept {
+void BridgeContact::shown(const Vector3& force) noexcept {
   const int count = std::min(std::exchange(ended_, 0), applied_.count);
   for (int i = 0; i < count; ++i) {
     const std::uint64_t step = applied_.step - static_cast<std::uint64_t>(i);
-    predictor_.scale(step, share);
+    predictor_.show(step, -force);
     applied_.past[static_cast<std::size_t>(i)].force = predictor_.applied(step);
   }
   history_.take(applied_);

@@ -36,9 +36,10 @@ class BridgeContact {
   /// Ends the steps that are due, with the tip where it is now [m], W, finite. True: there is news
   /// in applied(), once shown() was told.
   bool tick(std::int64_t now_ns, const Vector3& tip) noexcept;
-  /// After tick(): the device shows this share of wanted().force, 0 to 1, and no more acts on the
-  /// object in the steps that ended.
-  void shown(double share) noexcept;
+  /// After tick(): the device shows this in place of wanted().force, and in the steps that ended
+  /// the object gets what of it a contact can exert.
+  /// @param force on the stylus [N], W
+  void shown(const Vector3& force) noexcept;
 
   const ForceCommand& wanted() const noexcept { return wanted_; }
   /// Of the last steps.

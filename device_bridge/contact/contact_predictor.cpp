@@ -1,6 +1,7 @@
 #include "device_bridge/contact/contact_predictor.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "common/contact/applied_forces.hpp"
@@ -8,6 +9,17 @@
 
 namespace irdm {
 namespace {
+
+// What a contact that only pushes can exert of a force on the object.
+Vector3 within_cone(const Vector3& force, const Vector3& outward, double friction) noexcept {
+  const double push = -force.dot(outward);
+  if (push <= 0.0) return Vector3::Zero();
+  if (std::isinf(friction)) return force;
+  const Vector3 along = force + push * outward;
+  const double most = friction * push;
+  const double length = along.norm();
+  return length > most ? Vector3(most / length * along - push * outward) : force;
+}
 
 Vector3 sideways(const Vector3& v, const Vector3& normal) noexcept {
   return v - v.dot(normal) * normal;
@@ -174,7 +186,7 @@ ContactPredictor::Answer ContactPredictor::solve(std::uint64_t k, const Vector3&
   const Vector3 moved = free_displacement + model_.response[0] * force;
   const Vector3 shift = displacement_.arm_shift(k, free_displacement, moved);
   displacement_.remember(k, moved);
-  past(k) = {k, answer.force, force, arm + shift, found.slip};
+  past(k) = {k, answer.force, force, arm + shift, found.slip, Q, answer.state};
   return answer;
 }
 
@@ -186,10 +198,21 @@ void ContactPredictor::hold(std::uint64_t k) noexcept {
   last_step_ = k;
 }
 
-void ContactPredictor::scale(std::uint64_t step, double share) noexcept {
-  if (past(step).step != step) return;
-  past(step).force *= share;
-  past(step).force_B *= share;
+void ContactPredictor::show(std::uint64_t step, const Vector3& force) noexcept {
+  Past& shown = past(step);
+  if (shown.step != step) return;
+  const Vector3 force_B = shown.halfway.conjugate() * bounded_force(force);
+  switch (shown.contact) {
+    case ContactState::kFree:
+      return;
+    case ContactState::kHeld:
+      shown.force_B = force_B;
+      break;
+    case ContactState::kTouching:
+      shown.force_B = within_cone(force_B, model_.normal, model_.friction.static_);
+      break;
+  }
+  shown.force = shown.halfway * shown.force_B;
 }
 
 Vector3 ContactPredictor::arm(std::uint64_t step) const noexcept {

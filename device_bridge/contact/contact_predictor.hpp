@@ -50,9 +50,11 @@ class ContactPredictor {
   /// The way of the tip in it is left to the next solve().
   void hold(std::uint64_t k) noexcept;
 
-  /// Of the force that was answered for the last step, or one just before it, the object gets no
-  /// more than this share. Before the next solve().
-  void scale(std::uint64_t step, double share) noexcept;
+  /// What the device shows in place of the force that was answered for the last step, or one just
+  /// before it. The object gets what of that a contact can exert: a touching one pushes within the
+  /// friction cone, an open one does nothing. Before the next solve().
+  /// @param force on the object [N], W
+  void show(std::uint64_t step, const Vector3& force) noexcept;
 
   /// Forgets everything.
   void reset() noexcept { *this = ContactPredictor{}; }
@@ -61,10 +63,12 @@ class ContactPredictor {
   /// What was done in one step.
   struct Past {
     std::uint64_t step = ~std::uint64_t{0};
-    Vector3 force = Vector3::Zero();    ///< on the object [N], W
-    Vector3 force_B = Vector3::Zero();  ///< as the newest model's motion has it
-    Vector3 arm = Vector3::Zero();      ///< [m], B
-    Vector3 slip = Vector3::Zero();     ///< [m], B
+    Vector3 force = Vector3::Zero();              ///< on the object [N], W
+    Vector3 force_B = Vector3::Zero();            ///< as the newest model's motion has it
+    Vector3 arm = Vector3::Zero();                ///< [m], B
+    Vector3 slip = Vector3::Zero();               ///< [m], B
+    Quaternion halfway = Quaternion::Identity();  ///< B to W, half-way through the step
+    ContactState contact = ContactState::kFree;
   };
   static constexpr std::size_t kKept = 64;
 

@@ -184,6 +184,7 @@ void ServerSession::welcomed(const wire::Welcome& welcome) {
   for (ServoLink::Stylus& stylus : shared_.link.styluses) {
     intakes_.emplace_back(welcome.lockstep);
     warned_of_oscillation_.push_back(false);
+    warned_of_energy_.push_back(false);
     stylus.sample.receive();  // what was taken before the session is no part of it
     stylus.applied.receive();
   }
@@ -308,14 +309,20 @@ void ServerSession::tell_of_arming(std::int64_t now_ns) {
 // Nor should one who feels less than there is be left to guess. Once a session.
 void ServerSession::warn_force_reduced() {
   constexpr double kMuchLess = 0.75;
+  const auto warn = [&](std::size_t i, double share, std::vector<bool>& warned, const char* why,
+                        const char* hint) {
+    if (share > kMuchLess || warned[i]) return;
+    warned[i] = true;
+    spdlog::warn("stylus {}: {}, force scaled to {:.0f} %{}", i, why, 100.0 * share, hint);
+  };
   for (std::size_t i = 0; i < shared_.link.styluses.size(); ++i) {
-    const double gain = shared_.link.styluses[i].gain;
-    if (gain > kMuchLess || warned_of_oscillation_[i]) continue;
-    warned_of_oscillation_[i] = true;
-    spdlog::warn(
-        "stylus {}: oscillation detected, force scaled to {:.0f} %, objects feel softer; use "
-        "bridge.mode = \"predict\", a faster link or a smaller coupling_stiffness",
-        i, 100.0 * gain);
+    const ServoLink::Stylus& stylus = shared_.link.styluses[i];
+    warn(i, stylus.gain, warned_of_oscillation_, "oscillation detected",
+         ", objects feel softer; use bridge.mode = \"predict\", a faster link or a smaller "
+         "coupling_stiffness");
+    warn(i, stylus.energy_share, warned_of_energy_,
+         "its contact gave more energy than hands put in",
+         "; it comes back after the contact; use a faster link (irdm-bridge check-link)");
   }
 }
 

@@ -125,6 +125,7 @@ class ServerSession {
   std::int64_t next_report_ns_ = 0;
   std::vector<ForceReceiver> intakes_;       ///< one a stylus, from Welcome on
   std::vector<bool> warned_of_oscillation_;  ///< the same
+  std::vector<bool> warned_of_energy_;       ///< the same
 };
 
 }  // namespace irdm

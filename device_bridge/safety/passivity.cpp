@@ -43,9 +43,13 @@ void Passivity::observe(const Vector3& displacement, const Vector3& force) noexc
   energy_ = std::clamp(energy_ - work, limits_.least, limits_.most);
 }
 
+void Passivity::forgive(double elapsed) noexcept {
+  if (energy_ < 0.0) energy_ = std::min(0.0, energy_ + limits_.forgiven * elapsed);
+}
+
 double Passivity::damping(const Vector3& force, const Vector3& velocity,
                           double tick) const noexcept {
-  const double lacking = force.dot(velocity) * tick - energy_;
+  const double lacking = force.dot(velocity) * tick - energy();
   const double per_damping = velocity.squaredNorm() * tick;
   if (!(lacking > 0.0)) return 0.0;
   if (!(lacking < limits_.damping * per_damping)) return limits_.damping;
@@ -57,15 +61,15 @@ void Passivity::grant(double energy) noexcept {
 }
 
 void Passivity::bound(double energy) noexcept {
-  if (energy < energy_) energy_ = std::max(limits_.least, energy);
+  bound_ = std::isnan(energy) ? limits_.most : std::clamp(energy, limits_.least, limits_.most);
 }
 
 Vector3 Passivity::withheld(const Vector3& force) const noexcept {
   const Vector3 way = 2.0 * last_ - before_;
-  const double left = std::max(0.0, energy_ + limits_.credit);
+  const double left = std::max(0.0, energy() + limits_.credit);
   const double excess = force.dot(way) - 0.5 * left;
   const double length = way.stableNorm();
-  return excess > 0.0 ? Vector3(force - excess / length * (way / length)) : force;
+  return share() * (excess > 0.0 ? Vector3(force - excess / length * (way / length)) : force);
 }
 
 }  // namespace irdm

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -42,10 +43,12 @@ class WorldWork {
 };
 
 struct PassivityLimits {
-  double damping = 6.0;  ///< at most [N s/m]
-  double most = 0.2;     ///< energy that is remembered as taken in, at most [J]
-  double least = -0.05;  ///< the same, given out in excess [J]
-  double credit = 1e-3;  ///< energy that a force of now may give in excess [J]
+  double damping = 6.0;    ///< at most [N s/m]
+  double most = 0.2;       ///< energy that is remembered as taken in, at most [J]
+  double least = -0.05;    ///< the same, given out in excess [J]
+  double credit = 1e-3;    ///< energy that a force of now may give in excess [J]
+  double fade = 5e-3;      ///< given in excess, at which a force of now has faded to nothing [J]
+  double forgiven = 0.02;  ///< of the excess, while there is no contact [W]
 };
 
 /// Time-domain passivity at the device's port. The observer adds up what the device takes from the
@@ -54,13 +57,16 @@ struct PassivityLimits {
 /// that makes up for it, within its bound. What an object took in and lost to its own damping is
 /// forgotten above `most`, else the observer would be blind after a while. Bounded damping does not
 /// hold a force that the device shows in part only, or later than the object gets it; what such a
-/// force would give beyond a little is withheld. Pure, real-time safe.
+/// force would give beyond a little is withheld, and when more was given, all of it fades, until
+/// the contact ends. Pure, real-time safe.
 class Passivity {
  public:
   explicit Passivity(const PassivityLimits& limits) : limits_(limits) {}
 
   /// The hand moved by this while `force` was shown [m, N], D.
   void observe(const Vector3& displacement, const Vector3& force) noexcept;
+  /// There was no contact in this time [s]: what was given in excess is forgiven.
+  void forgive(double elapsed) noexcept;
 
   /// Damping for the coming tick [N s/m], 0 to the limit.
   /// @param force that is about to be shown [N], D
@@ -70,20 +76,24 @@ class Passivity {
 
   /// The world gave this of its own, by another hand or a weight, and the device may [J], >= 0.
   void grant(double energy) noexcept;
-  /// By the account of both ends the device may give no more than this [J]. What is not a number
-  /// bounds nothing.
+  /// By the account of both ends the device may give no more than this now [J]. What is not a
+  /// number bounds nothing.
   void bound(double energy) noexcept;
 
   /// What may be shown of a force that answers the tip as it is now [N], D: no more along the way
   /// of the coming tick than gives half of what is left above -credit. That way goes on from the
-  /// last two by its velocity and its acceleration.
+  /// last two by its velocity and its acceleration. Below zero all of the force fades.
   Vector3 withheld(const Vector3& force) const noexcept;
+  /// What is left of the force by that fade, 0 to 1.
+  double share() const noexcept { return std::clamp(1.0 + energy() / limits_.fade, 0.0, 1.0); }
 
-  double energy() const noexcept { return energy_; }  ///< [J], least to most
+  /// The smaller of both accounts [J], least to most.
+  double energy() const noexcept { return std::min(energy_, bound_); }
 
  private:
   PassivityLimits limits_;
   double energy_ = 0.0;
+  double bound_ = limits_.most;       ///< by the account of both ends [J]
   Vector3 last_ = Vector3::Zero();    ///< displacement in the last tick [m]
   Vector3 before_ = Vector3::Zero();  ///< and in the one before [m]
 };

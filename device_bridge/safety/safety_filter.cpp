@@ -87,6 +87,9 @@ ReadingVerdict SafetyFilter::check(std::int64_t now_ns, const DeviceReading& rea
 // What the hand did against the force that was really sent.
 void SafetyFilter::observe(std::int64_t now_ns) noexcept {
   passivity_.observe(reading_.displacement(), sent_);
+  if (held_.solved_here && held_.contact == ContactState::kFree) {
+    passivity_.forgive(reading_.elapsed());
+  }
   oscillation_.observe(-sent_.dot(reading_.displacement()), reading_.elapsed(), age_,
                        !sent_.isZero(0.0));
   world_.observe(now_ns, reading_.tip());
@@ -118,7 +121,7 @@ void SafetyFilter::grant(const ForceDemand& demand) noexcept {
   const std::int64_t time_ns = demand.solved_here ? demand.solved_ns : demand.sample_time_ns;
   const double energy = world_.answer(time_ns, demand.force);
   passivity_.grant(energy);
-  if (demand.solved_here) passivity_.bound(demand.energy);
+  passivity_.bound(demand.solved_here ? demand.energy : limits_.passivity.most);
   oscillation_.grant(energy);
 }
 

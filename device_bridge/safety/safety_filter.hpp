@@ -90,7 +90,9 @@ class SafetyFilter {
   const FilterCounts& counts() const noexcept { return counts_; }
   double success_rate() const noexcept { return gate_.success_rate(); }
   double port_energy() const noexcept { return passivity_.energy(); }  ///< see Passivity [J]
-  double gain() const noexcept { return oscillation_.gain(); }         ///< see OscillationDetector
+  /// Of a force that was solved here, see Passivity::share().
+  double energy_share() const noexcept { return held_.solved_here ? passivity_.share() : 1.0; }
+  double gain() const noexcept { return oscillation_.gain(); }  ///< see OscillationDetector
   double warmth() const noexcept { return thermal_.warmth(); }
 
  private:

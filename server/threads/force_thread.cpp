@@ -124,6 +124,10 @@ void ForceThread::write_down(std::int64_t begin_ns, std::int64_t end_ns) noexcep
 void ForceThread::watch_health(std::int64_t begin_ns, std::int64_t end_ns) noexcept {
   if (report_.steps == 1) window_begin_ns_ = begin_ns;
   window_.step_time.add(end_ns - begin_ns);
+  // In lockstep nobody waits for a deadline, and the models do not depend on the machine.
+  const double dt_ns = kNanosecondsPerSecond * simulation_.dt();
+  const bool overlong = static_cast<double>(end_ns - begin_ns) > dt_ns;
+  overlong_ += overlong && !clock_.lockstep() ? 1 : 0;
   if (clock_.last_delay() >= 0) window_.wakeup_delay.add(clock_.last_delay());
   if (end_ns - window_begin_ns_ < kHealthPeriodNs) return;
   window_.steps = report_.steps;
@@ -132,7 +136,7 @@ void ForceThread::watch_health(std::int64_t begin_ns, std::int64_t end_ns) noexc
   window_.missed = clock_.missed();
   window_.cache_misses = simulation_.cache_misses();
   throttle_.update(report_.steps - std::exchange(steps_before_, report_.steps),
-                   window_.missed - std::exchange(missed_before_, window_.missed));
+                   std::exchange(overlong_, 0));
   window_.prediction_period = throttle_.period();
   health_.put(window_);  // some 10 kB each, once a second
   status_.put(window_);

@@ -103,8 +103,8 @@ class ForceThread {
   std::optional<ViewerStylus> viewer_stylus_;
   std::vector<BridgedStylus> bridged_;  ///< of the network's styluses
   PredictionThrottle throttle_;
-  std::uint64_t missed_before_ = 0;  ///< deadlines, until the last update of throttle_
-  std::uint64_t steps_before_ = 0;   ///< steps, until then
+  std::uint64_t overlong_ = 0;      ///< real-time steps longer than dt, since the last update
+  std::uint64_t steps_before_ = 0;  ///< steps, until then
   PredictionTurns turns_;
   std::vector<StylusCommand> commands_;  ///< of the network's styluses, and perhaps the viewers'
   StepRecord record_;

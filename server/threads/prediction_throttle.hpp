@@ -4,22 +4,23 @@
 
 namespace irdm {
 
-/// How often contact models are made: each step, or each second, fourth or eighth while steps miss
-/// their deadlines. A second with more than kTooMany of them halves it, kGood seconds in a row with
-/// fewer than kFew double it. Pure, real-time safe.
+/// How often contact models are made: each step, or each second, fourth or eighth while steps take
+/// longer than dt. A second with more than kTooMany of them halves it, kGood seconds in a row with
+/// fewer than kFew double it. Deadlines that were missed since nobody woke the thread do not count:
+/// fewer models would not help. Pure, real-time safe.
 class PredictionThrottle {
  public:
-  static constexpr double kTooMany = 0.01;  ///< of the steps that should have been
+  static constexpr double kTooMany = 0.01;  ///< of the steps
   static constexpr double kFew = 0.001;     ///< the same
   static constexpr int kGood = 5;           ///< [s]
   static constexpr int kRarest = 8;         ///< [steps]
 
-  /// After each second. @param steps made in it  @param missed deadlines in it
-  void update(std::uint64_t steps, std::uint64_t missed) noexcept {
-    const auto due = static_cast<double>(steps + missed);
-    const auto late = static_cast<double>(missed);
-    good_ = late < kFew * due ? good_ + 1 : 0;
-    if (late > kTooMany * due && period_ < kRarest) period_ *= 2;
+  /// After each second. @param steps made in it  @param overlong of them that took longer than dt
+  void update(std::uint64_t steps, std::uint64_t overlong) noexcept {
+    const auto all = static_cast<double>(steps);
+    const auto late = static_cast<double>(overlong);
+    good_ = late < kFew * all ? good_ + 1 : 0;
+    if (late > kTooMany * all && period_ < kRarest) period_ *= 2;
     if (good_ < kGood) return;
     good_ = 0;
     if (period_ > 1) period_ /= 2;

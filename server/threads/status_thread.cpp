@@ -80,7 +80,7 @@ void StatusThread::log_prediction_period() {
   if (period == 1) {
     spdlog::info("a contact model in each step again");
   } else {
-    spdlog::warn("steps miss their deadlines: a contact model only every {} steps", period);
+    spdlog::warn("steps take longer than dt: a contact model only every {} steps", period);
   }
 }
 

@@ -1,17 +1,21 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 namespace irdm {
 
 /// The energy that hands gave one object and have not had back, and that it may give back: their
 /// work at the tips less what the energy of its rigid motion grew by (docs/theory.md). A passive
 /// object keeps it at zero or above; below it, forces that bridges decided on have put in more than
-/// the hands did. Beyond kMost it is forgotten, as if lost to damping. Pure.
+/// the hands did. Beyond kMost it is forgotten, as if lost to damping, and below zero it is
+/// forgiven, slowly while a hand touches. Pure.
 class EnergyAccount {
  public:
-  static constexpr double kMost = 0.2;     ///< that is remembered [J]
-  static constexpr double kLeast = -0.05;  ///< the same, below zero
+  static constexpr double kMost = 1.0;               ///< that is remembered [J]
+  static constexpr double kLeast = -0.05;            ///< the same, below zero
+  static constexpr double kForgiven = 0.02;          ///< below zero, while no hand touches [W] ...
+  static constexpr double kForgivenInTouch = 0.002;  ///< ... and while one does
   /// By this much it may be below zero [J]: what rounding, steps and late news make of a passive
   /// object's. As much again below that, no bridge's force puts in any more.
   static constexpr double kAllowance = 0.005;
@@ -27,6 +31,30 @@ class EnergyAccount {
   void settle(double work, double energy) noexcept {
     balance_ = std::clamp(balance_ + work - (energy - energy_), kLeast, kMost);
     energy_ = energy;
+    entered_ = 0.0;
+  }
+
+  /// Before a step, for a force of an earlier one, which is entered late: its share s that acts, so
+  /// that s along + s^2 own, which it adds to the energy, is not above what the balance leaves.
+  /// @param along by the motion that there is [J]
+  /// @param own by the motion that it makes itself [J], >= 0
+  /// @param work of its hand that is not settled yet [J]
+  double enter(double along, double own, double work) noexcept {
+    const double left = std::max(0.0, balance_ + kAllowance + std::max(0.0, work) - entered_);
+    double share = along > 0.0 ? driving_share() : 1.0;
+    if (share * (along + share * own) > left) {
+      const double root = std::sqrt(along * along + 4.0 * own * left);
+      share =
+          std::min(share, along > 0.0 ? 2.0 * left / (along + root) : (root - along) / (2.0 * own));
+    }
+    entered_ += share * (along + share * own);
+    return share;
+  }
+
+  /// After settle(). @param dt of the step [s]  @param touched by a hand in it
+  void forgive(double dt, bool touched) noexcept {
+    const double rate = touched ? kForgivenInTouch : kForgiven;
+    if (balance_ < 0.0) balance_ = std::min(0.0, balance_ + rate * dt);
   }
 
   double balance() const noexcept { return balance_; }  ///< [J]
@@ -39,6 +67,7 @@ class EnergyAccount {
  private:
   double balance_ = 0.0;
   double energy_ = 0.0;
+  double entered_ = 0.0;  ///< by late forces, since the last step [J]
 };
 
 }  // namespace irdm

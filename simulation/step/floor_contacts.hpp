@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "common/contact/persistent_contact.hpp"
@@ -32,6 +33,13 @@ class FloorContacts {
   /// After the solution: anchors slip, forces are kept for the next start.
   void update_contacts(const FreeMotion& motion, const ContactProblem& problem) noexcept;
   void reset() noexcept;
+
+  /// What is left of a force [N], W, that acted a while ago: against what pressed an object on it
+  /// the floor held.
+  Vector3 without_pressure(const Vector3& force) const noexcept {
+    return count_ > 0 ? Vector3(force - std::min(0.0, force.dot(floor_.normal)) * floor_.normal)
+                      : force;
+  }
 
   int count() const noexcept { return count_; }
   int node(int i) const noexcept { return nodes_[static_cast<std::size_t>(i)]; }

@@ -57,6 +57,7 @@ void SoftObject::step(std::span<const StylusCommand> commands, ObjectRecord& rec
   if (floor_) floor_->update_contacts(body_.motion(), problem_);
   end_step(record);
   account_.settle(contacts_.work(), body_.energy());
+  account_.forgive(model().dt, contacts_.count() > 0);
   for (ContactRecord& contact : record.contact) {
     if (contact.state != ContactState::kFree) {
       contact.proxy = state().position + state().orientation * contact.proxy;
@@ -184,15 +185,19 @@ void SoftObject::collect_others(std::size_t s, ContactModel& model) noexcept {
 }
 
 // The balance, and what the object may lose to hands within the horizon, as it comes or falls: one
-// part for each stylus that touches it.
+// part for each stylus that touches it. The motion's fades with the driving share.
 double SoftObject::available_energy(const ContactModel& model) const noexcept {
   const RigidBody& body = body_.rigid();
-  if (!body.moves()) return account_.balance() + EnergyAccount::kAllowance;
-  const double kinetic = rigid_energy(body, FreeForces{}, model.motion);
-  const double power = body.mass() * model.free_forces.gravity.dot(model.motion.velocity);
-  const double falling = std::max(0.0, power) * model.horizon * model.dt;
-  return account_.balance() + EnergyAccount::kAllowance +
-         (kinetic + falling) / std::max(1, contacts_.count());
+  double motion = 0.0;
+  if (body.moves()) {
+    const double power = body.mass() * model.free_forces.gravity.dot(model.motion.velocity);
+    const double falling = std::max(0.0, power) * model.horizon * model.dt;
+    motion = rigid_energy(body, FreeForces{}, model.motion) + falling;
+  }
+  const double balance = account_.balance();
+  const double left =
+      std::max(balance, 0.0) + EnergyAccount::kAllowance + account_.driving_share() * motion;
+  return left / std::max(1, contacts_.count()) + std::min(balance, 0.0);
 }
 
 // What takes long and rests on the patches alone is made ready first; the path comes last. A
@@ -253,10 +258,15 @@ bool SoftObject::insert_delayed_force(std::size_t s, const AppliedForce& applied
   const FreeMotion motion = body_.next_motion();
   const Vector3 tip = motion.to_body(applied.tip);
   if (!contacts_.locate_delayed(s, tip, applied.arm, entry)) return false;
-  entry.force = body_.past().halfway(entry.age).conjugate() * applied.force;
-  if (account_.driving_share() < 1.0 && applied.force.dot(motion.way(entry.arm)) > 0.0) {
-    entry.force *= account_.driving_share();
-    ++limited_late_;
+  const Vector3 force = floor_ ? floor_->without_pressure(applied.force) : applied.force;
+  entry.force = body_.past().halfway(entry.age).conjugate() * force;
+  if (body_.rigid().moves()) {
+    const Matrix3 mobility = body_.rigid().mobility().between(entry.arm, entry.arm);
+    const double share =
+        account_.enter(force.dot(motion.way(entry.arm)), entry.force.dot(mobility * entry.force),
+                       contacts_.unsettled_work(s, applied.tip));
+    entry.force *= share;
+    limited_late_ += share < 1.0 ? 1 : 0;
   }
   return insert_delayed_force(entry);
 }

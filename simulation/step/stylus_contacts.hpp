@@ -58,6 +58,11 @@ class StylusContacts {
   /// Of all tips against the object in the step that has ended [J]: for a bridge's force, which the
   /// device shows after its step, that of the step before.
   double work() const noexcept { return work_; }
+  /// Of what the device of a bridge has shown since, with its tip there by now [J], W.
+  double unsettled_work(std::size_t s, const Vector3& tip) const noexcept {
+    const Stylus& stylus = styluses_[s];
+    return stylus.position ? stylus.shown.dot(tip - *stylus.position) : 0.0;
+  }
   /// Forces of bridges that acted in part, or not at all, by their driving share, so far.
   std::uint64_t limited() const noexcept { return limited_; }
 

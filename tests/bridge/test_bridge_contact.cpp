@@ -37,6 +37,7 @@ class Bench {
         // The server has heard of the touch by then.
         ContactModel model = wall(server_step++);
         model.energy = energy;
+        model.friction = friction;
         if (yields_later) model.response[1] = 0.5 * model.response[0];
         // What it does not know of is taken to be at the bridge alone.
         if (yields_later) model.missing = ~std::uint64_t{0} >> (64 - kMaxHorizon);
@@ -46,7 +47,7 @@ class Bench {
         contact.receive(model, now_ns);
       }
       told += contact.tick(now_ns, Vector3(0, height, 0)) ? 1 : 0;
-      contact.shown(share);
+      contact.shown(share * contact.wanted().force);
     }
     return told;
   }
@@ -56,6 +57,7 @@ class Bench {
   double energy = 0.0;
   double share = 1.0;  ///< of the force that the device shows
   bool yields_later = false;
+  Friction friction;
 };
 
 }  // namespace
@@ -230,13 +232,31 @@ TEST_CASE("contact at the bridge: the object gets what the device shows") {
   CHECK((bench.contact.wanted().force - Vector3(0, 1, 0)).norm() < 1e-12);
 }
 
+TEST_CASE("contact at the bridge: the object gets of what is shown what a touch can exert") {
+  Bench bench;
+  bench.friction = {0.5, 0.4};
+  bench.ticks(100, 0.001);
+  bench.ticks(20, -0.001);
+  const auto told = [&](const Vector3& shown) {
+    while (!bench.contact.tick(bench.now_ns, Vector3(0, -0.001, 0))) bench.now_ns += kMs;
+    bench.contact.shown(shown);
+    return bench.contact.applied().past[0].force;
+  };
+  CHECK((told(Vector3(0, 0.7, 0)) - Vector3(0, -0.7, 0)).norm() < 1e-12);
+  CHECK(told(Vector3(0, -0.7, 0)).isZero(0.0));  // it does not pull
+  const Vector3 slant = told(Vector3(2.0, 1.0, 0));
+  CHECK(slant.y() == Approx(-1.0));
+  CHECK(slant.x() == Approx(-bench.friction.static_));
+  CHECK(slant.z() == 0.0);
+}
+
 TEST_CASE("contact at the bridge: a touch in an overrun begins after it, and none acts in it") {
   Bench bench;
   bench.ticks(100, 0.001);
   const std::uint64_t before = bench.contact.applied().step;
   bench.now_ns += 10 * kMs;
   REQUIRE(bench.contact.tick(bench.now_ns, Vector3(0, -0.03, 0)));
-  bench.contact.shown(1.0);
+  bench.contact.shown(bench.contact.wanted().force);
   const AppliedForces& applied = bench.contact.applied();
   REQUIRE(applied.step >= before + 5);
   CHECK(bench.contact.wanted().contact == ContactState::kTouching);

@@ -92,23 +92,29 @@ TEST_CASE("client says hello, sends samples of its slot and takes their forces")
   CHECK(server.input().force.force == Vector3(1, 0, 0));
 }
 
-TEST_CASE("client says once a session that a force is scaled down after an oscillation") {
+TEST_CASE("client says once a session that a force is scaled down, and why") {
   const auto kept = std::make_shared<spdlog::sinks::ringbuffer_sink_mt>(100);
   const std::shared_ptr<spdlog::logger> before = spdlog::default_logger();
   spdlog::set_default_logger(std::make_shared<spdlog::logger>("", kept));
-  const auto told = [&] {
+  const auto told = [&](const std::string& words) {
     const std::vector<std::string> lines = kept->last_formatted();
-    return std::count_if(lines.begin(), lines.end(), [](const std::string& line) {
-      return line.find("stylus 0: oscillation detected, force scaled to 30 %") != std::string::npos;
+    return std::count_if(lines.begin(), lines.end(), [&](const std::string& line) {
+      return line.find("stylus 0: " + words) != std::string::npos;
     });
   };
+  const std::string oscillates = "oscillation detected, force scaled to 30 %";
+  const std::string gives = "its contact gave more energy than hands put in, force scaled to 20 %";
   ScriptedServer server;
   server.link.styluses[0].gain = 0.8;
   RawPeer peer = server.welcome();
   server.link.styluses[0].gain = 0.3;
-  CHECK(eventually([&] { return told() == 1; }));
+  CHECK(eventually([&] { return told(oscillates) == 1; }));
+  CHECK(told(gives) == 0);
+  server.link.styluses[0].energy_share = 0.2;
+  CHECK(eventually([&] { return told(gives) == 1; }));
   server.end();
-  CHECK(told() == 1);
+  CHECK(told(oscillates) == 1);
+  CHECK(told(gives) == 1);
   spdlog::set_default_logger(before);
 }
 

@@ -46,4 +46,29 @@ TEST_CASE("passivity observer: the account of both ends bounds what the device m
   CHECK(passivity.energy() == 0.01);
   passivity.bound(-1.0);
   CHECK(passivity.energy() == limits.least);
+  passivity.bound(0.2);
+  CHECK(passivity.energy() == Approx(0.05));
+}
+
+TEST_CASE("passivity observer: what was given in excess makes a force of now fade") {
+  const PassivityLimits limits;
+  Passivity passivity(limits);
+  CHECK((passivity.withheld(kPush) - kPush).norm() == 0.0);
+  passivity.bound(-0.5 * limits.fade);
+  CHECK((passivity.withheld(kPush) - 0.5 * kPush).norm() < 1e-12);
+  passivity.bound(-limits.fade);
+  CHECK(passivity.withheld(kPush).isZero(0.0));
+}
+
+TEST_CASE("passivity observer: an excess is forgiven without contact, and no more than that") {
+  const PassivityLimits limits;
+  Passivity passivity(limits);
+  take_in(passivity, -0.01);
+  passivity.forgive(0.25);
+  CHECK(passivity.energy() == Approx(-0.01 + 0.25 * limits.forgiven));
+  passivity.forgive(100.0);
+  CHECK(passivity.energy() == 0.0);
+  take_in(passivity, 0.01);
+  passivity.forgive(1.0);
+  CHECK(passivity.energy() == Approx(0.01));
 }

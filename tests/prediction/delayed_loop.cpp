@@ -126,17 +126,10 @@ class Loop {
       const bool news = stylus.contact.tick(to_ns(now), tip);
       want(s, now);
       if (setup_.filtered) filter(s, now);
-      stylus.contact.shown(share(stylus));
+      stylus.contact.shown(stylus.shown);
       if (news) message.applied = stylus.contact.applied();
     }
     stylus.up.send(now, message);
-  }
-
-  // As ServoLoop has it.
-  static double share(const Stylus& stylus) {
-    const Vector3& solved = stylus.contact.wanted().force;
-    const double squared = solved.squaredNorm();
-    return squared > 0.0 ? std::clamp(stylus.shown.dot(solved) / squared, 0.0, 1.0) : 1.0;
   }
 
   // Without a filter, what is too old is shown no more.

@@ -15,6 +15,17 @@ namespace {
 constexpr double kCubeHalf = 0.06;
 constexpr std::uint64_t kSession = 7;
 
+// A cube on the floor.
+SimulationConfig resting() {
+  SimulationConfig config;
+  config.objects.resize(1);
+  config.objects[0].model = test::fem_cube({.cells = 3, .youngs_modulus = 1e6});
+  config.floor = FloorConfig{.height = -kCubeHalf};
+  config.gravity = Vector3(0, -9.81, 0);
+  config.styluses = {{0.0, 2000.0, 0.0}};
+  return config;
+}
+
 SimulationConfig cubes(std::size_t count) {
   SimulationConfig config;
   config.objects.resize(count);
@@ -30,7 +41,8 @@ SimulationConfig cubes(std::size_t count) {
 /// A server, and what one bridge tells it.
 class Served {
  public:
-  explicit Served(std::size_t objects) : simulation(cubes(objects)), bridged(simulation, 0) {}
+  explicit Served(std::size_t objects) : Served(cubes(objects)) {}
+  explicit Served(const SimulationConfig& config) : simulation(config), bridged(simulation, 0) {}
 
   /// One step with the tip here; the bridge tells of this force, unless it is held back.
   void step(const Vector3& tip, const Vector3& force, bool told = true, bool reset = false) {
@@ -268,4 +280,21 @@ TEST_CASE("bridged stylus: the horizon covers the bridge's lead and an overrun, 
   horizon.follow(told(190, 100));
   CHECK(horizon.steps() == 50);
   CHECK(horizon.lead() == kMaxHorizon);
+}
+
+TEST_CASE("bridged stylus: late forces that press an object on the floor do not throw it") {
+  Served served(resting());
+  const Vector3 push(0, -3.0, 0);
+  for (int k = 0; k < 20; ++k) served.step(kAbove, Vector3::Zero());
+  for (int k = 0; k < 50; ++k) served.step(kAbove, push);
+  for (int k = 0; k < 8; ++k) served.step(kAbove, push, false);
+  const std::uint64_t now = served.simulation.next_step();
+  for (std::uint64_t age = 8; age > 0; --age) served.tell_now(now - age, kAbove, push);
+  double fastest = 0.0;
+  for (int k = 0; k < 50; ++k) {
+    served.step(kAbove, push);
+    fastest = std::max(fastest, served.moved(0).norm());
+  }
+  CHECK(served.bridged.late() == 8);
+  CHECK(fastest < 0.02);
 }

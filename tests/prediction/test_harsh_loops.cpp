@@ -27,9 +27,10 @@ void check_loops(std::uint64_t count) {
     most = std::max(most, run.energy_from_nowhere);
   }
   CHECK(static_cast<std::uint64_t>(2 * shown) > count);
-  // Not none yet: the floor is frozen in contact models, and so are all but one of the other hands.
+  // Not none: the floor is frozen in contact models, and so are all but one of the other hands; and
+  // a device whose bridge overruns by 20 ms goes on giving its hand what it shows.
   CHECK(static_cast<std::uint64_t>(10 * above) < count);
-  CHECK(most < 0.2);
+  CHECK(most < 0.06);
   std::cout << count << " harsh loops: above 20 mJ that no hand did " << above << ", at most "
             << most << " J\n";
 }

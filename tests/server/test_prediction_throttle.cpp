@@ -5,13 +5,16 @@
 using irdm::PredictionThrottle;
 
 TEST_CASE(
-    "prediction throttle: rarer while steps are late, each step again only after a good while") {
+    "prediction throttle: rarer while steps take too long, each step again only after a good "
+    "while") {
   PredictionThrottle throttle;
   CHECK(throttle.period() == 1);
   throttle.update(1000, 10);  // as many as may be
   CHECK(throttle.period() == 1);
+  throttle.update(500, 5);
+  CHECK(throttle.period() == 1);
   for (const int expected : {2, 4, 8, 8}) {
-    throttle.update(900, 100);
+    throttle.update(1000, 100);
     CHECK(throttle.period() == expected);
   }
   int due = 0;
@@ -27,7 +30,7 @@ TEST_CASE(
 
 TEST_CASE("prediction throttle: neither good nor bad changes nothing") {
   PredictionThrottle throttle;
-  throttle.update(900, 100);
+  throttle.update(1000, 100);
   for (int second = 0; second < 100; ++second) throttle.update(1000, 5);
   CHECK(throttle.period() == 2);
   for (int second = 0; second + 1 < PredictionThrottle::kGood; ++second) throttle.update(1000, 0);

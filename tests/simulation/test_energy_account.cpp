@@ -28,6 +28,45 @@ TEST_CASE("energy account: what hands gave is remembered, and no more than that 
   CHECK(account.balance() == EnergyAccount::kMost);
 }
 
+TEST_CASE("energy account: a late force adds no more than what is left") {
+  EnergyAccount account;
+  account.begin(0.0);
+  account.settle(0.015, 0.0);
+  const double left = 0.015 + EnergyAccount::kAllowance;
+  CHECK(account.enter(0.004, 0.002, 0.0) == 1.0);
+  // Of what the first one left: s 30 mJ + s^2 40 mJ = 14 mJ.
+  const double share = account.enter(0.03, 0.04, 0.0);
+  CHECK(share * 0.03 + share * share * 0.04 == Approx(left - 0.006));
+  CHECK(account.enter(0.01, 0.01, 0.0) == Approx(0.0).margin(1e-12));
+  CHECK(account.enter(0.01, 0.01, 0.03) == 1.0);  // its hand did that work meanwhile
+  account.settle(0.0, left);
+  CHECK(account.balance() == Approx(-EnergyAccount::kAllowance));
+  account.settle(0.0, left + EnergyAccount::kAllowance);
+  CHECK(account.enter(0.01, 0.01, 1.0) == Approx(0.0).margin(1e-12));
+  CHECK(account.enter(-0.02, 0.001, 0.0) == 1.0);  // what takes energy out may
+  // Which leaves 19 mJ less the 5 mJ that are lacking: s^2 1 J - s 20 mJ = 14 mJ.
+  const double other = account.enter(-0.02, 1.0, 0.0);
+  CHECK(other * other - 0.02 * other == Approx(0.014));
+  CHECK(account.enter(1e-300, 0.0, 0.0) == 0.0);
+}
+
+TEST_CASE("energy account: what is lacking is forgiven, slowly while a hand touches") {
+  EnergyAccount account;
+  account.begin(0.0);
+  account.settle(0.0, 0.01);
+  account.forgive(0.1, false);
+  double lacking = -0.01 + 0.1 * EnergyAccount::kForgiven;
+  CHECK(account.balance() == Approx(lacking));
+  account.forgive(0.1, true);
+  lacking += 0.1 * EnergyAccount::kForgivenInTouch;
+  CHECK(account.balance() == Approx(lacking));
+  account.forgive(100.0, false);
+  CHECK(account.balance() == 0.0);
+  account.settle(0.01, 0.01);
+  account.forgive(1.0, false);
+  CHECK(account.balance() == Approx(0.01));
+}
+
 TEST_CASE("rigid energy: constant in free flight, in gravity, and on a tether") {
   BodyProperties properties;
   properties.mass = 0.2;

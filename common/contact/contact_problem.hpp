@@ -53,6 +53,8 @@ struct ContactConstraint {
   Vector3 force = Vector3::Zero();
   ContactMode mode = ContactMode::kOpen;
   Vector3 slip = Vector3::Zero();  ///< sideways, from the point to where it was wanted [m]
+  /// Elastic displacement of its point by forces outside the problem, which the gap allows for [m].
+  Vector3 elsewhere = Vector3::Zero();
 };
 
 /// The rigid body's own answer within the step: displacement at arm a per force at arm b,
@@ -87,6 +89,8 @@ class ContactProblem {
   auto elastic(int a, int b) const noexcept { return elastic_.block<3, 3>(3 * a, 3 * b); }
   /// All rows of the elastic compliance that a force at contact b moves: (3 count, 3).
   auto elastic_column(int b) const noexcept { return elastic_.block(0, 3 * b, 3 * count_, 3); }
+  /// Sets all of it to zero.
+  void clear_elastic() noexcept { elastic_.topLeftCorner(3 * count_, 3 * count_).setZero(); }
   RigidMobility rigid;
 
   /// W_ab.

@@ -75,6 +75,7 @@ class RestSurface {
   /// faces round them, weighted with their angles), interpolated.
   Vector3 smooth_normal(const SurfacePoint& point) const noexcept;
   int node_count() const noexcept { return static_cast<int>(positions_.size()); }
+  int triangle_count() const noexcept { return static_cast<int>(planes_.size()); }
   /// Mean length of the triangles' edges [m].
   double mean_edge() const noexcept { return mean_edge_; }
   /// Mean square of the same [m^2].

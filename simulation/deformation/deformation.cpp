@@ -24,15 +24,14 @@ StylusContact contact_on(const ModelMesh& mesh, const ContactRecord& contact) {
 }
 
 Deformation::Deformation(const SimulationConfig& config, double tolerance) {
-  std::vector<double> radii;
-  for (const SimulationStylus& stylus : config.styluses) radii.push_back(stylus.radius);
   for (const SimulationObject& object : config.objects) {
     Follower follower{object, make_engine(object.model), nullptr, nullptr,
                       has_inertial_loading(*object.model, object.inertial_loading)};
     follow_gravity(*follower.engine, object, config.gravity);
     follower.tolerance = tolerance * object.model->mesh.nodes.rowwise().norm().maxCoeff();
     follower.surface = std::make_unique<RestSurface>(object.model->mesh);
-    follower.forces = std::make_unique<RecordedForces>(*follower.surface, radii);
+    follower.forces =
+        std::make_unique<RecordedForces>(config, objects_.size(), *follower.surface);
     objects_.push_back(std::move(follower));
   }
 }
@@ -43,7 +42,8 @@ void Deformation::advance(const StepRecord& record) {
     if (objects_[i].has_inertial_loading && loading != nullptr) {
       loading->set_angular_velocity(record.object[i].spin);
     }
-    objects_[i].engine->advance(objects_[i].forces->of(record.object[i]));
+    objects_[i].engine->advance(
+        objects_[i].forces->of(record.object[i], record.body_contacts()));
   }
 }
 

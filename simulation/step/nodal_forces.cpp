@@ -2,12 +2,54 @@
 
 namespace irdm {
 
-RecordedForces::RecordedForces(const RestSurface& surface, const std::vector<double>& radii)
-    : forces_(radii.size() * kMaxPatchNodes + kMaxFloorContacts) {
-  for (const double radius : radii) masks_.emplace_back(surface, radius);
+void NodalSums::clear() noexcept {
+  for (const int node : nodes_) {
+    sums_[static_cast<std::size_t>(node)].setZero();
+    used_[static_cast<std::size_t>(node)] = false;
+  }
+  nodes_.clear();
 }
 
-std::span<const NodalForce> RecordedForces::of(const ObjectRecord& record) noexcept {
+void NodalSums::add(const SurfacePatch& patch, const Vector3& force) noexcept {
+  for (std::size_t i = 0; i < patch.nodes.size(); ++i) {
+    const auto node = static_cast<std::size_t>(patch.nodes[i]);
+    if (!used_[node]) nodes_.push_back(patch.nodes[i]);
+    used_[node] = true;
+    sums_[node] += patch.weights[i] * force;
+  }
+}
+
+void NodalSums::add_to(NodalForces& forces) const noexcept {
+  for (const int node : nodes_) forces.add(node, sums_[static_cast<std::size_t>(node)]);
+}
+
+void add_body_contact(const BodyContactRecord& contact, bool first, const ContactSampling& sampling,
+                      const Quaternion& halfway, NodalSums& sums) noexcept {
+  const Vector3 force = halfway.conjugate() * contact.force;
+  if (first) {
+    const auto sample = static_cast<std::size_t>(contact.sample);
+    sums.add(sampling.patch(sampling.samples()[sample].row), force);
+    return;
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (contact.weights[i] == 0.0) continue;
+    sums.add(sampling.patch(sampling.sites(contact.triangle)[i]), -contact.weights[i] * force);
+  }
+}
+
+RecordedForces::RecordedForces(const SimulationConfig& config, std::size_t number,
+                               const RestSurface& surface)
+    : number_(static_cast<int>(number)),
+      forces_(config.styluses.size() * kMaxPatchNodes + kMaxFloorContacts +
+              static_cast<std::size_t>(surface.node_count())),
+      sums_(surface.node_count()) {
+  for (const SimulationStylus& stylus : config.styluses) masks_.emplace_back(surface, stylus.radius);
+  if (!touches_bodies(config)) return;
+  sampling_ = std::make_unique<ContactSampling>(surface, config.contact_samples);
+}
+
+std::span<const NodalForce> RecordedForces::of(
+    const ObjectRecord& record, std::span<const BodyContactRecord> contacts) noexcept {
   forces_.clear();
   for (std::size_t s = 0; s < masks_.size(); ++s) {
     const ContactRecord& contact = record.contact[s];
@@ -18,6 +60,12 @@ std::span<const NodalForce> RecordedForces::of(const ObjectRecord& record) noexc
   for (std::size_t i = 0; i < static_cast<std::size_t>(record.floor_count); ++i) {
     forces_.add(record.floor[i].node, record.floor[i].force.cast<double>());
   }
+  sums_.clear();
+  for (const BodyContactRecord& contact : contacts) {
+    if (contact.object != number_ && contact.other != number_) continue;
+    add_body_contact(contact, contact.object == number_, *sampling_, record.halfway, sums_);
+  }
+  sums_.add_to(forces_);
   return forces_.view();
 }
 

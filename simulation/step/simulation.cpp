@@ -30,6 +30,9 @@ Simulation::Simulation(const SimulationConfig& config)
         std::make_unique<SoftObject>(object, config, static_cast<int>(objects_.size())));
   }
   check_settings(config, settings_);
+  if (touches_bodies(config)) {
+    world_ = std::make_unique<WorldContacts>(config, objects_);
+  }
 }
 
 void Simulation::set(const Settings& settings) noexcept {
@@ -54,6 +57,7 @@ std::uint64_t Simulation::limited() const noexcept {
 
 void Simulation::reset() noexcept {
   for (const auto& object : objects_) object->reset();
+  if (world_) world_->reset();
   late_.count = 0;
   was_reset_ = true;
   reset_step_ = next_step_;
@@ -91,7 +95,17 @@ void Simulation::step(std::span<const StylusCommand> commands, StepRecord& recor
     }
     commands = commands_;
   }
-  for (std::size_t i = 0; i < objects_.size(); ++i) objects_[i]->step(commands, record.object[i]);
+  record.body_contact_count = 0;
+  for (std::size_t i = 0; i < objects_.size(); ++i) objects_[i]->begin(commands, record.object[i]);
+  if (world_) {
+    world_->solve(record);
+  } else {
+    for (std::size_t i = 0; i < objects_.size(); ++i) {
+      objects_[i]->solve(record.object[i]);
+      objects_[i]->write(record.object[i]);
+    }
+  }
+  for (std::size_t i = 0; i < objects_.size(); ++i) objects_[i]->finish(commands, record.object[i]);
   for (std::size_t s = 0; s < stylus_count_; ++s) {
     write_stylus(s, commands[s], record);
   }

@@ -10,17 +10,19 @@
 #include "simulation/step/simulation_config.hpp"
 #include "simulation/step/soft_object.hpp"
 #include "simulation/step/step_record.hpp"
+#include "simulation/step/world_contacts.hpp"
 
 namespace irdm {
 
 /// The force step of a scene: a pure function of the commands and of the state in here. It knows no
-/// clock, thread, file or socket; the same commands give the same bits. Objects do not touch each
-/// other, so each is stepped by itself; a stylus may touch several and feels the sum. One thread;
-/// step() is real-time safe.
+/// clock, thread, file or socket; the same commands give the same bits. Objects that touch each
+/// other are solved together, the others by themselves; a stylus may touch several and feels the
+/// sum. One thread; step() is real-time safe.
 class Simulation {
  public:
   /// Throws Error when a model lacks the response that its engine needs, when models differ in dt,
-  /// when damping or tether are too strong for it, or when there are too many objects or styluses.
+  /// when damping or tether are too strong for it, when there are too many objects or styluses, or
+  /// when bodies are inside one another.
   explicit Simulation(const SimulationConfig& config);
 
   /// Step k = 0, 1, ...: from time k dt to (k + 1) dt. Before it everything is reset to the
@@ -96,6 +98,7 @@ class Simulation {
   std::size_t stylus_count_;
   std::array<double, kMaxStyluses> max_force_{};  ///< of each stylus [N]
   std::vector<std::unique_ptr<SoftObject>> objects_;
+  std::unique_ptr<WorldContacts> world_;  ///< null: objects touch neither each other nor scenery
   std::array<int, kMaxStyluses> local_model_object_;  ///< object, -1: none
   std::array<StylusCommand, kMaxStyluses> commands_;  ///< of a step that begins with a reset
   LateForces late_;                                   ///< entered since the last step

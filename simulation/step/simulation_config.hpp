@@ -9,6 +9,7 @@
 #include "common/geometry.hpp"
 #include "common/model/model.hpp"
 #include "common/motion/free_motion.hpp"
+#include "simulation/collision/scenery.hpp"
 #include "simulation/engine/response_engine.hpp"
 
 namespace irdm {
@@ -49,7 +50,16 @@ struct SimulationConfig {
   std::vector<SimulationObject> objects;
   std::vector<SimulationStylus> styluses{1};
   std::optional<FloorConfig> floor;
-  double release_time = 0.03;  ///< in which a held point that pulls is given up [s]
+  double release_time = 0.03;          ///< in which a held point that pulls is given up [s]
+  std::vector<SceneryConfig> scenery;  ///< at most kMaxScenery
+  /// Whether objects touch each other and scenery.
+  bool between_objects = true;
+  int contact_samples = 384;  ///< of an object's surface, for such contacts, > 0
 };
+
+/// Whether objects of the scene can touch each other or scenery.
+inline bool touches_bodies(const SimulationConfig& config) {
+  return config.between_objects && (config.objects.size() > 1 || !config.scenery.empty());
+}
 
 }  // namespace irdm

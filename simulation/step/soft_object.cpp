@@ -22,7 +22,9 @@ SoftObject::SoftObject(const SimulationObject& object, const SimulationConfig& c
       contacts_(config, model().dt, number, rest_, surface_),
       problem_(kMaxContacts + (config.floor ? kMaxFloorContacts : 0)),
       solver_(problem_.capacity()),
-      nodal_(kMaxContacts * kMaxPatchNodes + kMaxFloorContacts) {
+      nodal_(kMaxContacts * kMaxPatchNodes + kMaxFloorContacts +
+             static_cast<std::size_t>(rest_.node_count())),
+      touched_(rest_.node_count()) {
   account_.begin(body_.energy());
   check_inertial_loading(model(), object.inertial_loading, "object");
   if (config.floor && body_.rigid().moves()) {
@@ -36,6 +38,14 @@ void SoftObject::reset() noexcept {
   account_.begin(body_.energy());
   contacts_.reset();
   if (floor_) floor_->reset();
+  touched_.clear();
+  touched_as_ = {};
+}
+
+void SoftObject::set_contact_shape(const ContactSampling& sampling,
+                                   const PatchCompliance& compliance) {
+  sampling_ = &sampling;
+  compliance_ = &compliance;
 }
 
 void SoftObject::set(const Vector3& gravity, const ObjectSettings& settings) noexcept {
@@ -45,18 +55,60 @@ void SoftObject::set(const Vector3& gravity, const ObjectSettings& settings) noe
   account_.set_energy(body_.energy());
 }
 
-void SoftObject::step(std::span<const StylusCommand> commands, ObjectRecord& record) noexcept {
+void SoftObject::begin(std::span<const StylusCommand> commands, ObjectRecord& record) noexcept {
   body_.begin_step(record);
   update_surface(!record.spin.isZero(0.0));
   prefetch_columns(commands);
   const int floor_count = find_contacts(commands);
-  solve(commands, floor_count, record);
+  pose(commands, floor_count, record);
+  touched_.clear();
+  touched_as_ = {};
+}
+
+void SoftObject::write(ObjectRecord& record) noexcept {
   contacts_.write(problem_, record);
   write_floor(record);
+  nodal_.clear();
+  own_ = {};
+  contacts_.end_step(problem_, body_.motion().halfway, nodal_, own_);
+  for (int i = 0; floor_ && i < floor_->count(); ++i) {
+    const ContactConstraint& solved = problem_.contact(i);
+    if (solved.mode == ContactMode::kOpen) continue;
+    nodal_.add(floor_->node(i), solved.force);
+    own_.add(body_.motion().halfway * solved.force, solved.arm);
+  }
+}
+
+Vector3 SoftObject::halfway_position(const Vector3& more) const noexcept {
+  const FreeMotion& motion = body_.motion();
+  if (!body_.rigid().moves()) return motion.position;
+  return 0.5 * (motion.start.position +
+                body_.rigid().moved(motion.start, motion.force + own_.sum + more));
+}
+
+void SoftObject::touch(const BodyContactRecord& contact, bool first, const Vector3& arm) noexcept {
+  const Quaternion& halfway = body_.motion().halfway;
+  add_body_contact(contact, first, *sampling_, halfway, touched_);
+  touched_as_.add(first ? contact.force : Vector3(-contact.force), halfway.conjugate() * arm);
+}
+
+Matrix3 SoftObject::compliance_at(int row, const PatchCompliance::Place& from) const noexcept {
+  const int floor_count = floor_ ? floor_->count() : 0;
+  if (row < floor_count) return compliance_->at_node(floor_->node(row), from);
+  const ContactPatch& patch = contacts_.patch(row - floor_count);
+  Matrix3 sum = Matrix3::Zero();
+  for (std::size_t i = 0; i < static_cast<std::size_t>(patch.count); ++i) {
+    sum += patch.weights[i] * compliance_->at_node(patch.nodes[i], from);
+  }
+  return sum;
+}
+
+void SoftObject::finish(std::span<const StylusCommand> commands, ObjectRecord& record) noexcept {
   contacts_.update(commands, body_.motion(), problem_);
   if (floor_) floor_->update_contacts(body_.motion(), problem_);
+  const RigidState before = state();
   end_step(record);
-  account_.settle(contacts_.work(), body_.energy());
+  account_.settle(contacts_.work() + work_of_touch(before), body_.energy());
   account_.forgive(model().dt, contacts_.count() > 0);
   for (ContactRecord& contact : record.contact) {
     if (contact.state != ContactState::kFree) {
@@ -82,9 +134,20 @@ int SoftObject::find_contacts(std::span<const StylusCommand> commands) noexcept 
   return floor_ ? floor_->find(body_.motion(), surface_, contacts_.displaced()) : 0;
 }
 
-// Steps 1 to 4: the forces that take the contacts' points to the tips.
-void SoftObject::solve(std::span<const StylusCommand> commands, int floor_count,
-                       ObjectRecord& record) noexcept {
+// What other bodies' forces did on the body as a whole in the step [J].
+double SoftObject::work_of_touch(const RigidState& before) const noexcept {
+  if (touched_as_.sum.isZero(0.0) && touched_as_.arms.isZero(0.0)) return 0.0;
+  const Quaternion& halfway = body_.motion().halfway;
+  const Vector3 turn = 0.5 * model().dt *
+                       (body_.rigid().angular_velocity(before) +
+                        body_.rigid().angular_velocity(state()));
+  return touched_as_.sum.dot(state().position - before.position) +
+         touched_as_.torque(halfway).dot(turn);
+}
+
+// Steps 1 to 3: where the contacts' points are wanted, and how they answer.
+void SoftObject::pose(std::span<const StylusCommand> commands, int floor_count,
+                      ObjectRecord& record) noexcept {
   record.residual = 0.0;
   record.sweeps = 0;
   record.solved = true;
@@ -95,8 +158,16 @@ void SoftObject::solve(std::span<const StylusCommand> commands, int floor_count,
   if (floor_count > 0) pose_floor();
   contacts_.pose(commands, body_.motion(), friction_, account_.driving_share(), floor_count,
                  problem_);
-  const ContactSolution solution =
-      solver_.solve(problem_, floor_count > 0 ? kFloorLimits : SolverLimits{});
+}
+
+// Step 4: the forces that take them there.
+void SoftObject::solve(ObjectRecord& record) noexcept {
+  if (problem_.count() == 0) return;
+  const bool on_floor = floor_ && floor_->count() > 0;
+  accept(solver_.solve(problem_, on_floor ? kFloorLimits : SolverLimits{}), record);
+}
+
+void SoftObject::accept(const ContactSolution& solution, ObjectRecord& record) noexcept {
   contacts_.solve_bridged(problem_);
   record.residual = solution.residual;
   record.sweeps = solution.sweeps;
@@ -132,15 +203,10 @@ void SoftObject::write_floor(ObjectRecord& record) noexcept {
 
 // Step 5: the forces enter the history, and the rigid motion goes on.
 void SoftObject::end_step(ObjectRecord& record) noexcept {
-  nodal_.clear();
-  RigidStateHistory::Forces forces;
-  contacts_.end_step(problem_, body_.motion().halfway, nodal_, forces);
-  for (int i = 0; floor_ && i < floor_->count(); ++i) {
-    const ContactConstraint& solved = problem_.contact(i);
-    if (solved.mode == ContactMode::kOpen) continue;
-    nodal_.add(floor_->node(i), solved.force);
-    forces.add(body_.motion().halfway * solved.force, solved.arm);
-  }
+  touched_.add_to(nodal_);
+  RigidStateHistory::Forces forces = own_;
+  forces.sum += touched_as_.sum;
+  forces.arms += touched_as_.arms;
   cache_nodes();
   body_.end_step(nodal_.view(), forces, record);
   if (change_ == Change::kNone) change_ = Change::kStep;
@@ -182,6 +248,10 @@ void SoftObject::collect_others(std::size_t s, ContactModel& model) noexcept {
     model.other_torque += solved.arm.cross(solved.force);
   }
   contacts_.add_others(s, problem_, nodal_, model);
+  const Quaternion& halfway = body_.motion().halfway;
+  touched_.add_to(nodal_);
+  model.other_force += halfway.conjugate() * touched_as_.sum;
+  model.other_torque += halfway.conjugate() * touched_as_.torque(halfway);
 }
 
 // The balance, and what the object may lose to hands within the horizon, as it comes or falls: one

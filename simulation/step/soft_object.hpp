@@ -7,6 +7,7 @@
 #include "common/contact/applied_forces.hpp"
 #include "common/contact/contact_model.hpp"
 #include "simulation/collision/deformed_surface.hpp"
+#include "simulation/contact/patch_compliance.hpp"
 #include "simulation/step/assembly_horizon.hpp"
 #include "simulation/step/deformable_body.hpp"
 #include "simulation/step/energy_account.hpp"
@@ -28,14 +29,44 @@ class SoftObject {
   /// fingertip is too large for its surface.
   SoftObject(const SimulationObject& object, const SimulationConfig& config, int number);
 
-  /// One step of dt. `commands`: one a stylus.
-  void step(std::span<const StylusCommand> commands, ObjectRecord& record) noexcept;
+  // One step of dt is begin(), a solution, write(), perhaps touch(), and finish().
+
+  /// Free motion, and the contacts with styluses and floor. @param commands one a stylus
+  void begin(std::span<const StylusCommand> commands, ObjectRecord& record) noexcept;
+  /// The solution of the object's own contacts, where it touches no other body ...
+  void solve(ObjectRecord& record) noexcept;
+  /// ... or else problem() holds one that was found together with others, and this was its error.
+  void accept(const ContactSolution& solution, ObjectRecord& record) noexcept;
+  /// The forces of styluses and floor, as they act.
+  void write(ObjectRecord& record) noexcept;
+  /// Where the centre of mass is half-way through the step under these and `more` [N], W, in which
+  /// a force at a point of W has the moment that it has over the step [m], W. After write().
+  Vector3 halfway_position(const Vector3& more) const noexcept;
+  /// Another body's force acts besides. After write().
+  /// @param first whether the sample of the contact is this object's
+  /// @param arm from halfway_position() to where it acts [m], W
+  void touch(const BodyContactRecord& contact, bool first, const Vector3& arm) noexcept;
+  void finish(std::span<const StylusCommand> commands, ObjectRecord& record) noexcept;
+
+  /// Of the contacts with styluses and floor in the step under way, B.
+  ContactProblem& problem() noexcept { return problem_; }
+  const FreeMotion& motion() const noexcept { return body_.motion(); }
+  const RigidBody& rigid() const noexcept { return body_.rigid(); }
+  DeformedSurface& deformed_surface() noexcept { return surface_; }
+  const Friction& friction() const noexcept { return friction_; }
+  /// It can touch other objects and scenery from now on. Before the first step.
+  /// @param sampling, compliance of its model; both must outlive this
+  void set_contact_shape(const ContactSampling& sampling, const PatchCompliance& compliance);
+  const PatchCompliance& contact_compliance() const noexcept { return *compliance_; }
+  /// Elastic displacement of the point of contact `row` of problem() per force at a place of the
+  /// surface [m/N], B.
+  Matrix3 compliance_at(int row, const PatchCompliance::Place& from) const noexcept;
   void reset() noexcept;
   /// From the next step on.
   void set(const Vector3& gravity, const ObjectSettings& settings) noexcept;
 
   /// What a bridge needs to solve the contact of stylus s by itself in the coming steps. The forces
-  /// of the floor are taken to stay as they were in the last step, those of other styluses as they
+  /// of the floor and of other bodies are taken to stay as they were in the last step, those of other styluses as they
   /// were on average over the last while, but for the strongest, which answers (AssemblyHorizon).
   /// Between steps.
   /// @param tip where the stylus was in the last step [m], W
@@ -71,12 +102,13 @@ class SoftObject {
  private:
   void prefetch_columns(std::span<const StylusCommand> commands) noexcept;
   int find_contacts(std::span<const StylusCommand> commands) noexcept;
-  void solve(std::span<const StylusCommand> commands, int floor_count,
-             ObjectRecord& record) noexcept;
+  void pose(std::span<const StylusCommand> commands, int floor_count,
+            ObjectRecord& record) noexcept;
   void pose_floor() noexcept;
   void write_floor(ObjectRecord& record) noexcept;
   void end_step(ObjectRecord& record) noexcept;
   void cache_nodes() noexcept;
+  double work_of_touch(const RigidState& before) const noexcept;
   double available_energy(const ContactModel& model) const noexcept;
   bool prepare_horizon(const ContactPatch& patch, bool among_others, ContactModel& model,
                        int& budget) noexcept;
@@ -95,6 +127,11 @@ class SoftObject {
   ContactProblem problem_;                ///< of the step; the floor's contacts come first
   ContactSolver solver_;
   NodalForces nodal_;
+  const ContactSampling* sampling_ = nullptr;  ///< null: it touches no other body
+  const PatchCompliance* compliance_ = nullptr;
+  NodalSums touched_;                     ///< other bodies' forces in the step [N], B
+  RigidStateHistory::Forces touched_as_;  ///< the same on the body as a whole
+  RigidStateHistory::Forces own_;         ///< of styluses and floor in the step
   EnergyAccount account_;
   std::uint64_t limited_late_ = 0;
   AssemblyHorizon assembly_;

@@ -66,6 +66,24 @@ struct FloorForce {
   Eigen::Vector3f force = Eigen::Vector3f::Zero();  ///< on the object [N], B
 };
 
+/// Contacts of objects with each other and with scenery that a step can have.
+inline constexpr int kMaxBodyContacts = 256;
+
+/// What a body did to an object at one of the object's samples (ContactSampling) in one step.
+struct BodyContactRecord {
+  int object = 0;  ///< whose sample it is
+  int other = 0;   ///< the object that it touches; -1 - i: scenery i
+  int sample = 0;
+  bool slipping = false;
+  int triangle = 0;  ///< of the other object, where its point is; this and weights not of scenery
+  std::array<double, 3> weights{};     ///< barycentric, of that point
+  Vector3 force = Vector3::Zero();     ///< on the object; the other has the opposite [N], W
+  Vector3 position = Vector3::Zero();  ///< where both act, half-way through the step [m], W
+  Vector3 normal = Vector3::Zero();    ///< outward of the other, unit, W
+  Vector3 slip = Vector3::Zero();      ///< of the sample along the other in the step [m], W
+  double area = 0.0;                   ///< of the sample [m^2]
+};
+
 /// What became of one object in one step.
 struct ObjectRecord {
   RigidState start;  ///< before the step, with the late forces that were entered by then
@@ -131,6 +149,12 @@ struct StepRecord {
   std::array<ObjectRecord, kMaxObjects> object;
   std::array<StylusRecord, kMaxStyluses> stylus;
   LateForces late;  ///< entered before the step
+  int body_contact_count = 0;
+  std::array<BodyContactRecord, kMaxBodyContacts> body_contact;  ///< the first so many
+
+  std::span<const BodyContactRecord> body_contacts() const noexcept {
+    return {body_contact.data(), static_cast<std::size_t>(body_contact_count)};
+  }
 };
 
 }  // namespace irdm

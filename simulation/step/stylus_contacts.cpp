@@ -282,7 +282,7 @@ void StylusContacts::write(const ContactProblem& problem, ObjectRecord& record) 
     out.force = solved.force;
     out.normal = solved.normal;
     out.offset = solved.arm - contact.arm;
-    out.proxy = contact.arm;
+    out.proxy = contact.arm + solved.elsewhere;
     for (int b = 0; b < count_; ++b) {
       out.proxy += elastic_.block<3, 3>(row(a), row(b)) * problem.contact(first_ + b).force;
     }

@@ -328,7 +328,7 @@ TEST_CASE("inertial loading: the surface is computed again from what was recorde
     Deformation deformation(config);
     const RigidBody body(model->body, model->dt);
     const auto engine = make_engine(model);
-    RecordedForces forces(simulation.object().surface(), {0.0});
+    RecordedForces forces(config, 0, simulation.object().surface());
     SurfaceFrame frame = rest_frame(config);
     // What a trace has of the step before.
     RigidState before = simulation.object().state();
@@ -342,7 +342,7 @@ TEST_CASE("inertial loading: the surface is computed again from what was recorde
       const Vector3 spin = body.mid_step_spin(before);
       worst = std::max(worst, (spin - object.spin).norm() / object.spin.norm());
       engine->capabilities().inertial_loading->set_angular_velocity(spin);
-      engine->advance(forces.of(object));
+      engine->advance(forces.of(object, {}));
       before.orientation = object.orientation;
       before.angular_momentum = body.angular_momentum(object.orientation, object.angular_velocity);
     }

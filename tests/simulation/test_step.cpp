@@ -136,7 +136,7 @@ TEST_CASE("step: momentum and angular momentum change exactly by the impulses of
     // An engine of the test's own gives the deformed lever arms.
     const auto engine = make_engine(model);
     const RestSurface surface(model->mesh);
-    RecordedForces forces(surface, {0.0});
+    RecordedForces forces(one(model), 0, surface);
     Vector3 momentum = Vector3::Zero();
     Vector3 angular = Vector3::Zero();
     double impulses = 0.0;
@@ -162,7 +162,7 @@ TEST_CASE("step: momentum and angular momentum change exactly by the impulses of
         impulses += impulse.norm();
         angular_impulses += (Q * arm).cross(impulse).norm();
       }
-      engine->advance(forces.of(record.object[0]));
+      engine->advance(forces.of(record.object[0], {}));
       const Vector3 L =
           body.angular_momentum(record.object[0].orientation, record.object[0].angular_velocity);
       worst = std::max(worst, (model->body.mass * record.object[0].velocity - momentum).norm());
@@ -180,7 +180,7 @@ TEST_CASE("step: the lever arm of a held point is that of its mean place over th
   Simulation simulation(one(model));
   const auto engine = make_engine(model);
   const RestSurface surface(model->mesh);
-  RecordedForces forces(surface, {0.0});
+  RecordedForces forces(one(model), 0, surface);
   Points before;
   Points after;
   StepRecord record;
@@ -196,7 +196,7 @@ TEST_CASE("step: the lever arm of a held point is that of its mean place over th
       free.row(i) = engine->free_displacement(i);
     }
     engine->displacement(before);
-    engine->advance(forces.of(record.object[0]));
+    engine->advance(forces.of(record.object[0], {}));
     engine->displacement(after);
     const bool was_held = std::exchange(held, contact.state == ContactState::kHeld);
     if (!held) continue;

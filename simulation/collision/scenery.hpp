@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "common/contact/contact_problem.hpp"
+#include "common/geometry.hpp"
+
+namespace irdm {
+
+/// Through the origin of its pose; the side that the normal +y points to is free.
+struct PlaneShape {};
+
+/// Centred at the origin of its pose.
+struct BoxShape {
+  Vector3 size = Vector3::Zero();  ///< edges along the axes [m], > 0
+};
+
+/// Centred at the origin of its pose.
+struct SphereShape {
+  double radius = 0.0;  ///< [m], > 0
+};
+
+/// A cylinder about the axis y with a half ball on both ends, centred at the origin of its pose.
+struct CapsuleShape {
+  double radius = 0.0;  ///< [m], > 0
+  double length = 0.0;  ///< between the centres of the half balls [m], >= 0
+};
+
+using SceneryShape = std::variant<PlaneShape, BoxShape, SphereShape, CapsuleShape>;
+
+/// A body that never moves.
+struct SceneryConfig {
+  std::string name = "scenery";
+  SceneryShape shape;
+  Vector3 position = Vector3::Zero();               ///< [m], W
+  Quaternion orientation = Quaternion::Identity();  ///< shape to W, unit
+  Friction friction{0.5, 0.5};
+};
+
+inline constexpr std::size_t kMaxScenery = 16;  ///< bodies in a scene
+
+/// A point of the surface of scenery.
+struct SceneryHit {
+  Vector3 position = Vector3::Zero();  ///< [m], W
+  Vector3 normal = Vector3::UnitY();   ///< outward, unit, W
+  double signed_distance = 0.0;        ///< from it to the query point, positive outside [m]
+};
+
+/// The point of the surface nearest to x [m, W]; where several are (centre of a sphere, axis of a
+/// capsule, middle planes of a box), one of them. Within a box it is on the nearest face. Real-time
+/// safe, any thread.
+SceneryHit closest(const SceneryConfig& scenery, const Vector3& x) noexcept;
+
+/// Where the way from `from` to `to` [m, W] first enters from outside, `to` included; its distance
+/// is 0. On the surface is outside: a way that starts there and leads in enters there. None if
+/// `from` is inside, or if the way misses or only touches. Real-time safe, any thread.
+std::optional<SceneryHit> first_crossing(const SceneryConfig& scenery, const Vector3& from,
+                                         const Vector3& to) noexcept;
+
+/// Radius of the smallest ball about the origin of its pose that contains it [m]; infinite for a
+/// plane.
+double bounding_radius(const SceneryShape& shape) noexcept;
+
+}  // namespace irdm

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "simulation/collision/rest_surface.hpp"
+#include "simulation/engine/response_engine.hpp"
+
+namespace irdm {
+
+/// A piece of an object's surface on which contact pressure is uniform: the weights of its nodes
+/// sum to one. Its displacement is the same weighted mean, so that what a force does is what the
+/// contact sees. A view into a ContactSampling.
+struct SurfacePatch {
+  std::span<const int> nodes;
+  std::span<const double> weights;
+};
+
+/// The weighted mean over a patch of a quantity that is known at nodes.
+template <typename NodeValue>
+Vector3 mean(const SurfacePatch& patch, const NodeValue& value) {
+  Vector3 sum = Vector3::Zero();
+  for (std::size_t i = 0; i < patch.nodes.size(); ++i) {
+    sum += patch.weights[i] * value(patch.nodes[i]);
+  }
+  return sum;
+}
+
+/// Where objects touch each other: an object's surface divided into patches.
+///
+/// The surface falls into smooth parts that creases separate. A *site* is a node with one of the
+/// parts that it lies on; its patch is the node's share of that part (a third of each triangle). A
+/// *sample* is a set of neighbouring sites: so many sites of a part as farthest-point sampling
+/// chooses are its middles, each site belongs to the nearest of them. The order of the samples is
+/// that of the choice, so fewer samples are the first of more (nested); their patches cover the
+/// surface once, and the uniform pressure on all of them is that of the finite elements.
+/// A contact lies between a sample of one object and a point of another, whose force goes to the
+/// sites of the point's triangle by barycentric weights. Built once, read only.
+class ContactSampling {
+ public:
+  /// @param most samples, > 0; there are at least as many as smooth parts
+  /// @param surface must outlive this object
+  ContactSampling(const RestSurface& surface, int most);
+
+  struct Sample {
+    SurfaceLocation place;             ///< its middle, on the surface at rest
+    Vector3 normal = Vector3::Zero();  ///< outward, unit, B
+    double area = 0.0;                 ///< [m^2]
+    int row = 0;                       ///< of its patch
+  };
+  std::span<const Sample> samples() const noexcept { return samples_; }
+  /// Square root of the mean area of a sample [m].
+  double spacing() const noexcept { return spacing_; }
+
+  /// All patches, those of sites and of samples of several sites, have a number: the row.
+  int row_count() const noexcept { return static_cast<int>(first_.size()) - 1; }
+  SurfacePatch patch(int row) const noexcept {
+    const auto begin = static_cast<std::size_t>(first_[static_cast<std::size_t>(row)]);
+    const auto end = static_cast<std::size_t>(first_[static_cast<std::size_t>(row) + 1]);
+    return {{nodes_.data() + begin, end - begin}, {weights_.data() + begin, end - begin}};
+  }
+
+  /// The rows of the sites of a triangle's corners.
+  const std::array<int, 3>& sites(int triangle) const noexcept {
+    return corner_sites_[static_cast<std::size_t>(triangle)];
+  }
+  /// Outward unit normal that varies continuously over a smooth part, B.
+  Vector3 normal(const SurfaceLocation& at) const noexcept;
+
+ private:
+  struct Site {
+    int node = 0;
+    int part = 0;
+    double area = 0.0;
+    Vector3 normal = Vector3::Zero();
+  };
+  std::vector<int> smooth_parts() const;
+  void make_sites(const std::vector<int>& parts);
+  std::vector<int> choose(int most) const;
+  void make_samples(const std::vector<int>& chosen);
+  void add_row(const std::vector<int>& sites);
+
+  const RestSurface& surface_;
+  std::vector<Site> sites_;
+  std::vector<std::array<int, 3>> corner_sites_;  ///< of each triangle
+  std::vector<Sample> samples_;
+  double spacing_ = 0.0;
+  std::vector<int> first_;  ///< of each row, and one more
+  std::vector<int> nodes_;
+  std::vector<double> weights_;
+};
+
+}  // namespace irdm

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <memory>
+
+#include "common/model/model.hpp"
+#include "simulation/contact/contact_sampling.hpp"
+
+namespace irdm {
+
+/// R[0] between the patches of an object's sampling, and between them and its nodes: what contacts
+/// with other objects need of it within a step. Zero for a rigid object. In single precision; built
+/// once for all objects of a model, read only.
+class PatchCompliance {
+ public:
+  /// Surface nodes of an object that can touch others: the table has some (3n)^2 numbers.
+  static constexpr int kMaxNodes = 1500;
+
+  /// Throws Error when the object has more nodes than that.
+  /// @param sampling of the model's surface
+  PatchCompliance(const Model& model, const ContactSampling& sampling);
+
+  /// A patch, or a point between three of them: what a contact has on one of its sides.
+  struct Place {
+    std::array<int, 3> rows{};
+    std::array<double, 3> weights{};
+    int count = 0;  ///< 1 or 3
+  };
+
+  bool rigid() const noexcept { return patches_.size() == 0; }
+  /// Displacement at `to` per force at `from` [m/N], B.
+  Matrix3 between(const Place& to, const Place& from) const noexcept;
+  /// The same of a node to a force at `from`.
+  Matrix3 at_node(int node, const Place& from) const noexcept;
+
+ private:
+  Eigen::MatrixXf patches_;  ///< (3 rows, 3 rows)
+  Eigen::MatrixXf nodes_;    ///< (3n, 3 rows)
+};
+
+}  // namespace irdm

@@ -1,0 +1,295 @@
+#include "simulation/step/body_contacts.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace irdm {
+namespace {
+
+// Samples as near as this are given to the solver, which leaves them alone unless they come down.
+constexpr double kNear = 1e-4;
+// As those of the floor: how far a sample may be from where it would be at rest, to be looked at.
+constexpr double kLeastReach = 2e-3;
+constexpr double kReachFactor = 2.0;
+constexpr double kReachFading = 0.99;
+// Part of the samples' spacing by which their way begins inside their own object.
+constexpr double kDepth = 0.5;
+// Surfaces touch where their outward normals point at each other: cosine of their angle at most.
+constexpr double kFacing = -0.3;
+
+double ball_radius(const RestSurface& rest) noexcept {
+  double largest = 0.0;
+  for (int i = 0; i < rest.node_count(); ++i) largest = std::max(largest, rest.node(i).norm());
+  return largest;
+}
+
+Vector3 sideways(const Vector3& v, const Vector3& normal) noexcept {
+  return v - v.dot(normal) * normal;
+}
+
+// Where a point that moves with the body was at the start of the step, W.
+Vector3 at_start(const FreeMotion& motion, const Vector3& place) noexcept {
+  return motion.start.position + motion.start.orientation * place;
+}
+
+}  // namespace
+
+BodyContacts::BodyContacts(int object, const ContactBody& body, int other,
+                           const ContactBody& other_body)
+    : object_(object),
+      other_(other),
+      body_(body),
+      other_body_(&other_body),
+      radius_(ball_radius(body.rest)),
+      other_radius_(ball_radius(other_body.rest)),
+      depth_(kDepth * std::min(body.sampling.spacing(), other_body.sampling.spacing())),
+      samples_(body.sampling.samples().size()),
+      found_(kMost) {
+  candidates_.reserve(samples_.size());
+  for (int i = 0; i < other_body.rest.node_count(); ++i) other_box_.extend(other_body.rest.node(i));
+}
+
+BodyContacts::BodyContacts(int object, const ContactBody& body, int scenery,
+                           const SceneryConfig& shape)
+    : object_(object),
+      other_(-1 - scenery),
+      body_(body),
+      scenery_(&shape),
+      radius_(ball_radius(body.rest)),
+      other_radius_(bounding_radius(shape.shape)),
+      depth_(kDepth * body.sampling.spacing()),
+      samples_(body.sampling.samples().size()),
+      found_(kMost) {
+  candidates_.reserve(samples_.size());
+}
+
+void BodyContacts::reset() noexcept {
+  std::fill(samples_.begin(), samples_.end(), Sample{});
+  count_ = 0;
+  displaced_ = 0.0;
+  any_pressed_ = false;
+}
+
+// Whether the balls round both meet.
+bool BodyContacts::near() noexcept {
+  const Vector3& there = other_body_ != nullptr ? other_body_->motion.position : scenery_->position;
+  const double reach = radius_ + other_radius_ + kLeastReach + kReachFactor * displaced_;
+  const Vector3 way = body_.motion.position - body_.motion.start.position;
+  const double moved =
+      way.norm() + (other_body_ != nullptr
+                        ? (other_body_->motion.position - other_body_->motion.start.position).norm()
+                        : 0.0);
+  return (body_.motion.position - there).norm() <= reach + moved;
+}
+
+Vector3 BodyContacts::displaced_place(const ContactSampling::Sample& sample) noexcept {
+  const Vector3 u = mean(body_.sampling.patch(sample.row), [&](int i) -> Vector3 {
+    return body_.surface.node(i) - body_.rest.node(i);
+  });
+  displaced_ = std::max(displaced_, u.norm());
+  return sample.place.position + u;
+}
+
+Vector3 BodyContacts::other_displacement(const SurfaceLocation& at) noexcept {
+  Vector3 u = Vector3::Zero();
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (at.point.weights[i] == 0.0) continue;
+    const int site = other_body_->sampling.sites(at.triangle)[i];
+    u += at.point.weights[i] *
+         mean(other_body_->sampling.patch(site), [&](int node) -> Vector3 {
+           return other_body_->surface.node(node) - other_body_->rest.node(node);
+         });
+  }
+  displaced_ = std::max(displaced_, u.norm());
+  return u;
+}
+
+bool BodyContacts::begin_on_scenery(const Vector3& from, const Vector3& to,
+                                    const Vector3& direction, const Vector3& x,
+                                    Sample& state) noexcept {
+  const std::optional<SceneryHit> entry = first_crossing(*scenery_, from, to);
+  if (!entry || entry->normal.dot(direction) > kFacing) return false;
+  const SceneryHit hit = closest(*scenery_, x);
+  const bool same_side = hit.normal.dot(direction) <= kFacing;
+  state.normal = same_side ? hit.normal : entry->normal;
+  state.anchor_W = same_side ? hit.position
+                             : Vector3(x - (x - entry->position).dot(entry->normal) * entry->normal);
+  return true;
+}
+
+// Sideways nothing is wanted in the step in which it begins.
+bool BodyContacts::begin(const ContactSampling::Sample& sample, const Vector3& place,
+                         Sample& state) noexcept {
+  const FreeMotion& motion = body_.motion;
+  const Vector3 x = motion.to_world(place);
+  const Vector3 outward = motion.orientation * sample.normal;
+  const Vector3 start = at_start(motion, place);
+  if (other_body_ == nullptr) {
+    return begin_on_scenery(start - depth_ * outward, x + kNear * outward, outward, x, state);
+  }
+  const FreeMotion& there = other_body_->motion;
+  const Vector3 y = there.to_body(x);
+  const Vector3 direction = there.orientation.conjugate() * outward;
+  const Vector3 y_start =
+      there.start.orientation.conjugate() * (start - there.start.position);
+  const SurfaceLocation nearest = other_body_->rest.closest(y);
+  const SurfaceHit near{nearest.triangle, nearest.point, nearest.position, 0.0};
+  const std::optional<SurfaceHit> hit = other_body_->surface.first_crossing(
+      y_start - depth_ * direction, y + kNear * direction, near);
+  if (!hit) return false;
+  state.anchor = {hit->triangle, hit->point,
+                  at(other_body_->rest.corners(hit->triangle), hit->point.weights)};
+  state.normal = other_body_->sampling.normal(state.anchor);
+  if (state.normal.dot(direction) > kFacing) return false;
+  const Vector3 there_now = state.anchor.position + other_displacement(state.anchor);
+  state.offset = sideways(y - there_now, state.normal);
+  return true;
+}
+
+void BodyContacts::describe(int sample, const Vector3& place, Contact& contact) noexcept {
+  const Sample& state = samples_[static_cast<std::size_t>(sample)];
+  const ContactSampling::Sample& shape =
+      body_.sampling.samples()[static_cast<std::size_t>(sample)];
+  contact.sample = sample;
+  contact.place = {{shape.row, 0, 0}, {1.0, 0.0, 0.0}, 1};
+  contact.arm = place;
+  const Vector3 x = body_.motion.to_world(place);
+  if (other_body_ == nullptr) {
+    contact.other_place.count = 0;
+    contact.normal = state.normal;
+    contact.gap = state.anchor_W - x;
+    return;
+  }
+  contact.other_place = {other_body_->sampling.sites(state.anchor.triangle),
+                         state.anchor.point.weights, 3};
+  contact.other_arm =
+      state.anchor.position + other_displacement(state.anchor) + state.offset;
+  contact.normal = other_body_->motion.orientation * state.normal;
+  contact.gap = other_body_->motion.to_world(contact.other_arm) - x;
+}
+
+int BodyContacts::find() noexcept {
+  count_ = 0;
+  displaced_ *= kReachFading;
+  if (!any_pressed_ && !near()) return 0;
+  candidates_.clear();
+  const FreeMotion& motion = body_.motion;
+  const Eigen::AlignedBox3d box = other_box_;
+  const double margin = kLeastReach + kReachFactor * displaced_;
+  const std::span<const ContactSampling::Sample> shapes = body_.sampling.samples();
+  for (int i = 0; i < static_cast<int>(shapes.size()); ++i) {
+    const ContactSampling::Sample& shape = shapes[static_cast<std::size_t>(i)];
+    Sample& state = samples_[static_cast<std::size_t>(i)];
+    const bool pressed = state.contact.any();
+    if (!pressed) {
+      const Vector3 x = motion.to_world(shape.place.position);
+      const double way = (x - at_start(motion, shape.place.position)).norm();
+      if (other_body_ == nullptr) {
+        if (closest(*scenery_, x).signed_distance > margin + way) continue;
+      } else {
+        const Vector3 y = other_body_->motion.to_body(x);
+        const double reach = margin + way;
+        if (box.squaredExteriorDistance(y) > reach * reach) continue;
+      }
+    }
+    const Vector3 place = displaced_place(shape);
+    if (!pressed && !begin(shape, place, state)) continue;
+    candidates_.push_back({i, pressed, 0.0, place});
+  }
+  for (Candidate& candidate : candidates_) {
+    Contact& contact = found_.front();
+    describe(candidate.sample, candidate.place, contact);
+    candidate.depth = contact.gap.dot(contact.normal);
+  }
+  if (candidates_.size() > kMost) {
+    std::nth_element(candidates_.begin(), candidates_.begin() + kMost, candidates_.end(),
+                     [](const Candidate& a, const Candidate& b) {
+                       if (a.pressed != b.pressed) return a.pressed;
+                       if (a.depth != b.depth) return a.depth > b.depth;
+                       return a.sample < b.sample;
+                     });
+    candidates_.resize(kMost);
+    std::sort(candidates_.begin(), candidates_.end(),
+              [](const Candidate& a, const Candidate& b) { return a.sample < b.sample; });
+  }
+  for (const Candidate& candidate : candidates_) {
+    describe(candidate.sample, candidate.place, found_[static_cast<std::size_t>(count_++)]);
+  }
+  any_pressed_ = false;
+  return count_;
+}
+
+void BodyContacts::pose(int i, const Friction& friction,
+                        ContactConstraint& constraint) const noexcept {
+  const Contact& contact = found_[static_cast<std::size_t>(i)];
+  const Sample& state = samples_[static_cast<std::size_t>(contact.sample)];
+  state.contact.pose(-contact.normal, friction, Vector3::Zero(), contact.gap, constraint);
+  constraint.law = ContactLaw::kTouching;
+  constraint.force = body_.motion.halfway * state.force;
+}
+
+void BodyContacts::update(int i, const ContactConstraint& solved) noexcept {
+  const Contact& contact = found_[static_cast<std::size_t>(i)];
+  Sample& state = samples_[static_cast<std::size_t>(contact.sample)];
+  const bool pressed = solved.mode != ContactMode::kOpen;
+  const bool slipping = solved.mode == ContactMode::kSlipping;
+  state.contact.begin(pressed ? ContactState::kTouching : ContactState::kFree, slipping);
+  state.force = body_.motion.halfway.conjugate() * solved.force;
+  any_pressed_ = any_pressed_ || pressed;
+  if (!slipping) return;
+  if (other_body_ == nullptr) {
+    const SceneryHit hit = closest(*scenery_, state.anchor_W - solved.slip);
+    if (hit.normal.dot(state.normal) < -kFacing) {  // it has come to another side
+      state.contact.end();
+      return;
+    }
+    state.anchor_W = hit.position;
+    state.normal = hit.normal;
+    return;
+  }
+  const FreeMotion& there = other_body_->motion;
+  const Vector3 way = -(there.orientation.conjugate() * solved.slip);
+  state.anchor = other_body_->rest.straight_on(state.anchor, way, way.norm());
+  state.normal = other_body_->sampling.normal(state.anchor);
+  state.offset = sideways(state.offset, state.normal);
+  const Vector3 outward = there.orientation.conjugate() *
+                          (body_.motion.orientation *
+                           body_.sampling.samples()[static_cast<std::size_t>(contact.sample)].normal);
+  if (state.normal.dot(outward) > kFacing) state.contact.end();
+}
+
+void BodyContacts::write(int i, const ContactConstraint& solved,
+                         BodyContactRecord& record) const noexcept {
+  const Contact& contact = found_[static_cast<std::size_t>(i)];
+  const Sample& state = samples_[static_cast<std::size_t>(contact.sample)];
+  record.object = object_;
+  record.other = other_;
+  record.sample = contact.sample;
+  record.slipping = solved.mode == ContactMode::kSlipping;
+  record.triangle = state.anchor.triangle;
+  record.weights = state.anchor.point.weights;
+  record.force = solved.force;
+  record.normal = contact.normal;
+  record.slip = -solved.slip;
+  record.area = body_.sampling.samples()[static_cast<std::size_t>(contact.sample)].area;
+}
+
+double BodyContacts::initial_depth() noexcept {
+  double deepest = 0.0;
+  for (const ContactSampling::Sample& shape : body_.sampling.samples()) {
+    const Vector3 x = at_start(body_.motion, shape.place.position);
+    double distance = 0.0;
+    if (other_body_ == nullptr) {
+      distance = closest(*scenery_, x).signed_distance;
+    } else {
+      const Vector3 y = other_body_->motion.start.orientation.conjugate() *
+                        (x - other_body_->motion.start.position);
+      if (!other_box_.contains(y)) continue;
+      distance = other_body_->surface.closest(y).signed_distance;
+    }
+    deepest = std::max(deepest, -distance);
+  }
+  return deepest;
+}
+
+}  // namespace irdm

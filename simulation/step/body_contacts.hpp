@@ -1,0 +1,116 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <span>
+#include <vector>
+
+#include "common/contact/contact_problem.hpp"
+#include "common/contact/persistent_contact.hpp"
+#include "common/motion/free_motion.hpp"
+#include "simulation/collision/deformed_surface.hpp"
+#include "simulation/collision/scenery.hpp"
+#include "simulation/contact/contact_sampling.hpp"
+#include "simulation/contact/patch_compliance.hpp"
+#include "simulation/step/step_record.hpp"
+
+namespace irdm {
+
+/// What the contacts of an object with other bodies need of it: its shape, and the step under way.
+struct ContactBody {
+  const ContactSampling& sampling;
+  const PatchCompliance& compliance;
+  const RestSurface& rest;
+  DeformedSurface& surface;
+  const FreeMotion& motion;
+};
+
+/// The contacts of one object's samples with another object or with scenery, from step to step.
+/// Each is a touching contact whose "tip" is an anchor on the other's surface: where the sample
+/// came down, moved along as far as it slips. A sample begins to touch where its way in the step,
+/// begun somewhat inside its own object, crosses the other's surface from outside: fast ones do not
+/// pass through. Real-time safe after construction; one thread.
+class BodyContacts {
+ public:
+  /// Contacts that one pair can have in a step.
+  static constexpr int kMost = 64;
+
+  /// A contact of this step.
+  struct Contact {
+    int sample = 0;
+    PatchCompliance::Place place;        ///< of the object
+    PatchCompliance::Place other_place;  ///< of the other; count 0: scenery
+    Vector3 arm = Vector3::Zero();       ///< of the sample without force [m], B of the object
+    Vector3 other_arm = Vector3::Zero();  ///< of where it is wanted [m], B of the other
+    Vector3 gap = Vector3::Zero();        ///< from the sample to where it is wanted [m], W
+    Vector3 normal = Vector3::Zero();     ///< outward of the other, unit, W
+  };
+
+  /// @param object, other are the numbers of objects; both bodies must outlive this
+  BodyContacts(int object, const ContactBody& body, int other, const ContactBody& other_body);
+  /// @param scenery its number  @param shape must outlive this
+  BodyContacts(int object, const ContactBody& body, int scenery, const SceneryConfig& shape);
+
+  void reset() noexcept;
+
+  /// Chooses this step's contacts: samples that would be inside the other by the end of it, and
+  /// those that were pressed on it; at most kMost, those that were pressed and then the deepest
+  /// first. Returns how many.
+  int find() noexcept;
+  /// Writes contact i of the step as a constraint on the object, in W.
+  void pose(int i, const Friction& friction, ContactConstraint& constraint) const noexcept;
+  /// After the solution of its constraint: the anchor slips, the force is kept for the next start.
+  void update(int i, const ContactConstraint& solved) noexcept;
+  /// What became of contact i. Its position is left to the caller, who knows the motion.
+  void write(int i, const ContactConstraint& solved, BodyContactRecord& record) const noexcept;
+
+  int count() const noexcept { return count_; }
+  const Contact& contact(int i) const noexcept { return found_[static_cast<std::size_t>(i)]; }
+  int object() const noexcept { return object_; }
+  /// The other object; -1 - i: scenery i.
+  int other() const noexcept { return other_; }
+
+  /// The largest depth of a sample inside the other as both stand at the start [m], 0: none.
+  double initial_depth() noexcept;
+
+ private:
+  struct Sample {
+    PersistentContact contact;
+    SurfaceLocation anchor;             ///< on the other, at rest
+    Vector3 offset = Vector3::Zero();   ///< from it to the anchor [m], B of the other
+    Vector3 anchor_W = Vector3::Zero();  ///< on scenery [m]
+    Vector3 normal = Vector3::Zero();   ///< outward of the other, unit, B of the other or W
+    Vector3 force = Vector3::Zero();    ///< of the last step [N], B of the object
+  };
+
+  bool near() noexcept;
+  Vector3 displaced_place(const ContactSampling::Sample& sample) noexcept;
+  Vector3 other_displacement(const SurfaceLocation& at) noexcept;
+  bool begin(const ContactSampling::Sample& sample, const Vector3& place, Sample& state) noexcept;
+  bool begin_on_scenery(const Vector3& from, const Vector3& to, const Vector3& direction,
+                        const Vector3& x, Sample& state) noexcept;
+  void describe(int sample, const Vector3& place, Contact& contact) noexcept;
+
+  int object_;
+  int other_;
+  ContactBody body_;
+  const ContactBody* other_body_ = nullptr;
+  const SceneryConfig* scenery_ = nullptr;
+  double radius_ = 0.0;  ///< of a ball about the centre of mass that has the surface at rest [m]
+  double other_radius_ = 0.0;
+  Eigen::AlignedBox3d other_box_;  ///< of its surface at rest, B
+  double depth_;                   ///< that a sample's way begins inside its object [m]
+  double displaced_ = 0.0;         ///< how far surfaces were seen away from rest [m]
+  std::vector<Sample> samples_;
+  struct Candidate {
+    int sample;
+    bool pressed;
+    double depth;  ///< [m]
+    Vector3 place;
+  };
+  std::vector<Candidate> candidates_;
+  std::vector<Contact> found_;
+  int count_ = 0;
+  bool any_pressed_ = false;
+};
+
+}  // namespace irdm

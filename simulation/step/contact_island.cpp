@@ -1,0 +1,139 @@
+#include "simulation/step/contact_island.hpp"
+
+namespace irdm {
+namespace {
+
+// The iteration goes on in the next step from where it was left, so a few sweeps are enough.
+constexpr SolverLimits kLimits{200, 1e-10, 8, 1e-6, 1e-4};
+
+}  // namespace
+
+ContactIsland::ContactIsland(int object_count, int capacity)
+    : problem_(capacity), solver_(capacity), first_(static_cast<std::size_t>(object_count), 0) {
+  sides_.reserve(static_cast<std::size_t>(capacity));
+}
+
+void ContactIsland::collect_sides(int object, std::span<const IslandContact> contacts,
+                                  int first) noexcept {
+  sides_.clear();
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    const BodyContacts::Contact& contact = contacts[c].pair->contact(contacts[c].i);
+    const int row = first + static_cast<int>(c);
+    if (contacts[c].pair->object() == object) {
+      sides_.push_back({row, 1.0, &contact.place, contact.arm});
+    } else if (contacts[c].pair->other() == object) {
+      sides_.push_back({row, -1.0, &contact.other_place, contact.other_arm});
+    }
+  }
+}
+
+// What one object adds to the compliance: of its own contacts, between them and its sides, and
+// between its sides.
+void ContactIsland::add_object(SoftObject& object, const PatchCompliance& compliance, int first,
+                               std::span<const Side> sides) noexcept {
+  const Matrix3 Q = object.motion().halfway.toRotationMatrix();
+  const ContactProblem& own = object.problem();
+  const RigidMobility mobility = object.rigid().mobility();
+  for (int a = 0; a < own.count(); ++a) {
+    for (int b = 0; b < own.count(); ++b) {
+      problem_.elastic(first + a, first + b) = Q * own.compliance(a, b) * Q.transpose();
+    }
+    for (const Side& side : sides) {
+      const Matrix3 shared =
+          side.sign * Q *
+          (object.compliance_at(a, *side.place) + mobility.between(own.contact(a).arm, side.arm)) *
+          Q.transpose();
+      problem_.elastic(first + a, side.row) += shared;
+      problem_.elastic(side.row, first + a) += shared.transpose();
+    }
+  }
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    for (std::size_t j = 0; j <= i; ++j) {
+      const Side& to = sides[i];
+      const Side& from = sides[j];
+      const Matrix3 shared =
+          (to.sign * from.sign) * Q *
+          (compliance.between(*to.place, *from.place) + mobility.between(to.arm, from.arm)) *
+          Q.transpose();
+      problem_.elastic(to.row, from.row) += shared;
+      if (i != j) problem_.elastic(from.row, to.row) += shared.transpose();
+    }
+  }
+}
+
+// The own contacts' solution, and what the contacts between bodies do to them.
+void ContactIsland::take_back(SoftObject& object, int first,
+                              std::span<const Side> sides) noexcept {
+  const Matrix3 to_body = object.motion().halfway.toRotationMatrix().transpose();
+  const RigidMobility mobility = object.rigid().mobility();
+  Vector3 push = Vector3::Zero();
+  Vector3 turn = Vector3::Zero();
+  for (const Side& side : sides) {
+    const Vector3 force = side.sign * (to_body * problem_.contact(side.row).force);
+    push += force;
+    turn += side.arm.cross(force);
+  }
+  ContactProblem& own = object.problem();
+  for (int a = 0; a < own.count(); ++a) {
+    const ContactConstraint& solved = problem_.contact(first + a);
+    ContactConstraint& contact = own.contact(a);
+    contact.force = to_body * solved.force;
+    contact.slip = to_body * solved.slip;
+    contact.mode = solved.mode;
+    contact.friction = solved.friction;
+    Vector3 moved = Vector3::Zero();
+    for (const Side& side : sides) {
+      moved += problem_.elastic(first + a, side.row) * problem_.contact(side.row).force;
+    }
+    moved = to_body * moved;
+    contact.gap -= moved;
+    contact.elsewhere =
+        moved - (mobility.translation * push - contact.arm.cross(mobility.rotation * turn));
+  }
+}
+
+ContactSolution ContactIsland::solve(std::span<SoftObject* const> objects,
+                                     std::span<const int> members,
+                                     std::span<IslandContact> contacts) noexcept {
+  int rows = 0;
+  for (const int member : members) {
+    first_[static_cast<std::size_t>(member)] = rows;
+    rows += objects[static_cast<std::size_t>(member)]->problem().count();
+  }
+  const int first_between = rows;
+  rows += static_cast<int>(contacts.size());
+  problem_.begin(rows);
+  problem_.rigid = {};
+  problem_.clear_elastic();
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    contacts[c].pair->pose(contacts[c].i, contacts[c].friction,
+                           problem_.contact(first_between + static_cast<int>(c)));
+  }
+  for (const int member : members) {
+    SoftObject& object = *objects[static_cast<std::size_t>(member)];
+    const int first = first_[static_cast<std::size_t>(member)];
+    const Matrix3 Q = object.motion().halfway.toRotationMatrix();
+    for (int a = 0; a < object.problem().count(); ++a) {
+      ContactConstraint& posed = problem_.contact(first + a);
+      posed = object.problem().contact(a);
+      posed.normal = Q * posed.normal;
+      posed.gap = Q * posed.gap;
+      posed.force = Q * posed.force;
+      posed.arm.setZero();
+    }
+    collect_sides(member, contacts, first_between);
+    add_object(object, object.contact_compliance(), first, sides_);
+  }
+  const ContactSolution solution = solver_.solve(problem_, kLimits);
+  for (const int member : members) {
+    collect_sides(member, contacts, first_between);
+    take_back(*objects[static_cast<std::size_t>(member)],
+              first_[static_cast<std::size_t>(member)], sides_);
+  }
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    contacts[c].solved = problem_.contact(first_between + static_cast<int>(c));
+  }
+  return solution;
+}
+
+}  // namespace irdm

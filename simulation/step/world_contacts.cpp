@@ -1,0 +1,199 @@
+#include "simulation/step/world_contacts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+
+#include "common/error.hpp"
+
+namespace irdm {
+namespace {
+
+// Bodies may be inside one another by so much at the start [m]: what rounding and a rest position
+// that was computed by hand make.
+constexpr double kDeepestOverlap = 5e-4;
+
+// Of two surfaces: the geometric mean of their coefficients.
+double mixed(double a, double b) noexcept {
+  return a == 0.0 || b == 0.0 ? 0.0 : std::sqrt(a * b);
+}
+
+Friction mixed(const Friction& a, const Friction& b) noexcept {
+  return {mixed(a.static_, b.static_), mixed(a.kinetic, b.kinetic)};
+}
+
+std::string object_name(int i) {
+  return "object " + std::to_string(i + 1);
+}
+
+}  // namespace
+
+WorldContacts::WorldContacts(const SimulationConfig& config,
+                             const std::vector<std::unique_ptr<SoftObject>>& objects)
+    : scenery_(config.scenery), leader_(objects.size(), 0) {
+  for (const auto& object : objects) objects_.push_back(object.get());
+  for (SoftObject* const object : objects_) {
+    const Shape& shape = shape_of(*object, config.contact_samples);
+    object->set_contact_shape(*shape.sampling, *shape.compliance);
+    bodies_.push_back({*shape.sampling, *shape.compliance, object->surface(),
+                       object->deformed_surface(), object->motion()});
+  }
+  add_pairs(config);
+  int capacity = kMaxBodyContacts;
+  for (SoftObject* const object : objects_) capacity += object->problem().capacity();
+  island_ = std::make_unique<ContactIsland>(static_cast<int>(objects_.size()), capacity);
+  members_.reserve(objects_.size());
+  contacts_.reserve(kMaxBodyContacts);
+  solved_.reserve(kMaxBodyContacts);
+  refuse_overlaps(config);
+}
+
+const WorldContacts::Shape& WorldContacts::shape_of(SoftObject& object, int samples) {
+  for (const Shape& shape : shapes_) {
+    if (shape.model == &object.model()) return shape;
+  }
+  Shape shape{&object.model(), std::make_unique<ContactSampling>(object.surface(), samples), {}};
+  shape.compliance = std::make_unique<PatchCompliance>(object.model(), *shape.sampling);
+  shapes_.push_back(std::move(shape));
+  return shapes_.back();
+}
+
+// Of two objects the one with the finer sampling gives the samples.
+void WorldContacts::add_pairs(const SimulationConfig& config) {
+  const int count = static_cast<int>(objects_.size());
+  for (int a = 0; a < count; ++a) {
+    const ContactBody& one = bodies_[static_cast<std::size_t>(a)];
+    for (int b = a + 1; b < count; ++b) {
+      const ContactBody& two = bodies_[static_cast<std::size_t>(b)];
+      if (!objects_[static_cast<std::size_t>(a)]->rigid().moves() &&
+          !objects_[static_cast<std::size_t>(b)]->rigid().moves() && one.compliance.rigid() &&
+          two.compliance.rigid()) {
+        continue;
+      }
+      if (two.sampling.spacing() < one.sampling.spacing()) {
+        pairs_.emplace_back(b, two, a, one);
+      } else {
+        pairs_.emplace_back(a, one, b, two);
+      }
+    }
+    for (std::size_t s = 0; s < config.scenery.size(); ++s) {
+      if (!objects_[static_cast<std::size_t>(a)]->rigid().moves()) continue;
+      pairs_.emplace_back(a, one, static_cast<int>(s), scenery_[s]);
+    }
+  }
+}
+
+void WorldContacts::refuse_overlaps(const SimulationConfig& config) {
+  const std::vector<StylusCommand> nobody(config.styluses.size());
+  auto record = std::make_unique<ObjectRecord>();
+  for (SoftObject* const object : objects_) object->begin(nobody, *record);
+  for (BodyContacts& pair : pairs_) {
+    const double depth = pair.initial_depth();
+    if (depth <= kDeepestOverlap) continue;
+    const std::string other =
+        pair.other() >= 0
+            ? object_name(pair.other())
+            : "scenery \"" + scenery_[static_cast<std::size_t>(-1 - pair.other())].name + "\"";
+    throw Error("scene",
+                object_name(pair.object()) + " and " + other + " are inside one another by " +
+                    std::to_string(1000.0 * depth) + " mm at the start",
+                "move them apart, or set contact.between_objects = false");
+  }
+  for (SoftObject* const object : objects_) object->reset();
+}
+
+void WorldContacts::reset() noexcept {
+  for (BodyContacts& pair : pairs_) pair.reset();
+}
+
+Friction WorldContacts::friction(const BodyContacts& pair) const noexcept {
+  const Friction& own = objects_[static_cast<std::size_t>(pair.object())]->friction();
+  if (pair.other() < 0) {
+    return scenery_[static_cast<std::size_t>(-1 - pair.other())].friction;
+  }
+  return mixed(own, objects_[static_cast<std::size_t>(pair.other())]->friction());
+}
+
+void WorldContacts::find_islands() noexcept {
+  std::iota(leader_.begin(), leader_.end(), 0);
+  for (const BodyContacts& pair : pairs_) {
+    if (pair.count() == 0 || pair.other() < 0) continue;
+    const int a = leader_[static_cast<std::size_t>(pair.object())];
+    const int b = leader_[static_cast<std::size_t>(pair.other())];
+    std::replace(leader_.begin(), leader_.end(), std::max(a, b), std::min(a, b));
+  }
+}
+
+void WorldContacts::solve_island(int leader, StepRecord& record) noexcept {
+  members_.clear();
+  for (int i = 0; i < static_cast<int>(objects_.size()); ++i) {
+    if (leader_[static_cast<std::size_t>(i)] == leader) members_.push_back(i);
+  }
+  contacts_.clear();
+  for (BodyContacts& pair : pairs_) {
+    if (leader_[static_cast<std::size_t>(pair.object())] != leader) continue;
+    for (int i = 0; i < pair.count(); ++i) {
+      if (contacts_.size() + solved_.size() == kMaxBodyContacts) break;
+      contacts_.push_back({&pair, i, friction(pair)});
+    }
+  }
+  if (contacts_.empty()) {
+    for (const int i : members_) {
+      const auto index = static_cast<std::size_t>(i);
+      objects_[index]->solve(record.object[index]);
+    }
+    return;
+  }
+  const ContactSolution solution = island_->solve(objects_, members_, contacts_);
+  for (const int i : members_) {
+    const auto index = static_cast<std::size_t>(i);
+    objects_[index]->accept(solution, record.object[index]);
+  }
+  solved_.insert(solved_.end(), contacts_.begin(), contacts_.end());
+}
+
+// The forces act where the sample is half-way through the step, on both: so angular momentum is
+// kept to rounding.
+void WorldContacts::apply(std::span<const IslandContact> contacts, StepRecord& record) noexcept {
+  std::array<Vector3, kMaxObjects> sums;
+  std::array<Vector3, kMaxObjects> halfway;
+  sums.fill(Vector3::Zero());
+  for (const IslandContact& contact : contacts) {
+    sums[static_cast<std::size_t>(contact.pair->object())] += contact.solved.force;
+    if (contact.pair->other() < 0) continue;
+    sums[static_cast<std::size_t>(contact.pair->other())] -= contact.solved.force;
+  }
+  for (std::size_t i = 0; i < objects_.size(); ++i) {
+    halfway[i] = objects_[i]->halfway_position(sums[i]);
+  }
+  record.body_contact_count = 0;
+  for (const IslandContact& contact : contacts) {
+    if (contact.solved.mode == ContactMode::kOpen) continue;
+    BodyContactRecord& out =
+        record.body_contact[static_cast<std::size_t>(record.body_contact_count++)];
+    contact.pair->write(contact.i, contact.solved, out);
+    const auto object = static_cast<std::size_t>(out.object);
+    const Vector3 arm =
+        objects_[object]->motion().halfway * contact.pair->contact(contact.i).arm;
+    out.position = halfway[object] + arm;
+    objects_[object]->touch(out, true, arm);
+    if (out.other < 0) continue;
+    const auto other = static_cast<std::size_t>(out.other);
+    objects_[other]->touch(out, false, out.position - halfway[other]);
+  }
+}
+
+void WorldContacts::solve(StepRecord& record) noexcept {
+  for (BodyContacts& pair : pairs_) pair.find();
+  find_islands();
+  solved_.clear();
+  for (int i = 0; i < static_cast<int>(objects_.size()); ++i) {
+    if (leader_[static_cast<std::size_t>(i)] == i) solve_island(i, record);
+  }
+  for (std::size_t i = 0; i < objects_.size(); ++i) objects_[i]->write(record.object[i]);
+  apply(solved_, record);
+  for (const IslandContact& contact : solved_) contact.pair->update(contact.i, contact.solved);
+}
+
+}  // namespace irdm

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "simulation/step/body_contacts.hpp"
+#include "simulation/step/contact_island.hpp"
+#include "simulation/step/simulation_config.hpp"
+#include "simulation/step/soft_object.hpp"
+
+namespace irdm {
+
+/// Contacts of a scene's objects with each other and with scenery. In each step objects that touch
+/// form islands, each of which is one contact problem. Real-time safe after construction; one
+/// thread.
+class WorldContacts {
+ public:
+  /// Throws Error when an object is too large to touch others, or bodies are inside one another at
+  /// the start.
+  /// @param objects, config must outlive this
+  WorldContacts(const SimulationConfig& config,
+                const std::vector<std::unique_ptr<SoftObject>>& objects);
+
+  void reset() noexcept;
+  /// After SoftObject::begin() of all objects: solves their problems and writes the records, up to
+  /// SoftObject::finish().
+  void solve(StepRecord& record) noexcept;
+
+ private:
+  /// What all objects of a model share.
+  struct Shape {
+    const Model* model;
+    std::unique_ptr<ContactSampling> sampling;
+    std::unique_ptr<PatchCompliance> compliance;
+  };
+  const Shape& shape_of(SoftObject& object, int samples);
+  void add_pairs(const SimulationConfig& config);
+  void refuse_overlaps(const SimulationConfig& config);
+  void find_islands() noexcept;
+  void solve_island(int leader, StepRecord& record) noexcept;
+  void apply(std::span<const IslandContact> contacts, StepRecord& record) noexcept;
+  Friction friction(const BodyContacts& pair) const noexcept;
+
+  std::vector<SoftObject*> objects_;
+  std::vector<SceneryConfig> scenery_;
+  std::vector<Shape> shapes_;
+  std::vector<ContactBody> bodies_;  ///< of each object
+  std::vector<BodyContacts> pairs_;
+  std::vector<int> leader_;  ///< of each object: the least number in its island
+  std::unique_ptr<ContactIsland> island_;
+  std::vector<int> members_;
+  std::vector<IslandContact> contacts_;
+  std::vector<IslandContact> solved_;  ///< of the step, all islands
+};
+
+}  // namespace irdm

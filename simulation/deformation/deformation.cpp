@@ -30,8 +30,7 @@ Deformation::Deformation(const SimulationConfig& config, double tolerance) {
     follow_gravity(*follower.engine, object, config.gravity);
     follower.tolerance = tolerance * object.model->mesh.nodes.rowwise().norm().maxCoeff();
     follower.surface = std::make_unique<RestSurface>(object.model->mesh);
-    follower.forces =
-        std::make_unique<RecordedForces>(config, objects_.size(), *follower.surface);
+    follower.forces = std::make_unique<RecordedForces>(config, objects_.size(), *follower.surface);
     objects_.push_back(std::move(follower));
   }
 }
@@ -42,8 +41,7 @@ void Deformation::advance(const StepRecord& record) {
     if (objects_[i].has_inertial_loading && loading != nullptr) {
       loading->set_angular_velocity(record.object[i].spin);
     }
-    objects_[i].engine->advance(
-        objects_[i].forces->of(record.object[i], record.body_contacts()));
+    objects_[i].engine->advance(objects_[i].forces->of(record.object[i], record.body_contacts()));
   }
 }
 

@@ -95,8 +95,7 @@ Vector3 BodyContacts::other_displacement(const SurfaceLocation& at) noexcept {
   for (std::size_t i = 0; i < 3; ++i) {
     if (at.point.weights[i] == 0.0) continue;
     const int site = other_body_->sampling.sites(at.triangle)[i];
-    u += at.point.weights[i] *
-         mean(other_body_->sampling.patch(site), [&](int node) -> Vector3 {
+    u += at.point.weights[i] * mean(other_body_->sampling.patch(site), [&](int node) -> Vector3 {
            return other_body_->surface.node(node) - other_body_->rest.node(node);
          });
   }
@@ -112,8 +111,9 @@ bool BodyContacts::begin_on_scenery(const Vector3& from, const Vector3& to,
   const SceneryHit hit = closest(*scenery_, x);
   const bool same_side = hit.normal.dot(direction) <= kFacing;
   state.normal = same_side ? hit.normal : entry->normal;
-  state.anchor_W = same_side ? hit.position
-                             : Vector3(x - (x - entry->position).dot(entry->normal) * entry->normal);
+  state.anchor_W = same_side
+                       ? hit.position
+                       : Vector3(x - (x - entry->position).dot(entry->normal) * entry->normal);
   return true;
 }
 
@@ -130,8 +130,7 @@ bool BodyContacts::begin(const ContactSampling::Sample& sample, const Vector3& p
   const FreeMotion& there = other_body_->motion;
   const Vector3 y = there.to_body(x);
   const Vector3 direction = there.orientation.conjugate() * outward;
-  const Vector3 y_start =
-      there.start.orientation.conjugate() * (start - there.start.position);
+  const Vector3 y_start = there.start.orientation.conjugate() * (start - there.start.position);
   const SurfaceLocation nearest = other_body_->rest.closest(y);
   const SurfaceHit near{nearest.triangle, nearest.point, nearest.position, 0.0};
   const std::optional<SurfaceHit> hit = other_body_->surface.first_crossing(
@@ -148,8 +147,7 @@ bool BodyContacts::begin(const ContactSampling::Sample& sample, const Vector3& p
 
 void BodyContacts::describe(int sample, const Vector3& place, Contact& contact) noexcept {
   const Sample& state = samples_[static_cast<std::size_t>(sample)];
-  const ContactSampling::Sample& shape =
-      body_.sampling.samples()[static_cast<std::size_t>(sample)];
+  const ContactSampling::Sample& shape = body_.sampling.samples()[static_cast<std::size_t>(sample)];
   contact.sample = sample;
   contact.place = {{shape.row, 0, 0}, {1.0, 0.0, 0.0}, 1};
   contact.arm = place;
@@ -162,8 +160,7 @@ void BodyContacts::describe(int sample, const Vector3& place, Contact& contact) 
   }
   contact.other_place = {other_body_->sampling.sites(state.anchor.triangle),
                          state.anchor.point.weights, 3};
-  contact.other_arm =
-      state.anchor.position + other_displacement(state.anchor) + state.offset;
+  contact.other_arm = state.anchor.position + other_displacement(state.anchor) + state.offset;
   contact.normal = other_body_->motion.orientation * state.normal;
   contact.gap = other_body_->motion.to_world(contact.other_arm) - x;
 }
@@ -252,9 +249,10 @@ void BodyContacts::update(int i, const ContactConstraint& solved) noexcept {
   state.anchor = other_body_->rest.straight_on(state.anchor, way, way.norm());
   state.normal = other_body_->sampling.normal(state.anchor);
   state.offset = sideways(state.offset, state.normal);
-  const Vector3 outward = there.orientation.conjugate() *
-                          (body_.motion.orientation *
-                           body_.sampling.samples()[static_cast<std::size_t>(contact.sample)].normal);
+  const Vector3 outward =
+      there.orientation.conjugate() *
+      (body_.motion.orientation *
+       body_.sampling.samples()[static_cast<std::size_t>(contact.sample)].normal);
   if (state.normal.dot(outward) > kFacing) state.contact.end();
 }
 

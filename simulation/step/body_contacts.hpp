@@ -37,9 +37,9 @@ class BodyContacts {
   /// A contact of this step.
   struct Contact {
     int sample = 0;
-    PatchCompliance::Place place;        ///< of the object
-    PatchCompliance::Place other_place;  ///< of the other; count 0: scenery
-    Vector3 arm = Vector3::Zero();       ///< of the sample without force [m], B of the object
+    PatchCompliance::Place place;         ///< of the object
+    PatchCompliance::Place other_place;   ///< of the other; count 0: scenery
+    Vector3 arm = Vector3::Zero();        ///< of the sample without force [m], B of the object
     Vector3 other_arm = Vector3::Zero();  ///< of where it is wanted [m], B of the other
     Vector3 gap = Vector3::Zero();        ///< from the sample to where it is wanted [m], W
     Vector3 normal = Vector3::Zero();     ///< outward of the other, unit, W
@@ -75,11 +75,11 @@ class BodyContacts {
  private:
   struct Sample {
     PersistentContact contact;
-    SurfaceLocation anchor;             ///< on the other, at rest
-    Vector3 offset = Vector3::Zero();   ///< from it to the anchor [m], B of the other
+    SurfaceLocation anchor;              ///< on the other, at rest
+    Vector3 offset = Vector3::Zero();    ///< from it to the anchor [m], B of the other
     Vector3 anchor_W = Vector3::Zero();  ///< on scenery [m]
-    Vector3 normal = Vector3::Zero();   ///< outward of the other, unit, B of the other or W
-    Vector3 force = Vector3::Zero();    ///< of the last step [N], B of the object
+    Vector3 normal = Vector3::Zero();    ///< outward of the other, unit, B of the other or W
+    Vector3 force = Vector3::Zero();     ///< of the last step [N], B of the object
   };
 
   bool near() noexcept;

@@ -138,9 +138,9 @@ int SoftObject::find_contacts(std::span<const StylusCommand> commands) noexcept 
 double SoftObject::work_of_touch(const RigidState& before) const noexcept {
   if (touched_as_.sum.isZero(0.0) && touched_as_.arms.isZero(0.0)) return 0.0;
   const Quaternion& halfway = body_.motion().halfway;
-  const Vector3 turn = 0.5 * model().dt *
-                       (body_.rigid().angular_velocity(before) +
-                        body_.rigid().angular_velocity(state()));
+  const Vector3 turn =
+      0.5 * model().dt *
+      (body_.rigid().angular_velocity(before) + body_.rigid().angular_velocity(state()));
   return touched_as_.sum.dot(state().position - before.position) +
          touched_as_.torque(halfway).dot(turn);
 }

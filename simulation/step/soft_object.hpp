@@ -66,9 +66,9 @@ class SoftObject {
   void set(const Vector3& gravity, const ObjectSettings& settings) noexcept;
 
   /// What a bridge needs to solve the contact of stylus s by itself in the coming steps. The forces
-  /// of the floor and of other bodies are taken to stay as they were in the last step, those of other styluses as they
-  /// were on average over the last while, but for the strongest, which answers (AssemblyHorizon).
-  /// Between steps.
+  /// of the floor and of other bodies are taken to stay as they were in the last step, those of
+  /// other styluses as they were on average over the last while, but for the strongest, which
+  /// answers (AssemblyHorizon). Between steps.
   /// @param tip where the stylus was in the last step [m], W
   /// @param horizon steps to predict, 1 to kMaxHorizon
   /// @param budget of predictions that take long: made anew, or with another contact in them;

@@ -174,8 +174,7 @@ void WorldContacts::apply(std::span<const IslandContact> contacts, StepRecord& r
         record.body_contact[static_cast<std::size_t>(record.body_contact_count++)];
     contact.pair->write(contact.i, contact.solved, out);
     const auto object = static_cast<std::size_t>(out.object);
-    const Vector3 arm =
-        objects_[object]->motion().halfway * contact.pair->contact(contact.i).arm;
+    const Vector3 arm = objects_[object]->motion().halfway * contact.pair->contact(contact.i).arm;
     out.position = halfway[object] + arm;
     objects_[object]->touch(out, true, arm);
     if (out.other < 0) continue;

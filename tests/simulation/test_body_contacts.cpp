@@ -1,65 +1,273 @@
 // Objects that touch each other and scenery.
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <iostream>
-#include <map>
+#include <numbers>
 
 #include "simulation/deformation/deformation.hpp"
-#include "simulation/step/simulation.hpp"
-#include "tests/simulation/pressed_cube.hpp"
-#include "tests/support/fem_cube.hpp"
+#include "tests/simulation/touching_cubes.hpp"
 
 using namespace irdm;
 using namespace irdm::test;
 
 namespace {
 
-// Cubes one on the other on a plane.
-SimulationConfig stacked(int count, const FemCube& cube, const Friction& friction) {
+constexpr int kPlane = -1;
+
+// Two cubes in free space that fly at each other, a little aside, and turn.
+SimulationConfig colliding(const FemCube& cube, double speed) {
   SimulationConfig config;
-  config.gravity = Vector3(0, -kGravity, 0);
-  config.objects.resize(static_cast<std::size_t>(count));
-  for (int i = 0; i < count; ++i) {
-    SimulationObject& object = config.objects[static_cast<std::size_t>(i)];
-    object.model = fem_cube(cube);
-    object.friction = friction;
-    object.position = Vector3(0, (2 * i + 1) * kHalfEdge, 0);
-    object.damping = {1.0, 1.0};
-  }
-  SceneryConfig plane;
-  plane.shape = PlaneShape{};
-  plane.friction = friction;
-  config.scenery = {plane};
+  config.objects.resize(2);
+  for (SimulationObject& object : config.objects) object.model = fem_cube(cube);
+  config.objects[0].position = Vector3(-0.08, 0.0, 0.0);
+  config.objects[1].position = Vector3(0.08, 0.02, 0.01);
+  config.objects[0].velocity = Vector3(speed, 0, 0);
+  config.objects[1].velocity = Vector3(-speed, 0, 0);
+  config.objects[0].angular_velocity = Vector3(1.0, 2.0, 3.0);
   return config;
 }
 
-void step(Simulation& simulation, StepRecord& record) {
-  const StylusCommand nobody;
-  simulation.step({&nobody, 1}, record);
+struct Momentum {
+  Vector3 linear = Vector3::Zero();   ///< [kg m/s]
+  Vector3 angular = Vector3::Zero();  ///< about the origin [kg m^2/s]
+};
+
+Momentum momentum(const Simulation& simulation) {
+  Momentum sum;
+  for (int i = 0; i < simulation.object_count(); ++i) {
+    const RigidState& state = simulation.object(i).state();
+    const Vector3 linear = simulation.object(i).model().body.mass * state.velocity;
+    sum.linear += linear;
+    sum.angular += state.position.cross(linear) + state.angular_momentum;
+  }
+  return sum;
 }
 
 }  // namespace
 
-TEST_CASE("bodies: stacked") {
-  const SimulationConfig config = stacked(3, {.cells = 4, .youngs_modulus = 2e4}, {0.6, 0.5});
-  Simulation simulation(config);
-  auto record = std::make_unique<StepRecord>();
-  for (int k = 0; k < 3000; ++k) {
-    step(simulation, *record);
-    if (k % 200 != 0) continue;
-    std::map<std::pair<int, int>, Vector3> sums;
-    for (const auto& c : record->body_contacts()) {
-      auto [it, fresh] = sums.try_emplace({c.object, c.other}, Vector3::Zero());
-      it->second += c.force;
+TEST_CASE("bodies: three cubes at rest carry the weight above each, and do not drift", "[slow]") {
+  for (const double youngs_modulus : {2e4, 1e6}) {
+    const SimulationConfig config =
+        stacked(3, {.cells = 4, .youngs_modulus = youngs_modulus}, {0.6, 0.5});
+    Simulation simulation(config);
+    const double weight = config.objects[0].model->body.mass * kGravity;
+    const auto record = std::make_unique<StepRecord>();
+    std::array<Vector3, 3> settled;
+    double drift = 0.0;
+    double off = 0.0;
+    for (int k = 0; k < 35'000; ++k) {
+      step_alone(simulation, *record);
+      if (k < 5'000) continue;
+      for (int i = 0; i < 3; ++i) {
+        const auto index = static_cast<std::size_t>(i);
+        if (k == 5'000) settled[index] = record->object[index].position;
+        drift = std::max(drift, (record->object[index].position - settled[index]).norm());
+        const Vector3 force = force_between(*record, i, i - 1);
+        off = std::max(off, (force - Vector3(0, (3 - i) * weight, 0)).norm() / weight);
+      }
     }
-    std::cout << k << " n " << record->body_contact_count << " sweeps " << record->object[0].sweeps
-              << " res " << record->object[0].residual << " solved " << record->object[0].solved;
-    for (const auto& [key, force] : sums) {
-      std::cout << " (" << key.first << "," << key.second << ") " << force.transpose();
-    }
-    for (int i = 0; i < 3; ++i)
-      std::cout << " y" << i << " " << record->object[i].position.transpose();
-    std::cout << "\n";
+    INFO("E " << youngs_modulus << ": drift in 60 s " << drift << " m, force off by " << off
+              << " of a cube's weight");
+    CHECK(drift < 1e-5);
+    CHECK(off < 1e-3);
   }
-  std::cout << "weight " << config.objects[0].model->body.mass * kGravity << "\n";
+}
+
+TEST_CASE("bodies: a soft cube on a soft cube slips from the friction angle on") {
+  const double mu = 0.2;
+  for (const double off : {-0.5, 0.5}) {
+    const double tilt = std::atan(mu) + off * std::numbers::pi / 180.0;
+    SimulationConfig config = stacked(2, {.cells = 4, .youngs_modulus = 2e5}, {mu, mu});
+    config.scenery[0].friction = {2.0, 2.0};
+    Simulation simulation(config);
+    const auto record = std::make_unique<StepRecord>();
+    const auto way = [&](int steps) {
+      const double before = record->object[1].position.x() - record->object[0].position.x();
+      for (int k = 0; k < steps; ++k) step_alone(simulation, *record);
+      return record->object[1].position.x() - record->object[0].position.x() - before;
+    };
+    way(1000);
+    // Tilted gradually: a sudden change would make the cubes rock.
+    Settings settings = simulation.settings();
+    for (int k = 1; k <= 500; ++k) {
+      const double now = tilt * k / 500.0;
+      settings.gravity = kGravity * Vector3(std::sin(now), -std::cos(now), 0);
+      simulation.set(settings);
+      way(1);
+    }
+    way(50);
+    const double early = way(50);
+    way(100);
+    const double late = way(50);
+    INFO(off << " degrees: " << early << " m in 0.1 s, " << late << " m in 0.1 s 0.3 s later");
+    if (off < 0) CHECK(std::abs(early) + std::abs(late) < 1e-6);
+    if (off < 0) continue;
+    // v' = p - v with p = g (sin - mu cos), the damping being 1/s: p as an angle.
+    const double speed = early / 0.1;
+    const double pull = speed + (late / 0.1 - speed) / (1.0 - std::exp(-0.3));
+    const double formula = kGravity * (std::sin(tilt) - mu * std::cos(tilt));
+    const double wrong = (pull - formula) / kGravity * 180.0 / std::numbers::pi;
+    INFO("as if the slope were steeper by " << wrong << " degrees");
+    CHECK(std::abs(wrong) < 0.15);
+  }
+}
+
+TEST_CASE("bodies: momentum and angular momentum of a world stay in each step to 1e-10") {
+  for (const double youngs_modulus : {2e3, 1e6}) {
+    const SimulationConfig config =
+        colliding({.cells = 3, .youngs_modulus = youngs_modulus, .dt = 0.001}, 0.5);
+    Simulation simulation(config);
+    const auto record = std::make_unique<StepRecord>();
+    Momentum before = momentum(simulation);
+    double off = 0.0;
+    double largest = 0.0;
+    int touched = 0;
+    for (int k = 0; k < 300; ++k) {
+      step_alone(simulation, *record);
+      const Momentum after = momentum(simulation);
+      off = std::max(
+          {off, (after.linear - before.linear).norm(), (after.angular - before.angular).norm()});
+      before = after;
+      largest = std::max(largest, force_between(*record, 0, 1).norm());
+      touched += record->body_contact_count > 0 ? 1 : 0;
+    }
+    INFO("E " << youngs_modulus << ": off by " << off << ", largest force " << largest << " N, "
+              << touched << " steps in contact");
+    CHECK(off < 1e-10);
+    CHECK(touched > 5);
+    CHECK(record->object[0].velocity.x() < 0.3);
+  }
+}
+
+TEST_CASE("bodies: a collision makes no energy") {
+  for (const double youngs_modulus : {1e3, 2e4, 1e6}) {
+    for (const double dt : {0.002, 0.001}) {
+      const SimulationConfig config =
+          colliding({.cells = 3, .youngs_modulus = youngs_modulus, .dt = dt}, 0.5);
+      Simulation simulation(config);
+      const auto energy = [&] {
+        double sum = 0.0;
+        for (int i = 0; i < 2; ++i) {
+          const SoftObject& object = simulation.object(i);
+          sum += rigid_energy(object.rigid(), {}, object.state());
+        }
+        return sum;
+      };
+      const double before = energy();
+      const auto record = std::make_unique<StepRecord>();
+      double most = 0.0;
+      for (int k = 0; k * dt < 1.0; ++k) {
+        step_alone(simulation, *record);
+        most = std::max(most, energy());
+      }
+      INFO("E " << youngs_modulus << ", dt " << dt << ": " << before << " J, at most " << most
+                << ", in the end " << energy());
+      CHECK(most < 1.0001 * before);
+      CHECK(energy() < before);
+    }
+  }
+}
+
+TEST_CASE("bodies: a fast one does not pass through another, nor through scenery") {
+  for (const double speed : {5.0, 30.0}) {
+    SimulationConfig config = colliding({.cells = 3, .youngs_modulus = 2e5}, speed);
+    config.objects[0].angular_velocity.setZero();
+    SceneryConfig ball;
+    ball.shape = SphereShape{0.02};
+    ball.position = Vector3(-1.0, 0, 0);
+    config.scenery = {ball};
+    Simulation simulation(config);
+    const auto record = std::make_unique<StepRecord>();
+    for (int k = 0; k < 50; ++k) step_alone(simulation, *record);
+    INFO(speed << " m/s: " << record->object[0].position.transpose() << ", "
+               << record->object[1].position.transpose());
+    CHECK(record->object[0].position.x() < record->object[1].position.x());
+  }
+  SimulationConfig config = stacked(1, {.cells = 3, .youngs_modulus = 2e5}, {0.5, 0.5});
+  config.objects[0].position.y() = 0.3;
+  config.objects[0].velocity = Vector3(0, -60.0, 0);
+  config.scenery[0].shape = BoxShape{Vector3(1.0, 0.01, 1.0)};
+  Simulation simulation(config);
+  const auto record = std::make_unique<StepRecord>();
+  for (int k = 0; k < 200; ++k) step_alone(simulation, *record);
+  CHECK(record->object[0].position.y() > 0.0);
+}
+
+TEST_CASE("bodies: the same commands give the same bits, after a reset as well") {
+  const SimulationConfig config = stacked(2, {.cells = 3, .youngs_modulus = 2e4}, {0.5, 0.4});
+  Simulation first(config);
+  Simulation second(config);
+  const auto one = std::make_unique<StepRecord>();
+  const auto two = std::make_unique<StepRecord>();
+  for (int k = 0; k < 150; ++k) step_alone(second, *two);
+  second.reset();
+  for (int k = 0; k < 200; ++k) {
+    step_alone(first, *one);
+    step_alone(second, *two);
+    REQUIRE(one->body_contact_count == two->body_contact_count);
+    for (int i = 0; i < 2; ++i) {
+      const auto index = static_cast<std::size_t>(i);
+      REQUIRE(one->object[index].position == two->object[index].position);
+      REQUIRE(one->object[index].orientation.coeffs() == two->object[index].orientation.coeffs());
+    }
+    for (std::size_t c = 0; c < one->body_contacts().size(); ++c) {
+      REQUIRE(one->body_contact[c].force == two->body_contact[c].force);
+    }
+  }
+}
+
+TEST_CASE("bodies: what is shown of them is what the step has") {
+  const SimulationConfig config = stacked(2, {.cells = 3, .youngs_modulus = 2e3}, {0.5, 0.4});
+  Simulation simulation(config);
+  Deformation deformation(config);
+  SurfaceFrame frame = rest_frame(config);
+  const auto record = std::make_unique<StepRecord>();
+  Points u;
+  for (int k = 0; k < 300; ++k) {
+    step_alone(simulation, *record);
+    deformation.follow(*record);
+  }
+  deformation.compute(frame);
+  for (int i = 0; i < 2; ++i) {
+    simulation.object(i).engine().displacement(u);
+    CHECK(u.norm() > 1e-3);
+    CHECK((frame.objects[static_cast<std::size_t>(i)].displacement - u).norm() < 1e-12);
+  }
+}
+
+TEST_CASE("bodies: a stylus that presses on a stack feels all of it") {
+  SimulationConfig config = stacked(2, {.cells = 4, .youngs_modulus = 5e3}, {0.6, 0.5});
+  config.styluses = {{0.02, 2000.0, 0.0}};
+  Simulation simulation(config);
+  const double weight = config.objects[0].model->body.mass * kGravity;
+  const auto record = std::make_unique<StepRecord>();
+  for (int k = 0; k < 1500; ++k) step_alone(simulation, *record);
+  const double top = record->object[1].position.y() + kHalfEdge;
+  StylusCommand command;
+  for (int k = 0; k < 2500; ++k) {
+    command = at_tip(Vector3(0, top + 0.005 - 0.015 * std::min(1.0, k / 500.0), 0));
+    simulation.step({&command, 1}, *record);
+  }
+  const Vector3 hand = record->stylus[0].force;
+  INFO("hand " << hand.transpose() << " N, between the cubes "
+               << force_between(*record, 1, 0).transpose() << ", plane "
+               << force_between(*record, 0, kPlane).transpose());
+  CHECK(hand.y() > 0.5);
+  CHECK(force_between(*record, 1, 0).y() == Approx(weight + hand.y()).epsilon(1e-3));
+  CHECK(force_between(*record, 0, kPlane).y() == Approx(2 * weight + hand.y()).epsilon(1e-3));
+  // Without the coupling spring the tip is where the surface is.
+  CHECK((record->stylus[0].proxy - command.tip).norm() ==
+        Approx(hand.norm() / 2000.0).epsilon(0.02));
+}
+
+TEST_CASE("bodies: those that begin inside one another are refused, by name and depth") {
+  SimulationConfig config = stacked(2, {.cells = 3}, {0.5, 0.5});
+  config.objects[1].position.y() -= 0.01;
+  CHECK_THROWS_WITH(Simulation(config), Catch::Contains("object 1 and object 2") &&
+                                            Catch::Contains("10.0") && Catch::Contains("apart"));
+  config.objects[1].position.y() += 0.02;
+  config.scenery[0].position.y() = 0.003;
+  CHECK_THROWS_WITH(Simulation(config),
+                    Catch::Contains("scenery \"plane\"") && Catch::Contains("3.0"));
+  config.between_objects = false;
+  CHECK_NOTHROW(Simulation(config));
 }

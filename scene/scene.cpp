@@ -12,14 +12,12 @@
 #include "common/config/range.hpp"
 #include "common/error.hpp"
 #include "common/model/model_file.hpp"
+#include "scene/common_keys.hpp"
+#include "scene/scenery_keys.hpp"
 #include "simulation/step/settings.hpp"
 
 namespace irdm {
 namespace {
-
-Vector3 read_vector(TomlTable& table, const std::string& key, const Range& range) {
-  return Vector3(table.numbers(key, 3, range, {0.0, 0.0, 0.0}).data());
-}
 
 ServerConfig read_server(TomlTable table, int styluses) {
   ServerConfig config;
@@ -102,29 +100,6 @@ ContactConfig read_contact(TomlTable table) {
   return config;
 }
 
-Quaternion read_orientation(TomlTable& table) {
-  const auto wxyz = table.numbers("orientation", 4, lab::kComponent, {1.0, 0.0, 0.0, 0.0});
-  const Quaternion orientation(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
-  constexpr double kSmallest = 1e-6;
-  if (orientation.norm() < kSmallest) {
-    table.fail("orientation", "has no length",
-               "give a quaternion w, x, y, z, for instance [1, 0, 0, 0]");
-  }
-  return orientation.normalized();
-}
-
-Friction read_friction(TomlTable table, const Friction& fallback) {
-  Friction friction;
-  friction.static_ = table.number("static", lab::kFriction, fallback.static_);
-  friction.kinetic =
-      table.number("kinetic", lab::kFriction, std::min(fallback.kinetic, friction.static_));
-  if (friction.kinetic > friction.static_) {
-    table.fail("kinetic", "is larger than static", "lower it or raise static");
-  }
-  table.finish();
-  return friction;
-}
-
 RigidDamping read_damping(TomlTable table) {
   RigidDamping damping;
   damping.linear = table.number("linear", lab::kDamping, damping.linear);
@@ -147,12 +122,7 @@ std::optional<FloorConfig> read_floor(TomlTable& file) {
   TomlTable table = file.table("floor");
   FloorConfig floor;
   floor.height = table.number("height", lab::kPlace, floor.height);
-  const auto normal = table.numbers("normal", 3, lab::kComponent, {0.0, 1.0, 0.0});
-  floor.normal = Vector3(normal.data());
-  if (floor.normal.norm() < 1e-6) {
-    table.fail("normal", "has no length", "give the direction that is up, for instance [0, 1, 0]");
-  }
-  floor.normal.normalize();
+  floor.normal = read_normal(table);
   floor.friction = read_friction(table.table("friction"), floor.friction);
   table.finish();
   return floor;
@@ -167,23 +137,6 @@ SimulationStylus read_stylus(TomlTable table, const ContactConfig& contact) {
   stylus.max_force = table.number("max_force", between(0.1, kMostAppliedForce), stylus.max_force);
   table.finish();
   return stylus;
-}
-
-// A name becomes the name of a group in the trace file.
-std::string read_name(TomlTable& table, const std::string& fallback) {
-  const std::string name = table.text("name", fallback);
-  const bool printable = std::none_of(name.begin(), name.end(), [](unsigned char letter) {
-    return letter < 0x20 || letter == 0x7F || letter == '/';
-  });
-  if (name.size() > lab::kLongestName) {
-    table.fail("name", "has " + std::to_string(name.size()) + " bytes",
-               "give at most " + std::to_string(lab::kLongestName));
-  }
-  if (name.empty() || name == "." || !printable) {
-    table.fail("name", "cannot name a group of the trace file",
-               "use one or more letters, without '/' and control characters, and not \".\" alone");
-  }
-  return name;
 }
 
 ResponseKind read_engine(TomlTable& table) {
@@ -253,6 +206,16 @@ SceneConfig read_scene(TomlTable file) {
   if (scene.objects.empty()) file.fail("object", "is missing", "add [[object]] with a model");
   if (scene.objects.size() > kMaxObjects) {
     file.fail("object", "appears too often", "use at most " + std::to_string(kMaxObjects));
+  }
+  for (TomlTable& table : file.tables("scenery")) {
+    scene.scenery.push_back(read_scenery(table));
+    if (!names.insert(scene.scenery.back().name).second) {
+      table.fail("name", "is taken: " + in_quotes(scene.scenery.back().name),
+                 "give each object and each scenery a name of its own");
+    }
+  }
+  if (scene.scenery.size() > kMaxScenery) {
+    file.fail("scenery", "appears too often", "use at most " + std::to_string(kMaxScenery));
   }
   file.finish();
   return scene;
@@ -343,6 +306,7 @@ SimulationConfig simulation_config(const SceneConfig& scene, bool viewer_stylus,
   if (viewer_stylus) config.styluses.push_back(scene.viewer.stylus);
   config.floor = scene.floor;
   config.release_time = scene.contact.release_time;
+  config.scenery = scene.scenery;
   return config;
 }
 

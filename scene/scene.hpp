@@ -86,6 +86,7 @@ struct SceneConfig {
   ContactConfig contact;
   std::vector<SimulationStylus> styluses;  ///< [[stylus]], one for every slot
   std::vector<ObjectConfig> objects;       ///< 1..kMaxObjects
+  std::vector<SceneryConfig> scenery;      ///< [[scenery]], at most kMaxScenery
 };
 
 /// Reads and checks a scene. Throws Error with file and line.

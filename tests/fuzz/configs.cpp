@@ -46,6 +46,12 @@ void check_scene(const SceneConfig& scene) {
     expect(object.friction.kinetic <= object.friction.static_, "kinetic <= static");
     expect(object.position.allFinite() && object.velocity.allFinite(), "motion is finite");
   }
+  for (const SceneryConfig& scenery : scene.scenery) {
+    expect_unit(scenery.orientation.norm(), "an orientation has norm 1");
+    expect(scenery.friction.kinetic <= scenery.friction.static_, "kinetic <= static");
+    expect(bounding_radius(scenery.shape) > 0.0, "scenery has a size");
+  }
+  expect(scene.scenery.size() <= kMaxScenery, "at most 16 scenery");
   expect(!scene.styluses.empty() && scene.styluses.size() <= kMaxStyluses, "1 to 4 styluses");
 }
 

@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 
-#include "common/error.hpp"
 #include "scene/scene.hpp"
+#include "tests/server/scene_text.hpp"
 #include "tests/support/streamed_model.hpp"
 #include "tests/support/synthetic_model.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -9,26 +9,9 @@
 using Catch::Matchers::Equals;
 using Catch::Matchers::StartsWith;
 using namespace irdm;
-
-namespace {
-
-SceneConfig scene(const std::string& text) {
-  return read_scene(TomlTable::parse_text(text, "s.toml"));
-}
-
-// The message of the error that a scene of this text must give.
-std::string rejection(const std::string& text) {
-  try {
-    scene(text);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
-}
-
-const std::string kObject = "[[object]]\nmodel = \"cube.h5\"\n";
-
-}  // namespace
+using test::kObject;
+using test::rejection;
+using test::scene;
 
 TEST_CASE("every key of a scene arrives where it belongs") {
   const SceneConfig read = scene(

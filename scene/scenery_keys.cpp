@@ -1,0 +1,88 @@
+#include "scene/scenery_keys.hpp"
+
+#include <cmath>
+#include <string>
+
+#include "common/config/range.hpp"
+#include "scene/common_keys.hpp"
+
+namespace irdm {
+namespace {
+
+// The one key of a shape that the table has.
+std::string shape_of(const TomlTable& table) {
+  std::string found;
+  for (const char* shape : {"plane", "box", "sphere", "capsule"}) {
+    if (!table.has(shape)) continue;
+    if (!found.empty()) {
+      table.fail(shape, "is a second shape", "leave it out, or give it a [[scenery]] of its own");
+    }
+    found = shape;
+  }
+  if (found.empty()) {
+    table.fail("", "has no shape", "add one of: plane | box | sphere | capsule");
+  }
+  return found;
+}
+
+// A rotation from +y to a unit vector. Where -y is nearer, from there, after half a turn: the axis
+// of nearly half a turn would be lost in rounding.
+Quaternion turned_from_y(const Vector3& to) {
+  const Vector3 from = std::copysign(1.0, to.y()) * Vector3::UnitY();
+  const Vector3 axis = from.cross(to);
+  const Quaternion turn(1.0 + from.dot(to), axis.x(), axis.y(), axis.z());
+  const Quaternion half_turn(0.0, 1.0, 0.0, 0.0);
+  return (from.y() < 0 ? turn * half_turn : turn).normalized();
+}
+
+// The normal of a plane turns it, instead of an orientation.
+SceneryShape read_plane(TomlTable& table, TomlTable plane, Quaternion& orientation) {
+  if (table.has("orientation")) {
+    table.fail("orientation", "is not for a plane", "leave it out, and give plane.normal");
+  }
+  orientation = turned_from_y(read_normal(plane));
+  plane.finish();
+  return PlaneShape{};
+}
+
+SceneryShape read_box(TomlTable table) {
+  const BoxShape box{Vector3(table.numbers("size", 3, lab::kLength).data())};
+  table.finish();
+  return box;
+}
+
+SceneryShape read_sphere(TomlTable table) {
+  const SphereShape sphere{table.number("radius", lab::kLength)};
+  table.finish();
+  return sphere;
+}
+
+SceneryShape read_capsule(TomlTable table) {
+  CapsuleShape capsule;
+  capsule.radius = table.number("radius", lab::kLength);
+  capsule.length = table.number("length", lab::kLength);
+  table.finish();
+  return capsule;
+}
+
+}  // namespace
+
+SceneryConfig read_scenery(TomlTable table) {
+  SceneryConfig scenery;
+  scenery.name = read_name(table, scenery.name);
+  const std::string shape = shape_of(table);
+  if (shape == "plane") {
+    scenery.shape = read_plane(table, table.table(shape), scenery.orientation);
+  } else {
+    scenery.orientation = read_orientation(table);
+    if (shape == "box") scenery.shape = read_box(table.table(shape));
+    if (shape == "sphere") scenery.shape = read_sphere(table.table(shape));
+    if (shape == "capsule") scenery.shape = read_capsule(table.table(shape));
+  }
+  scenery.position = read_vector(table, "position", lab::kPlace);
+  scenery.friction = read_friction(table.table("friction"), scenery.friction);
+  table.finish();
+  return scenery;
+}
+
+}  // namespace irdm

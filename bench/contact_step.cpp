@@ -1,5 +1,6 @@
 // How long a force step takes with contacts of all kinds, on the paper's cube (866 surface nodes,
-// all its modes): points and fingertips, held, sticking and slipping, one and two, and the floor.
+// all its modes): points and fingertips, held, sticking and slipping, one and two, the floor, and
+// cubes on each other.
 
 #include <algorithm>
 #include <array>
@@ -42,18 +43,44 @@ void measure(const char* name, const SimulationConfig& config, const Commands& c
   StepRecord record;
   std::vector<double> times;
   std::vector<double> sweeps;
-  int nodes_down = 0;
+  int down = 0;
   for (int k = 0; k < kSettling + kMeasured; ++k) {
     const std::vector<StylusCommand> now = commands(k);
     const double time = bench::seconds([&] { simulation.step(now, record); });
     if (k < kSettling) continue;
     times.push_back(1e6 * time);
     sweeps.push_back(record.object[0].sweeps);
-    nodes_down = std::max(nodes_down, record.object[0].floor_count);
+    down = std::max({down, record.object[0].floor_count, record.body_contact_count});
   }
   std::printf("| %s | %.0f, %.0f | %.0f | %d |\n", name, bench::percentile(times, 0.5),
-              bench::percentile(times, 0.99), bench::percentile(sweeps, 0.5), nodes_down);
+              bench::percentile(times, 0.99), bench::percentile(sweeps, 0.5), down);
   std::fflush(stdout);
+}
+
+// Cubes one on the other on a plane.
+SimulationConfig stack(int count, const Friction& friction) {
+  SimulationConfig config = scene(0.0, 1, friction);
+  const SimulationObject cube = config.objects[0];
+  config.gravity = Vector3(0, -9.81, 0);
+  config.objects.assign(static_cast<std::size_t>(count), cube);
+  for (int i = 0; i < count; ++i) {
+    SimulationObject& object = config.objects[static_cast<std::size_t>(i)];
+    object.tether = {};
+    object.damping = {1.0, 1.0};
+    object.position.y() = (2 * i + 1) * kHalfEdge;
+  }
+  config.scenery.resize(1);
+  config.scenery[0].friction = friction;
+  return config;
+}
+
+// One cube presses on another, which is kept in place; gravity draws it along as well.
+SimulationConfig face_on_face(const Friction& friction) {
+  SimulationConfig config = stack(2, friction);
+  config.scenery.clear();
+  config.objects[0].tether = {5000.0, 50.0};
+  config.gravity = Vector3(2.5, -9.81, 0);
+  return config;
 }
 
 // Down on the top within 0.2 s, then to and fro.
@@ -66,7 +93,7 @@ Vector3 press(int k, double amplitude) {
 
 int main() {
   std::printf("force step with contacts, paper's cube, modal, dt = 2 ms\n\n");
-  std::printf("| contact | median, p99 [us] | sweeps, median | floor contacts, most |\n");
+  std::printf("| contact | median, p99 [us] | sweeps, median | contacts with bodies, most |\n");
   std::printf("|---|---|---|---|\n");
   const Friction rough{1.0, 1.0};
   const Friction smooth{0.2, 0.2};
@@ -94,6 +121,10 @@ int main() {
   resting.gravity = Vector3(0, -9.81, 0);
   resting.objects[0].tether = {};
   resting.floor = FloorConfig{Vector3(0, 1, 0), -kHalfEdge, {0.5, 0.5}};
-  measure("resting on the floor", resting,
-          [](int) { return std::vector<StylusCommand>{StylusCommand{}}; });
+  const Commands nobody = [](int) { return std::vector<StylusCommand>{StylusCommand{}}; };
+  measure("resting on the floor", resting, nobody);
+  measure("a cube on a plane of scenery", stack(1, {0.5, 0.5}), nobody);
+  measure("two cubes face on face, the lower one fixed by a tether", face_on_face(rough), nobody);
+  measure("the same, sliding", face_on_face(smooth), nobody);
+  measure("a stack of three cubes", stack(3, {0.5, 0.5}), nobody);
 }

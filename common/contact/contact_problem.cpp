@@ -284,7 +284,9 @@ void ContactSolver::add(ContactProblem& problem, int a, const Vector3& more) noe
   if (more.isZero(0.0)) return;
   ContactConstraint& contact = problem.contact(a);
   contact.force += more;
-  now_.segment(6, 3 * problem.count()).noalias() += problem.elastic_column(a) * more;
+  const auto columns = problem.elastic_column(a);
+  now_.segment(6, 3 * problem.count()) +=
+      more.x() * columns.col(0) + more.y() * columns.col(1) + more.z() * columns.col(2);
   push() += more;
   turn() += contact.arm.cross(more);
 }

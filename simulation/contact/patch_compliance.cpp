@@ -26,6 +26,18 @@ Eigen::SparseMatrix<double> spreading(const ContactSampling& sampling, int node_
   return matrix;
 }
 
+std::vector<float> in_blocks(const Eigen::MatrixXd& matrix) {
+  std::vector<float> blocks(static_cast<std::size_t>(matrix.size()));
+  float* next = blocks.data();
+  for (Eigen::Index to = 0; to < matrix.rows(); to += 3) {
+    for (Eigen::Index from = 0; from < matrix.cols(); from += 3, next += 9) {
+      Eigen::Map<Eigen::Matrix3f> block(next);
+      block = matrix.block<3, 3>(to, from).cast<float>();
+    }
+  }
+  return blocks;
+}
+
 }  // namespace
 
 PatchCompliance::PatchCompliance(const Model& model, const ContactSampling& sampling) {
@@ -40,8 +52,9 @@ PatchCompliance::PatchCompliance(const Model& model, const ContactSampling& samp
   const Eigen::SparseMatrix<double> spread = spreading(sampling, nodes);
   const Eigen::MatrixXd at_nodes = stored_response(model)->zero_lag() * spread;
   const Eigen::MatrixXd at_patches = spread.transpose() * at_nodes;
-  nodes_ = at_nodes.cast<float>();
-  patches_ = (0.5 * (at_patches + at_patches.transpose())).cast<float>();
+  row_count_ = static_cast<std::size_t>(sampling.row_count());
+  nodes_ = in_blocks(at_nodes);
+  patches_ = in_blocks(0.5 * (at_patches + at_patches.transpose()));
 }
 
 Matrix3 PatchCompliance::between(const Place& to, const Place& from) const noexcept {
@@ -50,7 +63,7 @@ Matrix3 PatchCompliance::between(const Place& to, const Place& from) const noexc
   for (std::size_t i = 0; i < static_cast<std::size_t>(to.count); ++i) {
     for (std::size_t j = 0; j < static_cast<std::size_t>(from.count); ++j) {
       sum += (to.weights[i] * from.weights[j]) *
-             patches_.block<3, 3>(3 * to.rows[i], 3 * from.rows[j]).cast<double>();
+             block(patches_, to.rows[i], from.rows[j]).cast<double>();
     }
   }
   return sum;
@@ -60,7 +73,7 @@ Matrix3 PatchCompliance::at_node(int node, const Place& from) const noexcept {
   Matrix3 sum = Matrix3::Zero();
   if (rigid()) return sum;
   for (std::size_t j = 0; j < static_cast<std::size_t>(from.count); ++j) {
-    sum += from.weights[j] * nodes_.block<3, 3>(3 * node, 3 * from.rows[j]).cast<double>();
+    sum += from.weights[j] * block(nodes_, node, from.rows[j]).cast<double>();
   }
   return sum;
 }

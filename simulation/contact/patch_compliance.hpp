@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Dense>
-#include <memory>
+#include <array>
+#include <cstddef>
+#include <vector>
 
 #include "common/model/model.hpp"
 #include "simulation/contact/contact_sampling.hpp"
@@ -27,15 +29,22 @@ class PatchCompliance {
     int count = 0;  ///< 1 or 3
   };
 
-  bool rigid() const noexcept { return patches_.size() == 0; }
+  bool rigid() const noexcept { return patches_.empty(); }
   /// Displacement at `to` per force at `from` [m/N], B.
   Matrix3 between(const Place& to, const Place& from) const noexcept;
   /// The same of a node to a force at `from`.
   Matrix3 at_node(int node, const Place& from) const noexcept;
 
  private:
-  Eigen::MatrixXf patches_;  ///< (3 rows, 3 rows)
-  Eigen::MatrixXf nodes_;    ///< (3n, 3 rows)
+  using Block = Eigen::Map<const Eigen::Matrix3f>;
+  Block block(const std::vector<float>& table, int to, int from) const noexcept {
+    return Block(table.data() +
+                 9 * (static_cast<std::size_t>(to) * row_count_ + static_cast<std::size_t>(from)));
+  }
+
+  std::size_t row_count_ = 0;   ///< patches
+  std::vector<float> patches_;  ///< blocks, one after the other: of each patch to all patches
+  std::vector<float> nodes_;    ///< the same of each node to all patches
 };
 
 }  // namespace irdm

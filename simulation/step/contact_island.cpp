@@ -5,7 +5,7 @@ namespace {
 
 // The iteration goes on from the forces of the last step. An error of 1 um in each step would
 // excite the oscillation that kYielding is against, faster than it dies.
-constexpr SolverLimits kLimits{200, 1e-10, 40, 1e-8, 1e-4};
+constexpr SolverLimits kLimits{200, 1e-8, 60, 1e-7, 1e-4};
 
 // Contacts between bodies yield by this share of the rigid mobility besides. Without it bodies that
 // rest on each other keep an oscillation in which the velocity changes its sign each step and the
@@ -17,14 +17,19 @@ constexpr double kYielding = 0.1;
 
 }  // namespace
 
-ContactIsland::ContactIsland(int object_count, int capacity)
-    : problem_(capacity), solver_(capacity), first_(static_cast<std::size_t>(object_count), 0) {
-  sides_.reserve(static_cast<std::size_t>(capacity));
+ContactIsland::ContactIsland(int object_count, int capacity, int sides)
+    : problem_(capacity),
+      solver_(capacity),
+      first_(static_cast<std::size_t>(object_count), 0),
+      compliances_(static_cast<std::size_t>(object_count), SideCompliance(sides)) {
+  sides_.reserve(static_cast<std::size_t>(sides));
+  places_.reserve(static_cast<std::size_t>(sides));
 }
 
 void ContactIsland::collect_sides(int object, std::span<const IslandContact> contacts,
                                   int first) noexcept {
   sides_.clear();
+  places_.clear();
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     const BodyContacts::Contact& contact = contacts[c].pair->contact(contacts[c].i);
     const int row = first + static_cast<int>(c);
@@ -32,14 +37,15 @@ void ContactIsland::collect_sides(int object, std::span<const IslandContact> con
       sides_.push_back({row, 1.0, &contact.place, contact.arm});
     } else if (contacts[c].pair->other() == object) {
       sides_.push_back({row, -1.0, &contact.other_place, contact.other_arm});
+    } else {
+      continue;
     }
+    places_.push_back({contacts[c].key, *sides_.back().place});
   }
 }
 
-// What one object adds to the compliance: of its own contacts, between them and its sides, and
-// between its sides.
-void ContactIsland::add_object(SoftObject& object, const PatchCompliance& compliance, int first,
-                               std::span<const Side> sides) noexcept {
+// What one object adds to the compliance: that of its own contacts, and between them and its sides.
+void ContactIsland::add_own(SoftObject& object, int first) noexcept {
   const Matrix3 Q = object.motion().halfway.toRotationMatrix();
   const ContactProblem& own = object.problem();
   const RigidMobility mobility = object.rigid().mobility();
@@ -47,7 +53,7 @@ void ContactIsland::add_object(SoftObject& object, const PatchCompliance& compli
     for (int b = 0; b < own.count(); ++b) {
       problem_.elastic(first + a, first + b) = Q * own.compliance(a, b) * Q.transpose();
     }
-    for (const Side& side : sides) {
+    for (const Side& side : sides_) {
       const Matrix3 shared =
           side.sign * Q *
           (object.compliance_at(a, *side.place) + mobility.between(own.contact(a).arm, side.arm)) *
@@ -56,14 +62,24 @@ void ContactIsland::add_object(SoftObject& object, const PatchCompliance& compli
       problem_.elastic(side.row, first + a) += shared.transpose();
     }
   }
-  for (std::size_t i = 0; i < sides.size(); ++i) {
+}
+
+// The same between its sides.
+void ContactIsland::add_sides(const SoftObject& object, SideCompliance& compliance) noexcept {
+  compliance.update(places_, object.contact_compliance());
+  const Matrix3 Q = object.motion().halfway.toRotationMatrix();
+  RigidMobility mobility = object.rigid().mobility();
+  mobility.translation *= 1.0 + kYielding;
+  mobility.rotation *= 1.0 + kYielding;
+  for (std::size_t i = 0; i < sides_.size(); ++i) {
+    const Side& to = sides_[i];
+    const Matrix3 turn = skew(to.arm) * mobility.rotation;
+    const Matrix3 Q_to = to.sign * Q;
     for (std::size_t j = 0; j <= i; ++j) {
-      const Side& to = sides[i];
-      const Side& from = sides[j];
-      const Matrix3 shared = (to.sign * from.sign) * Q *
-                             (compliance.between(*to.place, *from.place) +
-                              (1.0 + kYielding) * mobility.between(to.arm, from.arm)) *
-                             Q.transpose();
+      const Side& from = sides_[j];
+      Matrix3 within = compliance.between(i, j) - turn * skew(from.arm);
+      within.diagonal().array() += mobility.translation;
+      const Matrix3 shared = from.sign * (Q_to * within * Q.transpose());
       problem_.elastic(to.row, from.row) += shared;
       if (i != j) problem_.elastic(from.row, to.row) += shared.transpose();
     }
@@ -71,12 +87,12 @@ void ContactIsland::add_object(SoftObject& object, const PatchCompliance& compli
 }
 
 // The own contacts' solution, and what the contacts between bodies do to them.
-void ContactIsland::take_back(SoftObject& object, int first, std::span<const Side> sides) noexcept {
+void ContactIsland::take_back(SoftObject& object, int first) noexcept {
   const Matrix3 to_body = object.motion().halfway.toRotationMatrix().transpose();
   const RigidMobility mobility = object.rigid().mobility();
   Vector3 push = Vector3::Zero();
   Vector3 turn = Vector3::Zero();
-  for (const Side& side : sides) {
+  for (const Side& side : sides_) {
     const Vector3 force = side.sign * (to_body * problem_.contact(side.row).force);
     push += force;
     turn += side.arm.cross(force);
@@ -90,7 +106,7 @@ void ContactIsland::take_back(SoftObject& object, int first, std::span<const Sid
     contact.mode = solved.mode;
     contact.friction = solved.friction;
     Vector3 moved = Vector3::Zero();
-    for (const Side& side : sides) {
+    for (const Side& side : sides_) {
       moved += problem_.elastic(first + a, side.row) * problem_.contact(side.row).force;
     }
     moved = to_body * moved;
@@ -130,13 +146,13 @@ ContactSolution ContactIsland::solve(std::span<SoftObject* const> objects,
       posed.arm.setZero();
     }
     collect_sides(member, contacts, first_between);
-    add_object(object, object.contact_compliance(), first, sides_);
+    add_own(object, first);
+    add_sides(object, compliances_[static_cast<std::size_t>(member)]);
   }
   const ContactSolution solution = solver_.solve(problem_, kLimits);
   for (const int member : members) {
     collect_sides(member, contacts, first_between);
-    take_back(*objects[static_cast<std::size_t>(member)], first_[static_cast<std::size_t>(member)],
-              sides_);
+    take_back(*objects[static_cast<std::size_t>(member)], first_[static_cast<std::size_t>(member)]);
   }
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     contacts[c].solved = problem_.contact(first_between + static_cast<int>(c));

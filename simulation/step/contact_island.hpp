@@ -1,10 +1,12 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "common/contact/contact_problem.hpp"
 #include "simulation/step/body_contacts.hpp"
+#include "simulation/step/side_compliance.hpp"
 #include "simulation/step/soft_object.hpp"
 
 namespace irdm {
@@ -12,7 +14,8 @@ namespace irdm {
 /// A contact between bodies, as one of an island.
 struct IslandContact {
   BodyContacts* pair = nullptr;
-  int i = 0;  ///< number in the pair
+  int i = 0;              ///< number in the pair
+  std::uint64_t key = 0;  ///< of pair and sample: the same in the next step, increasing in a list
   Friction friction;
   ContactConstraint solved = {};  ///< written, W
 };
@@ -25,7 +28,8 @@ struct IslandContact {
 class ContactIsland {
  public:
   /// @param capacity contacts at most, those of the objects' own problems included
-  ContactIsland(int object_count, int capacity);
+  /// @param sides of contacts between bodies that one object can have
+  ContactIsland(int object_count, int capacity, int sides);
 
   int capacity() const noexcept { return problem_.capacity(); }
   /// Solves it; the objects' own problems and `contacts` have the solution then.
@@ -41,15 +45,18 @@ class ContactIsland {
     const PatchCompliance::Place* place = nullptr;
     Vector3 arm = Vector3::Zero();  ///< [m], B
   };
-  void add_object(SoftObject& object, const PatchCompliance& compliance, int first,
-                  std::span<const Side> sides) noexcept;
-  void take_back(SoftObject& object, int first, std::span<const Side> sides) noexcept;
+  void add_own(SoftObject& object, int first) noexcept;
+  void add_sides(const SoftObject& object, SideCompliance& compliance) noexcept;
+  void take_back(SoftObject& object, int first) noexcept;
   void collect_sides(int object, std::span<const IslandContact> contacts, int first) noexcept;
 
   ContactProblem problem_;
   ContactSolver solver_;
-  std::vector<int> first_;   ///< row of the first own contact of each object
-  std::vector<Side> sides_;  ///< of the object under way
+  std::vector<int> first_;                   ///< row of the first own contact of each object
+  std::vector<SideCompliance> compliances_;  ///< of each object
+  // Of the object under way.
+  std::vector<Side> sides_;
+  std::vector<SideCompliance::Side> places_;
 };
 
 }  // namespace irdm

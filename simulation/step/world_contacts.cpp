@@ -42,7 +42,10 @@ WorldContacts::WorldContacts(const SimulationConfig& config,
   add_pairs(config);
   int capacity = kMaxBodyContacts;
   for (SoftObject* const object : objects_) capacity += object->problem().capacity();
-  island_ = std::make_unique<ContactIsland>(static_cast<int>(objects_.size()), capacity);
+  const auto others = static_cast<int>(objects_.size() - 1 + scenery_.size());
+  island_ =
+      std::make_unique<ContactIsland>(static_cast<int>(objects_.size()), capacity,
+                                      std::min(kMaxBodyContacts, others * BodyContacts::kMost));
   members_.reserve(objects_.size());
   contacts_.reserve(kMaxBodyContacts);
   solved_.reserve(kMaxBodyContacts);
@@ -131,11 +134,14 @@ void WorldContacts::solve_island(int leader, StepRecord& record) noexcept {
     if (leader_[static_cast<std::size_t>(i)] == leader) members_.push_back(i);
   }
   contacts_.clear();
-  for (BodyContacts& pair : pairs_) {
+  for (std::size_t p = 0; p < pairs_.size(); ++p) {
+    BodyContacts& pair = pairs_[p];
     if (leader_[static_cast<std::size_t>(pair.object())] != leader) continue;
     for (int i = 0; i < pair.count(); ++i) {
       if (contacts_.size() + solved_.size() == kMaxBodyContacts) break;
-      contacts_.push_back({&pair, i, friction(pair)});
+      const std::uint64_t sample = static_cast<std::uint64_t>(pair.contact(i).sample);
+      contacts_.push_back(
+          {&pair, i, (static_cast<std::uint64_t>(p) << 32) + sample, friction(pair)});
     }
   }
   if (contacts_.empty()) {

@@ -198,6 +198,10 @@ bool File::exists(const std::string& path) const {
   }
 }
 
+bool File::has_attribute(const std::string& object, const std::string& name) const {
+  return H5Aexists_by_name(file_.get(), object.c_str(), name.c_str(), H5P_DEFAULT) > 0;
+}
+
 void File::create_group(const std::string& path) {
   const Handle links = make_link_properties();
   const Handle group(H5Gcreate2(file_.get(), path.c_str(), links.get(), H5P_DEFAULT, H5P_DEFAULT),

@@ -56,6 +56,8 @@ class File {
   const std::string& name() const { return name_; }
   hid_t id() const { return file_.get(); }
   bool exists(const std::string& path) const;
+  /// Whether an object that exists has such an attribute.
+  bool has_attribute(const std::string& object, const std::string& name) const;
 
   void create_group(const std::string& path);
   /// From now on datasets only grow and are written, and HDF5 writes what points to something after

@@ -67,12 +67,15 @@ std::string content_checksum(const hdf5::File& file) {
   add_numbers(sha, file, "/body", "mass", 1);
   add_numbers(sha, file, "/body", "inertia", 9);
   add_text(sha, file, "/body", "support");
+  const bool rigid = holds_rigid_body(file);
   for (const char* name :
        {"youngs_modulus", "poisson_ratio", "density", "rayleigh_alpha", "rayleigh_beta"}) {
+    if (rigid && std::string(name) != "density") continue;
     add_numbers(sha, file, "/material", name, 1);
   }
   add_numbers(sha, file, "/response", "dt", 1);
   add_numbers(sha, file, "/response", "steps", 1);
+  if (rigid) add_text(sha, file, "/response", kResponseKindAttribute);
   add_dataset<double>(sha, file, "/response/modal/angular_frequency");
   add_dataset<double>(sha, file, "/response/modal/decay_rate");
   add_reals(sha, file, "/response/modal/shapes");

@@ -8,7 +8,7 @@
 /// The checksum that a model file carries of its own content: root attribute `content_sha256`.
 namespace irdm {
 
-/// SHA-256, lower-case hexadecimal, of mesh, body, material, dt, steps, modes, centrifugal
+/// SHA-256, lower-case hexadecimal, of mesh, body, material, dt, steps, kind, modes, centrifugal
 /// responses, responses to gravity, what modes that are left out add, and compressed responses; of
 /// those that the file has, in this order: for every dataset its path, a zero byte, its extents as
 /// u64 and its numbers as they are stored; for every attribute its object, '@', its name, a zero

@@ -10,6 +10,10 @@ Matrix3 ResidualCompliance::diagonal(int node) const {
   return block(static_cast<int>(found - nodes.begin())).cast<double>();
 }
 
+bool is_rigid(const Model& model) {
+  return std::holds_alternative<RigidResponse>(model.response);
+}
+
 bool has_centrifugal(const Model& model) {
   if (const auto* modal = std::get_if<ModalResponse>(&model.response)) {
     return modal->centrifugal.rows() > 0;

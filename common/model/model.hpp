@@ -209,6 +209,9 @@ struct CompressedResponse {
   int pole_count() const { return static_cast<int>(pole.size()); }
 };
 
+/// Of a body that does not deform: R is zero. Mass, inertia and surface are all that it has.
+struct RigidResponse {};
+
 /// What a model file holds.
 struct Model {
   ModelMesh mesh;
@@ -216,11 +219,15 @@ struct Model {
   Material material;
   double dt = 0.0;  ///< response interval and force-loop period [s]
   int steps = 0;    ///< T, recorded steps
-  std::variant<std::monostate, ModalResponse, DenseResponse, CompressedResponse, StreamedResponse>
-      response;  ///< the one that was asked for
+  std::variant<std::monostate, ModalResponse, DenseResponse, CompressedResponse, StreamedResponse,
+               RigidResponse>
+      response;  ///< the one that was asked for; RigidResponse of every rigid body
 
   int degrees_of_freedom() const { return 3 * mesh.surface_node_count(); }
 };
+
+/// Whether the body does not deform. Of its material only the density counts, the rest is 0.
+bool is_rigid(const Model& model);
 
 /// Whether the model's response says what the body's own spin does to it.
 bool has_centrifugal(const Model& model);

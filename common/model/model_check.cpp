@@ -134,7 +134,10 @@ FaultText inertia_fault(const Model& model) {
   return {};
 }
 
-FaultText material_fault(const Material& material) {
+FaultText material_fault(const Model& model) {
+  const Material& material = model.material;
+  if (auto fault = out_of(lab::kDensity, "/material density", material.density)) return fault;
+  if (is_rigid(model)) return {};
   const struct {
     const char* name;
     double value;
@@ -142,7 +145,6 @@ FaultText material_fault(const Material& material) {
   } numbers[] = {
       {"/material youngs_modulus", material.youngs_modulus, lab::kYoungsModulus},
       {"/material poisson_ratio", material.poisson_ratio, lab::kPoissonRatio},
-      {"/material density", material.density, lab::kDensity},
       {"/material rayleigh_alpha", material.rayleigh_alpha, lab::kRayleighAlpha},
       {"/material rayleigh_beta", material.rayleigh_beta, lab::kRayleighBeta},
   };
@@ -154,6 +156,7 @@ FaultText material_fault(const Material& material) {
 
 FaultText step_fault(const Model& model) {
   if (auto fault = out_of(lab::kStepTime, "/response dt", model.dt)) return fault;
+  if (is_rigid(model) && model.steps != 1) return "/response steps of a rigid body must be 1";
   if (model.steps >= 1 && model.steps <= lab::kMostSteps) return {};
   return "/response steps must be from 1 to " + std::to_string(lab::kMostSteps);
 }
@@ -168,7 +171,7 @@ std::optional<std::string> description_fault(const Model& model) {
   if (!fault) fault = surface_fault(mesh);
   if (!fault) fault = mass_fault(model);
   if (!fault) fault = inertia_fault(model);
-  if (!fault) fault = material_fault(model.material);
+  if (!fault) fault = material_fault(model);
   if (!fault) fault = step_fault(model);
   return fault;
 }

@@ -12,7 +12,7 @@ namespace irdm {
 /// What is wrong with a model, its response left aside: numbers are finite and within
 /// range.hpp, indices in range, elements not flat, the surface is closed and its triangles
 /// face outward, masses are positive and add up, and the inertia is symmetric and positive
-/// definite. Nothing when all of that holds.
+/// definite; a rigid body has a density and one step. Nothing when all of that holds.
 std::optional<std::string> description_fault(const Model& model);
 
 /// What a reader of dense R sees while the columns go by, in no more time than they take anyway:

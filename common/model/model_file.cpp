@@ -38,12 +38,13 @@ constexpr Unit kDatasetUnits[] = {
     {kCompressedAmplitude, "m/N"},
 };
 
+constexpr const char* kRigidMaterialUnits = "density: kg/m^3";
+constexpr const char* kMaterialUnits =
+    "youngs_modulus: Pa, poisson_ratio: 1, density: kg/m^3, rayleigh_alpha: 1/s, rayleigh_beta: s";
+
 constexpr Unit kGroupUnits[] = {
     {"/mesh", "com_offset: m"},
     {"/body", "mass: kg, inertia: kg m^2"},
-    {"/material",
-     "youngs_modulus: Pa, poisson_ratio: 1, density: kg/m^3, rayleigh_alpha: 1/s, "
-     "rayleigh_beta: s"},
     {"/response", "dt: s"},
     {kModalResidual,
      "cut_off: rad/s, contact_radius: m, residual_radius: m, press_time: s, added_compliance: m/N"},
@@ -57,6 +58,7 @@ void write_model_units(hdf5::File& file) {
   };
   for (const auto& [object, unit] : kDatasetUnits) write(object, "unit", unit);
   for (const auto& [object, unit] : kGroupUnits) write(object, "units", unit);
+  write("/material", "units", holds_rigid_body(file) ? kRigidMaterialUnits : kMaterialUnits);
   write(kCompressedFir, "unit", file.exists(kCompressedFirScale) ? "1" : "m/N");
 }
 
@@ -73,6 +75,7 @@ class ModelReader {
 
   Model read(ResponseKind kind) {
     read_description();
+    if (is_rigid(model_)) return std::move(model_);
     if (kind == ResponseKind::kModal) {
       read_modal();
     } else if (kind == ResponseKind::kDense) {
@@ -91,9 +94,11 @@ class ModelReader {
 
   void read_description() {
     check_format();
+    const bool rigid = holds_rigid_body(file_);
+    if (rigid) read_rigid_response();
     read_mesh();
     read_body();
-    read_material();
+    read_material(rigid);
     if (!file_.exists("/response")) damaged("has no /response");
     model_.dt = file_.read_double_attribute("/response", "dt");
     const std::int64_t steps = file_.read_integer_attribute("/response", "steps");
@@ -145,12 +150,20 @@ class ModelReader {
     body.support = support == "fixed" ? Support::kFixed : Support::kFloating;
   }
 
-  void read_material() {
+  void read_rigid_response() {
+    for (const char* group : {"/response/modal", "/response/dense", kCompressedGroup}) {
+      require(!file_.exists(group), std::string("is of a rigid body and has ") + group);
+    }
+    model_.response = RigidResponse{};
+  }
+
+  void read_material(bool rigid) {
     if (!file_.exists("/material")) damaged("has no /material");
     Material& material = model_.material;
+    material.density = file_.read_double_attribute("/material", "density");
+    if (rigid) return;
     material.youngs_modulus = file_.read_double_attribute("/material", "youngs_modulus");
     material.poisson_ratio = file_.read_double_attribute("/material", "poisson_ratio");
-    material.density = file_.read_double_attribute("/material", "density");
     material.rayleigh_alpha = file_.read_double_attribute("/material", "rayleigh_alpha");
     material.rayleigh_beta = file_.read_double_attribute("/material", "rayleigh_beta");
   }
@@ -214,6 +227,7 @@ Model read_model(const std::filesystem::path& path, ResponseKind kind) {
 
 Model read_streamed_model(const std::filesystem::path& path) {
   Model model = read_description(hdf5::File::open(path));
+  if (is_rigid(model)) return model;
   model.response = read_streamed(hdf5::File::open(path), model);
   return model;
 }

@@ -16,15 +16,17 @@ void write_model_units(hdf5::File& file);
 
 enum class ResponseKind { kModal, kDense, kCompressed };
 
-/// Reads a model file and, of its responses, the one that is asked for. Everything is checked:
-/// shapes, index ranges, finite numbers, positive mass. Throws Error.
+/// Reads a model file and, of its responses, the one that is asked for; of a rigid body
+/// RigidResponse, whatever is asked for. Everything is checked: shapes, index ranges, finite
+/// numbers, positive mass. Throws Error.
 Model read_model(const std::filesystem::path& path, ResponseKind kind);
 
 /// The same with of the dense one only what a StreamedResponse always has; its columns are for the
 /// caller to provide.
 Model read_streamed_model(const std::filesystem::path& path);
 
-/// The same without a response: what ModelFileWriter::write_description() wrote.
+/// The same without a response: what ModelFileWriter::write_description() wrote. A rigid body is
+/// whole.
 Model read_description(hdf5::File file);
 
 }  // namespace irdm

@@ -9,6 +9,7 @@
 #include "common/error.hpp"
 #include "common/model/compressed_file.hpp"
 #include "common/model/content_checksum.hpp"
+#include "common/model/model_check.hpp"
 #include "common/model/model_file.hpp"
 #include "common/process/temporary_files.hpp"
 #include "common/response/modal_response.hpp"
@@ -38,7 +39,23 @@ void describe_centrifugal(hdf5::File& file, const char* dataset, const std::stri
   file.write_attribute(dataset, "unit", unit);
 }
 
+void write_elasticity(hdf5::File& file, const Material& material) {
+  file.write_attribute("/material", "youngs_modulus", material.youngs_modulus);
+  file.write_attribute("/material", "poisson_ratio", material.poisson_ratio);
+  file.write_attribute("/material", "rayleigh_alpha", material.rayleigh_alpha);
+  file.write_attribute("/material", "rayleigh_beta", material.rayleigh_beta);
+}
+
 }  // namespace
+
+bool holds_rigid_body(const hdf5::File& file) {
+  if (!file.exists("/response") || !file.has_attribute("/response", kResponseKindAttribute)) {
+    return false;
+  }
+  const std::string kind = file.read_string_attribute("/response", kResponseKindAttribute);
+  if (kind == kRigidKind) return true;
+  refuse_model(file.name(), "/response kind is " + in_quotes(kind) + ", which is not known");
+}
 
 void write_description(hdf5::File& file, const Model& model) {
   file.write_attribute("/", "format", std::string(kModelFormat));
@@ -65,15 +82,15 @@ void write_description(hdf5::File& file, const Model& model) {
                        std::string(model.body.support == Support::kFixed ? "fixed" : "floating"));
 
   file.create_group("/material");
-  file.write_attribute("/material", "youngs_modulus", model.material.youngs_modulus);
-  file.write_attribute("/material", "poisson_ratio", model.material.poisson_ratio);
   file.write_attribute("/material", "density", model.material.density);
-  file.write_attribute("/material", "rayleigh_alpha", model.material.rayleigh_alpha);
-  file.write_attribute("/material", "rayleigh_beta", model.material.rayleigh_beta);
+  if (!is_rigid(model)) write_elasticity(file, model.material);
 
   file.create_group("/response");
   file.write_attribute("/response", "dt", model.dt);
   file.write_attribute("/response", "steps", static_cast<std::int64_t>(model.steps));
+  if (is_rigid(model)) {
+    file.write_attribute("/response", kResponseKindAttribute, std::string(kRigidKind));
+  }
 }
 
 ModelFileWriter::ModelFileWriter(const std::filesystem::path& path)

@@ -26,7 +26,15 @@ inline constexpr const char* kModalGravityRest = "/response/modal/gravity_rest";
 /// Of the numbers of R in a file.
 enum class Precision { kSingle, kDouble };
 
-/// Mesh, body, material, dt and steps into a new file; the model's response is ignored.
+/// Of /response: what a rigid body has instead of a response. Other bodies do not have it.
+inline constexpr const char* kResponseKindAttribute = "kind";
+inline constexpr const char* kRigidKind = "rigid";
+
+/// Whether a model file is of a rigid body. Throws Error when it says something unknown.
+bool holds_rigid_body(const hdf5::File& file);
+
+/// Mesh, body, material, dt and steps into a new file, and whether the body is rigid, which is then
+/// all of the model; the response of others is ignored.
 void write_description(hdf5::File& file, const Model& model);
 
 /// Writes a model file under a temporary name beside the final one; commit() gives it its name.
@@ -41,7 +49,7 @@ class ModelFileWriter {
   ModelFileWriter& operator=(const ModelFileWriter&) = delete;
   ~ModelFileWriter();
 
-  /// Mesh, body, material, dt and steps; the model's response is ignored.
+  /// As irdm::write_description().
   void write_description(const Model& model);
   void write_modal(const ModalResponse& response);
   void write_compressed(const CompressedResponse& response, const CompressionError& error);

@@ -248,6 +248,22 @@ class CompressedStored final : public StoredResponse {
   Eigen::VectorXd settled_;  ///< sum over s >= m of h_i[s] (r)
 };
 
+/// Of a rigid body.
+class ZeroStored final : public StoredResponse {
+ public:
+  explicit ZeroStored(int degrees_of_freedom) : dof_(degrees_of_freedom) {}
+
+  RowMatrix<double> column(int, int steps) const override {
+    return RowMatrix<double>::Zero(steps, dof_);
+  }
+  Eigen::VectorXd static_column(int) const override { return Eigen::VectorXd::Zero(dof_); }
+  Matrix3 static_block(int) const override { return Matrix3::Zero(); }
+  Eigen::MatrixXd zero_lag() const override { return Eigen::MatrixXd::Zero(dof_, dof_); }
+
+ private:
+  int dof_;
+};
+
 class DenseInFile final : public StoredResponse {
  public:
   DenseInFile(const std::filesystem::path& path, int degrees_of_freedom, int steps)
@@ -338,6 +354,7 @@ std::unique_ptr<StoredResponse> stored_response(const Model& model, TransposedPr
         },
         dense->values);
   }
+  if (is_rigid(model)) return std::make_unique<ZeroStored>(model.degrees_of_freedom());
   const auto& streamed = std::get<StreamedResponse>(model.response);
   return std::visit(
       [&]<typename Scalar>(const std::vector<Scalar>& first) -> std::unique_ptr<StoredResponse> {

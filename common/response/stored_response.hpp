@@ -19,10 +19,10 @@ void transposed_product(const RowMatrix<double>& a, const RowMatrix<double>& b,
                         RowMatrix<double>& c);
 
 /// The elastic impulse response R of one object as it is stored, equation (10), whatever the form:
-/// modal, dense, streamed or compressed. For what is found once: checks, errors, colours, the
-/// zero-lag compliance. A ResponseEngine evaluates the same forms step by step. n surface nodes;
-/// degree of freedom 3 i + axis, B. Const members may be called from any thread; not real-time
-/// safe.
+/// modal, dense, streamed, compressed, or zero of a rigid body. For what is found once: checks,
+/// errors, colours, the zero-lag compliance. A ResponseEngine evaluates the same forms step by
+/// step. n surface nodes; degree of freedom 3 i + axis, B. Const members may be called from any
+/// thread; not real-time safe.
 class StoredResponse {
  public:
   virtual ~StoredResponse() = default;

@@ -144,6 +144,15 @@ void add_residual(Model& modal, unsigned seed) {
   std::get<ModalResponse>(modal.response).residual = both_halves(upper);
 }
 
+Model made_rigid(Model model) {
+  const double density = model.material.density;
+  model.material = Material{};
+  model.material.density = density;
+  model.steps = 1;
+  model.response = RigidResponse{};
+  return model;
+}
+
 CompressedResponse compressed_response(const Model& model) {
   CompressedResponse response;
   response.fir_steps = 2;

@@ -21,6 +21,9 @@ void add_gravity(Model& modal, bool rest = false, unsigned seed = 4);
 /// R[0]: symmetric and positive definite.
 void add_residual(Model& modal, unsigned seed = 3);
 
+/// The same body, rigid: its response is gone.
+Model made_rigid(Model model);
+
 /// A made-up compressed response of its nodes, in 16 bits: two poles, each of a shape of its own.
 CompressedResponse compressed_response(const Model& model);
 

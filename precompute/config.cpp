@@ -6,7 +6,6 @@
 
 #include "common/config/range.hpp"
 #include "common/error.hpp"
-#include "precompute/mesh/mesh_file.hpp"
 
 namespace irdm::precompute {
 namespace {
@@ -110,57 +109,9 @@ ModesConfig read_modes(TomlTable table) {
 
 namespace {
 
-constexpr int kMaxCells = 100;
-
-BoxConfig read_box(TomlTable table) {
-  BoxConfig box;
-  const std::vector<double> size = table.numbers("size", 3, lab::kLength);
-  const std::vector<double> cells = table.numbers("cells", 3, between(1, kMaxCells));
-  for (std::size_t k = 0; k < 3; ++k) {
-    box.size(static_cast<Eigen::Index>(k)) = size[k];
-    if (cells[k] != std::floor(cells[k])) {
-      table.fail("cells", "has a number that is not whole", "give three whole numbers");
-    }
-    box.cells[k] = static_cast<int>(cells[k]);
-  }
-  table.finish();
-  return box;
-}
-
-double unit_from_word(const std::string& word) {
-  static const std::map<std::string, double> words{{"m", 1.0}, {"cm", 1e-2}, {"mm", 1e-3}};
-  return words.at(word);
-}
-
-MeshConfig read_mesh(TomlTable table) {
-  MeshConfig mesh;
-  if (table.has("box") == table.has("file")) {
-    table.fail("", table.has("box") ? "has both box and file" : "has neither box nor file",
-               "give one of box = { size = [..], cells = [..] } and file = \"name\"");
-  }
-  const bool surface = table.has("file") && is_surface_file(table.path("file"));
-  if (table.has("edge_length") && !surface) {
-    table.fail("edge_length", "belongs to a surface (.stl, .obj, .ply)",
-               table.has("box") ? "leave it out: cells says how fine a box is"
-                                : "leave it out: this file says its own sizes");
-  }
-  if (table.has("box")) {
-    if (table.has("unit")) {
-      table.fail("unit", "belongs to a mesh file", "leave it out: a box is given in metres");
-    }
-    mesh.source = read_box(table.table("box"));
-  } else {
-    mesh.source = table.path("file");
-    mesh.unit = unit_from_word(table.choice("unit", {"m", "cm", "mm"}, "m"));
-    if (table.has("edge_length")) mesh.edge_length = table.number("edge_length", lab::kLength);
-  }
-  mesh.order = table.integer("order", 1, 2, mesh.order);
-  table.finish();
-  return mesh;
-}
-
 Material read_material(TomlTable table) {
   Material material;
+  table.boolean("rigid", false);  // see read_config
   material.youngs_modulus = table.number("youngs_modulus", lab::kYoungsModulus);
   material.poisson_ratio = table.number("poisson_ratio", lab::kPoissonRatio);
   material.density = table.number("density", lab::kDensity);
@@ -168,6 +119,12 @@ Material read_material(TomlTable table) {
   material.rayleigh_beta = table.number("rayleigh_beta", lab::kRayleighBeta, 2e-4);
   table.finish();
   return material;
+}
+
+Support read_support(TomlTable& response) {
+  return response.choice("support", {"floating", "fixed"}, "floating") == "fixed"
+             ? Support::kFixed
+             : Support::kFloating;
 }
 
 // The place of half precision and zfp is taken by the compressed form.
@@ -191,7 +148,7 @@ ResponseConfig read_response(TomlTable table) {
   refuse_removed_forms(table);
   const std::string precision = table.choice("precision", {"single", "double"}, "single");
   response.precision = precision == "double" ? Precision::kDouble : Precision::kSingle;
-  table.choice("support", {"floating", "fixed"}, "floating");  // see read_support
+  response.support = read_support(table);
   table.finish();
   return response;
 }
@@ -230,15 +187,44 @@ Region read_region(TomlTable table) {
   return region;
 }
 
-std::optional<Region> read_support(TomlTable& root) {
-  const std::string word =
-      root.table("response").choice("support", {"floating", "fixed"}, "floating");
-  if (word == "fixed") return read_region(root.table("support", true));
+std::optional<Region> read_clamped(TomlTable& root, Support support) {
+  if (support == Support::kFixed) return read_region(root.table("support", true));
   if (root.has("support")) {
     root.fail("support", "is there but the body is floating",
               "set response.support = \"fixed\" or leave the table out");
   }
   return std::nullopt;
+}
+
+void read_soft_body(TomlTable& root, PrecomputeConfig& config) {
+  config.material = read_material(root.table("material", true));
+  config.response = read_response(root.table("response"));
+  config.modes = read_modes(root.table("modes"));
+  config.support = read_clamped(root, config.response.support);
+  config.time_stepping = read_time_stepping(root.table("time_stepping"), config.response.dt);
+}
+
+void refuse_keys_of_soft_bodies(const TomlTable& table, std::initializer_list<const char*> keys) {
+  for (const char* key : keys) {
+    if (!table.has(key)) continue;
+    table.fail(key, "is for soft bodies", "leave it out, or leave material.rigid out");
+  }
+}
+
+void read_rigid_body(TomlTable& root, PrecomputeConfig& config) {
+  refuse_keys_of_soft_bodies(root, {"modes", "support", "time_stepping"});
+  TomlTable material = root.table("material", true);
+  refuse_keys_of_soft_bodies(
+      material, {"youngs_modulus", "poisson_ratio", "rayleigh_alpha", "rayleigh_beta"});
+  config.rigid = material.boolean("rigid", true);
+  config.material.density = material.number("density", lab::kDensity);
+  material.finish();
+  TomlTable response = root.table("response");
+  refuse_keys_of_soft_bodies(response, {"steps", "method", "storage", "precision"});
+  config.response.dt = response.number("dt", lab::kStepTime, config.response.dt);
+  config.response.steps = 1;
+  config.response.support = read_support(response);
+  response.finish();
 }
 
 }  // namespace
@@ -258,12 +244,12 @@ Method method_from_word(const std::string& word) {
 PrecomputeConfig read_config(TomlTable root, const std::string& name) {
   PrecomputeConfig config;
   config.name = name;
-  config.mesh = read_mesh(root.table("mesh", true));
-  config.material = read_material(root.table("material", true));
-  config.response = read_response(root.table("response"));
-  config.modes = read_modes(root.table("modes"));
-  config.support = read_support(root);
-  config.time_stepping = read_time_stepping(root.table("time_stepping"), config.response.dt);
+  config.mesh = read_mesh_config(root.table("mesh", true));
+  if (root.table("material", true).boolean("rigid", false)) {
+    read_rigid_body(root, config);
+  } else {
+    read_soft_body(root, config);
+  }
   root.finish();
   return config;
 }

@@ -1,9 +1,7 @@
 #pragma once
 
-#include <array>
 #include <filesystem>
 #include <optional>
-#include <variant>
 #include <vector>
 
 #include "common/config/toml_reader.hpp"
@@ -11,6 +9,7 @@
 #include "common/model/model_file.hpp"
 #include "precompute/dynamics/rigid_extraction.hpp"
 #include "precompute/dynamics/soft_body.hpp"
+#include "precompute/mesh/mesh_config.hpp"
 #include "precompute/mesh/region.hpp"
 
 namespace irdm::precompute {
@@ -66,26 +65,6 @@ struct ModesConfig {
 /// Throws Error with file and line.
 ModesConfig read_modes(TomlTable table);
 
-/// A box to be meshed: one corner at the origin, edges along the axes.
-struct BoxConfig {
-  Vector3 size = Vector3::Zero();        ///< edge lengths [m], > 0
-  std::array<int, 3> cells = {0, 0, 0};  ///< grid cells along each edge, 1..100
-};
-
-/// [mesh]: either `box = { size = [..], cells = [..] }` or `file = "name"`, of a format that
-/// mesh_file.hpp and docs/meshes.md list.
-struct MeshConfig {
-  std::variant<BoxConfig, std::filesystem::path> source;
-  /// Length of the mesh file's unit [m]: `unit = "m" | "cm" | "mm"`, "m" unless given. A box is in
-  /// m.
-  double unit = 1.0;
-  /// Target edge length of the tetrahedra of a surface [m], > 0; none: its triangles are kept.
-  std::optional<double> edge_length;
-  /// 1: linear, 2: quadratic tetrahedra, whose mid-side nodes are made here; the cells of a box are
-  /// those of the tetrahedra, so that 6 cells an edge have the surface nodes of 12 linear ones
-  int order = 1;
-};
-
 /// How R is obtained.
 enum class Method { kModal, kTimeStepping };
 
@@ -99,6 +78,7 @@ struct ResponseConfig {
   Method method = Method::kModal;            ///< "modal" | "time-stepping"
   Storage storage = Storage::kModal;         ///< "modal" | "dense" | "both"
   Precision precision = Precision::kSingle;  ///< of stored numbers of R: "single" | "double"
+  Support support = Support::kFloating;      ///< "floating" | "fixed"
 };
 
 /// A configuration file of irdm-precompute.
@@ -107,12 +87,15 @@ struct PrecomputeConfig {
   MeshConfig mesh;
   /// [material]: youngs_modulus [Pa] > 0, poisson_ratio in (-1, 0.5) and density [kg/m^3] > 0 are
   /// required; rayleigh_alpha [1/s] >= 0 and rayleigh_beta [s] >= 0 are 8.0 and 2e-4 unless given.
+  /// With `rigid = true` it has density alone.
   Material material;
+  /// The body does not deform: there is no R, and no keys that say how to obtain it.
+  bool rigid = false;
   ResponseConfig response;
   ModesConfig modes;  ///< used by method = "modal"
-  /// Which nodes are clamped, with `response.support = "fixed"`; none: the body floats. [support]
-  /// has one of `half_space = { point = [..], normal = [..] }`, `box = { min = [..], max = [..] }`
-  /// and `group = "name"`, in m and the coordinates of the input mesh (times its unit).
+  /// Which nodes are clamped, with `response.support = "fixed"`; none: the body floats or is rigid.
+  /// [support] has one of `half_space = { point = [..], normal = [..] }`, `box = { min = [..], max
+  /// = [..] }` and `group = "name"`, in m and the coordinates of the input mesh (times its unit).
   std::optional<Region> support;
   TimeSteppingConfig time_stepping;  ///< used by method = "time-stepping"
   int threads = 0;                   ///< of the command line; 0: all cores

@@ -16,13 +16,11 @@
 #include "precompute/dynamics/stepping_method.hpp"
 #include "precompute/fem/assembly.hpp"
 #include "precompute/fem/mass_properties.hpp"
-#include "precompute/mesh/box_mesh.hpp"
+#include "precompute/mesh/make_mesh.hpp"
 #include "precompute/mesh/mesh_check.hpp"
-#include "precompute/mesh/mesh_file.hpp"
 #include "precompute/mesh/region.hpp"
 #include "precompute/mesh/surface.hpp"
 #include "precompute/mesh/tet_mesh.hpp"
-#include "precompute/mesh/tetgen_program.hpp"
 #include "precompute/modal/elastic_statics.hpp"
 #include "precompute/modal/lowest_modes.hpp"
 #include "precompute/modal/modal_method.hpp"
@@ -42,46 +40,40 @@ void warn(const std::string& text) {
   std::cerr << "irdm-precompute: warning: " << text << std::endl;
 }
 
-TetMesh make_linear_mesh(const MeshConfig& config) {
-  if (const auto* box = std::get_if<BoxConfig>(&config.source)) {
-    TetMesh mesh = tetrahedralise(box_surface(box->size, box->cells));
-    check_mesh(mesh, "mesh of the box");
-    return mesh;
+// Linear or quadratic, as the configuration says.
+TetMesh mesh_of(const PrecomputeConfig& config) {
+  MadeMesh made = make_mesh(config.mesh);
+  if (made.unused_nodes > 0) {
+    warn(std::get<std::filesystem::path>(config.mesh.source).string() + ": left out " +
+         std::to_string(made.unused_nodes) + " nodes that belong to no tetrahedron");
   }
-  const auto& path = std::get<std::filesystem::path>(config.source);
-  std::optional<double> edge_length = config.edge_length;
-  if (edge_length) *edge_length /= config.unit;
-  TetMesh mesh = read_mesh_file(path, edge_length);
-  mesh.nodes *= config.unit;
-  const int unused = drop_unused_nodes(mesh);
-  check_mesh(mesh, path.string());
-  if (unused > 0) {
-    warn(path.string() + ": left out " + std::to_string(unused) +
-         " nodes that belong to no tetrahedron");
-  }
-  return mesh;
+  return std::move(made.mesh);
 }
 
-TetMesh make_mesh(const MeshConfig& config) {
-  TetMesh mesh = make_linear_mesh(config);
-  return config.order == 1 ? mesh : quadratic_mesh(mesh);
+// Modes and R rest on point masses at the nodes; what does not deform has the mass of the solid.
+MassProperties body_of(const TetMesh& mesh, const Eigen::VectorXd& node_mass,
+                       const PrecomputeConfig& config) {
+  return config.rigid ? solid_mass_properties(mesh, config.material.density)
+                      : nodal_mass_properties(mesh.nodes, node_mass);
 }
 
-// Everything of the model but its response; the nodes move into the body frame.
+// All of a rigid body's model, and of others all but the response; the nodes move into the body
+// frame.
 Model describe(const TetMesh& mesh, const std::string& name, const PrecomputeConfig& config) {
   Model model;
   Surface surface = extract_surface(mesh, name);
   model.mesh.node_mass = lumped_mass(mesh, config.material.density);
-  const MassProperties body = nodal_mass_properties(mesh.nodes, model.mesh.node_mass);
+  const MassProperties body = body_of(mesh, model.mesh.node_mass, config);
   model.mesh.com_offset = body.centre_of_mass;
   model.mesh.nodes = mesh.nodes.rowwise() - body.centre_of_mass.transpose();
   model.mesh.tets = mesh.tets;
   model.mesh.surface_nodes = std::move(surface.nodes);
   model.mesh.triangles = std::move(surface.triangles);
-  model.body = {body.mass, body.inertia, config.support ? Support::kFixed : Support::kFloating};
+  model.body = {body.mass, body.inertia, config.response.support};
   model.material = config.material;
   model.dt = config.response.dt;
   model.steps = config.response.steps;
+  if (config.rigid) model.response = RigidResponse{};
   if (const auto fault = description_fault(model)) {
     throw Error(name, "makes a model whose " + *fault, "correct the mesh, its unit or the density");
   }
@@ -114,9 +106,19 @@ void check_modes(const PrecomputeConfig& config) {
   }
 }
 
+void check_rigid(const PrecomputeConfig& config, const std::optional<ColumnRange>& slice,
+                 const Ranks& ranks) {
+  const bool modal =
+      config.response.method == Method::kModal && config.response.storage == Storage::kModal;
+  if (!config.rigid || (modal && !slice && ranks.size() == 1)) return;
+  throw Error(config.name, "is of a rigid body, of which no R is computed",
+              "leave --method, --storage, --columns and mpirun out");
+}
+
 // Says early that the work cannot be done here, instead of dying of it later.
 void check_resources(const PrecomputeConfig& config, const TetMesh& mesh, const Model& model,
                      int columns, const std::filesystem::path& output) {
+  if (config.rigid) return;
   const double memory =
       static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
   const Eigen::Index unknowns = 3 * static_cast<Eigen::Index>(mesh.node_count());
@@ -209,6 +211,17 @@ ColumnRange wanted_columns(const PrecomputeConfig& config, const Model& model,
   return *slice;
 }
 
+// A whole model file, with the response that `write_response` adds.
+template <typename WriteResponse>
+void write_model(const Model& model, const std::filesystem::path& output,
+                 const WriteResponse& write_response) {
+  ModelFileWriter writer(output);
+  const SignalCleanup cleanup({.remove = writer.temporary_path()});
+  writer.write_description(model);
+  write_response(writer);
+  writer.commit();
+}
+
 Summary describe_work(const PrecomputeConfig& config, const TetMesh& mesh, const Model& model,
                       std::size_t clamped) {
   Summary summary;
@@ -249,7 +262,8 @@ Summary precompute_model(const PrecomputeConfig& config, const std::filesystem::
   const auto start = std::chrono::steady_clock::now();
   const bool stepping = config.response.method == Method::kTimeStepping;
   check_modes(config);
-  const TetMesh mesh = make_mesh(config.mesh);
+  check_rigid(config, slice, ranks);
+  const TetMesh mesh = mesh_of(config);
   const Model model = describe(mesh, config.name, config);
   if (stepping) {
     check_time_stepping(config.name, mesh, model, config.response.storage == Storage::kDense);
@@ -273,7 +287,10 @@ Summary precompute_model(const PrecomputeConfig& config, const std::filesystem::
     summary.slice = slice.has_value();
     if (stepping) summary.decay_left = done.decay_left;
   };
-  if (stepping) {
+  if (config.rigid) {
+    write_model(model, output, [](ModelFileWriter&) {});
+    summary.columns = columns.count();
+  } else if (stepping) {
     by_columns(*stepped_columns(config, mesh, model, threads, console));
   } else {
     ModalResponse response = modes_of(config, mesh, clamped, model, threads, ranks, console);
@@ -285,11 +302,9 @@ Summary precompute_model(const PrecomputeConfig& config, const std::filesystem::
     if (slice || (ranks.size() > 1 && !shares_modes(config))) {
       by_columns(*modal_columns(response, model, config.response.precision));
     } else {
-      ModelFileWriter writer(output);
-      const SignalCleanup cleanup({.remove = writer.temporary_path()});
-      writer.write_description(model);
-      write_modal_response(writer, std::move(response), model, config.response, threads, console);
-      writer.commit();
+      write_model(model, output, [&](ModelFileWriter& writer) {
+        write_modal_response(writer, std::move(response), model, config.response, threads, console);
+      });
       summary.columns = columns.count();
     }
   }

@@ -175,11 +175,18 @@ Report check_model(const std::filesystem::path& path, const CheckOptions& option
   Report report;
   run_part(report, "checksum", "", [&] { return Report{checksum_line(file)}; });
   HandLoop loop{options.hand, 0.0, 1};
+  bool rigid = false;
   run_part(report, "description", "", [&] {
-    loop.dt = read_description(hdf5::File::open(path)).dt;
+    const Model model = read_description(hdf5::File::open(path));
+    loop.dt = model.dt;
+    rigid = is_rigid(model);
     return Report{};
   });
   if (failed_lines(report).find("description") != std::string::npos) return report;
+  if (rigid) {
+    report.push_back({"response", Verdict::kNone, "the body is rigid"});
+    return report;
+  }
   loop.delay = loop_delay(options.delay < 0.0 ? loop.dt : options.delay, loop.dt);
   const bool modal = file.exists("/response/modal");
   const bool dense = file.exists("/response/dense");

@@ -8,6 +8,10 @@ namespace irdm::precompute {
 
 DenseInput::DenseInput(const std::filesystem::path& path)
     : file_(hdf5::File::open(path)), model_(read_description(hdf5::File::open(path))) {
+  if (is_rigid(model_)) {
+    throw Error(name(), "is of a rigid body, which has no response to compress",
+                "use it as it is, with any engine");
+  }
   if (!file_.exists(kDenseR)) {
     throw Error(name(), "has no dense response to compress",
                 "precompute with storage = \"dense\" or \"both\"");

@@ -20,7 +20,7 @@ MassProperties solid_mass_properties(const TetMesh& mesh, double density);
 /// 6: 7.5 %, of 6 with quadratic tetrahedra: 1.9 %). It is the inertia that the discrete equations
 /// of motion have: the elastic modes are orthogonal to rigid motions of these masses, so that rigid
 /// motion with this inertia plus elastic response is the motion of the mesh, and the elastic part
-/// carries no momentum (equations (1)(2)). The model file has this one.
+/// carries no momentum (equations (1)(2)). The model file of a soft body has this one.
 /// @param mass (N) [kg]
 MassProperties nodal_mass_properties(const Points& nodes, const Eigen::VectorXd& mass);
 

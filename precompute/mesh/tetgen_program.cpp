@@ -102,14 +102,13 @@ TetMesh tetrahedralise(const SurfaceMesh& surface, const std::string& program,
 }
 
 TetMesh fill_surface(const SurfaceMesh& surface, const std::string& name,
-                     const std::string& program, double time_limit_s) {
+                     const std::string& program, double time_limit_s, const std::string& remedy) {
   const double edge = mean_edge(surface);
   char size[32];  // without an exponent, which the program would take for another flag
   std::snprintf(size, sizeof size, "a%.20f",
                 kInnerSize * edge * edge * edge / (6.0 * std::sqrt(2.0)));
   const TemporaryFolder folder("irdm-tetgen");
-  run_tetgen(surface, kFlags + std::string(size), folder, program, time_limit_s, name,
-             "set mesh.edge_length, which makes its triangles anew");
+  run_tetgen(surface, kFlags + std::string(size), folder, program, time_limit_s, name, remedy);
   return read_filled(surface, folder, program, name);
 }
 

@@ -15,9 +15,11 @@ TetMesh tetrahedralise(const SurfaceMesh& surface, const std::string& program = 
                        double time_limit_s = 120.0);
 
 /// The same for any closed surface, with tetrahedra inside that are about as large as its
-/// triangles. `name` stands for it in messages.
-TetMesh fill_surface(const SurfaceMesh& surface, const std::string& name,
-                     const std::string& program = "tetgen", double time_limit_s = 120.0);
+/// triangles. `name` stands for it in messages, `remedy` says what to do where it cannot be filled.
+TetMesh fill_surface(
+    const SurfaceMesh& surface, const std::string& name, const std::string& program = "tetgen",
+    double time_limit_s = 120.0,
+    const std::string& remedy = "set mesh.edge_length, which makes its triangles anew");
 
 /// Throws Error (about `name`, with a place in the surface's own coordinates) when triangles cut or
 /// overlap each other, as `tetgen -d` finds; and when that program is missing or fails.

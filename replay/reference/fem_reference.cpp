@@ -9,6 +9,10 @@ namespace irdm::replay {
 namespace {
 
 void check_model(const Model& model, const std::string& name) {
+  if (is_rigid(model)) {
+    throw Error(name, "is of a rigid body, and the reference deforms elastic ones",
+                "leave --reference out");
+  }
   if (model.body.support == Support::kFixed) {
     throw Error(name, "is of a fixed object, and the reference moves floating ones only",
                 "give a floating object, or leave --reference out");

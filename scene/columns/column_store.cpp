@@ -219,6 +219,7 @@ int slots_within(const std::filesystem::path& path, const StreamedResponse& resp
 
 Model SceneColumns::read(const std::filesystem::path& path, std::size_t budget) {
   Model model = read_streamed_model(path);
+  if (is_rigid(model)) return model;
   auto& response = std::get<StreamedResponse>(model.response);
   const std::size_t slot_bytes = 3 * static_cast<std::size_t>(response.degrees_of_freedom) *
                                  static_cast<std::size_t>(response.steps) * number_size(response);

@@ -120,8 +120,10 @@ TEST_CASE("a mesh file is found beside its configuration") {
 
 TEST_CASE("configuration refuses each bad mesh entry") {
   check_refused(kMaterialTable, "mesh is missing");
-  check_refused("[mesh]\n" + kMaterialTable, "has neither box nor file");
-  check_refused(kMesh + "file = \"a.msh\"\n" + kMaterialTable, "has both box and file");
+  const std::string not_one = "has not exactly one of box, sphere, capsule and file";
+  check_refused("[mesh]\n" + kMaterialTable, not_one);
+  check_refused(kMesh + "file = \"a.msh\"\n" + kMaterialTable, not_one);
+  check_refused(kMesh + "sphere = { radius = 1, cells = 2 }\n" + kMaterialTable, not_one);
   check_refused("[mesh]\nbox = 3\n" + kMaterialTable, "mesh.box is not a table");
   check_refused("[mesh]\nfile = 3\n" + kMaterialTable, "mesh.file is not text");
   check_refused("[mesh]\nbox = { size = [0.1, 0.2], cells = [1, 2, 3] }\n" + kMaterialTable,
@@ -141,9 +143,75 @@ TEST_CASE("configuration refuses each bad mesh entry") {
   check_refused("[mesh]\nfile = \"a.stl\"\nedge_length = 0\n" + kMaterialTable, "edge_length is 0");
   check_refused("[mesh]\nfile = \"a.msh\"\nedge_length = 0.1\n" + kMaterialTable,
                 "edge_length belongs to a surface (.stl, .obj, .ply)");
-  check_refused(kMesh + "edge_length = 0.1\n" + kMaterialTable, "cells says how fine a box is");
+  check_refused(kMesh + "edge_length = 0.1\n" + kMaterialTable, "cells says how fine the mesh is");
   check_refused(kMesh + "order = 3\n" + kMaterialTable, "mesh.order is 3");
   check_refused(kMesh + "typo = 2\n" + kMaterialTable, "mesh.typo is not a known key");
+}
+
+TEST_CASE("a sphere and a capsule are read") {
+  const auto ball = read("[mesh]\nsphere = { radius = 0.05, cells = 8 }\n" + kMaterialTable);
+  CHECK(std::get<SphereConfig>(ball.mesh.source).radius == 0.05);
+  CHECK(std::get<SphereConfig>(ball.mesh.source).cells == 8);
+  const auto peg = read(
+      "[mesh]\ncapsule = { radius = 0.01, length = 0.1, cells = 4 }\norder = 2\n" + kMaterialTable);
+  CHECK(std::get<CapsuleConfig>(peg.mesh.source).radius == 0.01);
+  CHECK(std::get<CapsuleConfig>(peg.mesh.source).length == 0.1);
+  CHECK(std::get<CapsuleConfig>(peg.mesh.source).cells == 4);
+  CHECK(peg.mesh.order == 2);
+}
+
+TEST_CASE("configuration refuses each bad entry of a sphere or capsule") {
+  const auto refuse = [](const std::string& mesh, const std::string& message) {
+    check_refused("[mesh]\n" + mesh + "\n" + kMaterialTable, message);
+  };
+  refuse("sphere = { radius = -0.05, cells = 8 }", "mesh.sphere.radius is -0.05");
+  refuse("sphere = { cells = 8 }", "mesh.sphere.radius is missing");
+  refuse("sphere = { radius = 0.05 }", "mesh.sphere.cells is missing");
+  refuse("sphere = { radius = 0.05, cells = 1 }", "mesh.sphere.cells is 1");
+  refuse("sphere = { radius = 0.05, cells = 101 }", "mesh.sphere.cells is 101");
+  refuse("sphere = { radius = 0.05, cells = 8, x = 1 }", "mesh.sphere.x is not a known key");
+  refuse("sphere = { radius = 0.05, cells = 8 }\nunit = \"mm\"", "unit belongs to a mesh file");
+  refuse("capsule = { radius = 0, length = 0.1, cells = 4 }", "mesh.capsule.radius is 0");
+  refuse("capsule = { radius = 0.01, length = -1, cells = 4 }", "mesh.capsule.length is -1");
+  refuse("capsule = { radius = 0.01, length = 0.1 }", "mesh.capsule.cells is missing");
+  refuse("capsule = { radius = 1e-6, length = 1, cells = 4 }", "is more than 1000 cells long");
+}
+
+TEST_CASE("a rigid body needs its density alone") {
+  const auto floating = read(kMesh + "[material]\nrigid = true\ndensity = 800\n");
+  CHECK(floating.rigid);
+  CHECK(floating.material.density == 800.0);
+  CHECK(floating.material.youngs_modulus == 0.0);
+  CHECK(floating.response.dt == 0.002);
+  CHECK(floating.response.steps == 1);
+  CHECK(floating.response.support == Support::kFloating);
+  const auto fixed = read(kMesh + "[material]\nrigid = true\ndensity = 800\n" +
+                          "[response]\ndt = 0.001\nsupport = \"fixed\"\n");
+  CHECK(fixed.response.dt == 0.001);
+  CHECK(fixed.response.support == Support::kFixed);
+  CHECK_FALSE(fixed.support);
+  CHECK_FALSE(read(kMesh + kMaterialTable).rigid);
+  CHECK_FALSE(read(kMesh + kMaterialTable + "rigid = false\n").rigid);
+}
+
+TEST_CASE("configuration refuses what a rigid body does not have") {
+  const std::string rigid = kMesh + "[material]\nrigid = true\n";
+  check_refused(rigid, "material.density is missing");
+  check_refused(rigid + "density = -1\n", "material.density is -1");
+  check_refused(kMesh + "[material]\nrigid = 1\ndensity = 800\n", "material.rigid");
+  for (const char* key : {"youngs_modulus", "poisson_ratio", "rayleigh_alpha", "rayleigh_beta"}) {
+    check_refused(rigid + "density = 800\n" + key + " = 0.3\n",
+                  std::string("material.") + key + " is for soft bodies");
+  }
+  for (const char* line :
+       {"steps = 500", "method = \"modal\"", "storage = \"modal\"", "precision = \"single\""}) {
+    check_refused(rigid + "density = 800\n[response]\n" + line + "\n", "is for soft bodies");
+  }
+  for (const char* table : {"modes", "support", "time_stepping"}) {
+    check_refused(rigid + "density = 800\n[" + table + "]\n",
+                  std::string(table) + " is for soft bodies");
+  }
+  check_refused(rigid + "density = 800\n[response]\ntypo = 1\n", "is not a known key");
 }
 
 TEST_CASE("configuration refuses each bad material entry") {

@@ -211,6 +211,59 @@ TEST_CASE("a fixed body does not move where it is clamped and has all other mode
   }
 }
 
+TEST_CASE("a rigid box has exactly the mass and the inertia of a solid one") {
+  ProgramRun run;
+  const std::string rigid = "[material]\nrigid = true\ndensity = 800\n";
+  run.write("c.toml", kBox + rigid + "[response]\ndt = 0.001\n");
+  run.start("c.toml -o made/model.h5");
+  REQUIRE(run.err.empty());
+  REQUIRE(run.status == 0);
+  CHECK_THAT(run.out, Contains("mass") && !Contains("elastic modes"));
+  const Model model = read_model(run.model(), ResponseKind::kModal);
+  CHECK(is_rigid(model));
+  CHECK(model.dt == 0.001);
+  CHECK(model.body.support == Support::kFloating);
+  const double mass = 800 * 0.12 * 0.1 * 0.08;
+  const Vector3 squares(0.12 * 0.12, 0.1 * 0.1, 0.08 * 0.08);
+  const Vector3 moments = mass / 12.0 * (Vector3::Constant(squares.sum()) - squares);
+  CHECK(model.body.mass == Approx(mass).epsilon(1e-12));
+  CHECK((model.body.inertia - Matrix3(moments.asDiagonal())).norm() < 1e-12 * moments.norm());
+  CHECK((model.mesh.com_offset - Vector3(0.06, 0.05, 0.04)).norm() < 1e-12);
+}
+
+TEST_CASE("scenery is rigid and fixed without clamped nodes") {
+  ProgramRun run;
+  run.write("c.toml",
+            "[mesh]\ncapsule = { radius = 0.01, length = 0.04, cells = 3 }\norder = 2\n"
+            "[material]\nrigid = true\ndensity = 800\n[response]\nsupport = \"fixed\"\n");
+  run.start("c.toml -o made/model.h5");
+  REQUIRE(run.err.empty());
+  REQUIRE(run.status == 0);
+  const Model model = read_model(run.model(), ResponseKind::kDense);
+  CHECK(is_rigid(model));
+  CHECK(model.body.support == Support::kFixed);
+  CHECK(model.mesh.tets.cols() == 10);
+  run.start("check made/model.h5");
+  CHECK(run.status == 0);
+  CHECK_THAT(run.out, Contains("the body is rigid"));
+  run.start("compress made/model.h5 -o made/small.h5");
+  CHECK(run.status == 1);
+  CHECK_THAT(run.err, Contains("is of a rigid body, which has no response to compress"));
+}
+
+TEST_CASE("no R of a rigid body can be asked for") {
+  ProgramRun run;
+  run.write("c.toml", kBox + "[material]\nrigid = true\ndensity = 800\n");
+  for (const char* option :
+       {"--columns 0:3", "--storage dense", "--storage both", "--method time-stepping"}) {
+    run.start(std::string("c.toml -o made/model.h5 ") + option);
+    CHECK(run.status == 1);
+    CHECK(std::count(run.err.begin(), run.err.end(), '\n') == 1);
+    CHECK_THAT(run.err, Contains("c.toml: is of a rigid body, of which no R is computed"));
+    CHECK(std::filesystem::is_empty(run.path() / "made"));
+  }
+}
+
 TEST_CASE("a mesh file in millimetres becomes metres, and the wrong unit is hinted at") {
   ProgramRun run;
   std::string large = kMsh;

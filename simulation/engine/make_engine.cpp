@@ -5,6 +5,7 @@
 #include "simulation/engine/compressed_engine.hpp"
 #include "simulation/engine/dense_engine.hpp"
 #include "simulation/engine/modal_engine.hpp"
+#include "simulation/engine/rigid_engine.hpp"
 #include "simulation/engine/streamed_engine.hpp"
 
 namespace irdm {
@@ -34,6 +35,7 @@ std::unique_ptr<ResponseEngine> make_engine(std::shared_ptr<const Model> model) 
   if (std::holds_alternative<CompressedResponse>(model->response)) {
     return std::make_unique<CompressedEngine>(std::move(model));
   }
+  if (is_rigid(*model)) return std::make_unique<RigidEngine>(model->mesh.surface_node_count());
   throw Error("model", "holds no response", "make it again with irdm-precompute");
 }
 

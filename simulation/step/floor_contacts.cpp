@@ -15,6 +15,10 @@ constexpr double kNearFloor = 1e-4;
 constexpr double kLeastMargin = 2e-3;
 constexpr double kMarginFactor = 2.0;
 constexpr double kFading = 0.99;
+// A body that does not yield is where it should be at the end of a step with the speed mirrored: it
+// goes on bouncing between steps. Yielding at each contact by this many dt^2 / M takes the speed
+// up. At rest it sinks in by this many g dt^2 over the number of contacts.
+constexpr double kRigidSoftness = 4.0;
 
 }  // namespace
 
@@ -31,6 +35,7 @@ FloorContacts::FloorContacts(const FloorConfig& floor, const RestSurface& rest, 
                 "use a mesh of at most " + std::to_string(kMaxNodes) + " surface nodes");
   }
   compliance_ = stored_response(model)->zero_lag();
+  if (is_rigid(model)) softness_ = kRigidSoftness * model.dt * model.dt / model.body.mass;
 }
 
 void FloorContacts::reset() noexcept {
@@ -80,6 +85,7 @@ void FloorContacts::pose(const FreeMotion& motion, DeformedSurface& surface,
       problem.elastic(static_cast<int>(a), static_cast<int>(b)) =
           compliance_.block<3, 3>(3 * i, 3 * nodes_[b]);
     }
+    problem.elastic(static_cast<int>(a), static_cast<int>(a)).diagonal().array() += softness_;
   }
   posed_count_ = count_;
   std::copy_n(nodes_.begin(), m, posed_.begin());

@@ -55,6 +55,7 @@ class FloorContacts {
   FloorConfig floor_;
   const RestSurface& rest_;
   Eigen::MatrixXd compliance_;        ///< R[0] (3n, 3n) [m/N]
+  double softness_ = 0.0;             ///< of each contact besides, of a rigid body [m/N]
   std::vector<FloorAnchor> anchors_;  ///< of all nodes
   std::vector<int> nodes_;            ///< of this step's contacts
   std::vector<int> posed_;            ///< whose blocks are in the problem

@@ -16,11 +16,16 @@ void follow_gravity(ResponseEngine& engine, const SimulationObject& object,
 }
 
 bool takes_gravity(const SimulationObject& object) {
-  return object.model->body.support == Support::kFloating || has_gravity(*object.model);
+  const Model& model = *object.model;
+  return model.body.support == Support::kFloating || is_rigid(model) || has_gravity(model);
 }
 
 void check_inertial_loading(const Model& model, bool inertial_loading, const std::string& where) {
   if (!has_inertial_loading(model, inertial_loading) || has_centrifugal(model)) return;
+  if (is_rigid(model)) {
+    throw Error(where, "is of a rigid body, which inertial_loading cannot bend",
+                "leave inertial_loading out");
+  }
   const bool dense = !std::holds_alternative<ModalResponse>(model.response);
   throw Error(where,
               std::string("has no centrifugal response for engine = \"") +

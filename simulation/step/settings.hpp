@@ -15,8 +15,8 @@ namespace irdm {
 void follow_gravity(ResponseEngine& engine, const SimulationObject& object,
                     const Vector3& gravity) noexcept;
 
-/// Whether gravity can bend the object as far as that is up to it: it floats, or its response says
-/// what gravity does to it.
+/// Whether gravity can bend the object as far as that is up to it: it floats, is rigid, or its
+/// response says what gravity does to it.
 bool takes_gravity(const SimulationObject& object);
 
 /// Whether the body's own spin is to load its elastic part. A fixed body has none.

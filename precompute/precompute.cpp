@@ -69,7 +69,8 @@ Model describe(const TetMesh& mesh, const std::string& name, const PrecomputeCon
   model.mesh.tets = mesh.tets;
   model.mesh.surface_nodes = std::move(surface.nodes);
   model.mesh.triangles = std::move(surface.triangles);
-  model.body = {body.mass, body.inertia, config.response.support};
+  const bool clamped = config.support.has_value();
+  model.body = {body.mass, body.inertia, clamped ? Support::kFixed : config.response.support};
   model.material = config.material;
   model.dt = config.response.dt;
   model.steps = config.response.steps;

@@ -1,5 +1,8 @@
 #include <catch2/catch.hpp>
 
+#include "common/error.hpp"
+#include "common/model/model_file.hpp"
+#include "scene/columns/column_store.hpp"
 #include "scene/scene.hpp"
 #include "tests/server/scene_text.hpp"
 #include "tests/support/streamed_model.hpp"
@@ -404,4 +407,29 @@ TEST_CASE("objects of one file have one model, but where each has its own budget
   CHECK(objects[0].model != objects[1].model);
   CHECK(objects[0].model != objects[3].model);
   CHECK(objects[3].model != objects[4].model);
+}
+
+TEST_CASE("a rigid body is taken whatever the engine, but not with inertial loading") {
+  const test::TemporaryFolder folder;
+  ObjectConfig object;
+  object.model = folder.path() / "cube.h5";
+  {
+    ModelFileWriter writer(object.model);
+    writer.write_description(test::made_rigid(test::synthetic_cube(2, 3, 4)));
+    writer.commit();
+  }
+  SceneConfig config;
+  for (const ResponseKind engine :
+       {ResponseKind::kModal, ResponseKind::kDense, ResponseKind::kCompressed}) {
+    object.engine = engine;
+    config.objects.push_back(object);
+  }
+  config.objects[1].memory_budget = 10.0;
+  SceneColumns columns(false);
+  for (const SimulationObject& each : simulation_config(config, false, &columns).objects) {
+    CHECK(is_rigid(*each.model));
+  }
+  config.objects[0].inertial_loading = true;
+  CHECK_THROWS_WITH(simulation_config(config, false),
+                    Catch::Matchers::Contains("cube.h5: is of a rigid body"));
 }

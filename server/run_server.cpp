@@ -256,6 +256,7 @@ TraceHeader trace_header(const SceneConfig& scene, const ServerOptions& options,
   header.scene = read_text(options.scene);
   header.dt = config.objects.front().model->dt;
   header.floor = scene.floor.has_value();
+  header.bodies = touches_bodies(config);
   header.stylus_count = static_cast<int>(config.styluses.size());
   return header;
 }

@@ -9,7 +9,7 @@
 #include "common/error.hpp"
 #include "common/hdf5/handle.hpp"
 #include "common/motion/rigid_body.hpp"
-#include "simulation/step/soft_object.hpp"
+#include "trace/body_contact_rows.hpp"
 #include "trace/trace_layout.hpp"
 #include "trace/trace_rows.hpp"
 
@@ -45,6 +45,14 @@ void TraceCheck::orientations(const std::string& set, std::span<const double> va
   }
 }
 
+void TraceCheck::directions(const std::string& set, std::span<const double> values) const {
+  for (std::size_t row = 0; 3 * row < values.size(); ++row) {
+    double square = 0.0;
+    for (const double part : values.subspan(3 * row, 3)) square += part * part;
+    if (!(std::abs(square - 1.0) <= kRounding)) refuse(set, row, "is no direction of length 1");
+  }
+}
+
 void TraceCheck::weights(const std::string& set, std::span<const double> values,
                          std::size_t row) const {
   double sum = 0.0;
@@ -73,6 +81,9 @@ struct Recording::Data {
   std::vector<std::span<const LateForce>> late_of;  ///< in `late`, of each step
   trace::BridgedRows bridged;
   std::vector<std::size_t> bridged_of;  ///< first row in `bridged`, of each step, and one more
+  trace::BodyContactRows touching;
+  /// In `touching`, of each step.
+  std::vector<std::span<const BodyContactRecord>> touching_of;
   std::vector<trace::StylusRows> styluses;
   std::vector<trace::ObjectRows> objects;
 
@@ -84,6 +95,7 @@ struct Recording::Data {
   void number_settings_and_resets();
   void number_late(const std::string& file);
   void number_bridged();
+  void number_touching(const std::string& file);
   RigidState before(std::size_t object, std::size_t k) const;
   void object_step(std::size_t object, std::size_t k, ObjectRecord& out,
                    bool has_inertial_loading) const;
@@ -105,11 +117,13 @@ void Recording::Data::read(const hdf5::File& file, const std::vector<std::string
   settings = trace::read_settings(file, config);
   late = trace::read_late(file, config);
   bridged = trace::read_bridged(file, config);
+  touching = trace::read_body_contacts(file, config, force_step.back());
   read_styluses(file, reader, check);
   read_objects(file, reader, check, names);
   number_settings_and_resets();
   number_late(file.name());
   number_bridged();
+  number_touching(file.name());
 }
 
 void Recording::Data::read_styluses(const hdf5::File& file, const trace::RowReader& reader,
@@ -195,6 +209,25 @@ void Recording::Data::number_bridged() {
   }
   while (row < bridged.force_step.size() && bridged.force_step[row] <= force_step.back()) ++row;
   bridged_of.push_back(row);
+}
+
+void Recording::Data::number_touching(const std::string& file) {
+  std::size_t row = 0;
+  const std::vector<std::uint64_t>& of = touching.force_step;
+  for (const std::uint64_t step : force_step) {
+    while (row < of.size() && of[row] < step) ++row;  // of a step that was lost
+    std::size_t end = row;
+    while (end < of.size() && of[end] == step) ++end;
+    if (end - row > kMaxBodyContacts) {
+      throw Error(file,
+                  "/body_contact has " + std::to_string(end - row) + " contacts in step " +
+                      std::to_string(step) + ", and " + std::to_string(kMaxBodyContacts) +
+                      " are the most",
+                  "record it again");
+    }
+    touching_of.push_back(std::span(touching.contact).subspan(row, end - row));
+    row = end;
+  }
 }
 
 RigidState Recording::Data::before(std::size_t i, std::size_t k) const {
@@ -305,6 +338,9 @@ void Recording::step(std::size_t k, StepRecord& record) const {
   const std::span<const LateForce> late = data.late_of[k];
   record.late.count = late.size();
   std::copy(late.begin(), late.end(), record.late.force.begin());
+  const std::span<const BodyContactRecord> touching = data.touching_of[k];
+  record.body_contact_count = static_cast<int>(touching.size());
+  std::copy(touching.begin(), touching.end(), record.body_contact.begin());
   for (std::size_t i = 0; i < data.objects.size(); ++i) {
     data.object_step(i, k, record.object[i], record.settings.object[i].inertial_loading);
   }

@@ -30,6 +30,8 @@ class TraceCheck {
               const Range& range = lab::kRecorded) const;
   /// Quaternions of length 1.
   void orientations(const std::string& set, std::span<const double> values) const;
+  /// Vectors of length 1.
+  void directions(const std::string& set, std::span<const double> values) const;
   /// Three barycentric weights.
   void weights(const std::string& set, std::span<const double> values, std::size_t row) const;
 
@@ -44,7 +46,8 @@ class TraceCheck {
 
 namespace irdm {
 
-/// A recorded run, read back whole: what each step did to the objects. Takes some 500 bytes a step.
+/// A recorded run, read back whole: what each step did to the objects. Takes some 500 bytes a
+/// step, and 160 for each contact between bodies.
 class Recording {
  public:
   /// Reads a trace of these objects and styluses. Throws Error. Holds hdf5::library_mutex().

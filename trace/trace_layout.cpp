@@ -27,6 +27,7 @@ TraceHeader read_trace_header(const std::filesystem::path& path) {
   header.dt = trace::read_dt(file);
   header.stylus_count = 0;
   while (file.exists("/stylus/" + std::to_string(header.stylus_count))) ++header.stylus_count;
+  header.bodies = file.exists(trace::kBodyContact);
   header.objects.push_back({"", file.read_string_attribute("/", "model_file"),
                             file.read_string_attribute("/", "model_checksum")});
   return header;
@@ -49,7 +50,7 @@ std::vector<TraceObject> read_trace_objects(const std::filesystem::path& path,
 namespace irdm::trace {
 namespace {
 
-constexpr std::array<std::pair<const char*, const char*>, 20> kUnits{{
+constexpr std::array<std::pair<const char*, const char*>, 25> kUnits{{
     {"time", "s"},
     {"body_position", "m"},
     {"body_orientation", "1"},
@@ -70,6 +71,11 @@ constexpr std::array<std::pair<const char*, const char*>, 20> kUnits{{
     {"damping", "1/s"},
     {"tether", "N/m, N m/rad"},
     {"material_damping", "1"},
+    {"weights", "1"},
+    {"position", "m"},
+    {"normal", "1"},
+    {"slip", "m"},
+    {"area", "m^2"},
 }};
 
 }  // namespace

@@ -35,6 +35,9 @@ inline constexpr std::int64_t kVersion = 2;
 /// How many steps are whole: a killed server may leave sets that are longer.
 inline constexpr const char* kCommitted = "/committed";
 
+/// Contacts of objects with each other and with scenery: none in the trace of a scene without.
+inline constexpr const char* kBodyContact = "/body_contact";
+
 inline std::string stylus_path(std::size_t stylus) {
   return "/stylus/" + std::to_string(stylus);
 }

@@ -35,7 +35,8 @@ TraceWriter::TraceWriter(const std::filesystem::path& path, const TraceHeader& h
     : file_(hdf5::File::create_for_swmr(path)),
       objects_(header.objects),
       stylus_count_(header.stylus_count),
-      floor_(header.floor) {
+      floor_(header.floor),
+      bodies_(header.bodies) {
   try {
     write_header(header);
     create_datasets();
@@ -66,6 +67,7 @@ void TraceWriter::create_datasets() {
   create_settings();
   create_late();
   create_bridged();
+  if (bodies_) create_body_contacts();
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     const std::string group = object_path(i);
     create_object(group);
@@ -223,6 +225,60 @@ void TraceWriter::append_bridged(std::span<const StepRecord> records) {
   file_.append<double>("/bridged/arm", steps.size(), arms.data());
 }
 
+// One row for every contact of every step.
+void TraceWriter::create_body_contacts() {
+  create<std::uint64_t>("/body_contact/force_step", {});
+  for (const char* name : {"/body_contact/object", "/body_contact/other", "/body_contact/sample",
+                           "/body_contact/triangle"}) {
+    create<std::int32_t>(name, {});
+  }
+  create<std::uint8_t>("/body_contact/slipping", {});
+  for (const char* name : {"/body_contact/weights", "/body_contact/force", "/body_contact/position",
+                           "/body_contact/normal", "/body_contact/slip"}) {
+    create<double>(name, {3});
+  }
+  create<double>("/body_contact/area", {});
+}
+
+void TraceWriter::append_body_contacts(std::span<const StepRecord> records) {
+  std::vector<std::uint64_t> steps;
+  std::vector<BodyContactRecord> contacts;
+  for (const StepRecord& r : records) {
+    steps.insert(steps.end(), r.body_contacts().size(), r.force_step);
+    contacts.insert(contacts.end(), r.body_contacts().begin(), r.body_contacts().end());
+  }
+  if (steps.empty()) return;
+  const auto rows = [&]<typename T>(const char* name, std::size_t width, T /*zero*/,
+                                    const auto& fill) {
+    std::vector<T> values(contacts.size() * width);
+    for (std::size_t i = 0; i < contacts.size(); ++i) fill(contacts[i], values.data() + i * width);
+    file_.append<T>(name, contacts.size(), values.data());
+  };
+  const auto integers = [&](const char* name, int BodyContactRecord::*member) {
+    rows(name, 1, std::int32_t{0},
+         [&](const BodyContactRecord& c, std::int32_t* row) { *row = c.*member; });
+  };
+  const auto vectors = [&](const char* name, Vector3 BodyContactRecord::*member) {
+    rows(name, 3, 0.0, [&](const BodyContactRecord& c, double* row) { put(row, c.*member); });
+  };
+  file_.append<std::uint64_t>("/body_contact/force_step", steps.size(), steps.data());
+  integers("/body_contact/object", &BodyContactRecord::object);
+  integers("/body_contact/other", &BodyContactRecord::other);
+  integers("/body_contact/sample", &BodyContactRecord::sample);
+  integers("/body_contact/triangle", &BodyContactRecord::triangle);
+  rows("/body_contact/slipping", 1, std::uint8_t{0},
+       [](const BodyContactRecord& c, std::uint8_t* row) { *row = c.slipping ? 1 : 0; });
+  rows("/body_contact/weights", 3, 0.0, [](const BodyContactRecord& c, double* row) {
+    std::copy(c.weights.begin(), c.weights.end(), row);
+  });
+  vectors("/body_contact/force", &BodyContactRecord::force);
+  vectors("/body_contact/position", &BodyContactRecord::position);
+  vectors("/body_contact/normal", &BodyContactRecord::normal);
+  vectors("/body_contact/slip", &BodyContactRecord::slip);
+  rows("/body_contact/area", 1, 0.0,
+       [](const BodyContactRecord& c, double* row) { *row = c.area; });
+}
+
 std::string TraceWriter::object_path(std::size_t object) const {
   return trace::object_path(several(), objects_[object].name);
 }
@@ -281,6 +337,7 @@ void TraceWriter::append(std::span<const StepRecord> records) {
   append_settings(records);
   append_late(records);
   append_bridged(records);
+  if (bodies_) append_body_contacts(records);
   for (std::size_t i = 0; i < objects_.size(); ++i) append_object(records, i);
   for (std::size_t s = 0; s < static_cast<std::size_t>(stylus_count_); ++s) {
     append_stylus(records, s);

@@ -27,7 +27,8 @@ struct TraceHeader {
   std::string scene;  ///< the scene file's text
   double dt = 0.0;    ///< [s]
   int stylus_count = 1;
-  bool floor = false;  ///< the scene has one
+  bool floor = false;   ///< the scene has one
+  bool bodies = false;  ///< objects can touch each other or scenery (touches_bodies())
 };
 
 /// Writes the trace file of one run (HDF5, format "irdm-trace", docs/files.md). One thread.
@@ -62,6 +63,8 @@ class TraceWriter {
   void correct_applied(std::span<const StepRecord> records);
   void create_bridged();
   void append_bridged(std::span<const StepRecord> records);
+  void create_body_contacts();
+  void append_body_contacts(std::span<const StepRecord> records);
   /// A set that grows, with its unit.
   template <typename T>
   void create(const std::string& path, const hdf5::Shape& row);
@@ -87,6 +90,7 @@ class TraceWriter {
   std::vector<TraceObject> objects_;
   int stylus_count_;
   bool floor_;
+  bool bodies_;
   std::uint64_t rows_ = 0;  ///< appended
   std::deque<RecentStep> recent_;
   std::optional<std::uint32_t> settings_change_;  ///< that was written last

@@ -13,23 +13,26 @@
 
 namespace {
 
-irdm::TraceHeader header_of(const char* file, const irdm::SceneConfig& scene, double dt) {
+irdm::TraceHeader header_of(const char* file, const irdm::SceneConfig& scene,
+                            const irdm::SimulationConfig& config) {
   irdm::TraceHeader header;
   for (const irdm::ObjectConfig& object : scene.objects) {
     header.objects.push_back(
         {object.name, object.model.filename().string(), irdm::sha256_of_file(object.model)});
   }
   header.scene = irdm::read_text(file);
-  header.dt = dt;
+  header.dt = config.objects.front().model->dt;
   header.stylus_count = static_cast<int>(scene.styluses.size());
   header.floor = scene.floor.has_value();
+  header.bodies = irdm::touches_bodies(config);
   return header;
 }
 
 void run(const char* file, const char* trace) {
   const irdm::SceneConfig scene = irdm::read_scene(irdm::TomlTable::parse_file(file));
-  irdm::Simulation simulation(irdm::simulation_config(scene, false));
-  irdm::TraceWriter writer(trace, header_of(file, scene, simulation.dt()));
+  const irdm::SimulationConfig config = irdm::simulation_config(scene, false);
+  irdm::Simulation simulation(config);
+  irdm::TraceWriter writer(trace, header_of(file, scene, config));
   const std::vector<irdm::StylusCommand> nobody(scene.styluses.size());
   auto record = std::make_unique<irdm::StepRecord>();
   while (static_cast<double>(simulation.next_step()) * simulation.dt() < 1.0) {

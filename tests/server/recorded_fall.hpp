@@ -14,7 +14,7 @@ struct RecordedFall {
   static constexpr int kSteps = 160;
   RecordedFall(const std::filesystem::path& path, std::size_t objects) : config(two_cubes()) {
     config.objects.resize(objects);
-    TraceHeader header{{}, "scene", 0.002, 2, true};
+    TraceHeader header{{}, "scene", 0.002, 2, true, touches_bodies(config)};
     for (std::size_t i = 0; i < objects; ++i) {
       names.push_back("cube" + std::to_string(i));
       header.objects.push_back({names.back(), "cube.h5", "sum"});

@@ -13,6 +13,7 @@
 #include "common/checksum.hpp"
 #include "common/error.hpp"
 #include "precompute/progress.hpp"
+#include "replay/output/contact_output.hpp"
 #include "replay/output/csv_output.hpp"
 #include "replay/output/picture_output.hpp"
 #include "replay/output/run_output.hpp"
@@ -113,7 +114,8 @@ std::string reference_key(const TracedScene& scene, const ReplayOptions& options
 /// Of a reference: beside the first of its outputs.
 std::optional<std::filesystem::path> journal_path(const ReplayOptions& options) {
   if (!options.reference) return std::nullopt;
-  for (const auto& output : {options.output, options.csv, options.vtk, options.frames}) {
+  for (const auto& output :
+       {options.output, options.csv, options.contacts, options.vtk, options.frames}) {
     if (output) return std::filesystem::path(output->string() + ".steps");
   }
   return std::nullopt;
@@ -146,6 +148,9 @@ std::optional<double> frame_rate(const ReplayOptions& options) {
 Outputs make_outputs(const ReplayOptions& options, const TracedScene& scene) {
   Outputs outputs;
   if (options.csv) outputs.push_back(std::make_unique<CsvOutput>(*options.csv, scene));
+  if (options.contacts) {
+    outputs.push_back(std::make_unique<ContactOutput>(*options.contacts, scene));
+  }
   if (options.vtk) outputs.push_back(std::make_unique<VtkOutput>(*options.vtk, scene));
   if (options.frames) {
     outputs.push_back(std::make_unique<PictureOutput>(PicturePlaces{*options.frames, options.video},

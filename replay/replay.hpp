@@ -68,6 +68,7 @@ struct ReplayOptions {
   std::optional<double> rate;     ///< frames a second [Hz]; none: every step, or 25 of pictures
   std::optional<std::filesystem::path> output;
   std::optional<std::filesystem::path> csv;
+  std::optional<std::filesystem::path> contacts;  ///< table of those between bodies
   std::optional<std::filesystem::path> vtk;
   std::optional<std::filesystem::path> frames;  ///< folder of pictures
   std::optional<std::filesystem::path> video;   ///< of them

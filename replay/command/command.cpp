@@ -157,6 +157,8 @@ Command add_replay_command(CLI::App& app) {
   app.add_option("-o,--output", options->output,
                  "Run file to write, for compare (HDF5); must not exist");
   app.add_option("--csv", options->csv, "Table of motion and forces to write; must not exist");
+  app.add_option("--contacts", options->contacts,
+                 "Table of contacts between bodies to write; must not exist");
   app.add_option("--vtk", options->vtk,
                  "Folder for surfaces that ParaView opens (run.pvd); new or empty");
   auto words = std::make_shared<PictureWords>();

@@ -1,48 +1,19 @@
 #include "replay/output/csv_output.hpp"
 
-#include <charconv>
-
 #include "common/error.hpp"
+#include "replay/output/csv_row.hpp"
 #include "replay/output/output_file.hpp"
 
 namespace irdm::replay {
 namespace {
-
-/// One line of the table.
-class Row {
- public:
-  template <typename Number>
-  void add(Number value) {
-    char text[32];
-    const auto end = std::to_chars(text, text + sizeof text, value);
-    if (!line_.empty()) line_ += ',';
-    line_.append(text, end.ptr);
-  }
-  void add(const Vector3& v) {
-    for (const double value : v) add(value);
-  }
-  void add(const Quaternion& q) {
-    add(q.w());
-    add(Vector3(q.vec()));
-  }
-  std::string text() const { return line_ + "\n"; }
-
- private:
-  std::string line_;
-};
-
-std::string vector_columns(const std::string& name, const std::string& unit) {
-  std::string columns;
-  for (const char* axis : {"_x", "_y", "_z"}) columns += "," + name + axis + unit;
-  return columns;
-}
 
 std::string object_columns(const std::string& name) {
   std::string columns = vector_columns(name + "_position", "_m");
   for (const char* part : {"_w", "_x", "_y", "_z"}) columns += "," + name + "_orientation" + part;
   return columns + vector_columns(name + "_velocity", "_m_s") +
          vector_columns(name + "_angular_velocity", "_rad_s") +
-         vector_columns(name + "_floor_force", "_N");
+         vector_columns(name + "_floor_force", "_N") + vector_columns(name + "_body_force", "_N") +
+         "," + name + "_body_contacts";
 }
 
 std::string stylus_columns(const std::string& name) {
@@ -54,7 +25,7 @@ std::string stylus_columns(const std::string& name) {
          vector_columns(name + "_force", "_N");
 }
 
-void add_object(const ObjectRecord& object, Row& row) {
+void add_object(const ObjectRecord& object, CsvRow& row) {
   row.add(object.position);
   row.add(object.orientation);
   row.add(object.velocity);
@@ -62,7 +33,20 @@ void add_object(const ObjectRecord& object, Row& row) {
   row.add(object.floor_force);
 }
 
-void add_stylus(const StylusRecord& stylus, Row& row) {
+// What other objects and scenery did to object i: the sum of the forces [N], W, and their number.
+void add_body_contacts(const StepRecord& record, int i, CsvRow& row) {
+  Vector3 sum = Vector3::Zero();
+  int count = 0;
+  for (const BodyContactRecord& contact : record.body_contacts()) {
+    if (contact.object != i && contact.other != i) continue;
+    sum += contact.object == i ? contact.force : Vector3(-contact.force);
+    ++count;
+  }
+  row.add(sum);
+  row.add(count);
+}
+
+void add_stylus(const StylusRecord& stylus, CsvRow& row) {
   row.add(stylus.present ? 1 : 0);
   row.add(stylus.buttons);
   row.add(stylus.object);
@@ -86,12 +70,13 @@ CsvOutput::CsvOutput(const std::filesystem::path& path, const TracedScene& scene
 
 void CsvOutput::put(const ReplayFrame& frame) {
   const StepRecord& record = frame.record;
-  Row row;
+  CsvRow row;
   row.add(record.time);
   row.add(record.force_step);
   row.add(record.reset ? 1 : 0);
   for (int i = 0; i < record.object_count; ++i) {
     add_object(record.object[static_cast<std::size_t>(i)], row);
+    add_body_contacts(record, i, row);
   }
   for (int s = 0; s < record.stylus_count; ++s) {
     add_stylus(record.stylus[static_cast<std::size_t>(s)], row);

@@ -49,11 +49,16 @@ bool is_plain(char letter) {
 
 }  // namespace
 
+std::string plain_name(std::string name) {
+  std::replace_if(
+      name.begin(), name.end(), [](char letter) { return !is_plain(letter); }, '_');
+  return name;
+}
+
 std::vector<std::string> plain_names(const TracedScene& scene) {
   std::vector<std::string> names;
   for (std::string name : scene.names()) {
-    std::replace_if(
-        name.begin(), name.end(), [](char letter) { return !is_plain(letter); }, '_');
+    name = plain_name(std::move(name));
     if (name.starts_with("stylus")) name = "object_" + name;  // those are the styluses' own
     const std::string wanted = name;
     for (int more = 2; std::find(names.begin(), names.end(), name) != names.end(); ++more) {

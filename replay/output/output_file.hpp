@@ -30,8 +30,10 @@ class PartFile {
 /// Makes a folder where there is none, and throws Error when there is one with something in it.
 void make_new_folder(const std::filesystem::path& folder);
 
-/// Names of the objects for columns and files: letters, digits and - alone, the rest is _; no two
-/// are the same.
+/// A name for columns and files: letters, digits and - alone, the rest is _.
+std::string plain_name(std::string name);
+
+/// Such names of the objects; no two are the same.
 std::vector<std::string> plain_names(const TracedScene& scene);
 
 }  // namespace irdm::replay

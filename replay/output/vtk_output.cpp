@@ -100,13 +100,11 @@ std::string poly_data(double time, const Points& points, std::size_t vertices, s
 VtkOutput::VtkOutput(const std::filesystem::path& folder, const TracedScene& scene)
     : folder_(folder) {
   make_new_folder(folder_);
-  std::vector<double> radii;
-  for (const SimulationStylus& stylus : scene.config.styluses) radii.push_back(stylus.radius);
   const std::vector<std::string> names = plain_names(scene);
   for (std::size_t i = 0; i < names.size(); ++i) {
     Surface surface{names[i], scene.config.objects[i].model, nullptr, nullptr, ""};
     surface.rest = std::make_unique<RestSurface>(surface.model->mesh);
-    surface.forces = std::make_unique<RecordedForces>(*surface.rest, radii);
+    surface.forces = std::make_unique<RecordedForces>(scene.config, i, *surface.rest);
     surface.triangles = triangle_cells(surface.model->mesh.triangles);
     surfaces_.push_back(std::move(surface));
   }
@@ -114,7 +112,7 @@ VtkOutput::VtkOutput(const std::filesystem::path& folder, const TracedScene& sce
 
 // Displacement: what the place of a node differs by from that of the rigid body.
 std::string VtkOutput::surface_text(const Surface& surface, const ObjectRecord& object,
-                                    const Points& displacement, double time) const {
+                                    const Points& displacement, const StepRecord& record) const {
   const ModelMesh& mesh = surface.model->mesh;
   const Eigen::Index count = mesh.surface_node_count();
   Points place(count, 3);
@@ -126,11 +124,11 @@ std::string VtkOutput::surface_text(const Surface& surface, const ObjectRecord& 
         object.position + object.orientation * (mesh.rest_position(static_cast<int>(i)) + u);
     moved.row(i) = object.orientation * u;
   }
-  for (const NodalForce& each : surface.forces->of(object)) {
+  for (const NodalForce& each : surface.forces->of(object, record.body_contacts())) {
     force.row(each.node) += (object.halfway * each.force).transpose();
   }
   return poly_data(
-      time, place, 0, static_cast<std::size_t>(mesh.triangles.rows()), surface.triangles,
+      record.time, place, 0, static_cast<std::size_t>(mesh.triangles.rows()), surface.triangles,
       tag("PointData Vectors=\"displacement\"",
           vtk_array("displacement", numbers(moved), 3) + vtk_array("force", numbers(force), 3)));
 }
@@ -181,9 +179,10 @@ void VtkOutput::write_part(const std::string& name, const std::string& text, dou
 void VtkOutput::put(const ReplayFrame& frame) {
   const double time = frame.record.time;
   for (std::size_t i = 0; i < surfaces_.size(); ++i) {
-    write_part(surfaces_[i].name,
-               surface_text(surfaces_[i], frame.record.object[i], frame.displacement[i], time),
-               time, i);
+    write_part(
+        surfaces_[i].name,
+        surface_text(surfaces_[i], frame.record.object[i], frame.displacement[i], frame.record),
+        time, i);
   }
   write_part("styluses", styluses_text(frame.record), time, surfaces_.size());
   ++frames_;

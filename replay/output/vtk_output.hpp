@@ -46,7 +46,7 @@ class VtkOutput final : public FrameOutput {
     std::string triangles;  ///< in XML
   };
   std::string surface_text(const Surface& surface, const ObjectRecord& object,
-                           const Points& displacement, double time) const;
+                           const Points& displacement, const StepRecord& record) const;
   std::string styluses_text(const StepRecord& record) const;
   void write(const std::string& name, const std::string& text) const;
   void write_part(const std::string& name, const std::string& text, double time, std::size_t part);

@@ -98,12 +98,6 @@ constexpr double kTolerance = 1e-9;
 constexpr int kMostIterations = 25;
 constexpr int kMostHalvings = 6;
 
-std::vector<double> tip_radii(const SimulationConfig& config) {
-  std::vector<double> radii;
-  for (const SimulationStylus& stylus : config.styluses) radii.push_back(stylus.radius);
-  return radii;
-}
-
 // Both alpha and beta: every mode's decay rate is then so many times what it was.
 Material damped(Material material, double factor) {
   material.rayleigh_alpha *= factor;
@@ -132,10 +126,11 @@ FemBody::Mesh::Mesh(const Model& model, precompute::Elasticity elasticity, doubl
 FemBody::FemBody(const SimulationConfig& config, std::size_t number,
                  precompute::Elasticity elasticity, double substep, bool follow_tips,
                  std::vector<DelayedForces> delayed_forces)
-    : model_(config.objects[number].model),
+    : number_(static_cast<int>(number)),
+      model_(config.objects[number].model),
       rigid_(model_->body, model_->dt),
       surface_(model_->mesh),
-      recorded_forces_(surface_, tip_radii(config)),
+      recorded_forces_(config, number, surface_),
       elasticity_(elasticity),
       follow_tips_(follow_tips),
       delayed_forces_(std::move(delayed_forces)),
@@ -143,6 +138,9 @@ FemBody::FemBody(const SimulationConfig& config, std::size_t number,
       h_(model_->dt / parts_),
       mesh_(std::make_unique<Mesh>(*model_, elasticity_, 1.0, h_)),
       force_(Eigen::VectorXd::Zero(model_->mesh.nodes.size())) {
+  if (touches_bodies(config)) {
+    sampling_ = std::make_unique<ContactSampling>(surface_, config.contact_samples);
+  }
   for (const SimulationStylus& stylus : config.styluses) {
     masks_.emplace_back(surface_, stylus.radius);
     spring_compliance_.push_back(stylus.coupling_stiffness > 0.0 ? 1.0 / stylus.coupling_stiffness
@@ -207,11 +205,29 @@ Vector3 FemBody::angular_velocity(const RigidState& state) const {
 }
 
 // In W.
+Vector3 FemBody::place(int node) const {
+  const int n = model_->mesh.surface_nodes[static_cast<std::size_t>(node)];
+  return mesh_->body.rest().row(n).transpose() + state_.u.segment<3>(3 * n);
+}
+
 Vector3 FemBody::place(const ContactPatch& patch) const {
-  return mean(patch, [&](int node) -> Vector3 {
-    const int n = model_->mesh.surface_nodes[static_cast<std::size_t>(node)];
-    return mesh_->body.rest().row(n).transpose() + state_.u.segment<3>(3 * n);
-  });
+  return mean(patch, [&](int node) { return place(node); });
+}
+
+// Of the nodes that have its force.
+Vector3 FemBody::place(const TouchForce& touch) const {
+  const auto of_row = [&](int row) {
+    return mean(sampling_->patch(row), [&](int node) { return place(node); });
+  };
+  const BodyContactRecord& contact = *touch.contact;
+  if (contact.object == number_) {
+    return of_row(sampling_->samples()[static_cast<std::size_t>(contact.sample)].row);
+  }
+  Vector3 sum = Vector3::Zero();
+  for (std::size_t i = 0; i < 3; ++i) {
+    sum += contact.weights[i] * of_row(sampling_->sites(contact.triangle)[i]);
+  }
+  return sum;
 }
 
 // Of components in a body frame that stands so.
@@ -226,12 +242,24 @@ void FemBody::hold(const ObjectRecord& recorded) {
   const Quaternion& Q = recorded.halfway;
   force_.setZero();
   couples_.clear();
-  add_forces(recorded_forces_.of(recorded), Q);
+  add_forces(recorded_forces_.of(recorded, body_contacts_), Q);
   for (const ContactRecord& contact : recorded.contact) {
     if (contact.state == ContactState::kFree) continue;
     couples_.push_back({contact.offset, Q * contact.force});
   }
+  hold_touches(Q);
   hold_late();
+}
+
+// Their couples: other bodies' forces act on the body as a whole where the bodies touch, and not
+// quite where the nodes are that they are spread over.
+void FemBody::hold_touches(const Quaternion& halfway) {
+  if (touches_.empty()) return;
+  const RigidState state = rigid_state();
+  for (const TouchForce& touch : touches_) {
+    const Vector3 arm = state.orientation.conjugate() * (place(touch) - state.position);
+    couples_.push_back({halfway.conjugate() * touch.arm - arm, touch.force});
+  }
 }
 
 // What was told late and belongs to this step, unless it is found here anew.
@@ -343,9 +371,11 @@ void FemBody::keep_in_journal() {
   journal_->keep(numbers_);
 }
 
-void FemBody::step(ObjectRecord& again, std::span<const StylusRecord> styluses) {
+void FemBody::step(ObjectRecord& again, const RecordedStep& recorded) {
   const RigidState start = rigid_state();
-  choose_followed(again, styluses);
+  choose_followed(again, recorded.styluses);
+  body_contacts_ = recorded.body_contacts;
+  find_touch_forces(number_, again, body_contacts_, touches_);
   if (!take_from_journal(again)) {
     solve(again);
     keep_in_journal();

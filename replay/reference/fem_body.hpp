@@ -20,11 +20,11 @@ int fem_parts(double dt, double longest);
 /// By finite elements, without modes, R or rigid body: the whole mesh, of large rotations, stepped
 /// by ImplicitMidpoint. Recorded forces act in W on the points of the surface that they were
 /// recorded at, constant during a step. What the server does to the rigid motion alone (gravity,
-/// damping, tether, the couple of a contact's offset) is a field of accelerations here that moves
-/// the mesh as a rigid body, taken in by half kicks before and after each sub-step (Strang: second
-/// order, as the rule itself). A sub-step that cannot be solved is made in halves.
-/// Large: it shares nothing with the force step that it checks, so mesh, motion, contacts and
-/// solver are all here.
+/// damping, tether, the couple of a contact's offset from the nodes that have its force) is a field
+/// of accelerations here that moves the mesh as a rigid body, taken in by half kicks before and
+/// after each sub-step (Strang: second order, as the rule itself). A sub-step that cannot be solved
+/// is made in halves. Large: it shares nothing with the force step that it checks, so mesh, motion,
+/// contacts and solver are all here.
 class FemBody final : public ForcedBody {
  public:
   /// Throws Error when the object does not float.
@@ -45,7 +45,7 @@ class FemBody final : public ForcedBody {
   void insert_delayed_force(const LateForce& /*late*/) override {}
   void set(const Vector3& gravity, const ObjectSettings& settings) override;
   /// Contact forces and the floor's are written as they stand in B here.
-  void step(ObjectRecord& again, std::span<const StylusRecord> styluses) override;
+  void step(ObjectRecord& again, const RecordedStep& recorded) override;
   void displacement(Points& u) const override;
 
  private:
@@ -73,7 +73,10 @@ class FemBody final : public ForcedBody {
   void hold(const ObjectRecord& recorded);
   void add_forces(std::span<const NodalForce> forces, const Quaternion& Q);
   void hold_late();
+  void hold_touches(const Quaternion& halfway);
+  Vector3 place(int node) const;
   Vector3 place(const ContactPatch& patch) const;
+  Vector3 place(const TouchForce& touch) const;
   bool kicks() const;
   void kick(double time);
   void advance(double h, int halvings);
@@ -88,10 +91,14 @@ class FemBody final : public ForcedBody {
   bool take_from_journal(ObjectRecord& recorded);
   void keep_in_journal();
 
+  int number_;
   std::shared_ptr<const Model> model_;
   RigidBody rigid_;
   RestSurface surface_;
   RecordedForces recorded_forces_;
+  std::unique_ptr<ContactSampling> sampling_;         ///< null: it touches no other body
+  std::span<const BodyContactRecord> body_contacts_;  ///< of the step under way
+  std::vector<TouchForce> touches_;                   ///< the same on this object
   precompute::Elasticity elasticity_;
   bool follow_tips_;
   std::vector<PressureMask> masks_;

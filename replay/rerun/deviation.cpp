@@ -26,10 +26,18 @@ bool is_finite(const ObjectRecord& object) {
               "it is damaged, or the model is not that of the recording: record it again");
 }
 
+bool is_finite(const BodyContactRecord& contact) {
+  return contact.force.allFinite() && contact.position.allFinite() && contact.normal.allFinite() &&
+         contact.slip.allFinite();
+}
+
 }  // namespace
 
 bool is_finite(const StepRecord& record) {
   bool finite = true;
+  for (const BodyContactRecord& contact : record.body_contacts()) {
+    finite = finite && is_finite(contact);
+  }
   for (std::size_t i = 0; i < static_cast<std::size_t>(record.object_count); ++i) {
     finite = finite && is_finite(record.object[i]);
   }

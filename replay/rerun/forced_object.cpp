@@ -1,21 +1,14 @@
 #include "replay/rerun/forced_object.hpp"
 
 namespace irdm::replay {
-namespace {
-
-std::vector<double> radii_of(const SimulationConfig& config) {
-  std::vector<double> radii;
-  for (const SimulationStylus& stylus : config.styluses) radii.push_back(stylus.radius);
-  return radii;
-}
-
-}  // namespace
-
 ForcedObject::ForcedObject(const SimulationConfig& config, std::size_t number)
-    : body_(config.objects[number], config.gravity),
+    : number_(static_cast<int>(number)),
+      body_(config.objects[number], config.gravity),
       surface_(body_.model().mesh),
-      forces_(surface_, radii_of(config)) {
-  for (const double radius : radii_of(config)) masks_.emplace_back(surface_, radius);
+      forces_(config, number, surface_) {
+  for (const SimulationStylus& stylus : config.styluses) {
+    masks_.emplace_back(surface_, stylus.radius);
+  }
 }
 
 void ForcedObject::reset() {
@@ -52,13 +45,15 @@ RigidStateHistory::Forces ForcedObject::collect(const ObjectRecord& recorded) {
     forces.add(Q * floor.force.cast<double>(),
                surface_.node(floor.node) + body_.engine().free_displacement(floor.node));
   }
+  for (const TouchForce& touch : touch_) forces.add(touch.force, Q.conjugate() * touch.arm);
   return forces;
 }
 
-void ForcedObject::step(ObjectRecord& again, std::span<const StylusRecord> /*styluses*/) {
+void ForcedObject::step(ObjectRecord& again, const RecordedStep& recorded) {
+  find_touch_forces(number_, again, recorded.body_contacts, touch_);
   body_.begin_step(again);
   const RigidStateHistory::Forces forces = collect(again);
-  body_.end_step(forces_.of(again), forces, again);
+  body_.end_step(forces_.of(again, recorded.body_contacts), forces, again);
 }
 
 }  // namespace irdm::replay

@@ -3,11 +3,18 @@
 #include <span>
 #include <vector>
 
+#include "replay/rerun/touch_forces.hpp"
 #include "simulation/step/deformable_body.hpp"
 #include "simulation/step/nodal_forces.hpp"
 #include "simulation/step/step_record.hpp"
 
 namespace irdm::replay {
+
+/// What a step of one object needs of the whole recorded one.
+struct RecordedStep {
+  std::span<const StylusRecord> styluses;
+  std::span<const BodyContactRecord> body_contacts;  ///< of all objects
+};
 
 /// One object under the forces that a trace has of it: they deform it and move it. Pure; one
 /// thread.
@@ -22,14 +29,15 @@ class ForcedBody {
   virtual void set(const Vector3& gravity, const ObjectSettings& settings) = 0;
   /// @param again the recorded step, whose contacts and floor's forces act; the start of the step
   /// and the motion are written, and forces, where they are not kept in B
-  /// @param styluses as they are in the recorded step
-  virtual void step(ObjectRecord& again, std::span<const StylusRecord> styluses) = 0;
+  /// @param recorded what else is in it: other bodies' forces act, too
+  virtual void step(ObjectRecord& again, const RecordedStep& recorded) = 0;
   /// Of all surface nodes at the end of the last step, (n, 3) [m], B.
   virtual void displacement(Points& u) const = 0;
 };
 
 /// By its response: the forces as they stand in B, each with the lever arm of the point that it
-/// acts on as the engine has it here. Nothing is solved.
+/// acts on as the engine has it here; those of other bodies as they stand in W, with their recorded
+/// lever arms. Nothing is solved.
 class ForcedObject final : public ForcedBody {
  public:
   /// @param config of the scene, for its styluses  @param number of the object in it
@@ -38,18 +46,20 @@ class ForcedObject final : public ForcedBody {
   void reset() override;
   void insert_delayed_force(const LateForce& late) override;
   void set(const Vector3& gravity, const ObjectSettings& settings) override;
-  void step(ObjectRecord& again, std::span<const StylusRecord> styluses) override;
+  void step(ObjectRecord& again, const RecordedStep& recorded) override;
   void displacement(Points& u) const override { body_.engine().displacement(u); }
 
  private:
   Vector3 place(const ContactPatch& patch) const;
   RigidStateHistory::Forces collect(const ObjectRecord& recorded);
 
+  int number_;
   DeformableBody body_;
   RestSurface surface_;
   std::vector<PressureMask> masks_;
   RecordedForces forces_;
   ContactPatch patch_;
+  std::vector<TouchForce> touch_;  ///< of the step under way
 };
 
 }  // namespace irdm::replay

@@ -79,8 +79,10 @@ void ForceRerun::step(const StepRecord& recorded, StepRecord& again) {
       objects_[i]->set(settings_.gravity, settings_.object[i]);
     }
   }
-  const std::span styluses(recorded.stylus.data(), static_cast<std::size_t>(recorded.stylus_count));
-  for (std::size_t i = 0; i < objects_.size(); ++i) objects_[i]->step(again.object[i], styluses);
+  const RecordedStep whole{
+      {recorded.stylus.data(), static_cast<std::size_t>(recorded.stylus_count)},
+      recorded.body_contacts()};
+  for (std::size_t i = 0; i < objects_.size(); ++i) objects_[i]->step(again.object[i], whole);
   write_floor_and_styluses(again);
 }
 

@@ -1,4 +1,4 @@
-// Traces of two objects and two styluses, with edits of the fuzzer's choice.
+// Traces of three objects, two of which touch, and two styluses, with edits of the fuzzer's choice.
 #include "common/error.hpp"
 #include "replay/rerun/deviation.hpp"
 #include "replay/rerun/rerun.hpp"
@@ -13,10 +13,15 @@ namespace irdm::fuzz {
 namespace {
 
 constexpr int kSteps = 120;
-const std::vector<std::string> kNames = {"one", "two"};
+const std::vector<std::string> kNames = {"one", "two", "three"};
 
 const SimulationConfig& scene() {
-  static const SimulationConfig config = test::two_cubes();
+  static const SimulationConfig config = [] {
+    SimulationConfig cubes = test::two_cubes();
+    cubes.objects.push_back(cubes.objects[1]);
+    cubes.objects[2].position.x() += 0.1215;  // as it turns it touches the second
+    return cubes;
+  }();
   return config;
 }
 
@@ -30,8 +35,15 @@ std::filesystem::path valid_trace() {
     test::play_step(simulation, k, record);
     if (k % 9 == 0) record.stylus[0].bridged = BridgedForce{.object = k % 2};
   }
+  expect(std::ranges::any_of(records, [](const StepRecord& r) { return r.body_contact_count > 0; }),
+         "objects touch");
   TraceWriter writer(
-      path, {{{kNames[0], "a.h5", "1"}, {kNames[1], "b.h5", "2"}}, "scene", 0.002, 2, true});
+      path, {{{kNames[0], "a.h5", "1"}, {kNames[1], "b.h5", "2"}, {kNames[2], "c.h5", "3"}},
+             "scene",
+             0.002,
+             2,
+             true,
+             true});
   writer.append(records);
   writer.close();
   return path;
@@ -66,6 +78,7 @@ void trace_file(Input input) {
     StepRecord record;
     for (std::size_t k = 0; k < recording.steps(); ++k) {
       recording.step(k, record);
+      expect(record.body_contact_count <= kMaxBodyContacts, "contacts of bodies fit into a step");
       for (std::size_t i = 0; i < scene().objects.size(); ++i) {
         expect(record.object[i].floor_count <= kMaxFloorContacts,
                "the floor's forces fit into a step");

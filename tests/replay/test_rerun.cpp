@@ -1,10 +1,9 @@
 // Runs that are rerun from their traces, against what they were.
 #include <catch2/catch.hpp>
 
-#include "replay/rerun/deviation.hpp"
 #include "replay/rerun/rerun.hpp"
 #include "simulation/step/bridged_stylus.hpp"
-#include "tests/replay/kept_run.hpp"
+#include "tests/replay/rerun_checks.hpp"
 #include "tests/server/two_cubes.hpp"
 #include "tests/support/fem_cube.hpp"
 
@@ -16,58 +15,14 @@ namespace {
 
 constexpr std::uint64_t kSession = 3;
 
-/// Largest differences of a run that is rerun.
-struct Found {
-  Deviation deviation;
-  double displacement = 0.0;  ///< of a component [m]
-};
-
-Found run_again(Rerun& made, const KeptRun& run) {
-  const Recording recording = run.recording();
-  REQUIRE(recording.steps() == run.records.size());
-  REQUIRE(recording.lost_steps() == 0);
-  Found found;
-  StepRecord recorded;
-  StepRecord again;
-  Points u;
-  for (std::size_t k = 0; k < recording.steps(); ++k) {
-    recording.step(k, recorded);
-    made.step(recorded, again);
-    found.deviation.add(run.records[k], again);
-    for (std::size_t i = 0; i < run.names.size(); ++i) {
-      made.displacement(i, u);
-      const Points& was = run.displacements[k][i];
-      found.displacement = std::max(found.displacement, (u - was).cwiseAbs().maxCoeff());
-    }
-  }
-  return found;
-}
-
-void check_to_the_bit(const KeptRun& run) {
-  InputRerun made(run.config);
-  const Found found = run_again(made, run);
-  INFO(found.deviation.text());
-  CHECK(found.deviation.force() == 0.0);
-  CHECK(found.deviation.position() == 0.0);
-  CHECK(found.deviation.orientation() == 0.0);
-  CHECK(found.deviation.other_contacts() == 0);
-  CHECK(found.displacement == 0.0);
-}
-
-void check_from_forces(const KeptRun& run) {
-  ForceRerun made(run.config);
-  const Found found = run_again(made, run);
-  INFO(found.deviation.text());
-  CHECK(found.deviation.peak_force() > 0.1);
-  CHECK(found.deviation.force() < 1e-12);
-  CHECK(found.deviation.position() < 1e-12);
-  CHECK(found.deviation.orientation() < 1e-12);
-  CHECK(found.displacement < 1e-12);
-}
-
 void check_both(const KeptRun& run) {
   check_to_the_bit(run);
   check_from_forces(run);
+  double peak = 0.0;
+  for (const StepRecord& record : run.records) {
+    for (const StylusRecord& stylus : record.stylus) peak = std::max(peak, stylus.force.norm());
+  }
+  CHECK(peak > 0.1);
 }
 
 /// Falls, spins, is touched and held, changes its settings, is reset; forces come late.

@@ -121,9 +121,9 @@ TEST_CASE("finite elements under the forces of other bodies move as the run did"
   }
   INFO(found.deviation.text() << "displacement " << found.displacement << " m, peak " << peak);
   REQUIRE(peak > 1e-3);
-  CHECK(found.deviation.position() < 1e-10);
+  CHECK(found.deviation.position() < 1e-12);
   CHECK(found.deviation.orientation() < 2e-3);
-  CHECK(found.displacement < 0.1 * peak);
+  CHECK(found.displacement < 0.05 * peak);  // measured: 0.019
 }
 
 TEST_CASE("objects of a trace without contacts between bodies go through each other again") {

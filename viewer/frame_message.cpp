@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "viewer/message_parts.hpp"
@@ -78,8 +77,7 @@ void put_displacements(Writer& writer, const Points& displacement, float unit) {
 void put_surface(Writer& writer, const ObjectSurface& surface) {
   const Quantisation form = quantisation(surface.displacement);
   writer.put(surface.position);
-  const Quaternion& q = surface.orientation;
-  for (const double part : {q.w(), q.x(), q.y(), q.z()}) writer.put(static_cast<float>(part));
+  put_orientation(writer, surface.orientation);
   writer.put(static_cast<std::uint8_t>(form.wide ? 4 : 2));
   writer.put_zeros(3);
   writer.put(form.unit);
@@ -112,9 +110,7 @@ double get_number(Reader& reader, bool wide) {
 ObjectSurface get_surface(Reader& reader, std::size_t nodes) {
   ObjectSurface surface;
   surface.position = reader.get_vector();
-  std::array<double, 4> q{};
-  for (double& part : q) part = static_cast<double>(reader.get_single());
-  surface.orientation = Quaternion(q[0], q[1], q[2], q[3]);
+  surface.orientation = get_orientation(reader);
   const auto width = reader.get<std::uint8_t>();
   if (width != 2 && width != 4) throw MessageError("numbers of an unknown size");
   reader.skip(3);
@@ -128,6 +124,37 @@ ObjectSurface get_surface(Reader& reader, std::size_t nodes) {
   return surface;
 }
 
+constexpr double kNormalUnits = std::numeric_limits<std::int16_t>::max();
+
+void put_body_contact(Writer& writer, const BodyContactRecord& contact) {
+  writer.put(static_cast<std::uint8_t>(contact.object));
+  writer.put(static_cast<std::uint8_t>(static_cast<std::int8_t>(contact.other)));
+  for (const double part : contact.normal) {
+    const double number =
+        std::isnan(part) ? 0.0 : std::round(kNormalUnits * std::clamp(part, -1.0, 1.0));
+    writer.put(static_cast<std::uint16_t>(static_cast<std::int16_t>(number)));
+  }
+  writer.put(Eigen::Vector3f(contact.position.cast<float>()));
+  writer.put(Eigen::Vector3f(contact.force.cast<float>()));
+  writer.put(static_cast<float>(contact.area));
+}
+
+BodyContactRecord get_body_contact(Reader& reader, int objects) {
+  BodyContactRecord contact;
+  contact.object = reader.get<std::uint8_t>();
+  contact.other = static_cast<std::int8_t>(reader.get<std::uint8_t>());
+  const int scenery = -1 - contact.other;
+  if (contact.object >= objects || contact.other >= objects ||
+      scenery >= static_cast<int>(kMaxScenery)) {
+    throw MessageError("a contact is out of range");
+  }
+  for (double& part : contact.normal) part = get_number(reader, false) / kNormalUnits;
+  contact.position = reader.get_single_vector().cast<double>();
+  contact.force = reader.get_single_vector().cast<double>();
+  contact.area = static_cast<double>(reader.get_single());
+  return contact;
+}
+
 }  // namespace
 
 void encode(const SurfaceFrame& frame, Bytes& bytes) {
@@ -137,7 +164,7 @@ void encode(const SurfaceFrame& frame, Bytes& bytes) {
   writer.put(static_cast<std::uint16_t>(frame.objects.size()));
   writer.put(static_cast<std::uint16_t>(frame.styluses.size()));
   writer.put(static_cast<std::uint16_t>(steps));
-  writer.put_zeros(2);
+  writer.put(static_cast<std::uint16_t>(frame.body_contacts.size()));
   writer.put(frame.force_step);
   writer.put(frame.time);
   for (std::size_t s = 0; s < frame.styluses.size(); ++s) {
@@ -150,6 +177,7 @@ void encode(const SurfaceFrame& frame, Bytes& bytes) {
     }
   }
   for (const ObjectSurface& surface : frame.objects) put_surface(writer, surface);
+  for (const BodyContactRecord& contact : frame.body_contacts) put_body_contact(writer, contact);
 }
 
 SurfaceFrame decode_frame(std::span<const std::uint8_t> bytes, std::span<const std::size_t> nodes) {
@@ -161,7 +189,8 @@ SurfaceFrame decode_frame(std::span<const std::uint8_t> bytes, std::span<const s
   const std::size_t styluses = get_count(reader, kMaxStyluses);
   const int steps = reader.get<std::uint16_t>();
   if (steps > ForceTrail::kLength) throw MessageError("the trail of forces is too long");
-  reader.skip(2);
+  const int contacts = reader.get<std::uint16_t>();
+  if (contacts > kMaxBodyContacts) throw MessageError("there are too many contacts");
   frame.force_step = reader.get<std::uint64_t>();
   frame.time = reader.get_double();
   frame.contacts.resize(styluses);
@@ -170,6 +199,9 @@ SurfaceFrame decode_frame(std::span<const std::uint8_t> bytes, std::span<const s
   }
   frame.trail = get_trail(reader, steps, styluses, frame.force_step);
   for (const std::size_t count : nodes) frame.objects.push_back(get_surface(reader, count));
+  for (int i = 0; i < contacts; ++i) {
+    frame.body_contacts.push_back(get_body_contact(reader, static_cast<int>(objects)));
+  }
   reader.finish();
   return frame;
 }

@@ -45,7 +45,8 @@ struct SceneObject {
 struct Scene {
   double dt = 0.0;  ///< [s]
   bool lockstep = false;
-  std::optional<FloorConfig> floor;  ///< without its friction on the wire
+  std::optional<FloorConfig> floor;    ///< without its friction on the wire
+  std::vector<SceneryConfig> scenery;  ///< the same
   std::vector<SimulationStylus> styluses;
   bool viewer_stylus = false;  ///< the last of them is the viewers'
   float max_force = 0;         ///< with which that one pushes [N]

@@ -1,5 +1,7 @@
 #include "viewer/message_parts.hpp"
 
+#include <array>
+
 #include "common/config/range.hpp"
 
 namespace irdm::viewer {
@@ -27,6 +29,16 @@ std::size_t get_count(Reader& reader, int largest) {
   const auto count = reader.get<std::uint16_t>();
   if (count < 1 || count > largest) throw MessageError("a count is out of range");
   return count;
+}
+
+void put_orientation(Writer& writer, const Quaternion& q) {
+  for (const double part : {q.w(), q.x(), q.y(), q.z()}) writer.put(static_cast<float>(part));
+}
+
+Quaternion get_orientation(Reader& reader) {
+  std::array<double, 4> q{};
+  for (double& part : q) part = static_cast<double>(reader.get_single());
+  return {q[0], q[1], q[2], q[3]};
 }
 
 void put_settings(Writer& writer, const ObjectSettings& settings, const SettingsChoice& choice) {

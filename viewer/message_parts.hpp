@@ -121,6 +121,10 @@ double get_between(Reader& reader, double least, double largest);
 /// Each component within +-largest.
 Vector3 get_bounded_vector(Reader& reader, double largest);
 
+/// w x y z in single precision; not normalised.
+void put_orientation(Writer& writer, const Quaternion& q);
+Quaternion get_orientation(Reader& reader);
+
 inline constexpr double kMostGravity = 100.0;  ///< [m/s^2]
 void put_settings(Writer& writer, const ObjectSettings& settings, const SettingsChoice& choice);
 ObjectSettings get_settings(Reader& reader, SettingsChoice& choice);

@@ -36,6 +36,7 @@ viewer::Scene viewer_scene(const std::vector<std::string>& names, const Simulati
   viewer::Scene seen;
   seen.dt = config.objects.at(0).model->dt;
   seen.floor = config.floor;
+  seen.scenery = config.scenery;
   seen.styluses = config.styluses;
   for (std::size_t i = 0; i < config.objects.size(); ++i) {
     seen.objects.push_back(viewer_object(names.at(i), *config.objects[i].model));
@@ -66,10 +67,10 @@ std::vector<SettingsChoice> settings_choices(const SimulationConfig& config) {
 namespace irdm::viewer {
 namespace {
 
-constexpr std::uint32_t kLockstepFlag = 1;
-constexpr std::uint32_t kFloorFlag = 2;
-constexpr std::uint32_t kViewerStylusFlag = 4;
-constexpr std::uint32_t kRecordedFlag = 8;
+constexpr int kLockstepFlag = 1;
+constexpr int kFloorFlag = 2;
+constexpr int kViewerStylusFlag = 4;
+constexpr int kRecordedFlag = 8;
 
 void put_object(Writer& writer, const SceneObject& object) {
   const std::string name = object.name.substr(0, kMaxNameLength);
@@ -122,6 +123,60 @@ SceneObject get_object(Reader& reader) {
   return object;
 }
 
+Vector3 sizes(const PlaneShape& /*plane*/) {
+  return Vector3::Zero();
+}
+Vector3 sizes(const BoxShape& box) {
+  return box.size;
+}
+Vector3 sizes(const SphereShape& sphere) {
+  return {sphere.radius, 0.0, 0.0};
+}
+Vector3 sizes(const CapsuleShape& capsule) {
+  return {capsule.radius, capsule.length, 0.0};
+}
+
+/// @param number of the shape among those of SceneryShape
+SceneryShape shape_of(int number, const Vector3& size) {
+  switch (number) {
+    case 0:
+      return PlaneShape{};
+    case 1:
+      return BoxShape{size};
+    case 2:
+      return SphereShape{size.x()};
+    case 3:
+      return CapsuleShape{size.x(), size.y()};
+    default:
+      throw MessageError("a shape is unknown");
+  }
+}
+
+void put_scenery(Writer& writer, const SceneryConfig& scenery) {
+  const std::string name = scenery.name.substr(0, kMaxNameLength);
+  const Vector3 size = std::visit([](const auto& shape) { return sizes(shape); }, scenery.shape);
+  writer.put(static_cast<std::uint16_t>(scenery.shape.index()));
+  writer.put(static_cast<std::uint16_t>(name.size()));
+  writer.put(Eigen::Vector3f(size.cast<float>()));
+  writer.put(scenery.position);
+  put_orientation(writer, scenery.orientation);
+  writer.put_text(name);
+  writer.align();
+}
+
+SceneryConfig get_scenery(Reader& reader) {
+  SceneryConfig scenery;
+  const int shape = reader.get<std::uint16_t>();
+  const auto length = reader.get<std::uint16_t>();
+  if (length > kMaxNameLength) throw MessageError("a name is too long");
+  scenery.shape = shape_of(shape, reader.get_single_vector().cast<double>());
+  scenery.position = reader.get_vector();
+  scenery.orientation = get_orientation(reader);
+  scenery.name = reader.get_text(length);
+  reader.align();
+  return scenery;
+}
+
 }  // namespace
 
 Bytes encode(const Scene& scene) {
@@ -130,8 +185,11 @@ Bytes encode(const Scene& scene) {
   put_header(writer, Type::kScene);
   writer.put(static_cast<std::uint16_t>(scene.objects.size()));
   writer.put(static_cast<std::uint16_t>(scene.styluses.size()));
-  writer.put((scene.lockstep ? kLockstepFlag : 0) | (scene.floor ? kFloorFlag : 0) |
-             (scene.viewer_stylus ? kViewerStylusFlag : 0) | (scene.recorded ? kRecordedFlag : 0));
+  const int flags = (scene.lockstep ? kLockstepFlag : 0) | (scene.floor ? kFloorFlag : 0) |
+                    (scene.viewer_stylus ? kViewerStylusFlag : 0) |
+                    (scene.recorded ? kRecordedFlag : 0);
+  writer.put(static_cast<std::uint16_t>(flags));
+  writer.put(static_cast<std::uint16_t>(scene.scenery.size()));
   writer.put(scene.dt);
   writer.put(scene.floor ? scene.floor->normal : Vector3::Zero().eval());
   writer.put(scene.floor ? scene.floor->height : 0.0);
@@ -142,6 +200,7 @@ Bytes encode(const Scene& scene) {
     writer.put(scene.viewer_stylus && &stylus == &scene.styluses.back() ? scene.max_force : 0.0F);
   }
   for (const SceneObject& object : scene.objects) put_object(writer, object);
+  for (const SceneryConfig& scenery : scene.scenery) put_scenery(writer, scenery);
   return bytes;
 }
 
@@ -151,7 +210,9 @@ Scene decode_scene(std::span<const std::uint8_t> bytes) {
   Scene scene;
   const std::size_t objects = get_count(reader, kMaxObjects);
   const std::size_t styluses = get_count(reader, kMaxStyluses);
-  const auto flags = reader.get<std::uint32_t>();
+  const int flags = reader.get<std::uint16_t>();
+  const std::size_t scenery = reader.get<std::uint16_t>();
+  if (scenery > kMaxScenery) throw MessageError("a count is out of range");
   scene.lockstep = (flags & kLockstepFlag) != 0;
   scene.viewer_stylus = (flags & kViewerStylusFlag) != 0;
   scene.recorded = (flags & kRecordedFlag) != 0;
@@ -168,6 +229,7 @@ Scene decode_scene(std::span<const std::uint8_t> bytes) {
     scene.max_force = reader.get_single();
   }
   for (std::size_t i = 0; i < objects; ++i) scene.objects.push_back(get_object(reader));
+  for (std::size_t i = 0; i < scenery; ++i) scene.scenery.push_back(get_scenery(reader));
   reader.finish();
   return scene;
 }

@@ -100,6 +100,8 @@ void Deformation::compute(SurfaceFrame& frame) const {
   std::copy_n(last_.stylus.begin(), frame.styluses.size(), frame.styluses.begin());
   for (std::size_t s = 0; s < frame.contacts.size(); ++s) frame.contacts[s] = contact(s);
   frame.trail = trail_;
+  const std::span<const BodyContactRecord> touching = last_.body_contacts();
+  frame.body_contacts.assign(touching.begin(), touching.end());
 }
 
 }  // namespace irdm

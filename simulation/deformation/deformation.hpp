@@ -77,6 +77,8 @@ struct SurfaceFrame {
   std::vector<StylusRecord> styluses;
   std::vector<StylusContact> contacts;  ///< of each of them, with the object that it touches
   ForceTrail trail;                     ///< up to this step
+  /// Of objects with each other and with scenery in this step, at most kMaxBodyContacts.
+  std::vector<BodyContactRecord> body_contacts;
 };
 
 /// A frame of the objects at rest, no stylus present.

@@ -225,12 +225,19 @@ TEST_CASE("bodies: what is shown of them is what the step has") {
   for (int k = 0; k < 300; ++k) {
     step_alone(simulation, *record);
     deformation.follow(*record);
+    if (k == 100) deformation.compute(frame);  // an earlier frame, which the next one replaces
   }
   deformation.compute(frame);
   for (int i = 0; i < 2; ++i) {
     simulation.object(i).engine().displacement(u);
     CHECK(u.norm() > 1e-3);
     CHECK((frame.objects[static_cast<std::size_t>(i)].displacement - u).norm() < 1e-12);
+  }
+  REQUIRE(record->body_contact_count > 0);
+  REQUIRE(frame.body_contacts.size() == record->body_contacts().size());
+  for (std::size_t c = 0; c < frame.body_contacts.size(); ++c) {
+    CHECK(frame.body_contacts[c].force == record->body_contact[c].force);
+    CHECK(frame.body_contacts[c].position == record->body_contact[c].position);
   }
 }
 

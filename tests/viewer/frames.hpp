@@ -7,12 +7,22 @@
 
 namespace irdm::test {
 
-/// A scene of a synthetic cube and a single tetrahedron, with two styluses and a floor.
+/// Scenery of each shape.
+inline std::vector<SceneryConfig> example_scenery() {
+  const Quaternion turned(0.5, 0.5, -0.5, 0.5);
+  return {{"w\xC3\xA4nde", PlaneShape{}, Vector3(0, -0.06, 0), turned, {}},
+          {"box", BoxShape{Vector3(0.5, 0.25, 0.125)}, Vector3(1, 2, 3), {0, 1, 0, 0}, {}},
+          {"ball", SphereShape{0.0625}, Vector3(0.1, 0, -0.2), Quaternion::Identity(), {}},
+          {"capsule", CapsuleShape{0.25, 0.75}, Vector3(0, -0.3, 0), turned, {}}};
+}
+
+/// A scene of a synthetic cube and a single tetrahedron, with two styluses, a floor and scenery.
 inline viewer::Scene example_scene() {
   viewer::Scene scene;
   scene.dt = 0.002;
   scene.lockstep = true;
   scene.floor = FloorConfig{Vector3(0, 1, 0), -0.06, {}};
+  scene.scenery = example_scenery();
   scene.styluses = {{0.01, 400.0, 0.0}, {0.0, 0.0, 0.02}};
   const Model cube = synthetic_cube(3, 1, 1);
   viewer::SceneObject first{"w\xC3\xBCrfel", {}, cube.mesh.triangles, 0.19F, 2000.0F};
@@ -70,6 +80,16 @@ inline SurfaceFrame example_frame(const viewer::Scene& scene, double size, unsig
     surface.displacement =
         Points::NullaryExpr(object.rest.rows(), 3, [&] { return size * uniform(random); });
     frame.objects.push_back(surface);
+  }
+  for (const int other : {0, -4}) {
+    BodyContactRecord contact;
+    contact.object = 1;
+    contact.other = other;
+    contact.force = vector();
+    contact.position = vector();
+    contact.normal = vector().normalized();
+    contact.area = 0.0001 + 0.0001 * std::abs(uniform(random));
+    frame.body_contacts.push_back(contact);
   }
   return frame;
 }

@@ -2,9 +2,11 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <string>
 
 #include "tests/viewer/frames.hpp"
+#include "viewer/scene_message.hpp"
 
 using namespace irdm;
 using namespace irdm::test;
@@ -137,6 +139,89 @@ TEST_CASE("a frame's bytes are those of the document") {
                  "0000 0000 0000 0000"));
 }
 
+TEST_CASE("scenery's bytes are those of the document") {
+  Scene scene = one_point_scene();
+  const std::size_t before = encode(scene).size();
+  scene.scenery = example_scenery();
+  const Bytes bytes = encode(scene);
+  CHECK(Bytes(bytes.begin() + 12, bytes.begin() + 16) == from_hex("0000 0400"));
+  CHECK(Bytes(bytes.begin() + static_cast<std::ptrdiff_t>(before), bytes.end()) ==
+        from_hex("0000 0600 00000000 00000000 00000000"
+                 "0000000000000000 b81e85eb51b8aebf 0000000000000000"
+                 "0000003f 0000003f 000000bf 0000003f 77c3a46e64650000 |"
+                 "0100 0300 0000003f 0000803e 0000003e"
+                 "000000000000f03f 0000000000000040 0000000000000840"
+                 "00000000 0000803f 00000000 00000000 626f7800 |"
+                 "0200 0400 0000803d 00000000 00000000"
+                 "9a9999999999b93f 0000000000000000 9a9999999999c9bf"
+                 "0000803f 00000000 00000000 00000000 62616c6c |"
+                 "0300 0700 0000803e 0000403f 00000000"
+                 "0000000000000000 333333333333d3bf 0000000000000000"
+                 "0000003f 0000003f 000000bf 0000003f 63617073756c6500"));
+}
+
+TEST_CASE("viewers are sent the floor and the scenery of the simulation") {
+  SimulationConfig config;
+  config.objects.resize(1);
+  config.objects[0].model = std::make_shared<const Model>(synthetic_cube(2, 1, 1));
+  config.floor = FloorConfig{Vector3(0, 1, 0), -0.06, {}};
+  config.scenery = example_scenery();
+  const Scene scene = viewer_scene({"cube"}, config);
+  CHECK(scene.floor->height == -0.06);
+  REQUIRE(scene.scenery.size() == 4);
+  CHECK(scene.scenery[2].name == "ball");
+}
+
+TEST_CASE("the bytes of a contact between bodies are those of the document") {
+  SurfaceFrame frame = one_point_frame(Vector3::Zero());
+  BodyContactRecord contact;
+  contact.other = -3;
+  contact.normal = Vector3(0, 1, -0.5);
+  contact.position = Vector3(1, 0.5, -2);
+  contact.force = Vector3(0, 4, 0.25);
+  contact.area = 0.125;
+  const std::size_t before = frame_bytes(frame).size();
+  frame.body_contacts = {contact};
+  const Bytes bytes = frame_bytes(frame);
+  CHECK(Bytes(bytes.begin() + 12, bytes.begin() + 16) == from_hex("0100 0100"));
+  CHECK(Bytes(bytes.begin() + static_cast<std::ptrdiff_t>(before), bytes.end()) ==
+        from_hex("00 fd 0000 ff7f 00c0 | 0000803f 0000003f 000000c0"
+                 "00000000 00008040 0000803e 0000003e"));
+}
+
+TEST_CASE("contacts that are too many, or of bodies that are not there, are refused") {
+  const std::size_t one = 1;
+  SurfaceFrame frame = one_point_frame(Vector3::Zero());
+  frame.body_contacts.resize(kMaxBodyContacts);
+  for (BodyContactRecord& contact : frame.body_contacts) contact.other = -1;
+  CHECK_NOTHROW(decode_frame(frame_bytes(frame), {&one, 1}));
+  SECTION("too many") {
+    frame.body_contacts.push_back(frame.body_contacts.back());
+  }
+  SECTION("no such object") {
+    frame.body_contacts.back().object = 1;
+  }
+  SECTION("no such other object") {
+    frame.body_contacts.back().other = 1;
+  }
+  SECTION("no such scenery") {
+    frame.body_contacts.back().other = -17;
+  }
+  CHECK_THROWS_AS(decode_frame(frame_bytes(frame), {&one, 1}), MessageError);
+}
+
+TEST_CASE("scenery that is too much, or of no known shape, is refused") {
+  Scene scene = one_point_scene();
+  const std::size_t before = encode(scene).size();
+  scene.scenery.resize(kMaxScenery);
+  CHECK_NOTHROW(decode_scene(encode(scene)));
+  Bytes bytes = encode(scene);
+  bytes[before] = 4;
+  CHECK_THROWS_AS(decode_scene(bytes), MessageError);
+  scene.scenery.resize(kMaxScenery + 1);
+  CHECK_THROWS_AS(decode_scene(encode(scene)), MessageError);
+}
+
 TEST_CASE("displacements beyond 32.8 cm take four bytes, in units of 0.01 mm") {
   const Bytes bytes = frame_bytes(one_point_frame(Vector3(1.0, -2.0, 0.0)));
   REQUIRE(bytes.size() == 32 + 88 + 12 + 48 + 12);
@@ -242,6 +327,9 @@ TEST_CASE("scenes and frames come back as they went") {
   CHECK(scene_back.objects[0].rest == scene.objects[0].rest);
   CHECK(scene_back.objects[1].triangles == scene.objects[1].triangles);
   CHECK(scene_back.floor->height == scene.floor->height);
+  CHECK(std::get<CapsuleShape>(scene_back.scenery[3].shape).length == 0.75);
+  CHECK(scene_back.scenery[3].name == "capsule");
+  CHECK(scene_back.scenery[1].position == scene.scenery[1].position);
 
   const SurfaceFrame frame = example_frame(scene, 0.01);
   const SurfaceFrame back = decode_frame(frame_bytes(frame), node_counts(scene));
@@ -252,6 +340,14 @@ TEST_CASE("scenes and frames come back as they went") {
   CHECK(back.trail.force(31, 1) == frame.trail.force(31, 1));
   CHECK(back.objects[1].position == frame.objects[1].position);
   CHECK(back.objects[1].orientation.isApprox(frame.objects[1].orientation, 1e-6));
+  const BodyContactRecord& contact = frame.body_contacts[1];
+  const BodyContactRecord& contact_back = back.body_contacts.at(1);
+  CHECK(contact_back.object == 1);
+  CHECK(contact_back.other == -4);
+  CHECK(contact_back.force.isApprox(contact.force, 1e-6));
+  CHECK(contact_back.position.isApprox(contact.position, 1e-6));
+  CHECK(contact_back.normal.isApprox(contact.normal, 1e-4));
+  CHECK(contact_back.area == Approx(contact.area).epsilon(1e-6));
 }
 
 TEST_CASE("a displacement is off by at most half of 0.01 mm, whatever its size") {

@@ -66,6 +66,10 @@ int main(int argc, char** argv) {
        << ",\"large\":" << list(large.objects[1].displacement)
        << ",\"position\":" << list(small.objects[1].position)
        << ",\"tip\":" << list(small.styluses[1].tip)
+       << ",\"capsule\":" << list(scene.scenery[3].position)
+       << ",\"contactNormal\":" << list(small.body_contacts[1].normal)
+       << ",\"contactPosition\":" << list(small.body_contacts[1].position)
+       << ",\"contactForce\":" << list(small.body_contacts[1].force)
        << ",\"oldestForce\":" << list(small.trail.force(127, 0))
        << ",\"newestForce\":" << list(small.trail.force(0, 1)) << "}\n";
   return json ? 0 : 1;

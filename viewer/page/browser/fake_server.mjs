@@ -28,6 +28,8 @@ async function loadMessages() {
 export class FakeServer {
   /** what the page said: { type, ... } */
   received = [];
+  /** between bodies, in each frame */
+  contacts = [];
   stylus = { present: false, grab: false, tip: [0, 0, 0] };
   state;
   scene;
@@ -41,7 +43,7 @@ export class FakeServer {
     const server = new FakeServer();
     server.#messages = await loadMessages();
     const { cube, SETTINGS } = server.#messages;
-    server.scene = { objects: [cube(EDGE, 12)], radii: [0, 0.006], dt: 0.002, flags: 4, floorHeight: 0, largestForce: BOUND, ...changes.scene };
+    server.scene = { objects: [cube(EDGE, 12)], radii: [0, 0.006], dt: 0.002, flags: 4, floorHeight: 0, largestForce: BOUND, scenery: [], ...changes.scene };
     server.state = {
       flags: FLAG.free | FLAG.canRecord,
       changes: 0,
@@ -185,6 +187,7 @@ export class FakeServer {
       return { position: [0.13 * object, 0, 0], displacement };
     });
     const styluses = this.scene.radii.map((_, s) => (s === this.scene.radii.length - 1 ? state : ABSENT));
-    this.#send(frameMessage({ step: this.#step, time: (this.#step + 1) * this.scene.dt, styluses, objects }, 8));
+    const time = (this.#step + 1) * this.scene.dt;
+    this.#send(frameMessage({ step: this.#step, time, styluses, objects, contacts: this.contacts }, 8));
   }
 }

@@ -1,4 +1,4 @@
-import type { Vec3 } from "./protocol";
+import type { Quat, Vec3 } from "./protocol";
 
 export class ProtocolError extends Error {}
 
@@ -18,6 +18,9 @@ export class Reader {
   }
   u8(): number {
     return this.view.getUint8(this.take(1));
+  }
+  i8(): number {
+    return this.view.getInt8(this.take(1));
   }
   u16(): number {
     return this.view.getUint16(this.take(2), true);
@@ -43,6 +46,10 @@ export class Reader {
   }
   singleVector(): Vec3 {
     return [this.f32(), this.f32(), this.f32()];
+  }
+  /** w, x, y, z */
+  quaternion(): Quat {
+    return [this.f32(), this.f32(), this.f32(), this.f32()];
   }
   text(length: number): string {
     return new TextDecoder().decode(new Uint8Array(this.bytes, this.take(length), length));

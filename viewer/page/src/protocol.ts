@@ -20,7 +20,10 @@ const enum Type {
 }
 const MAX_OBJECTS = 4;
 const MAX_STYLUSES = 4;
+const MAX_SCENERY = 16;
 const MAX_TRAIL = 128;
+export const MAX_CONTACTS = 256;
+const NORMAL_UNITS = 32767;
 const MAX_NAME = 256;
 const MAX_TOKEN = 128;
 const MAX_RECORDINGS = 100;
@@ -57,6 +60,23 @@ export interface SceneObject {
   compliance: Float32Array;
 }
 
+/** In its own frame: a plane has the normal +y, a capsule the axis y with `length` between its balls' centres. [m] */
+export type Shape =
+  | { kind: "plane" }
+  | { kind: "box"; size: Vec3 }
+  | { kind: "sphere"; radius: number }
+  | { kind: "capsule"; radius: number; length: number };
+
+/** A body that never moves. */
+export interface Scenery {
+  name: string;
+  shape: Shape;
+  /** [m], W */
+  position: Vec3;
+  /** w, x, y, z; shape to W */
+  orientation: Quat;
+}
+
 export interface Scene {
   kind: "scene";
   /** force step [s] */
@@ -69,6 +89,7 @@ export interface Scene {
   floor: { normal: Vec3; height: number } | null;
   styluses: SceneStylus[];
   objects: SceneObject[];
+  scenery: Scenery[];
 }
 
 export const enum Contact {
@@ -104,6 +125,21 @@ export interface ObjectState {
   displacement: Int16Array | Int32Array;
 }
 
+/** Where an object touches another one or scenery. */
+export interface BodyContact {
+  object: number;
+  /** the object that it touches; -1 - i: scenery i */
+  other: number;
+  /** out of the other, unit, W */
+  normal: Vec3;
+  /** [m], W */
+  position: Vec3;
+  /** on the object; the other has the opposite [N], W */
+  force: Vec3;
+  /** of the patch that it stands for [m^2] */
+  area: number;
+}
+
 export interface Frame {
   kind: "frame";
   /** force step k */
@@ -116,6 +152,7 @@ export interface Frame {
   /** for each of these steps, for each stylus: three numbers [N], W */
   forces: Float32Array;
   objects: ObjectState[];
+  contacts: BodyContact[];
 }
 
 /** Median, 99th percentile, maximum [us]; NaN: not measured. */
@@ -250,10 +287,37 @@ function readObject(reader: Reader): SceneObject {
   return { name, mass, stiffness, rest, triangles, compliance: reader.singles(nodes) };
 }
 
+function readShape(number: number, [x, y, z]: Vec3): Shape {
+  switch (number) {
+    case 0:
+      return { kind: "plane" };
+    case 1:
+      return { kind: "box", size: [x, y, z] };
+    case 2:
+      return { kind: "sphere", radius: x };
+    case 3:
+      return { kind: "capsule", radius: x, length: y };
+    default:
+      throw new ProtocolError("scenery of an unknown shape");
+  }
+}
+
+function readScenery(reader: Reader): Scenery {
+  const number = reader.u16();
+  const length = upTo(MAX_NAME, reader.u16());
+  const shape = readShape(number, reader.singleVector());
+  const position = reader.vector();
+  const orientation = reader.quaternion();
+  const name = reader.text(length);
+  reader.align();
+  return { name, shape, position, orientation };
+}
+
 function readScene(reader: Reader): Scene {
   const objects = count(reader, MAX_OBJECTS);
   const styluses = count(reader, MAX_STYLUSES);
-  const flags = reader.u32();
+  const flags = reader.u16();
+  const scenery = upTo(MAX_SCENERY, reader.u16());
   const dt = reader.f64();
   const normal = reader.vector();
   const height = reader.f64();
@@ -271,6 +335,7 @@ function readScene(reader: Reader): Scene {
       largestForce: reader.f32(),
     })),
     objects: repeat(objects, () => readObject(reader)),
+    scenery: repeat(scenery, () => readScenery(reader)),
   };
 }
 
@@ -294,7 +359,7 @@ function readStylus(reader: Reader): StylusState {
 
 function readSurface(reader: Reader, nodes: number): ObjectState {
   const position = reader.vector();
-  const orientation: Quat = [reader.f32(), reader.f32(), reader.f32(), reader.f32()];
+  const orientation = reader.quaternion();
   const width = reader.u8();
   if (width !== 2 && width !== 4) throw new ProtocolError("numbers of an unknown size");
   reader.skip(3);
@@ -302,6 +367,24 @@ function readSurface(reader: Reader, nodes: number): ObjectState {
   const displacement = width === 2 ? reader.shorts(3 * nodes) : reader.longs(3 * nodes);
   reader.align();
   return { position, orientation, unit, displacement };
+}
+
+function readContact(reader: Reader, scene: Scene): BodyContact {
+  const object = reader.u8();
+  const other = reader.i8();
+  const objects = scene.objects.length;
+  if (object >= objects || other >= objects || -1 - other >= scene.scenery.length) {
+    throw new ProtocolError("a contact of a body that is not there");
+  }
+  const part = (): number => reader.i16() / NORMAL_UNITS;
+  return {
+    object,
+    other,
+    normal: [part(), part(), part()],
+    position: reader.singleVector(),
+    force: reader.singleVector(),
+    area: reader.f32(),
+  };
 }
 
 function readFrame(reader: Reader, scene: Scene | null): Frame {
@@ -313,7 +396,7 @@ function readFrame(reader: Reader, scene: Scene | null): Frame {
   }
   const trail = reader.u16();
   if (trail > MAX_TRAIL) throw new ProtocolError("a trail of forces is too long");
-  reader.skip(2);
+  const contacts = upTo(MAX_CONTACTS, reader.u16());
   const step = reader.u64();
   const time = reader.f64();
   return {
@@ -324,6 +407,7 @@ function readFrame(reader: Reader, scene: Scene | null): Frame {
     trail,
     forces: reader.singles(3 * trail * styluses),
     objects: scene.objects.map((object) => readSurface(reader, object.rest.length / 3)),
+    contacts: repeat(contacts, () => readContact(reader, scene)),
   };
 }
 

@@ -23,10 +23,26 @@ import {
   SETTINGS,
   stateMessage,
   Writer,
+  type SceneParts,
+  type SceneryParts,
   type StateParts,
 } from "./server_messages.ts";
 
-const parts = { objects: [cube(0.1, 2)], radii: [0, 0.008], dt: 0.002, flags: 4, floorHeight: 0, largestForce: 3 };
+const scenery: SceneryParts[] = [
+  { name: "wall", shape: 0, size: [0, 0, 0], position: [0, -0.5, 0], orientation: [0.5, 0.5, 0.5, 0.5] },
+  { name: "box", shape: 1, size: [1, 2, 3], position: [0, 0, 0], orientation: [1, 0, 0, 0] },
+  { name: "ball", shape: 2, size: [0.5, 0, 0], position: [0, 0, 0], orientation: [1, 0, 0, 0] },
+  { name: "capsule", shape: 3, size: [0.5, 2, 0], position: [1, 2, 3], orientation: [0, 0, 1, 0] },
+];
+const parts: SceneParts = {
+  objects: [cube(0.1, 2)],
+  radii: [0, 0.008],
+  dt: 0.002,
+  flags: 4,
+  floorHeight: 0,
+  largestForce: 3,
+  scenery,
+};
 const sceneBytes = sceneMessage(parts);
 const scene = decode(sceneBytes, null) as Scene;
 const nodes = scene.objects[0]!.rest.length;
@@ -39,6 +55,7 @@ const frameBytes = frameMessage({
     { ...ABSENT, present: true, contact: 1, object: 0, tip: [1, 2, 3], middle: [0.01, 0.02, 0.03], slips: true },
   ],
   objects: [{ position: [0, 0, 0], displacement: Array.from({ length: nodes }, (_, i) => i) }],
+  contacts: [{ object: 0, other: -4, normal: [0, 1, 0], position: [1, 2, 3], force: [0, 0.5, -2], area: 0.25 }],
 });
 
 const times = (p50: number): { p50: number; p99: number; max: number } => ({ p50, p99: p50 + 1, max: p50 + 2 });
@@ -73,6 +90,24 @@ test("a frame says where a stylus touches the surface at rest and whether it sli
   assert.equal(first!.slips, false);
   assert.deepEqual(second!.middle.map((part) => Math.round(1000 * part)), [10, 20, 30]);
   assert.equal(second!.slips, true);
+});
+
+test("a scene has the scenery with the sizes of each shape", () => {
+  assert.deepEqual(scene.scenery.map(({ name }) => name), ["wall", "box", "ball", "capsule"]);
+  assert.deepEqual(scene.scenery.map(({ shape }) => shape), [
+    { kind: "plane" },
+    { kind: "box", size: [1, 2, 3] },
+    { kind: "sphere", radius: 0.5 },
+    { kind: "capsule", radius: 0.5, length: 2 },
+  ]);
+  assert.deepEqual(scene.scenery[0]!.orientation, [0.5, 0.5, 0.5, 0.5]);
+  assert.deepEqual(scene.scenery[3]!.position, [1, 2, 3]);
+});
+
+test("a frame has the contacts between bodies", () => {
+  assert.deepEqual((decode(frameBytes, scene) as Frame).contacts, [
+    { object: 0, other: -4, normal: [0, 1, 0], position: [1, 2, 3], force: [0, 0.5, -2], area: 0.25 },
+  ]);
 });
 
 test("health has round trip and age of force of each bridge", () => {
@@ -132,6 +167,8 @@ test("a number out of its range is refused", () => {
   const object = 64;
   const recording = object + 80;
   const stylus = 32 + 88;
+  const contact = frameBytes.byteLength - 36;
+  const capsule = sceneBytes.byteLength - 56 - 8;
   for (const [bytes, offset, value] of [
     [state, 34, 101], // recordings
     [state, 37, 3], // length of the notice, high byte
@@ -140,6 +177,13 @@ test("a number out of its range is refused", () => {
     [frameBytes, stylus, 2], // present
     [frameBytes, stylus + 1, 3], // contact
     [frameBytes, stylus + 80, 2], // slips
+    [frameBytes, 15, 2], // contacts, high byte
+    [frameBytes, contact, 1], // object that touches
+    [frameBytes, contact + 1, 1], // object that is touched
+    [frameBytes, contact + 1, 0xfb], // scenery that is touched
+    [sceneBytes, 14, 17], // scenery
+    [sceneBytes, capsule, 4], // shape
+    [sceneBytes, capsule + 3, 2], // length of a name, high byte
     [healthBytes, 120, 5], // bridges
     [healthBytes, 128, 2], // reports
   ] as const) {

@@ -30,7 +30,7 @@ test("normals are those of the faces on either side of an edge", () => {
 
 function frame(step: number, trail: number): Frame {
   const forces = Float32Array.from({ length: 3 * trail }, (_, i) => step - (trail - 1 - Math.floor(i / 3)));
-  return { kind: "frame", step, time: 0, styluses: [], trail, forces, objects: [] };
+  return { kind: "frame", step, time: 0, styluses: [], trail, forces, objects: [], contacts: [] };
 }
 
 test("forces of overlapping frames are logged once, and a gap is a gap", () => {

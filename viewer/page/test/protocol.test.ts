@@ -30,6 +30,11 @@ test("a scene is what the server made it", () => {
   assert.deepEqual(scene.objects.map((object) => object.name), ["würfel", "tet"]);
   near(scene.objects[0]!.rest, "rest", 0);
   near(scene.objects[1]!.triangles, "triangles", 0);
+  assert.deepEqual(scene.scenery.map(({ name }) => name), ["wände", "box", "ball", "capsule"]);
+  assert.deepEqual(scene.scenery[1]!.shape, { kind: "box", size: [0.5, 0.25, 0.125] });
+  assert.deepEqual(scene.scenery[3]!.shape, { kind: "capsule", radius: 0.25, length: 0.75 });
+  assert.deepEqual(scene.scenery[3]!.orientation, [0.5, 0.5, -0.5, 0.5]);
+  near(scene.scenery[3]!.position, "capsule", 0);
 });
 
 test("a frame is what the server made it, to the quantisation", () => {
@@ -45,6 +50,13 @@ test("a frame is what the server made it, to the quantisation", () => {
   near(frame.objects[1]!.position, "position", 0);
   near(frame.forces.subarray(0, 3), "oldestForce", 1e-7);
   near(frame.forces.subarray(3 * (2 * 128 - 1)), "newestForce", 1e-7);
+  assert.deepEqual(frame.contacts.map(({ object, other }) => [object, other]), [
+    [1, 0],
+    [1, -4],
+  ]);
+  near(frame.contacts[1]!.normal, "contactNormal", 0.51 / 32767);
+  near(frame.contacts[1]!.position, "contactPosition", 1e-7);
+  near(frame.contacts[1]!.force, "contactForce", 1e-7);
   const { displacement, unit } = frame.objects[0]!;
   assert.ok(displacement instanceof Int16Array);
   near(displacement, "small", 0.51 * unit, unit);

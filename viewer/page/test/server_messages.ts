@@ -1,5 +1,5 @@
 // What a server says, byte by byte as docs/viewer-protocol.md has it: for tests without a server.
-import type { ObjectSettings, Percentiles, Recording, Vec3 } from "../src/protocol.ts";
+import type { BodyContact, ObjectSettings, Percentiles, Quat, Recording, Vec3 } from "../src/protocol.ts";
 
 /** Bytes from front to back, little-endian. */
 export class Writer {
@@ -17,6 +17,10 @@ export class Writer {
   }
   u16(...values: number[]): this {
     for (const value of values) this.put(2, (view) => view.setUint16(0, value, true));
+    return this;
+  }
+  i8(...values: number[]): this {
+    for (const value of values) this.put(1, (view) => view.setInt8(0, value));
     return this;
   }
   i16(...values: number[]): this {
@@ -104,6 +108,15 @@ export function cube(edge: number, cells: number, name = "cube"): ObjectParts {
   return { name, rest, triangles, compliance };
 }
 
+export interface SceneryParts {
+  name: string;
+  /** 0 plane, 1 box, 2 sphere, 3 capsule */
+  shape: number;
+  size: Vec3;
+  position: Vec3;
+  orientation: Quat;
+}
+
 export interface SceneParts {
   objects: ObjectParts[];
   /** of their tips [m] */
@@ -113,16 +126,22 @@ export interface SceneParts {
   flags: number;
   floorHeight: number;
   largestForce: number;
+  scenery: SceneryParts[];
 }
 
 export function sceneMessage(parts: SceneParts): ArrayBuffer {
-  const to = begin(1).u16(parts.objects.length, parts.radii.length).u32(parts.flags).f64(parts.dt);
+  const to = begin(1).u16(parts.objects.length, parts.radii.length).u16(parts.flags, parts.scenery.length).f64(parts.dt);
   to.f64(0, (parts.flags & 2) !== 0 ? 1 : 0, 0, parts.floorHeight);
   for (const radius of parts.radii) to.f32(radius, 400, 0, parts.largestForce);
   for (const object of parts.objects) {
     const name = utf8(object.name);
     to.u32(object.rest.length / 3, object.triangles.length / 3, name.length).f32(0.1, 2e4).zeros(4).raw(name).align();
     to.f32(...object.rest).u32(...object.triangles).f32(...object.compliance);
+  }
+  for (const scenery of parts.scenery) {
+    const name = utf8(scenery.name);
+    to.u16(scenery.shape, name.length).f32(...scenery.size).f64(...scenery.position).f32(...scenery.orientation);
+    to.raw(name).align();
   }
   return to.done();
 }
@@ -157,11 +176,13 @@ export interface FrameParts {
   styluses: StylusParts[];
   /** for each: position and, in units of 1 um, displacements */
   objects: { position: Vec3; displacement: number[] }[];
+  contacts: BodyContact[];
 }
 
 /** @param trail steps for which the force has been the same */
 export function frameMessage(parts: FrameParts, trail = 1): ArrayBuffer {
-  const to = begin(2).u16(parts.objects.length, parts.styluses.length, trail).zeros(2).u64(parts.step).f64(parts.time);
+  const to = begin(2).u16(parts.objects.length, parts.styluses.length, trail, parts.contacts.length);
+  to.u64(parts.step).f64(parts.time);
   for (const stylus of parts.styluses) {
     to.u8(stylus.present ? 1 : 0, stylus.contact).i16(stylus.object).u32(stylus.buttons);
     to.f64(...stylus.tip, ...stylus.proxy).f32(...stylus.force, ...stylus.middle).u8(stylus.slips ? 1 : 0).zeros(7);
@@ -169,6 +190,9 @@ export function frameMessage(parts: FrameParts, trail = 1): ArrayBuffer {
   for (let i = 0; i < trail; ++i) for (const stylus of parts.styluses) to.f32(...stylus.force);
   for (const object of parts.objects) {
     to.f64(...object.position).f32(1, 0, 0, 0).u8(2).zeros(3).f32(1e-6).i16(...object.displacement).align();
+  }
+  for (const { object, other, normal, position, force, area } of parts.contacts) {
+    to.u8(object).i8(other).i16(...normal.map((part) => Math.round(32767 * part))).f32(...position, ...force, area);
   }
   return to.done();
 }

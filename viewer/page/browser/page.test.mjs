@@ -255,3 +255,73 @@ test("at 360 pixels nothing sticks out", async (context) => {
   await until(() => page.locator("#playback").isVisible(), "the bar is there");
   assert.ok((await width()) <= 360);
 });
+
+const UPRIGHT = [1, 0, 0, 0];
+const SCENERY = [
+  { name: "table", shape: 0, size: [0, 0, 0], position: [0, -0.05, 0], orientation: UPRIGHT },
+  { name: "box", shape: 1, size: [0.06, 0.04, 0.06], position: [-0.1, -0.03, 0], orientation: UPRIGHT },
+  { name: "ball", shape: 2, size: [0.03, 0, 0], position: [0.1, -0.02, 0], orientation: UPRIGHT },
+  { name: "capsule", shape: 3, size: [0.01, 0.05, 0], position: [0, 0.1, 0], orientation: UPRIGHT },
+];
+const PUSHED = { object: 0, other: -1, normal: [0, 1, 0], position: [0, -0.05, 0.03], force: [0, 1, 0], area: 4e-4 };
+
+/** Of the picture at a place of the world: red, green, blue, alpha. */
+function pixel(page, place) {
+  return page.evaluate((place) => {
+    const { world } = window.irdm;
+    const { x, y } = world.onCanvas(world.camera.position.clone().set(...place));
+    world.drawNow();
+    const flat = document.createElement("canvas");
+    [flat.width, flat.height] = [world.canvas.width, world.canvas.height];
+    const context = flat.getContext("2d");
+    context.drawImage(world.canvas, 0, 0);
+    const ratio = world.canvas.width / world.canvas.clientWidth;
+    return [...context.getImageData(Math.floor(x * ratio), Math.floor(y * ratio), 1, 1).data];
+  }, place);
+}
+
+test("scenery is drawn, in light and in dark", async (context) => {
+  const options = { ...SMALL, deviceScaleFactor: 1 };
+  const { page } = await stage(context, { options, scene: { scenery: SCENERY } });
+  await page.waitForTimeout(300);
+  for (const colorScheme of ["light", "dark"]) {
+    await page.emulateMedia({ colorScheme });
+    for (const { name, position } of SCENERY.slice(1)) {
+      const [red, green, blue, alpha] = await pixel(page, position);
+      assert.equal(alpha, 255, `${name} is there`);
+      assert.ok(Math.max(red, green, blue) - Math.min(red, green, blue) < 40, `${name} is neutral`);
+    }
+    assert.equal((await pixel(page, [0.2, 0.12, 0]))[3], 0, "elsewhere is nothing");
+  }
+  const cells = await page.evaluate(() => window.irdm.world.scenery[0].group.children[0].children.length);
+  assert.equal(cells, 2, "the plane has its lines and its shadows");
+  assert.deepEqual(page.faults, []);
+});
+
+test("contacts between bodies are drawn with a legend, and can be left out", async (context) => {
+  const options = { ...SMALL, deviceScaleFactor: 1 };
+  const { page, server } = await stage(context, { options, scene: { scenery: SCENERY.slice(0, 1) } });
+  assert.equal(await page.locator("#pressure").isVisible(), false);
+  const shaft = [0, -0.03, 0.03]; // within the arrow
+  const before = await pixel(page, shaft);
+  server.contacts = [PUSHED, { ...PUSHED, position: [0.03, -0.05, 0], force: [0, 0.5, 0] }];
+  await until(() => page.evaluate(() => window.irdm.world.contacts.shafts.count === 2), "there are two arrows");
+  const inked = ([red, green, blue]) => red + green + blue < 200;
+  assert.equal(inked(before), false);
+  assert.equal(inked(await pixel(page, shaft)), true, "the arrow is seen through the object");
+  await until(() => page.locator("#pressure").isVisible(), "there is a legend");
+  assert.match(await page.locator("#pressure").innerText(), /Contact pressure\s+0\s*2\.50 kPa/);
+
+  const box = page.getByLabel("Contact forces");
+  assert.equal(await box.isChecked(), true);
+  await box.focus();
+  await page.keyboard.press("Space");
+  assert.equal(await box.isChecked(), false);
+  assert.equal(await page.locator("#pressure").isVisible(), false);
+  assert.deepEqual(await pixel(page, shaft), before);
+  await box.check();
+  assert.equal(inked(await pixel(page, shaft)), true);
+  server.contacts = [];
+  await until(() => page.evaluate(() => window.irdm.world.contacts.shafts.count === 0), "they end");
+  assert.deepEqual(page.faults, []);
+});

@@ -1,5 +1,8 @@
-// Viridis, sampled: even steps look like even steps, also to the colour-blind and in grey.
-const STOPS: readonly (readonly [number, number, number])[] = [
+/** Colours at even steps, sRGB, 0 to 255. */
+export type Ramp = readonly (readonly [number, number, number])[];
+
+// Viridis and plasma, sampled: even steps look like even steps, also to the colour-blind and in grey.
+export const VIRIDIS: Ramp = [
   [68, 1, 84],
   [71, 45, 123],
   [59, 82, 139],
@@ -11,16 +14,29 @@ const STOPS: readonly (readonly [number, number, number])[] = [
   [253, 231, 37],
 ];
 
+/** For what is drawn on surfaces that can have the other's colours. */
+export const PLASMA: Ramp = [
+  [13, 8, 135],
+  [76, 2, 161],
+  [126, 3, 168],
+  [169, 35, 149],
+  [204, 70, 120],
+  [229, 107, 93],
+  [248, 148, 65],
+  [253, 195, 40],
+  [240, 249, 33],
+];
+
 /** @param at 0 to 1, beyond it is cut; writes r, g, b (0 to 1, sRGB) */
-export function colourAt(at: number, into: Float32Array, offset: number): void {
-  const x = Math.min(Math.max(at, 0), 1) * (STOPS.length - 1);
-  const i = Math.min(Math.floor(x), STOPS.length - 2);
+export function colourAt(ramp: Ramp, at: number, into: Float32Array, offset: number): void {
+  const x = Math.min(Math.max(at, 0), 1) * (ramp.length - 1);
+  const i = Math.min(Math.floor(x), ramp.length - 2);
   const part = x - i;
-  for (let c = 0; c < 3; ++c) into[offset + c] = (STOPS[i]![c]! * (1 - part) + STOPS[i + 1]![c]! * part) / 255;
+  for (let c = 0; c < 3; ++c) into[offset + c] = (ramp[i]![c]! * (1 - part) + ramp[i + 1]![c]! * part) / 255;
 }
 
-export function cssRamp(): string {
-  return `linear-gradient(to right, ${STOPS.map((stop) => `rgb(${stop.join(" ")})`).join(", ")})`;
+export function cssRamp(ramp: Ramp): string {
+  return `linear-gradient(to right, ${ramp.map((stop) => `rgb(${stop.join(" ")})`).join(", ")})`;
 }
 
 /** sRGB to linear, as three.js wants vertex colours. */

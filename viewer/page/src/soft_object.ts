@@ -1,5 +1,5 @@
 import * as THREE from "three";
-import { colourAt, linear } from "./colour_map";
+import { colourAt, linear, VIRIDIS } from "./colour_map";
 import { SurfaceMarks } from "./surface_marks";
 import { creaseMesh, vertexNormals, type CreasedMesh } from "./creases";
 import type { ObjectState, SceneObject } from "./protocol";
@@ -147,7 +147,7 @@ export class SoftObject {
       }
       if (!coloured) continue;
       if (Number.isNaN(values[node]!)) colour.set(UNKNOWN, 3 * v);
-      else colourAt(high > low ? (values[node]! - low) / (high - low) : 0, colour, 3 * v);
+      else colourAt(VIRIDIS, high > low ? (values[node]! - low) / (high - low) : 0, colour, 3 * v);
       for (let c = 0; c < 3; ++c) colour[3 * v + c] = linear(colour[3 * v + c]!);
     }
     vertexNormals(at, index, normals.array as Float32Array);

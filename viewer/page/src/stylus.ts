@@ -1,12 +1,10 @@
 import * as THREE from "three";
+import { headGeometry, LEAST_FORCE, METRES_PER_NEWTON, shaftGeometry, UP } from "./force_arrow";
 import { Contact, type SceneStylus, type StylusState } from "./protocol";
 import { Spring } from "./spring";
 import type { Theme } from "./theme";
 
 const SMALLEST_TIP = 0.0022; // a point must be seen [m]
-const METRES_PER_NEWTON = 0.04;
-const LEAST_FORCE = 0.005; // below it no arrow [N]
-const UP = new THREE.Vector3(0, 1, 0);
 
 /** Tip, proxy, the spring between them, and the force on the stylus as an arrow of 4 cm a newton. */
 export class Stylus {
@@ -38,8 +36,8 @@ export class Stylus {
     this.tip.add(ghost);
     this.proxy = new THREE.Mesh(new THREE.SphereGeometry(SMALLEST_TIP * 0.7, 20, 12), this.proxyMaterial);
     this.proxy.renderOrder = 2;
-    this.shaft = new THREE.Mesh(new THREE.CylinderGeometry(0.0009, 0.0009, 1, 16), this.arrowMaterial);
-    this.head = new THREE.Mesh(new THREE.ConeGeometry(0.0026, 0.007, 20), this.arrowMaterial);
+    this.shaft = new THREE.Mesh(shaftGeometry(), this.arrowMaterial);
+    this.head = new THREE.Mesh(headGeometry(), this.arrowMaterial);
     this.arrow.add(this.shaft, this.head);
     this.group.add(this.tip, this.proxy, this.spring.mesh, this.arrow);
     this.group.visible = false;
@@ -67,7 +65,6 @@ export class Stylus {
     this.arrow.position.set(...tip).addScaledVector(force, this.radius);
     this.arrow.quaternion.setFromUnitVectors(UP, force);
     this.shaft.scale.y = length;
-    this.shaft.position.y = length / 2;
     this.head.position.y = length;
   }
 

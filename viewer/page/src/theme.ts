@@ -7,6 +7,7 @@ export interface Theme {
   surface: string;
   accent: string;
   object: string;
+  scenery: string;
   wire: string;
   force: string;
   axes: [string, string, string];
@@ -25,6 +26,7 @@ export function currentTheme(): Theme {
     surface: colour("surface"),
     accent: colour("accent"),
     object: colour("object"),
+    scenery: colour("scenery"),
     wire: colour("wire"),
     force: colour("force"),
     axes: [colour("x"), colour("y"), colour("z")],

@@ -1,4 +1,4 @@
-import { cssRamp } from "./colour_map";
+import { cssRamp, PLASMA, VIRIDIS } from "./colour_map";
 import { element } from "./elements";
 import type { Scene } from "./protocol";
 import { scaleBar } from "./scale_bar";
@@ -16,12 +16,16 @@ export class ViewControls {
   private readonly exaggeration = element<HTMLInputElement>("exaggeration");
   private readonly colour = element<HTMLSelectElement>("colour");
   private readonly rigid = element<HTMLInputElement>("rigid");
+  private readonly contacts = element<HTMLInputElement>("contacts");
   private readonly follow = element<HTMLInputElement>("follow");
 
   constructor(private readonly world: World | null) {
-    for (const input of [this.exaggeration, this.colour, this.rigid, this.follow]) input.oninput = () => this.apply();
+    for (const input of [this.exaggeration, this.colour, this.rigid, this.contacts, this.follow]) {
+      input.oninput = () => this.apply();
+    }
     element("fit").onclick = () => world?.fit();
-    document.querySelector<HTMLElement>(".ramp")!.style.background = cssRamp();
+    document.querySelector<HTMLElement>("#legend .ramp")!.style.background = cssRamp(VIRIDIS);
+    document.querySelector<HTMLElement>("#pressure .ramp")!.style.background = cssRamp(PLASMA);
     if (world !== null) world.onDraw = () => this.showScale();
     this.apply();
   }
@@ -52,9 +56,13 @@ export class ViewControls {
     this.apply();
   }
 
-  /** Now and then: the ramp's end moves. */
+  /** Now and then: the ramps' ends move. */
   showLegend(): void {
-    if (this.world === null || this.world.look.colouring === "none") return;
+    if (this.world === null) return;
+    const { largest } = this.world.contacts;
+    element("pressure").hidden = !this.contacts.checked || largest === 0;
+    element("pressure-max").textContent = `${(largest / 1000).toPrecision(3)} kPa`;
+    if (this.world.look.colouring === "none") return;
     const { factor, unit } = LEGENDS[this.world.look.colouring];
     const { low, high } = this.world.colours;
     element("legend-min").textContent = low === 0 ? "0" : (low * factor).toPrecision(3);
@@ -68,7 +76,13 @@ export class ViewControls {
     element("legend").hidden = colouring === "none" || this.world === null;
     if (colouring !== "none") element("legend-title").textContent = LEGENDS[colouring].title;
     if (this.world === null) return;
-    this.world.look = { exaggeration: factor, colouring, rigid: this.rigid.checked, follow: this.follow.checked };
+    this.world.look = {
+      exaggeration: factor,
+      colouring,
+      rigid: this.rigid.checked,
+      contacts: this.contacts.checked,
+      follow: this.follow.checked,
+    };
     this.world.applyLook();
     this.showLegend();
   }

@@ -1,6 +1,8 @@
 import * as THREE from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import { ContactMarks } from "./contact_marks";
 import { Contact, type Frame, type Scene } from "./protocol";
+import { SceneryBody } from "./scenery_body";
 import { SoftObject, type ColourRange, type Colouring } from "./soft_object";
 import { Stylus } from "./stylus";
 import { Surroundings } from "./surroundings";
@@ -13,6 +15,8 @@ export interface Look {
   exaggeration: number;
   colouring: Colouring;
   rigid: boolean;
+  /** forces and pressures of contacts between bodies are drawn */
+  contacts: boolean;
   /** the camera goes along with objects that leave the middle of the picture */
   follow: boolean;
 }
@@ -21,7 +25,7 @@ export interface Look {
 export class World {
   readonly camera = new THREE.PerspectiveCamera(FIELD_OF_VIEW, 1, 0.005, 50);
   objects: SoftObject[] = [];
-  look: Look = { exaggeration: 1, colouring: "none", rigid: false, follow: true };
+  look: Look = { exaggeration: 1, colouring: "none", rigid: false, contacts: true, follow: true };
   colours: ColourRange = { low: 0, high: 0 };
   /** a hand is on the objects: the camera stays where it is */
   held = false;
@@ -31,6 +35,8 @@ export class World {
   private readonly three = new THREE.Scene();
   readonly controls: OrbitControls;
   private readonly surroundings = new Surroundings();
+  readonly contacts = new ContactMarks();
+  private scenery: SceneryBody[] = [];
   private styluses: Stylus[] = [];
   private scene: Scene | null = null;
   private frame: Frame | null = null;
@@ -47,7 +53,7 @@ export class World {
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = THREE.PCFShadowMap;
     this.renderer.toneMapping = THREE.NeutralToneMapping;
-    this.three.add(this.surroundings.group);
+    this.three.add(this.surroundings.group, this.contacts.group);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.addEventListener("change", () => this.invalidate());
     canvas.addEventListener("webglcontextrestored", () => this.invalidate());
@@ -58,7 +64,7 @@ export class World {
   /** Replaces everything that is shown. The camera stays where it is when the scene is one of before. */
   show(scene: Scene): void {
     const first = this.scene === null;
-    for (const thing of [...this.objects, ...this.styluses]) {
+    for (const thing of [...this.objects, ...this.styluses, ...this.scenery]) {
       this.three.remove(thing.group);
       thing.dispose();
     }
@@ -67,7 +73,9 @@ export class World {
     this.colours = { low: 0, high: 0 };
     this.objects = scene.objects.map((object) => new SoftObject(object));
     this.styluses = scene.styluses.map((stylus) => new Stylus(stylus));
-    for (const thing of [...this.objects, ...this.styluses]) this.three.add(thing.group);
+    this.scenery = scene.scenery.map((body) => new SceneryBody(body));
+    this.contacts.clear();
+    for (const thing of [...this.objects, ...this.styluses, ...this.scenery]) this.three.add(thing.group);
     this.applyTheme(this.theme);
     this.applyLook();
     if (first) this.fitPending = true;
@@ -78,14 +86,15 @@ export class World {
     this.frame = frame;
     frame.objects.forEach((state, i) => this.objects[i]!.follow(state, frame.time, this.look.colouring));
     frame.styluses.forEach((state, s) => this.styluses[s]!.follow(state));
-    this.showContacts(frame);
+    this.contacts.follow(frame.contacts);
+    this.markStyluses(frame);
     this.followColours();
     if (this.fitPending) this.fit();
     else if (this.look.follow && !this.held) this.goAlong(frame);
     this.invalidate();
   }
 
-  private showContacts(frame: Frame): void {
+  private markStyluses(frame: Frame): void {
     this.objects.forEach((object, i) => {
       const touching = frame.styluses.map((state, s) => ({ state, radius: this.scene!.styluses[s]!.radius }));
       const here = touching.filter(({ state }) => state.present && state.contact !== Contact.Free && state.object === i);
@@ -125,6 +134,7 @@ export class World {
 
   applyLook(): void {
     for (const object of this.objects) object.showsRigid = this.look.rigid;
+    this.contacts.group.visible = this.look.contacts;
     this.colours = { low: 0, high: 0 };
     if (this.frame !== null) this.follow(this.frame);
     this.invalidate();
@@ -132,10 +142,10 @@ export class World {
 
   applyTheme(theme: Theme): void {
     this.theme = theme;
-    for (const object of this.objects) object.applyTheme(theme);
-    for (const stylus of this.styluses) stylus.applyTheme(theme);
+    for (const thing of [...this.objects, ...this.styluses, ...this.scenery]) thing.applyTheme(theme);
+    this.contacts.applyTheme(theme);
     this.surroundings.applyTheme(theme);
-    if (this.scene !== null && !this.fitPending) this.surroundings.place(this.bounds(), this.scene.floor, theme);
+    if (!this.fitPending) this.placeSurroundings();
     this.invalidate();
   }
 
@@ -155,8 +165,16 @@ export class World {
     this.controls.minDistance = radius * 0.3;
     this.controls.maxDistance = distance * 8;
     this.controls.update();
-    this.surroundings.place(this.bounds(), this.scene.floor, this.theme);
+    this.placeSurroundings();
     this.invalidate();
+  }
+
+  /** Light, shadow, floor and planes, round the objects. */
+  private placeSurroundings(): void {
+    if (this.scene === null) return;
+    const objects = this.bounds();
+    this.surroundings.place(objects, this.scene.floor, this.theme);
+    for (const body of this.scenery) body.place(objects, this.theme);
   }
 
   /** Turns the camera [rad], or brings it nearer (zoom > 1). */

@@ -110,9 +110,20 @@ ObjectRecord start_of(const SimulationObject& object) {
 }
 
 // M dv - dt (forces) of an object without damping and tether, in a step [N s].
+// Of all contacts with other bodies [N], W.
+Vector3 force_of_bodies(const StepRecord& record, int object) {
+  Vector3 sum = Vector3::Zero();
+  for (const BodyContactRecord& contact : record.body_contacts()) {
+    if (contact.object == object) sum += contact.force;
+    if (contact.other == object) sum -= contact.force;
+  }
+  return sum;
+}
+
 double momentum_error(const SimulationObject& object, const SimulationConfig& config,
-                      const ObjectRecord& before, const ObjectRecord& now, double dt) {
-  Vector3 force = object.model->body.mass * config.gravity + now.floor_force;
+                      const ObjectRecord& before, const ObjectRecord& now, const Vector3& of_bodies,
+                      double dt) {
+  Vector3 force = object.model->body.mass * config.gravity + now.floor_force + of_bodies;
   for (const ContactRecord& contact : now.contact) {
     if (contact.state != ContactState::kFree) force += now.halfway * contact.force;
   }
@@ -177,8 +188,10 @@ Outcome play(const Scene& scene, double duration) {
                        now.orientation.coeffs().allFinite() && now.angular_velocity.allFinite();
       if (object.damping.linear == 0.0 && object.tether.stiffness == 0.0) {
         const double impulse = 9.81 * object.model->body.mass * dt;
-        outcome.momentum = std::max(outcome.momentum,
-                                    momentum_error(object, config, before[i], now, dt) / impulse);
+        outcome.momentum = std::max(
+            outcome.momentum, momentum_error(object, config, before[i], now,
+                                             force_of_bodies(*record, static_cast<int>(i)), dt) /
+                                  impulse);
       }
       before[i] = now;
     }

@@ -50,7 +50,8 @@ void measure(const char* name, const SimulationConfig& config, const Commands& c
     if (k < kSettling) continue;
     times.push_back(1e6 * time);
     sweeps.push_back(record.object[0].sweeps);
-    down = std::max({down, record.object[0].floor_count, record.body_contact_count});
+    down = std::max(
+        {down, record.object[0].floor_count, static_cast<int>(record.body_contact.size())});
   }
   std::printf("| %s | %.0f, %.0f | %.0f | %d |\n", name, bench::percentile(times, 0.5),
               bench::percentile(times, 0.99), bench::percentile(sweeps, 0.5), down);

@@ -339,8 +339,7 @@ void Recording::step(std::size_t k, StepRecord& record) const {
   record.late.count = late.size();
   std::copy(late.begin(), late.end(), record.late.force.begin());
   const std::span<const BodyContactRecord> touching = data.touching_of[k];
-  record.body_contact_count = static_cast<int>(touching.size());
-  std::copy(touching.begin(), touching.end(), record.body_contact.begin());
+  record.body_contact.assign(touching.begin(), touching.end());
   for (std::size_t i = 0; i < data.objects.size(); ++i) {
     data.object_step(i, k, record.object[i], record.settings.object[i].inertial_loading);
   }

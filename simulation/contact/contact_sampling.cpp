@@ -13,8 +13,8 @@ namespace {
 // Faces whose normals are nearer than 40 degrees belong to one smooth part.
 constexpr double kSmooth = 0.766;
 
-// The third of a triangle that is nearest to a corner (cut off by its medians): means of the linear
-// shape functions over it.
+// Centroid of the third of a triangle that is nearest to a corner (cut off by its medians), in
+// barycentric weights of that corner and of each other one.
 constexpr double kOwn = 11.0 / 18.0;
 constexpr double kOther = 7.0 / 36.0;
 
@@ -67,32 +67,26 @@ void ContactSampling::make_sites(const std::vector<int>& parts) {
       if (fresh) sites_.push_back({node, parts[index]});
       corner_sites_[index][i] = found->second;
       Site& site = sites_[static_cast<std::size_t>(found->second)];
-      site.area += twice.norm() / 6.0;
+      const double share = twice.norm() / 6.0;
+      const TriangleCorners corners = surface_.corners(t);
+      site.area += share;
       site.normal += twice;
+      site.moment += share * (kOwn * corners[i] + kOther * corners[(i + 1) % 3] +
+                              kOther * corners[(i + 2) % 3]);
     }
   }
   for (Site& site : sites_) site.normal.normalize();
 }
 
-// The uniform pressure on the shares of these sites.
+// Each node with the share of the area that is its own: the load of a uniform pressure on linear
+// triangles.
 void ContactSampling::add_row(const std::vector<int>& sites) {
-  std::map<int, double> weights;
   double sum = 0.0;
+  for (const int s : sites) sum += sites_[static_cast<std::size_t>(s)].area;
   for (const int s : sites) {
     const Site& site = sites_[static_cast<std::size_t>(s)];
-    for (const int t : surface_.topology().triangles_around(site.node)) {
-      const std::array<int, 3>& own = corner_sites_[static_cast<std::size_t>(t)];
-      if (std::find(own.begin(), own.end(), s) == own.end()) continue;
-      const double share = area_normal(surface_.corners(t)).norm() / 6.0;
-      sum += share;
-      for (const int node : surface_.topology().corners(t)) {
-        weights[node] += share * (node == site.node ? kOwn : kOther);
-      }
-    }
-  }
-  for (const auto& [node, weight] : weights) {
-    nodes_.push_back(node);
-    weights_.push_back(weight / sum);
+    nodes_.push_back(site.node);
+    weights_.push_back(site.area / sum);
   }
   first_.push_back(static_cast<int>(nodes_.size()));
 }
@@ -136,10 +130,12 @@ void ContactSampling::make_samples(const std::vector<int>& chosen) {
   double total = 0.0;
   for (const std::vector<int>& sites : members) {
     Sample sample;
+    Vector3 moment = Vector3::Zero();
     for (const int s : sites) {
       const Site& site = sites_[static_cast<std::size_t>(s)];
       sample.area += site.area;
       sample.normal += site.area * site.normal;
+      moment += site.moment;
     }
     sample.normal.normalize();
     sample.row = sites.front();
@@ -147,8 +143,7 @@ void ContactSampling::make_samples(const std::vector<int>& chosen) {
       sample.row = row_count();
       add_row(sites);
     }
-    sample.place =
-        surface_.closest(mean(patch(sample.row), [&](int i) { return surface_.node(i); }));
+    sample.place = surface_.closest(moment / sample.area);
     total += sample.area;
     samples_.push_back(sample);
   }

@@ -29,11 +29,13 @@ Vector3 mean(const SurfacePatch& patch, const NodeValue& value) {
 /// Where objects touch each other: an object's surface divided into patches.
 ///
 /// The surface falls into smooth parts that creases separate. A *site* is a node with one of the
-/// parts that it lies on; its patch is the node's share of that part (a third of each triangle). A
+/// parts that it lies on; its area is the node's share of that part (a third of each triangle). A
 /// *sample* is a set of neighbouring sites: so many sites of a part as farthest-point sampling
 /// chooses are its middles, each site belongs to the nearest of them. The order of the samples is
-/// that of the choice, so fewer samples are the first of more (nested); their patches cover the
-/// surface once, and the uniform pressure on all of them is that of the finite elements.
+/// that of the choice, so fewer samples are the first of more (nested). A patch weights its nodes
+/// with their areas, as finite elements load them: patches cover the surface once, and the same
+/// pressure on all of them is a uniform one. A wider patch would make the pressures of neighbours
+/// ill-determined: they then differ by a factor of two under a smooth contact.
 /// A contact lies between a sample of one object and a point of another, whose force goes to the
 /// sites of the point's triangle by barycentric weights. Built once, read only.
 class ContactSampling {
@@ -43,7 +45,7 @@ class ContactSampling {
   ContactSampling(const RestSurface& surface, int most);
 
   struct Sample {
-    SurfaceLocation place;             ///< its middle, on the surface at rest
+    SurfaceLocation place;             ///< the centroid of its area, on the surface at rest
     Vector3 normal = Vector3::Zero();  ///< outward, unit, B
     double area = 0.0;                 ///< [m^2]
     int row = 0;                       ///< of its patch
@@ -73,6 +75,7 @@ class ContactSampling {
     int part = 0;
     double area = 0.0;
     Vector3 normal = Vector3::Zero();
+    Vector3 moment = Vector3::Zero();  ///< area times centroid
   };
   std::vector<int> smooth_parts() const;
   void make_sites(const std::vector<int>& parts);

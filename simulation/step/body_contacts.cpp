@@ -16,6 +16,8 @@ constexpr double kReachFading = 0.99;
 constexpr double kDepth = 0.5;
 // Surfaces touch where their outward normals point at each other: cosine of their angle at most.
 constexpr double kFacing = -0.3;
+// In which a sample that was inside when its contact began comes out [s].
+constexpr double kInsetTime = 0.05;
 
 double ball_radius(const RestSurface& rest) noexcept {
   double largest = 0.0;
@@ -35,13 +37,14 @@ Vector3 at_start(const FreeMotion& motion, const Vector3& place) noexcept {
 }  // namespace
 
 BodyContacts::BodyContacts(int object, const ContactBody& body, int other,
-                           const ContactBody& other_body)
+                           const ContactBody& other_body, double dt)
     : object_(object),
       other_(other),
       body_(body),
       other_body_(&other_body),
       radius_(ball_radius(body.rest)),
       other_radius_(ball_radius(other_body.rest)),
+      inset_left_(std::max(0.0, 1.0 - dt / kInsetTime)),
       depth_(kDepth * std::min(body.sampling.spacing(), other_body.sampling.spacing())),
       samples_(body.sampling.samples().size()),
       found_(kMost) {
@@ -50,13 +53,14 @@ BodyContacts::BodyContacts(int object, const ContactBody& body, int other,
 }
 
 BodyContacts::BodyContacts(int object, const ContactBody& body, int scenery,
-                           const SceneryConfig& shape)
+                           const SceneryConfig& shape, double dt)
     : object_(object),
       other_(-1 - scenery),
       body_(body),
       scenery_(&shape),
       radius_(ball_radius(body.rest)),
       other_radius_(bounding_radius(shape.shape)),
+      inset_left_(std::max(0.0, 1.0 - dt / kInsetTime)),
       depth_(kDepth * body.sampling.spacing()),
       samples_(body.sampling.samples().size()),
       found_(kMost) {
@@ -105,7 +109,7 @@ Vector3 BodyContacts::other_displacement(const SurfaceLocation& at) noexcept {
 
 bool BodyContacts::begin_on_scenery(const Vector3& from, const Vector3& to,
                                     const Vector3& direction, const Vector3& x,
-                                    Sample& state) noexcept {
+                                    const Vector3& start, Sample& state) noexcept {
   const std::optional<SceneryHit> entry = first_crossing(*scenery_, from, to);
   if (!entry || entry->normal.dot(direction) > kFacing) return false;
   const SceneryHit hit = closest(*scenery_, x);
@@ -114,6 +118,9 @@ bool BodyContacts::begin_on_scenery(const Vector3& from, const Vector3& to,
   state.anchor_W = same_side
                        ? hit.position
                        : Vector3(x - (x - entry->position).dot(entry->normal) * entry->normal);
+  if (state.listed + 1 != step_) {
+    state.inset = std::max(0.0, (state.anchor_W - start).dot(state.normal));
+  }
   return true;
 }
 
@@ -125,7 +132,8 @@ bool BodyContacts::begin(const ContactSampling::Sample& sample, const Vector3& p
   const Vector3 outward = motion.orientation * sample.normal;
   const Vector3 start = at_start(motion, place);
   if (other_body_ == nullptr) {
-    return begin_on_scenery(start - depth_ * outward, x + kNear * outward, outward, x, state);
+    return begin_on_scenery(start - depth_ * outward, x + kNear * outward, outward, x, start,
+                            state);
   }
   const FreeMotion& there = other_body_->motion;
   const Vector3 y = there.to_body(x);
@@ -142,6 +150,8 @@ bool BodyContacts::begin(const ContactSampling::Sample& sample, const Vector3& p
   if (state.normal.dot(direction) > kFacing) return false;
   const Vector3 there_now = state.anchor.position + other_displacement(state.anchor);
   state.offset = sideways(y - there_now, state.normal);
+  if (state.listed + 1 != step_)
+    state.inset = std::max(0.0, (there_now - y_start).dot(state.normal));
   return true;
 }
 
@@ -155,18 +165,20 @@ void BodyContacts::describe(int sample, const Vector3& place, Contact& contact) 
   if (other_body_ == nullptr) {
     contact.other_place.count = 0;
     contact.normal = state.normal;
-    contact.gap = state.anchor_W - x;
+    contact.gap = state.anchor_W - state.inset * state.normal - x;
     return;
   }
   contact.other_place = {other_body_->sampling.sites(state.anchor.triangle),
                          state.anchor.point.weights, 3};
-  contact.other_arm = state.anchor.position + other_displacement(state.anchor) + state.offset;
+  contact.other_arm = state.anchor.position + other_displacement(state.anchor) + state.offset -
+                      state.inset * state.normal;
   contact.normal = other_body_->motion.orientation * state.normal;
   contact.gap = other_body_->motion.to_world(contact.other_arm) - x;
 }
 
 int BodyContacts::find() noexcept {
   count_ = 0;
+  ++step_;
   displaced_ *= kReachFading;
   if (!any_pressed_ && !near()) return 0;
   candidates_.clear();
@@ -210,6 +222,7 @@ int BodyContacts::find() noexcept {
               [](const Candidate& a, const Candidate& b) { return a.sample < b.sample; });
   }
   for (const Candidate& candidate : candidates_) {
+    samples_[static_cast<std::size_t>(candidate.sample)].listed = step_;
     describe(candidate.sample, candidate.place, found_[static_cast<std::size_t>(count_++)]);
   }
   any_pressed_ = false;
@@ -232,6 +245,7 @@ void BodyContacts::update(int i, const ContactConstraint& solved) noexcept {
   const bool slipping = solved.mode == ContactMode::kSlipping;
   state.contact.begin(pressed ? ContactState::kTouching : ContactState::kFree, slipping);
   state.force = body_.motion.halfway.conjugate() * solved.force;
+  state.inset *= inset_left_;
   any_pressed_ = any_pressed_ || pressed;
   if (!slipping) return;
   if (other_body_ == nullptr) {

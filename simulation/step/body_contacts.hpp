@@ -46,9 +46,11 @@ class BodyContacts {
   };
 
   /// @param object, other are the numbers of objects; both bodies must outlive this
-  BodyContacts(int object, const ContactBody& body, int other, const ContactBody& other_body);
+  BodyContacts(int object, const ContactBody& body, int other, const ContactBody& other_body,
+               double dt);
   /// @param scenery its number  @param shape must outlive this
-  BodyContacts(int object, const ContactBody& body, int scenery, const SceneryConfig& shape);
+  BodyContacts(int object, const ContactBody& body, int scenery, const SceneryConfig& shape,
+               double dt);
 
   void reset() noexcept;
 
@@ -79,7 +81,11 @@ class BodyContacts {
     Vector3 offset = Vector3::Zero();    ///< from it to the anchor [m], B of the other
     Vector3 anchor_W = Vector3::Zero();  ///< on scenery [m]
     Vector3 normal = Vector3::Zero();    ///< outward of the other, unit, B of the other or W
-    Vector3 force = Vector3::Zero();     ///< of the last step [N], B of the object
+    /// How deep below the anchor it is wanted [m]: where it was inside already when the contact
+    /// began. Pushed out at once it would get twice that depth a step as its speed.
+    double inset = 0.0;
+    std::uint64_t listed = 0;         ///< the last step in which it was among the contacts; 0: none
+    Vector3 force = Vector3::Zero();  ///< of the last step [N], B of the object
   };
 
   bool near() noexcept;
@@ -87,7 +93,7 @@ class BodyContacts {
   Vector3 other_displacement(const SurfaceLocation& at) noexcept;
   bool begin(const ContactSampling::Sample& sample, const Vector3& place, Sample& state) noexcept;
   bool begin_on_scenery(const Vector3& from, const Vector3& to, const Vector3& direction,
-                        const Vector3& x, Sample& state) noexcept;
+                        const Vector3& x, const Vector3& start, Sample& state) noexcept;
   void describe(int sample, const Vector3& place, Contact& contact) noexcept;
 
   int object_;
@@ -98,6 +104,7 @@ class BodyContacts {
   double radius_ = 0.0;  ///< of a ball about the centre of mass that has the surface at rest [m]
   double other_radius_ = 0.0;
   Eigen::AlignedBox3d other_box_;  ///< of its surface at rest, B
+  double inset_left_;              ///< share of an inset that is left after a step
   double depth_;                   ///< that a sample's way begins inside its object [m]
   double displaced_ = 0.0;         ///< how far surfaces were seen away from rest [m]
   std::vector<Sample> samples_;
@@ -110,6 +117,7 @@ class BodyContacts {
   std::vector<Candidate> candidates_;
   std::vector<Contact> found_;
   int count_ = 0;
+  std::uint64_t step_ = 1;
   bool any_pressed_ = false;
 };
 

@@ -95,7 +95,7 @@ void Simulation::step(std::span<const StylusCommand> commands, StepRecord& recor
     }
     commands = commands_;
   }
-  record.body_contact_count = 0;
+  record.body_contact.clear();
   for (std::size_t i = 0; i < objects_.size(); ++i) objects_[i]->begin(commands, record.object[i]);
   if (world_) {
     world_->solve(record);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <boost/container/static_vector.hpp>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -149,11 +150,11 @@ struct StepRecord {
   std::array<ObjectRecord, kMaxObjects> object;
   std::array<StylusRecord, kMaxStyluses> stylus;
   LateForces late;  ///< entered before the step
-  int body_contact_count = 0;
-  std::array<BodyContactRecord, kMaxBodyContacts> body_contact;  ///< the first so many
+  /// In place; a copy of the record takes no more than there are.
+  boost::container::static_vector<BodyContactRecord, kMaxBodyContacts> body_contact;
 
   std::span<const BodyContactRecord> body_contacts() const noexcept {
-    return {body_contact.data(), static_cast<std::size_t>(body_contact_count)};
+    return {body_contact.data(), body_contact.size()};
   }
 };
 

@@ -65,6 +65,7 @@ const WorldContacts::Shape& WorldContacts::shape_of(SoftObject& object, int samp
 // Of two objects the one with the finer sampling gives the samples.
 void WorldContacts::add_pairs(const SimulationConfig& config) {
   const int count = static_cast<int>(objects_.size());
+  const double dt = objects_.front()->model().dt;
   for (int a = 0; a < count; ++a) {
     const ContactBody& one = bodies_[static_cast<std::size_t>(a)];
     for (int b = a + 1; b < count; ++b) {
@@ -75,14 +76,14 @@ void WorldContacts::add_pairs(const SimulationConfig& config) {
         continue;
       }
       if (two.sampling.spacing() < one.sampling.spacing()) {
-        pairs_.emplace_back(b, two, a, one);
+        pairs_.emplace_back(b, two, a, one, dt);
       } else {
-        pairs_.emplace_back(a, one, b, two);
+        pairs_.emplace_back(a, one, b, two, dt);
       }
     }
     for (std::size_t s = 0; s < config.scenery.size(); ++s) {
       if (!objects_[static_cast<std::size_t>(a)]->rigid().moves()) continue;
-      pairs_.emplace_back(a, one, static_cast<int>(s), scenery_[s]);
+      pairs_.emplace_back(a, one, static_cast<int>(s), scenery_[s], dt);
     }
   }
 }
@@ -173,11 +174,10 @@ void WorldContacts::apply(std::span<const IslandContact> contacts, StepRecord& r
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     halfway[i] = objects_[i]->halfway_position(sums[i]);
   }
-  record.body_contact_count = 0;
+  record.body_contact.clear();
   for (const IslandContact& contact : contacts) {
     if (contact.solved.mode == ContactMode::kOpen) continue;
-    BodyContactRecord& out =
-        record.body_contact[static_cast<std::size_t>(record.body_contact_count++)];
+    BodyContactRecord& out = record.body_contact.emplace_back();
     contact.pair->write(contact.i, contact.solved, out);
     const auto object = static_cast<std::size_t>(out.object);
     const Vector3 arm = objects_[object]->motion().halfway * contact.pair->contact(contact.i).arm;

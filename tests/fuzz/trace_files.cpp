@@ -35,7 +35,7 @@ std::filesystem::path valid_trace() {
     test::play_step(simulation, k, record);
     if (k % 9 == 0) record.stylus[0].bridged = BridgedForce{.object = k % 2};
   }
-  expect(std::ranges::any_of(records, [](const StepRecord& r) { return r.body_contact_count > 0; }),
+  expect(std::ranges::any_of(records, [](const StepRecord& r) { return !r.body_contact.empty(); }),
          "objects touch");
   TraceWriter writer(
       path, {{{kNames[0], "a.h5", "1"}, {kNames[1], "b.h5", "2"}, {kNames[2], "c.h5", "3"}},
@@ -78,7 +78,7 @@ void trace_file(Input input) {
     StepRecord record;
     for (std::size_t k = 0; k < recording.steps(); ++k) {
       recording.step(k, record);
-      expect(record.body_contact_count <= kMaxBodyContacts, "contacts of bodies fit into a step");
+      expect(record.body_contact.size() <= kMaxBodyContacts, "contacts of bodies fit into a step");
       for (std::size_t i = 0; i < scene().objects.size(); ++i) {
         expect(record.object[i].floor_count <= kMaxFloorContacts,
                "the floor's forces fit into a step");

@@ -80,13 +80,13 @@ TEST_CASE("a trace gives back every contact between bodies of every step to the 
   const Recording recording = trace.read(trace.whole);
   REQUIRE(recording.steps() == TouchingTrace::kSteps);
   const auto record = std::make_unique<StepRecord>();
-  int most = 0;
+  std::size_t most = 0;
   bool some_without = false;
   for (std::size_t k = 0; k < recording.steps(); ++k) {
     recording.step(k, *record);
     CHECK(same_body_contacts(*record, trace.records[k]));
-    most = std::max(most, record->body_contact_count);
-    some_without = some_without || record->body_contact_count == 0;
+    most = std::max(most, record->body_contact.size());
+    some_without = some_without || record->body_contact.empty();
   }
   CHECK(most > 5);
   CHECK(some_without);
@@ -119,9 +119,9 @@ TEST_CASE("a trace without contacts between bodies is read, as older ones are") 
   const Recording recording = trace.read(older);
   const auto record = std::make_unique<StepRecord>();
   for (std::size_t k = 0; k < recording.steps(); ++k) {
-    record->body_contact_count = 7;
+    record->body_contact.resize(7);
     recording.step(k, *record);
-    CHECK(record->body_contact_count == 0);
+    CHECK(record->body_contact.empty());
   }
 }
 
@@ -183,7 +183,7 @@ TEST_CASE("contacts between bodies of steps that a killed server has not complet
   const Recording recording = trace.read(trace.whole);
   const auto record = std::make_unique<StepRecord>();
   recording.step(recording.steps() - 1, *record);
-  CHECK(record->body_contact_count == trace.records.back().body_contact_count - 1);
+  CHECK(record->body_contact.size() == trace.records.back().body_contact.size() - 1);
 }
 
 TEST_CASE("contacts between bodies are refused in a scene whose objects do not touch") {

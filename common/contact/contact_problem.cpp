@@ -241,6 +241,7 @@ void ContactSolver::start(const ContactProblem& problem) noexcept {
   }
   direction_.setZero();
   last_change_ = 0.0;
+  restarts_ = 0;
 }
 
 // Two tips may hold the same place: a little compliance keeps the block regular. The iteration goes
@@ -386,7 +387,11 @@ void ContactSolver::extrapolate(ContactProblem& problem) noexcept {
     }
   } else {
     direction.setZero();  // it begins anew
-    if (!std::isfinite(beta)) direction = now - before;
+    if (std::isfinite(beta)) {
+      ++restarts_;
+    } else {
+      direction = now - before;
+    }
   }
 }
 
@@ -396,7 +401,7 @@ ContactSolution ContactSolver::iterate(ContactProblem& problem,
   factor_held(problem);
   ContactSolution solution;
   while (solution.sweeps < limits.max_sweeps) {
-    if (solution.sweeps > 0) extrapolate(problem);
+    if (solution.sweeps > 0 && restarts_ <= limits.restarts) extrapolate(problem);
     keep(problem);
     const int used = 6 + 6 * problem.count();
     before_.head(used) = now_.head(used);

@@ -117,6 +117,9 @@ struct SolverLimits {
   int usual_sweeps = 200;    ///< ... or after so many sweeps ...
   double usual = 1e-12;      ///< ... below this one [m]
   double worst = 1e-3;       ///< a residual above this one after all sweeps is no solution [m]
+  /// How often conjugate directions may begin anew; from then on there are sweeps alone. Where many
+  /// contacts are on the friction cone they can go round in a circle otherwise.
+  int restarts = std::numeric_limits<int>::max();
 };
 
 /// Solves all contacts of a problem together. When sticking and being held suffices for all of at
@@ -160,6 +163,7 @@ class ContactSolver {
   Eigen::VectorXd before_;     ///< the same before the last sweep
   Eigen::VectorXd direction_;  ///< of the conjugate gradients
   double last_change_ = 0.0;   ///< squared norm of the last sweep's change of forces [N^2]
+  int restarts_ = 0;           ///< of the conjugate directions
   std::array<int, kMaxContacts> held_{};   ///< contacts that are held ...
   int held_count_ = 0;                     ///< ... so many of them; more are solved one by one
   Eigen::LDLT<ContactMatrix> held_block_;  ///< compliance between them

@@ -5,7 +5,7 @@ namespace {
 
 // The iteration goes on from the forces of the last step. An error of 1 um in each step would
 // excite the oscillation that kYielding is against, faster than it dies.
-constexpr SolverLimits kLimits{200, 1e-8, 60, 1e-7, 1e-4};
+constexpr SolverLimits kLimits{200, 1e-8, 60, 1e-7, 1e-4, 0};
 
 // Contacts between bodies yield by this share of the rigid mobility besides. Without it bodies that
 // rest on each other keep an oscillation in which the velocity changes its sign each step and the

@@ -96,6 +96,8 @@ ContactConfig read_contact(TomlTable table) {
   config.coupling_stiffness =
       table.number("coupling_stiffness", lab::kStiffness, config.coupling_stiffness);
   config.release_time = table.number("release_time", between(1e-3, 1.0), config.release_time);
+  config.between_objects = table.boolean("between_objects", config.between_objects);
+  config.samples = table.integer("samples", 16, 4096, config.samples);
   table.finish();
   return config;
 }
@@ -300,13 +302,15 @@ SimulationConfig simulation_config(const SceneConfig& scene, bool viewer_stylus,
   for (const ObjectConfig& object : scene.objects) {
     config.objects.push_back({models.of(object), object.position, object.orientation,
                               object.velocity, object.angular_velocity, object.friction,
-                              object.damping, object.tether, object.inertial_loading});
+                              object.damping, object.tether, object.inertial_loading, object.name});
   }
   config.styluses = scene.styluses;
   if (viewer_stylus) config.styluses.push_back(scene.viewer.stylus);
   config.floor = scene.floor;
   config.release_time = scene.contact.release_time;
   config.scenery = scene.scenery;
+  config.between_objects = scene.contact.between_objects;
+  config.contact_samples = scene.contact.samples;
   return config;
 }
 

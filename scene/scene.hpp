@@ -57,7 +57,9 @@ struct ContactConfig {
   /// k_vc of styluses that do not say otherwise, >= 0 [N/m]; 0: none, which a fixed object is
   /// refused with
   double coupling_stiffness = 0.0;
-  double release_time = 0.03;  ///< in which a held point that pulls is given up, 0.001..1 [s]
+  double release_time = 0.03;   ///< in which a held point that pulls is given up, 0.001..1 [s]
+  bool between_objects = true;  ///< whether objects touch each other and scenery
+  int samples = 384;            ///< patches of an object's surface for such contacts, 16..4096
 };
 
 /// [[object]]

@@ -62,8 +62,7 @@ void check_restraints(const Model& model, const ObjectSettings& settings, const 
 
 void check_restraints(const SimulationConfig& config, const Settings& settings) {
   for (std::size_t i = 0; i < config.objects.size(); ++i) {
-    check_restraints(*config.objects[i].model, settings.object[i],
-                     "object " + std::to_string(i + 1));
+    check_restraints(*config.objects[i].model, settings.object[i], object_name(config, i));
   }
 }
 
@@ -117,7 +116,7 @@ void check_settings(const SimulationConfig& config, const Settings& settings) {
   const Settings initial = initial_settings(config);
   for (std::size_t i = 0; i < config.objects.size(); ++i) {
     check_choice(settings_choice(config, i), initial.object[i], settings.object[i],
-                 "object " + std::to_string(i + 1));
+                 object_name(config, i));
   }
   check_restraints(config, settings);
 }

@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "common/config/range.hpp"
 #include "common/error.hpp"
 #include "common/realtime/no_denormals.hpp"
 
@@ -22,12 +23,15 @@ Simulation::Simulation(const SimulationConfig& config)
   local_model_object_.fill(-1);
   for (std::size_t s = 0; s < stylus_count_; ++s) max_force_[s] = config.styluses[s].max_force;
   dt_ = config.objects.front().model->dt;
-  for (const SimulationObject& object : config.objects) {
+  for (std::size_t i = 0; i < config.objects.size(); ++i) {
+    const SimulationObject& object = config.objects[i];
     if (object.model->dt != dt_) {
-      throw Error("scene", "has models of different dt", "compute them with the same response.dt");
+      throw Error("scene",
+                  "has models of different dt: " + object_name(config, 0) + " " + number_text(dt_) +
+                      " s, " + object_name(config, i) + " " + number_text(object.model->dt) + " s",
+                  "compute them with the same response.dt");
     }
-    objects_.push_back(
-        std::make_unique<SoftObject>(object, config, static_cast<int>(objects_.size())));
+    objects_.push_back(std::make_unique<SoftObject>(object, config, static_cast<int>(i)));
   }
   check_settings(config, settings_);
   if (touches_bodies(config)) {

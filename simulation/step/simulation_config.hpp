@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "common/contact/applied_forces.hpp"
@@ -26,6 +27,7 @@ struct SimulationObject {
   Tether tether;
   /// Centrifugal loading of the elastic part by the body's own spin. false: none, as in the paper.
   bool inertial_loading = false;
+  std::string name = {};  ///< in messages; empty: "object 1" and so on
 };
 
 /// A plane on which objects rest; the side that the normal points to is free.
@@ -56,6 +58,12 @@ struct SimulationConfig {
   bool between_objects = true;
   int contact_samples = 384;  ///< of an object's surface, for such contacts, > 0
 };
+
+/// What messages call object i: object "NAME", or object 1, 2, ...
+inline std::string object_name(const SimulationConfig& config, std::size_t i) {
+  const std::string& name = config.objects[i].name;
+  return "object " + (name.empty() ? std::to_string(i + 1) : "\"" + name + "\"");
+}
 
 /// Whether objects of the scene can touch each other or scenery.
 inline bool touches_bodies(const SimulationConfig& config) {

@@ -1,7 +1,9 @@
 #include "simulation/step/world_contacts.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <numeric>
 #include <string>
 
@@ -23,8 +25,25 @@ Friction mixed(const Friction& a, const Friction& b) noexcept {
   return {mixed(a.static_, b.static_), mixed(a.kinetic, b.kinetic)};
 }
 
-std::string object_name(int i) {
-  return "object " + std::to_string(i + 1);
+std::string in_millimetres(double length) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.1f mm", 1000.0 * length);
+  return text.data();
+}
+
+// Both bodies of a pair, in words.
+std::string pair_name(const SimulationConfig& config, const BodyContacts& pair) {
+  const auto one = static_cast<std::size_t>(pair.object());
+  if (pair.other() < 0) {
+    const auto scenery = static_cast<std::size_t>(-1 - pair.other());
+    return object_name(config, one) + " and scenery \"" + config.scenery[scenery].name + "\"";
+  }
+  const std::size_t first = std::min(one, static_cast<std::size_t>(pair.other()));
+  const std::size_t second = std::max(one, static_cast<std::size_t>(pair.other()));
+  const std::string& a = config.objects[first].name;
+  const std::string& b = config.objects[second].name;
+  if (!a.empty() && !b.empty()) return "objects \"" + a + "\" and \"" + b + "\"";
+  return object_name(config, first) + " and " + object_name(config, second);
 }
 
 }  // namespace
@@ -95,13 +114,9 @@ void WorldContacts::refuse_overlaps(const SimulationConfig& config) {
   for (BodyContacts& pair : pairs_) {
     const double depth = pair.initial_depth();
     if (depth <= kDeepestOverlap) continue;
-    const std::string other =
-        pair.other() >= 0
-            ? object_name(pair.other())
-            : "scenery \"" + scenery_[static_cast<std::size_t>(-1 - pair.other())].name + "\"";
     throw Error("scene",
-                object_name(pair.object()) + " and " + other + " are inside one another by " +
-                    std::to_string(1000.0 * depth) + " mm at the start",
+                pair_name(config, pair) + " are inside one another by " + in_millimetres(depth) +
+                    " at the start",
                 "move them apart, or set contact.between_objects = false");
   }
   for (SoftObject* const object : objects_) object->reset();

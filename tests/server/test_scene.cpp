@@ -22,7 +22,8 @@ TEST_CASE("every key of a scene arrives where it belongs") {
       "deformation_threads = 2\nkey_file = \"/k/irdm.key\"\nstatus_period = 5\nudp = "
       "false\n[world]\ngravity = "
       "[1, 2, 3]\n"
-      "[contact]\ncoupling_stiffness = 1500\nrelease_time = 0.2\n"
+      "[contact]\ncoupling_stiffness = 1500\nrelease_time = 0.2\nbetween_objects = false\n"
+      "samples = 500\n"
       "[floor]\nheight = -0.5\nnormal = [0, 0, 2]\nfriction = { static = 0.9, kinetic = 0.7 }\n"
       "[[stylus]]\nradius = 0.01\ncoupling_stiffness = 800\nreach = 0.02\n[[stylus]]\n"
       "[[object]]\nname = \"liver\"\nmodel = \"/models/liver.h5\"\nengine = \"dense\"\n"
@@ -60,6 +61,8 @@ TEST_CASE("every key of a scene arrives where it belongs") {
   CHECK(object.tether.stiffness == 20.0);
   CHECK(object.tether.angular_stiffness == 0.3);
   CHECK(read.contact.release_time == 0.2);
+  CHECK_FALSE(read.contact.between_objects);
+  CHECK(read.contact.samples == 500);
   REQUIRE(read.floor);
   CHECK(read.floor->height == -0.5);
   CHECK(read.floor->normal == Vector3(0, 0, 1));
@@ -105,6 +108,8 @@ TEST_CASE("a scene needs only a model, the rest has defaults") {
   CHECK(object.tether.stiffness == 0.0);
   CHECK(object.tether.angular_stiffness == 0.0);
   CHECK(read.contact.release_time == 0.03);
+  CHECK(read.contact.between_objects);
+  CHECK(read.contact.samples == 384);
   CHECK_FALSE(read.floor);
   REQUIRE(read.styluses.size() == 1);
   CHECK(read.styluses[0].radius == 0.0);
@@ -219,6 +224,9 @@ TEST_CASE("each limit of a scene: the last good value passes, the first bad one 
        "is 1.1e+09; give a finite number >= 0 and <= 1e+09"},
       {"contact", "release_time", "0.001", "0", "is 0; give a finite number >= 0.001 and <= 1"},
       {"contact", "release_time", "1", "1.1", "is 1.1; give a finite number >= 0.001 and <= 1"},
+      {"contact", "between_objects", "true", "1", "is not true or false"},
+      {"contact", "samples", "16", "15", "is 15; give a whole number from 16 to 4096"},
+      {"contact", "samples", "4096", "4097", "is 4097; give a whole number from 16 to 4096"},
   }));
   const auto text = [&](const char* value) {
     return std::string("[") + limit.table + "]\n" + limit.key + " = " + value + "\n" + kObject;
@@ -407,6 +415,32 @@ TEST_CASE("objects of one file have one model, but where each has its own budget
   CHECK(objects[0].model != objects[1].model);
   CHECK(objects[0].model != objects[3].model);
   CHECK(objects[3].model != objects[4].model);
+}
+
+TEST_CASE("names of objects and keys of their contacts are a part of what is simulated") {
+  const test::TemporaryFolder folder;
+  SceneConfig config;
+  config.objects.resize(2);
+  config.objects[0].name = "cube";
+  config.objects[1].name = "lid";
+  for (ObjectConfig& object : config.objects) {
+    object.model = folder.path() / "cube.h5";
+  }
+  {
+    ModelFileWriter writer(config.objects[0].model);
+    writer.write_description(test::made_rigid(test::synthetic_cube(2, 3, 4)));
+    writer.commit();
+  }
+  SimulationConfig simulated = simulation_config(config, false);
+  CHECK(simulated.objects[0].name == "cube");
+  CHECK(simulated.objects[1].name == "lid");
+  CHECK(simulated.between_objects);
+  CHECK(simulated.contact_samples == 384);
+  config.contact.between_objects = false;
+  config.contact.samples = 16;
+  simulated = simulation_config(config, false);
+  CHECK_FALSE(simulated.between_objects);
+  CHECK(simulated.contact_samples == 16);
 }
 
 TEST_CASE("a rigid body is taken whatever the engine, but not with inertial loading") {

@@ -269,12 +269,20 @@ TEST_CASE("bodies: a stylus that presses on a stack feels all of it") {
 TEST_CASE("bodies: those that begin inside one another are refused, by name and depth") {
   SimulationConfig config = stacked(2, {.cells = 3}, {0.5, 0.5});
   config.objects[1].position.y() -= 0.01;
-  CHECK_THROWS_WITH(Simulation(config), Catch::Contains("object 1 and object 2") &&
-                                            Catch::Contains("10.0") && Catch::Contains("apart"));
+  CHECK_THROWS_WITH(Simulation(config),
+                    Catch::Contains("object 1 and object 2 are inside one another by 10.0 mm at "
+                                    "the start") &&
+                        Catch::Contains("apart"));
+  config.objects[0].name = "cube";
+  CHECK_THROWS_WITH(Simulation(config), Catch::Contains("object \"cube\" and object 2 are"));
+  config.objects[1].name = "lid";
+  CHECK_THROWS_WITH(Simulation(config), Catch::Contains("objects \"cube\" and \"lid\" are inside "
+                                                        "one another by 10.0 mm at the start"));
   config.objects[1].position.y() += 0.02;
   config.scenery[0].position.y() = 0.003;
   CHECK_THROWS_WITH(Simulation(config),
-                    Catch::Contains("scenery \"plane\"") && Catch::Contains("3.0"));
+                    Catch::Contains("object \"cube\" and scenery \"plane\" are inside one another "
+                                    "by 3.0 mm at the start"));
   config.between_objects = false;
   CHECK_NOTHROW(Simulation(config));
 }

@@ -41,7 +41,14 @@ TEST_CASE("a simulation refuses too many objects or styluses, and models of diff
   Model other = synthetic_cube(2, 5, 10);
   other.dt = 0.001;
   config.objects[1].model = std::make_shared<const Model>(std::move(other));
-  check_refused(config, "different dt");
+  check_refused(config, "models of different dt: object 1 0.002 s, object 2 0.001 s");
+  config.objects[0].name = "cube";
+  config.objects[1].name = "lid";
+  check_refused(config, "models of different dt: object \"cube\" 0.002 s, object \"lid\" 0.001 s");
+  config = two();
+  config.objects[1].name = "lid";
+  config.objects[1].damping.linear = 1e4;
+  check_refused(config, "object \"lid\": has a damping that is too strong");
 }
 
 TEST_CASE("a simulation refuses damping and tethers that its step is too long for") {

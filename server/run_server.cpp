@@ -239,6 +239,9 @@ NetworkSettings network_settings(const SceneConfig& scene, const ServerOptions& 
   settings.dt = dt;
   settings.lockstep = options.lockstep;
   settings.styluses = static_cast<int>(scene.styluses.size());
+  // One bridge may have all of them, or each its own, with another one that comes in its place.
+  settings.max_frame_rate = std::max(settings.max_frame_rate, 10'000 * settings.styluses);
+  settings.max_connections = std::max(settings.max_connections, 2 * settings.styluses);
   settings.scheduling = scheduling(scene, options);
   settings.udp = scene.server.udp;
   settings.tap = tap;
@@ -354,10 +357,11 @@ int run_server(const ServerOptions& options) {
   const bool lets_record = scene.viewer.enabled && scene.viewer.recordings.has_value();
   const TraceHeader header =
       records || lets_record ? trace_header(scene, options, config) : TraceHeader{};
-  StepSink recorder_sink(records ? RecorderThread::kQueueCapacity : 1);
+  StepSink recorder_sink(records ? RecorderThread::kQueueCapacity : 1, step_shape(config));
   const auto recorder =
       records ? std::make_unique<RecorderThread>(*options.record, header, recorder_sink) : nullptr;
-  Recordings recordings(lets_record ? scene.viewer.recordings : std::nullopt, header);
+  Recordings recordings(lets_record ? scene.viewer.recordings : std::nullopt, header,
+                        step_shape(config));
 
   std::vector<StepSink*> sinks{&deformation.sink(), &recordings.sink()};
   if (recorder) sinks.push_back(&recorder_sink);

@@ -1,7 +1,6 @@
 #include "common/config/range.hpp"
 
 #include <cmath>
-#include <sstream>
 
 namespace irdm {
 
@@ -10,12 +9,6 @@ bool Range::contains(double value) const noexcept {
   const bool low = lowest_included ? value >= lowest : value > lowest;
   const bool high = highest_included ? value <= highest : value < highest;
   return low && high;
-}
-
-std::string number_text(double value) {
-  std::ostringstream stream;
-  stream << value;
-  return stream.str();
 }
 
 std::string describe(const Range& range) {

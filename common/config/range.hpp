@@ -4,6 +4,8 @@
 #include <limits>
 #include <string>
 
+#include "common/number_text.hpp"
+
 namespace irdm {
 
 /// Closed range of a number; the default is any finite number.
@@ -30,9 +32,6 @@ constexpr Range within(double largest) {
 
 /// For messages: "a finite number >= 0 and <= 10".
 std::string describe(const Range& range);
-
-/// For messages: a number as a stream prints it.
-std::string number_text(double value);
 
 }  // namespace irdm
 

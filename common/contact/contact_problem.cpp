@@ -180,10 +180,24 @@ ContactSolver::ContactSolver(int capacity)
       direction_(now_),
       held_answer_(Eigen::MatrixXd::Zero(3 * kMaxContacts, 3 * capacity)) {}
 
+namespace {
+
+// Few, or such that none can let go: one factorisation is enough.
+bool may_stick(const ContactProblem& problem) noexcept {
+  if (problem.count() <= kMaxDirectContacts) return true;
+  if (problem.count() > kMaxContacts) return false;
+  for (int a = 0; a < problem.count(); ++a) {
+    if (problem.contact(a).law == ContactLaw::kTouching) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
 ContactSolution ContactSolver::solve(ContactProblem& problem, const SolverLimits& limits) noexcept {
   ContactSolution solution;
   if (problem.count() == 0) return solution;
-  if (problem.count() <= kMaxContacts && stick(problem)) {
+  if (may_stick(problem) && stick(problem)) {
     solution.residual = largest_error(problem);
   } else {
     solution = iterate(problem, limits);

@@ -11,7 +11,10 @@
 namespace irdm {
 
 /// Contacts of styluses that one object can have in one step.
-inline constexpr int kMaxContacts = 8;
+inline constexpr int kMaxContacts = 16;
+/// Of these, so many are tried to be solved directly when some may let go: each that does costs a
+/// factorisation.
+inline constexpr int kMaxDirectContacts = 8;
 
 /// Square matrix over the stylus contacts of one step: 3 rows a contact, no memory taken.
 using ContactMatrix =
@@ -123,15 +126,15 @@ struct SolverLimits {
 };
 
 /// Solves all contacts of a problem together. When sticking and being held suffices for all of at
-/// most kMaxContacts contacts (the strongest pull lets go first), that is the solution, found
-/// directly. Otherwise the laws are met by nonlinear block Gauss-Seidel from the forces given in:
-/// one touching contact after the other is solved exactly with the others' forces as they stand,
-/// but for those of held contacts, which are eliminated (Schur complement): they answer at once.
-/// Between sweeps the forces go on along conjugate directions (nonsmooth nonlinear conjugate
-/// gradients, Silcowitz-Hansen et al. 2010), without which many contacts of a stiff body converge
-/// slowly. Bounded, real-time safe, no exceptions.
-/// Large: the private methods are the pieces of one sweep, and all of them work on the same
-/// iterate.
+/// most kMaxDirectContacts contacts (the strongest pull lets go first), or all of at most
+/// kMaxContacts are held, that is the solution, found directly. Otherwise the laws are met by
+/// nonlinear block Gauss-Seidel from the forces given in: one touching contact after the other is
+/// solved exactly with the others' forces as they stand, but for those of held contacts, which are
+/// eliminated (Schur complement): they answer at once. Between sweeps the forces go on along
+/// conjugate directions (nonsmooth nonlinear conjugate gradients, Silcowitz-Hansen et al. 2010),
+/// without which many contacts of a stiff body converge slowly. Bounded, real-time safe, no
+/// exceptions. Large: the private methods are the pieces of one sweep, and all of them work on the
+/// same iterate.
 class ContactSolver {
  public:
   explicit ContactSolver(int capacity);

@@ -52,7 +52,8 @@ class AesGcm {
 /// late, what is older counts as seen. Pure; allocates nothing.
 class ReplayWindow {
  public:
-  /// Four styluses with a model a step make 10000 datagrams a second: a tenth of one second.
+  /// Four styluses with a model a step make 10000 datagrams a second: a tenth of one second;
+  /// sixteen, 26 ms. What comes later has been overtaken by newer frames.
   static constexpr std::uint64_t kWidth = 1024;
 
   /// Whether the number has not been taken and is not too old to tell.

@@ -19,7 +19,7 @@ DeformationThread::DeformationThread(const SimulationConfig& config, double rate
     : deformation_(config, kInvisible),
       period_ns_(static_cast<std::int64_t>(1e9 / rate)),
       threads_(threads),
-      sink_(kQueueCapacity),
+      sink_(kQueueCapacity, step_shape(config)),
       surfaces_(rest_frame(config)) {}
 
 DeformationThread::~DeformationThread() {
@@ -52,10 +52,9 @@ void DeformationThread::run(bool beside_real_time) {
 }
 
 void DeformationThread::follow_and_compute() {
-  StepRecord record;
   bool moved = false;
-  while (sink_.take(record)) {
-    deformation_.follow(record);
+  while (sink_.take(record_)) {
+    deformation_.follow(record_);
     moved = true;
   }
   if (!moved) return;

@@ -48,6 +48,7 @@ class DeformationThread {
   std::int64_t period_ns_;
   int threads_;
   StepSink sink_;
+  StepRecord record_;  ///< the last one taken
   TripleBuffer<SurfaceFrame> surfaces_;
   Histogram compute_time_;
   std::atomic<std::uint64_t> frames_{0};

@@ -2,12 +2,13 @@
 
 #include <exception>
 #include <mutex>
+#include <span>
 
 #include "common/hdf5/handle.hpp"
 
 namespace irdm {
 namespace {
-constexpr std::size_t kBatch = 512;
+constexpr std::size_t kBatch = 128;  // a batch is large
 constexpr int kFlushPeriodMs = 50;
 }  // namespace
 
@@ -16,7 +17,7 @@ RecorderThread::RecorderThread(const std::filesystem::path& path, const TraceHea
     : sink_(sink), lost_before_(sink.lost()), begun_(from == From::kAny) {
   const std::lock_guard lock(hdf5::library_mutex());
   writer_.emplace(path, header);
-  batch_.reserve(kBatch);
+  batch_.resize(kBatch);
 }
 
 RecorderThread::~RecorderThread() {
@@ -64,25 +65,24 @@ void RecorderThread::keep_what_counts() {
 }
 
 void RecorderThread::discard() {
-  StepRecord dropped;
-  while (sink_.take(dropped)) {
+  while (sink_.take(batch_.front())) {
   }
 }
 
 void RecorderThread::drain() {
-  StepRecord record;
+  std::size_t count = 0;
   do {
-    batch_.clear();
-    while (batch_.size() < kBatch && sink_.take(record)) {
-      begun_ = begun_ || record.reset;
-      if (begun_) batch_.push_back(record);
+    count = 0;
+    while (count < kBatch && sink_.take(batch_[count])) {
+      begun_ = begun_ || batch_[count].reset;
+      count += begun_ ? 1 : 0;
     }
     const std::lock_guard lock(hdf5::library_mutex());
-    writer_->append(batch_);
+    writer_->append(std::span(batch_).first(count));
     // Batch by batch: what was appended counts, whatever the disk does with the next one.
     writer_->flush();
-    rows_.fetch_add(batch_.size(), std::memory_order_relaxed);
-  } while (batch_.size() == kBatch);
+    rows_.fetch_add(count, std::memory_order_relaxed);
+  } while (count == kBatch);
 }
 
 }  // namespace irdm

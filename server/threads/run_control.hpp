@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "common/realtime/bounded_queue.hpp"
 #include "common/realtime/triple_buffer.hpp"
 #include "server/network/stylus_slots.hpp"
+#include "server/threads/step_queue.hpp"
 #include "simulation/step/settings.hpp"
 #include "simulation/step/step_record.hpp"
 
@@ -17,25 +17,28 @@ namespace irdm {
 /// counted.
 class StepSink {
  public:
-  explicit StepSink(std::size_t capacity) : queue_(capacity) {}
+  /// @param capacity, shape as of StepQueue
+  explicit StepSink(std::size_t capacity, const StepShape& shape = {}) : queue_(capacity, shape) {}
 
   /// Force thread.
   void put(const StepRecord& record) noexcept {
-    if (open_.load(std::memory_order_acquire)) queue_.push(record);
+    if (!open_.load(std::memory_order_acquire) || queue_.push(record)) return;
+    lost_.fetch_add(1, std::memory_order_relaxed);
   }
   /// Force thread, lockstep only: false as long as the next record would be lost.
   bool has_room() const noexcept {
-    return !open_.load(std::memory_order_acquire) || queue_.room() > 0;
+    return !open_.load(std::memory_order_acquire) || queue_.has_room();
   }
-  /// The other thread: the next step, if there is one.
+  /// The other thread: the next step, if there is one. As copy_step().
   bool take(StepRecord& record) noexcept { return queue_.pop(record); }
   /// Whether steps are taken in, true at first. A step under way when it is closed may still come.
   void set_open(bool open) noexcept { open_.store(open, std::memory_order_release); }
   /// Steps lost because the other thread was too slow; any thread.
-  std::uint64_t lost() const noexcept { return queue_.overflows(); }
+  std::uint64_t lost() const noexcept { return lost_.load(std::memory_order_relaxed); }
 
  private:
-  BoundedQueue<StepRecord> queue_;
+  StepQueue queue_;
+  std::atomic<std::uint64_t> lost_{0};
   std::atomic<bool> open_{true};
 };
 

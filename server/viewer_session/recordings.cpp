@@ -26,8 +26,9 @@ std::filesystem::path new_path(const std::filesystem::path& folder) {
 
 }  // namespace
 
-Recordings::Recordings(std::optional<std::filesystem::path> folder, TraceHeader header)
-    : folder_(std::move(folder)), header_(std::move(header)), sink_(folder_ ? kSteps : 1) {
+Recordings::Recordings(std::optional<std::filesystem::path> folder, TraceHeader header,
+                       const StepShape& shape)
+    : folder_(std::move(folder)), header_(std::move(header)), sink_(folder_ ? kSteps : 1, shape) {
   sink_.set_open(false);
 }
 

@@ -14,7 +14,9 @@ namespace irdm {
 class Recordings {
  public:
   /// @param folder none: nothing can be recorded
-  Recordings(std::optional<std::filesystem::path> folder, TraceHeader header);
+  /// @param shape of the run's steps
+  Recordings(std::optional<std::filesystem::path> folder, TraceHeader header,
+             const StepShape& shape = {});
 
   bool possible() const noexcept { return folder_.has_value(); }
   bool recording() const noexcept { return recorder_ != nullptr; }

@@ -74,7 +74,7 @@ void Deformation::follow(const StepRecord& record) {
   }
   if (record.settings_change != last_.settings_change) follow_settings(record);
   advance(record);
-  last_ = record;
+  copy_step(record, last_);
   trail_.follow(record);
   started_ = true;
 }

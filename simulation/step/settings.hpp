@@ -27,7 +27,7 @@ inline bool has_inertial_loading(const Model& model, bool inertial_loading) {
 /// Throws Error, naming `where` (the model file), when the model cannot say what its spin does.
 void check_inertial_loading(const Model& model, bool inertial_loading, const std::string& where);
 
-inline constexpr int kMaxObjects = 4;
+inline constexpr int kMaxObjects = 16;
 
 /// What of one object can be changed while it is simulated.
 struct ObjectSettings {

@@ -4,8 +4,8 @@
 #include <limits>
 #include <utility>
 
-#include "common/config/range.hpp"
 #include "common/error.hpp"
+#include "common/number_text.hpp"
 #include "common/realtime/no_denormals.hpp"
 
 namespace irdm {

@@ -14,7 +14,7 @@
 
 namespace irdm {
 
-inline constexpr int kMaxStyluses = 4;
+inline constexpr int kMaxStyluses = 16;
 
 /// A force that was decided elsewhere (by a bridge that solved the contact itself); the step
 /// applies it.
@@ -85,8 +85,8 @@ struct BodyContactRecord {
   double area = 0.0;                   ///< of the sample [m^2]
 };
 
-/// What became of one object in one step.
-struct ObjectRecord {
+/// What became of one object in one step, but for what touched it.
+struct ObjectStep {
   RigidState start;  ///< before the step, with the late forces that were entered by then
   /// Half-way through the step, B to W: contact forces, held in B, have their direction in W by it.
   Quaternion halfway = Quaternion::Identity();
@@ -95,13 +95,17 @@ struct ObjectRecord {
   Vector3 velocity = Vector3::Zero();               ///< [m/s], W
   Vector3 angular_velocity = Vector3::Zero();       ///< [rad/s], W
   Vector3 spin = Vector3::Zero();  ///< that loaded the elastic part during the step [rad/s], B
-  std::array<ContactRecord, kMaxStyluses> contact;
   int floor_count = 0;
-  std::array<FloorForce, kMaxFloorContacts> floor;  ///< the first floor_count
-  Vector3 floor_force = Vector3::Zero();            ///< their sum [N], W
-  double residual = 0.0;                            ///< of the contact problem [m]
-  int sweeps = 0;                                   ///< of its solver; 0: solved directly
+  Vector3 floor_force = Vector3::Zero();  ///< sum of the floor's forces [N], W
+  double residual = 0.0;                  ///< of the contact problem [m]
+  int sweeps = 0;                         ///< of its solver; 0: solved directly
   bool solved = true;  ///< false: the contact problem had no finite solution and no force acted
+};
+
+/// What became of one object in one step.
+struct ObjectRecord : ObjectStep {
+  std::array<ContactRecord, kMaxStyluses> contact;  ///< the first stylus_count
+  std::array<FloorForce, kMaxFloorContacts> floor;  ///< the first floor_count
 };
 
 /// A force that a bridge has told of after its step: it was entered before this one.
@@ -137,8 +141,8 @@ struct StylusRecord {
   std::optional<BridgedForce> bridged = {};    ///< that the step was given, as it was given
 };
 
-/// What happened in one step: everything that the trace, the deformation and the bridges need.
-struct StepRecord {
+/// What a step has whatever takes part in it.
+struct StepHead {
   std::uint64_t force_step = 0;  ///< k
   double time = 0.0;             ///< (k + 1) dt, the end of the step [s]
   bool reset = false;            ///< everything was reset before this step
@@ -147,9 +151,14 @@ struct StepRecord {
   std::uint32_t settings_change = 0;  ///< how often they were changed so far
   int object_count = 0;
   int stylus_count = 0;
-  std::array<ObjectRecord, kMaxObjects> object;
-  std::array<StylusRecord, kMaxStyluses> stylus;
-  LateForces late;  ///< entered before the step
+};
+
+/// What happened in one step: everything that the trace, the deformation and the bridges need.
+/// Large; copy_step() copies what counts.
+struct StepRecord : StepHead {
+  std::array<ObjectRecord, kMaxObjects> object;   ///< the first object_count
+  std::array<StylusRecord, kMaxStyluses> stylus;  ///< the first stylus_count
+  LateForces late;                                ///< entered before the step
   /// In place; a copy of the record takes no more than there are.
   boost::container::static_vector<BodyContactRecord, kMaxBodyContacts> body_contact;
 
@@ -157,5 +166,8 @@ struct StepRecord {
     return {body_contact.data(), body_contact.size()};
   }
 };
+
+/// Makes `to` the same step. What is beyond the counts stays as it was. Real-time safe.
+void copy_step(const StepRecord& from, StepRecord& to) noexcept;
 
 }  // namespace irdm

@@ -269,7 +269,7 @@ void StylusContacts::solve_bridged(ContactProblem& problem) noexcept {
 }
 
 void StylusContacts::write(const ContactProblem& problem, ObjectRecord& record) noexcept {
-  record.contact.fill(ContactRecord{});
+  std::fill_n(record.contact.begin(), styluses_.size(), ContactRecord{});
   for (int a = 0; a < count_; ++a) {
     const ContactConstraint& solved = problem.contact(first_ + a);
     if (solved.mode == ContactMode::kOpen) continue;

@@ -6,8 +6,10 @@
 #include <cstdio>
 #include <numeric>
 #include <string>
+#include <utility>
 
 #include "common/error.hpp"
+#include "common/number_text.hpp"
 
 namespace irdm {
 namespace {
@@ -15,6 +17,14 @@ namespace {
 // Bodies may be inside one another by so much at the start [m]: what rounding and a rest position
 // that was computed by hand make.
 constexpr double kDeepestOverlap = 5e-4;
+// Objects with a floor that may be one contact problem: its matrix has room for all that their
+// floors can add, 9 (200 m)^2 numbers for m of them.
+constexpr std::size_t kMostOnFloor = 4;
+
+// How often the mass of a light one a heavy one that moves may have. Where it rests on the light
+// one, more makes the solver leave out steps, which lets it sink in.
+constexpr double kMostMassRatio = 1000.0;
+constexpr double kMostMassRatioOfRigid = 100.0;  // where the light one is rigid
 
 // Of two surfaces: the geometric mean of their coefficients.
 double mixed(double a, double b) noexcept {
@@ -31,19 +41,22 @@ std::string in_millimetres(double length) {
   return text.data();
 }
 
-// Both bodies of a pair, in words.
-std::string pair_name(const SimulationConfig& config, const BodyContacts& pair) {
-  const auto one = static_cast<std::size_t>(pair.object());
-  if (pair.other() < 0) {
-    const auto scenery = static_cast<std::size_t>(-1 - pair.other());
-    return object_name(config, one) + " and scenery \"" + config.scenery[scenery].name + "\"";
-  }
-  const std::size_t first = std::min(one, static_cast<std::size_t>(pair.other()));
-  const std::size_t second = std::max(one, static_cast<std::size_t>(pair.other()));
+// Two objects, in words.
+std::string pair_name(const SimulationConfig& config, int one, int other) {
+  const auto first = static_cast<std::size_t>(std::min(one, other));
+  const auto second = static_cast<std::size_t>(std::max(one, other));
   const std::string& a = config.objects[first].name;
   const std::string& b = config.objects[second].name;
   if (!a.empty() && !b.empty()) return "objects \"" + a + "\" and \"" + b + "\"";
   return object_name(config, first) + " and " + object_name(config, second);
+}
+
+// Both bodies of a pair, in words.
+std::string pair_name(const SimulationConfig& config, const BodyContacts& pair) {
+  if (pair.other() >= 0) return pair_name(config, pair.object(), pair.other());
+  const auto scenery = static_cast<std::size_t>(-1 - pair.other());
+  return object_name(config, static_cast<std::size_t>(pair.object())) + " and scenery \"" +
+         config.scenery[scenery].name + "\"";
 }
 
 }  // namespace
@@ -51,6 +64,11 @@ std::string pair_name(const SimulationConfig& config, const BodyContacts& pair) 
 WorldContacts::WorldContacts(const SimulationConfig& config,
                              const std::vector<std::unique_ptr<SoftObject>>& objects)
     : scenery_(config.scenery), leader_(objects.size(), 0) {
+  if (config.floor && objects.size() > kMostOnFloor) {
+    throw Error("floor",
+                "is for at most " + std::to_string(kMostOnFloor) + " objects that touch each other",
+                "use a [[scenery]] with a plane instead, or set contact.between_objects = false");
+  }
   for (const auto& object : objects) objects_.push_back(object.get());
   for (SoftObject* const object : objects_) {
     const Shape& shape = shape_of(*object, config.contact_samples);
@@ -94,6 +112,7 @@ void WorldContacts::add_pairs(const SimulationConfig& config) {
           two.compliance.rigid()) {
         continue;
       }
+      check_masses(config, a, b);
       if (two.sampling.spacing() < one.sampling.spacing()) {
         pairs_.emplace_back(b, two, a, one, dt);
       } else {
@@ -105,6 +124,22 @@ void WorldContacts::add_pairs(const SimulationConfig& config) {
       pairs_.emplace_back(a, one, static_cast<int>(s), scenery_[s], dt);
     }
   }
+}
+
+void WorldContacts::check_masses(const SimulationConfig& config, int a, int b) const {
+  const SoftObject* light = objects_[static_cast<std::size_t>(a)];
+  const SoftObject* heavy = objects_[static_cast<std::size_t>(b)];
+  if (!light->rigid().moves() || !heavy->rigid().moves()) return;
+  if (heavy->rigid().mass() < light->rigid().mass()) std::swap(light, heavy);
+  const double most = is_rigid(light->model()) ? kMostMassRatioOfRigid : kMostMassRatio;
+  const double ratio = heavy->rigid().mass() / light->rigid().mass();
+  if (ratio <= most) return;
+  throw Error("scene",
+              pair_name(config, a, b) + " have masses of 1 : " + number_text(ratio) +
+                  ", of which the light one cannot carry the heavy one",
+              "use at most 1 : " + number_text(kMostMassRatio) +
+                  ", 1 : " + number_text(kMostMassRatioOfRigid) +
+                  " where the light one is rigid, or set contact.between_objects = false");
 }
 
 void WorldContacts::refuse_overlaps(const SimulationConfig& config) {

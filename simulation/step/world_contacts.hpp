@@ -16,8 +16,8 @@ namespace irdm {
 /// thread.
 class WorldContacts {
  public:
-  /// Throws Error when an object is too large to touch others, or bodies are inside one another at
-  /// the start.
+  /// Throws Error when an object is too large to touch others, when their masses are too far apart,
+  /// when too many have a floor, or when bodies are inside one another at the start.
   /// @param objects, config must outlive this
   WorldContacts(const SimulationConfig& config,
                 const std::vector<std::unique_ptr<SoftObject>>& objects);
@@ -36,6 +36,7 @@ class WorldContacts {
   };
   const Shape& shape_of(SoftObject& object, int samples);
   void add_pairs(const SimulationConfig& config);
+  void check_masses(const SimulationConfig& config, int a, int b) const;
   void refuse_overlaps(const SimulationConfig& config);
   void find_islands() noexcept;
   void solve_island(int leader, StepRecord& record) noexcept;

@@ -52,7 +52,7 @@ void check_scene(const SceneConfig& scene) {
     expect(bounding_radius(scenery.shape) > 0.0, "scenery has a size");
   }
   expect(scene.scenery.size() <= kMaxScenery, "at most 16 scenery");
-  expect(!scene.styluses.empty() && scene.styluses.size() <= kMaxStyluses, "1 to 4 styluses");
+  expect(!scene.styluses.empty() && scene.styluses.size() <= kMaxStyluses, "1 to 16 styluses");
 }
 
 void check_bridge(const BridgeConfig& config) {

@@ -111,7 +111,7 @@ struct Fall {
   NetworkServer network{{.styluses = 1}};
   std::unique_ptr<RunControl> control;
   Clock clock;
-  StepSink sink{1 << 10};
+  StepSink sink{1 << 10, {1, 2}};
   StepRecord record;
   std::unique_ptr<ForceThread> force;
 };

@@ -19,7 +19,7 @@ constexpr std::size_t kBatch = 512;
 
 /// Records that many steps; what did not fit is taken all the same: the queue never stays full.
 std::string record_steps(const std::filesystem::path& path, std::size_t steps) {
-  StepSink sink(RecorderThread::kQueueCapacity);
+  StepSink sink(RecorderThread::kQueueCapacity, {1, 2});
   RecorderThread recorder(path, header(1), sink);
   recorder.start();
   for (std::size_t k = 0; k < steps; ++k) {

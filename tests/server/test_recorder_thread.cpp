@@ -15,7 +15,7 @@ TEST_CASE("after finish() a recording has every row, in order") {
   const auto path = folder.path() / "trace.h5";
   constexpr std::size_t kRows = 20'000;  // more than its queue holds
   {
-    StepSink sink(RecorderThread::kQueueCapacity);
+    StepSink sink(RecorderThread::kQueueCapacity, {1, 2});
     RecorderThread recorder(path, header(1), sink);
     recorder.start();
     for (std::size_t k = 0; k < kRows; ++k) {
@@ -35,7 +35,7 @@ TEST_CASE("after finish() a recording has every row, in order") {
 TEST_CASE("a recorder that is not drained counts what does not fit") {
   const TemporaryFolder folder;
   const auto path = folder.path() / "trace.h5";
-  StepSink sink(RecorderThread::kQueueCapacity);
+  StepSink sink(RecorderThread::kQueueCapacity, {1, 2});
   RecorderThread recorder(path, header(1), sink);
   std::size_t taken = 0;
   for (; sink.has_room(); ++taken) sink.put(record(taken));
@@ -49,7 +49,7 @@ TEST_CASE("a recorder that is not drained counts what does not fit") {
 TEST_CASE("a full disk ends the recording with an error, and disturbs nobody") {
   const TemporaryFolder folder;
   const auto path = folder.path() / "trace.h5";
-  StepSink sink(RecorderThread::kQueueCapacity);
+  StepSink sink(RecorderThread::kQueueCapacity, {1, 2});
   RecorderThread recorder(path, header(1), sink);
   constexpr rlim_t kRoom = 200'000;
   const FileSizeLimit full(kRoom);

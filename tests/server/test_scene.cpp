@@ -137,19 +137,23 @@ TEST_CASE("a floor needs no key, and one friction value goes a long way") {
   CHECK(scene(kObject + "friction = { static = 0.2 }\n").objects.at(0).friction.kinetic == 0.2);
 }
 
-TEST_CASE("a scene has up to four objects and four styluses") {
+TEST_CASE("a scene has up to sixteen objects and sixteen styluses") {
   const auto object = [](int i) {
     return "[[object]]\nname = \"" + std::to_string(i) + "\"\nmodel = \"cube.h5\"\n";
   };
-  const std::string four = object(0) + object(1) + object(2) + object(3);
-  CHECK(scene(four).objects.size() == 4);
-  CHECK(rejection(four + object(4)) == "s.toml:1: object appears too often; use at most 4");
-  const std::string styluses = "[[stylus]]\n[[stylus]]\n[[stylus]]\n[[stylus]]\n";
-  CHECK(scene(styluses + kObject).styluses.size() == 4);
-  CHECK(scene(styluses + kObject).server.styluses == 4);
+  std::string objects;
+  std::string styluses;
+  for (int i = 0; i < 16; ++i) {
+    objects += object(i);
+    styluses += "[[stylus]]\n";
+  }
+  CHECK(scene(objects).objects.size() == 16);
+  CHECK(rejection(objects + object(16)) == "s.toml:1: object appears too often; use at most 16");
+  CHECK(scene(styluses + kObject).styluses.size() == 16);
+  CHECK(scene(styluses + kObject).server.styluses == 16);
   CHECK(rejection(styluses + "[[stylus]]\n" + kObject) ==
-        "s.toml:1: stylus appears too often; use at most 4");
-  CHECK_THAT(rejection("[server]\nstyluses = 3\n" + styluses + kObject),
+        "s.toml:1: stylus appears too often; use at most 16");
+  CHECK_THAT(rejection("[server]\nstyluses = 15\n" + styluses + kObject),
              Equals("s.toml:1: server has fewer styluses than there are [[stylus]] tables; raise "
                     "server.styluses or leave it out"));
 }
@@ -211,8 +215,8 @@ TEST_CASE("each limit of a scene: the last good value passes, the first bad one 
   const auto limit = GENERATE(values<Limit>({
       {"server", "port", "65535", "65536", "is 65536; give a whole number from 0 to 65535"},
       {"server", "port", "0", "-1", "is -1; give a whole number from 0 to 65535"},
-      {"server", "styluses", "1", "0", "is 0; give a whole number from 1 to 4"},
-      {"server", "styluses", "4", "5", "is 5; give a whole number from 1 to 4"},
+      {"server", "styluses", "1", "0", "is 0; give a whole number from 1 to 16"},
+      {"server", "styluses", "16", "17", "is 17; give a whole number from 1 to 16"},
       {"server", "deformation_rate", "1", "0.9", "is 0.9; give a finite number >= 1 and <= 1000"},
       {"server", "deformation_rate", "1000", "1001",
        "is 1001; give a finite number >= 1 and <= 1000"},
@@ -224,7 +228,7 @@ TEST_CASE("each limit of a scene: the last good value passes, the first bad one 
        "is 1.1e+09; give a finite number >= 0 and <= 1e+09"},
       {"contact", "release_time", "0.001", "0", "is 0; give a finite number >= 0.001 and <= 1"},
       {"contact", "release_time", "1", "1.1", "is 1.1; give a finite number >= 0.001 and <= 1"},
-      {"contact", "between_objects", "true", "1", "is not true or false"},
+      {"contact", "between_objects", "true", "1", "is not true or false; give true or false"},
       {"contact", "samples", "16", "15", "is 15; give a whole number from 16 to 4096"},
       {"contact", "samples", "4096", "4097", "is 4097; give a whole number from 16 to 4096"},
   }));

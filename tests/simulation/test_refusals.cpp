@@ -31,12 +31,12 @@ TEST_CASE("a simulation refuses too many objects or styluses, and models of diff
   CHECK_NOTHROW(Simulation(two()));
   SimulationConfig config = two();
   config.objects.resize(kMaxObjects + 1, config.objects[0]);
-  check_refused(config, "has 5 objects");
+  check_refused(config, "has 17 objects");
   config.objects.clear();
   check_refused(config, "has 0 objects");
   config = two();
   config.styluses.resize(kMaxStyluses + 1);
-  check_refused(config, "has 5 styluses");
+  check_refused(config, "has 17 styluses");
   config = two();
   Model other = synthetic_cube(2, 5, 10);
   other.dt = 0.001;
@@ -49,6 +49,26 @@ TEST_CASE("a simulation refuses too many objects or styluses, and models of diff
   config.objects[1].name = "lid";
   config.objects[1].damping.linear = 1e4;
   check_refused(config, "object \"lid\": has a damping that is too strong");
+}
+
+TEST_CASE("a simulation has sixteen objects and styluses, but few of them on a floor") {
+  SimulationConfig config = two();
+  config.objects.resize(kMaxObjects, config.objects[0]);
+  config.styluses.resize(kMaxStyluses);
+  for (int i = 0; i < kMaxObjects; ++i) {
+    config.objects[static_cast<std::size_t>(i)].position = Vector3(0.2 * i, 0.1, 0);
+  }
+  Simulation simulation(config);
+  const auto record = std::make_unique<StepRecord>();
+  const std::vector<StylusCommand> nobody(kMaxStyluses);
+  simulation.step(nobody, *record);
+  CHECK(record->object_count == 16);
+  CHECK(record->stylus_count == 16);
+  CHECK(record->object[15].position.x() == 3.0);
+  config.floor.emplace();
+  check_refused(config, "floor: is for at most 4 objects that touch each other");
+  config.between_objects = false;
+  CHECK_NOTHROW(Simulation(config));
 }
 
 TEST_CASE("a simulation refuses damping and tethers that its step is too long for") {

@@ -18,8 +18,8 @@ const enum Type {
   Stylus = 18,
   Settings = 19,
 }
-const MAX_OBJECTS = 4;
-const MAX_STYLUSES = 4;
+const MAX_OBJECTS = 16;
+const MAX_STYLUSES = 16;
 const MAX_SCENERY = 16;
 const MAX_TRAIL = 128;
 export const MAX_CONTACTS = 256;

@@ -1,6 +1,6 @@
 import * as THREE from "three";
 
-const MOST = 4; // contacts on one object, as many as there are styluses
+const MOST = 16; // contacts on one object, as many as there are styluses
 const POINT = 0.0013; // radius at which the contact of a point is drawn [m]
 const AMONG_COLOURS = "#ffffff"; // which the ramp does not have
 const OWN_LIGHT = 0.6; // share of a colour that stands for a value and must not go dark in the shade
@@ -62,7 +62,7 @@ uniform float ownLight;
 // A thin fill and a rim two pixels wide, with soft edges; a point is filled.
 const MARK = `
 for (int i = 0; i < ${MOST}; ++i) {
-  if (markRadii[i] <= 0.0) continue;
+  if (markRadii[i] <= 0.0) break;
   float away = distance(vRest, markMiddles[i]) - markRadii[i];
   float pixel = max(fwidth(away), 1e-7);
   float inside = 1.0 - smoothstep(-0.5 * pixel, 0.5 * pixel, away);

@@ -39,6 +39,18 @@ def swing(start, place, amplitude, rate, turns, button):
     return rows
 
 
+def stir(start, place, radius, rate, turns, button):
+    """Rows of circles about +y, from +x towards -z, that grow within the first turn and shrink within the last."""
+    rows = []
+    duration = turns / rate
+    for i in range(round(duration / STEP) + 1):
+        time = i * STEP
+        now = radius * min(1.0, time * rate, (duration - time) * rate)
+        angle = 2 * math.pi * rate * time
+        rows.append((start + time, place[0] + now * math.cos(angle), place[1], place[2] - now * math.sin(angle), button))
+    return rows
+
+
 TAP = [(0.0, 0.02, 0.09, 0.01, 0), (0.3, 0.02, 0.09, 0.01, 0), (0.5, 0.02, 0.052, 0.01, 0), (0.7, 0.02, 0.09, 0.01, 0),
        (2.0, 0.02, 0.09, 0.01, 0)]
 
@@ -57,11 +69,30 @@ SWING = (smooth([(0.0, 0.0, 0.09, 0.0, 0), (0.3, 0.0, 0.09, 0.0, 0), (0.6, *HOLD
          + swing(1.0, HOLD, 0.03, 1.5, 6, 1)
          + [(5.1, *HOLD, 1), (5.2, *HOLD, 0), (5.5, 0.0, 0.12, 0.0, 0)])
 
+STACK = [(0.0, 0.12, 0.31, 0.0, 0), (3.0, 0.12, 0.31, 0.0, 0), (5.0, -0.05, 0.31, 0.0, 0), (5.5, -0.05, 0.31, 0.0, 0),
+         (6.5, 0.12, 0.31, 0.0, 0), (8.0, 0.12, 0.31, 0.0, 0)]
+
+PEG = [(0.0, 0.2, 0.06, 0.0, 0), (1.0, 0.2, 0.06, 0.0, 0), (4.0, 0.05, 0.06, 0.0, 0), (5.5, 0.05, 0.06, 0.0, 0),
+       (6.5, 0.2, 0.06, 0.0, 0)]
+
+SQUEEZE = [(0.0, 0.08, 0.055, 0.0, 0), (1.0, 0.08, 0.055, 0.0, 0), (1.8, 0.034, 0.055, 0.0, 0), (2.2, 0.034, 0.055, 0.0, 0),
+           (3.2, 0.034, 0.105, 0.0, 0), (4.2, 0.034, 0.105, 0.0, 0), (5.2, 0.034, 0.056, 0.0, 0), (5.8, 0.08, 0.056, 0.0, 0),
+           (6.2, 0.08, 0.056, 0.0, 0)]
+
+KNOB = (0.0, 0.12, 0.0)
+TRAY = (smooth([(0.0, 0.0, 0.15, 0.0, 0), (0.5, 0.0, 0.15, 0.0, 0), (0.9, *KNOB, 0), (1.0, *KNOB, 1), (1.2, *KNOB, 1)])[:-1]
+        + stir(1.2, KNOB, 0.09, 0.4, 4, 1)
+        + [(11.4, *KNOB, 1), (11.5, *KNOB, 0), (12.0, 0.0, 0.15, 0.0, 0), (12.5, 0.0, 0.15, 0.0, 0)])
+
 SCRIPTS = {
     "tap": ("From 3 cm above a face at y = 6 cm to 8 mm below it and back, at once.", smooth(TAP)),
     "pinch": ("From 2 cm off a face at x = 6 cm to 1.2 cm inside it, 5 cm up, down again, and off.", smooth(PINCH)),
     "slide": ("Down to 5 mm below a face at y = 6 cm, 6 cm along it, and off.", smooth(SLIDE)),
     "rest": ("Waits for 2.5 s, then pushes along -x from 4 cm off a face at x = 6 cm to 3 cm inside it, and back.", smooth(REST)),
+    "stack": ("Waits for 3 s, then pushes along -x from 6 cm off a face at x = 6 cm to 11 cm inside it, and back.", smooth(STACK)),
+    "tray": ("To the top of a cube at y = 12 cm, takes hold (1 s), four circles of up to 9 cm, lets go (11.5 s).", TRAY),
+    "peg": ("Waits for 1 s, then pushes along -x from x = 20 cm to 5 cm, stays for 1.5 s, and back.", smooth(PEG)),
+    "squeeze": ("From 3 cm off a ball of 5 cm to 1.6 cm inside it, 5 cm up, down again, and off.", smooth(SQUEEZE)),
     "swing": ("To 4 mm above a face at y = 6 cm, takes hold (0.7 s), swings 3 cm at 1.5 Hz (1 s), lets go (5.2 s).", SWING),
 }
 

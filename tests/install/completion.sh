@@ -30,5 +30,5 @@ expect "$subcommands" irdm-precompute ""
 expect "$(long_options irdm-precompute compress)" irdm-precompute compress --
 expect "$(printf '%s\n' modal time-stepping)" irdm-precompute --method ""
 expect forces irdm-replay --from f
-expect "$(printf '%s\n' paper-cube pinch press)" irdm-play p
+expect "$(printf '%s\n' paper-cube peg pinch press)" irdm-play p
 expect "" irdm-server scen

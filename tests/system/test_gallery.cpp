@@ -1,6 +1,7 @@
 // Every scene of the gallery (docs/configuration.md), played as it is in configs/, by processes in
 // lockstep; and what physics says of it, found in the trace.
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
@@ -51,6 +52,7 @@ class Played {
     file_ = std::make_unique<hdf5::File>(hdf5::File::open(stage_.path("trace.h5")));
     rows_ = file_->shape("/step/time")[0];
     dt_ = file_->read_double_attribute("/", "dt");
+    mass_ = mass();
   }
 
   std::size_t rows() const { return rows_; }
@@ -73,14 +75,40 @@ class Played {
     return vector("/stylus/" + std::to_string(stylus) + "/tip", k);
   }
   Quaternion orientation(std::size_t k) {
-    const auto wxyz = file_->read<double>("/step/body_orientation", {rows_, 4});
+    std::vector<double>& wxyz = vectors_["/step/body_orientation"];
+    if (wxyz.empty()) wxyz = file_->read<double>("/step/body_orientation", {rows_, 4});
     return {wxyz[4 * k], wxyz[4 * k + 1], wxyz[4 * k + 2], wxyz[4 * k + 3]};
   }
   std::vector<std::uint8_t> flags(const std::string& set) const {
     return file_->read<std::uint8_t>(set, {rows_});
   }
-  double mass(std::size_t object = 0) const {
-    return read_model(config_.objects[object].model, ResponseKind::kModal).body.mass;
+  double mass(std::size_t object = 0) const { return model(object).body.mass; }
+  Model model(std::size_t object = 0) const {
+    return read_model(config_.objects[object].model, ResponseKind::kModal);
+  }
+  /// Sum of the forces on the object by another one, or by scenery i (-1 - i), in step k [N], W.
+  Vector3 body_force(std::size_t k, int object, int other) {
+    if (touching_.empty()) read_body_contacts();
+    Vector3 sum = Vector3::Zero();
+    for (const Touch& touch : touching_[k]) {
+      if (touch.object == object && touch.other == other) sum += touch.force;
+      if (touch.object == other && touch.other == object) sum -= touch.force;
+    }
+    return sum;
+  }
+  /// Of a floating object alone: mass times acceleration in step k, less all forces on it [N], W.
+  /// Damping acts at both ends of a step, half of it each.
+  Vector3 unbalanced(std::size_t k) {
+    const double share = std::exp(-0.5 * dt_ * config_.objects[0].damping.linear);
+    const Vector3 gained =
+        vector("/step/body_velocity", k) / share - vector("/step/body_velocity", k - 1) * share;
+    Vector3 forces = mass_ * config_.world.gravity;
+    for (std::size_t s = 0; s < config_.styluses.size(); ++s)
+      forces -= force(k, static_cast<int>(s));
+    for (std::size_t i = 0; i < config_.scenery.size(); ++i) {
+      forces += body_force(k, 0, -1 - static_cast<int>(i));
+    }
+    return mass_ / dt_ * gained - forces;
   }
   /// Sum of the floor's forces on the object in step k [N], W.
   Vector3 floor_force(std::size_t k) {
@@ -94,6 +122,18 @@ class Played {
     }
     return orientation(k - 1) * sum;
   }
+  /// Where the stylus touches its surface at rest in step k [m], B.
+  Vector3 contact_at_rest(std::size_t k, int stylus, const Model& model) {
+    const std::string group = "/stylus/" + std::to_string(stylus);
+    std::vector<std::int32_t>& nodes = contact_nodes_[stylus];
+    if (nodes.empty()) nodes = file_->read<std::int32_t>(group + "/contact_nodes", {rows_, 3});
+    const Vector3 weights = vector(group + "/contact_weights", k);
+    Vector3 sum = Vector3::Zero();
+    for (int i = 0; i < 3; ++i) {
+      sum += weights[i] * model.mesh.rest_position(nodes[3 * k + static_cast<std::size_t>(i)]);
+    }
+    return sum;
+  }
   double peak_force(int stylus = 0) {
     double peak = 0.0;
     for (std::size_t k = 0; k < rows_; ++k) peak = std::max(peak, force(k, stylus).norm());
@@ -101,12 +141,33 @@ class Played {
   }
 
  private:
+  struct Touch {
+    int object;
+    int other;
+    Vector3 force;
+  };
+
+  void read_body_contacts() {
+    const auto step = file_->read<std::uint64_t>("/body_contact/force_step", {0});
+    const auto object = file_->read<std::int32_t>("/body_contact/object", {0});
+    const auto other = file_->read<std::int32_t>("/body_contact/other", {0});
+    const auto force = file_->read<double>("/body_contact/force", {0, 3});
+    const auto first = file_->read<std::uint64_t>("/step/force_step", {rows_}).front();
+    touching_.resize(rows_);
+    for (std::size_t i = 0; i < step.size(); ++i) {
+      touching_[step[i] - first].push_back({object[i], other[i], Vector3(force.data() + 3 * i)});
+    }
+  }
+
   Stage stage_;
   SceneConfig config_;
+  double mass_ = 0.0;                         ///< of the first object [kg]
+  std::vector<std::vector<Touch>> touching_;  ///< of each step
   std::unique_ptr<hdf5::File> file_;
   std::size_t rows_ = 0;
   double dt_ = 0.0;
   std::map<std::string, std::vector<double>> vectors_;
+  std::map<int, std::vector<std::int32_t>> contact_nodes_;
 };
 
 std::size_t count(const std::vector<std::uint8_t>& values, int value) {
@@ -232,6 +293,125 @@ TEST_CASE(
   // While it slides, the stylus has to overcome friction; the floor takes what it presses down.
   CHECK(played.peak_force() > played.scene().floor->friction.kinetic * weight);
   CHECK(std::abs(played.position(played.rows() - 1).y() - played.position(end).y()) < 1e-3);
+}
+
+TEST_CASE(
+    "gallery, stack: at rest each cube carries what is above it; pushed over, all three lie") {
+  Played played("stack");
+  const double weight = 9.81 * played.mass();
+  const std::size_t rest = played.row(2.9);
+  for (int i = 0; i < 3; ++i) {
+    const Vector3 carried = played.body_force(rest, i, i - 1);  // the plane is -1
+    CHECK(carried.y() == Approx((3 - i) * weight).epsilon(0.005));
+    CHECK(Vector3(carried.x(), 0, carried.z()).norm() < 0.01 * weight);
+  }
+  const std::size_t end = played.rows() - 1;
+  double farthest = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    const std::string set =
+        "/object/" + played.scene().objects[static_cast<std::size_t>(i)].name + "/body_position";
+    CHECK(played.vector(set, end).y() == Approx(0.06).margin(1e-3));
+    CHECK(played.body_force(end, i, -1).y() == Approx(weight).epsilon(0.01));
+    CHECK(played.vector(set, end).x() < farthest - 0.1);  // each beside the one that was below it
+    farthest = played.vector(set, end).x();
+  }
+}
+
+TEST_CASE("gallery, tray: led against all four walls, the cube stays inside") {
+  Played played("tray");
+  const double inner = 0.13 - 0.06;  // m, of the centre, if the cube were rigid
+  double farthest = 0.0;
+  double lowest = 1.0;
+  double highest = 0.0;
+  double unbalanced = 0.0;
+  std::array<double, 5> largest{};  // of the base and the walls
+  for (std::size_t k = 1; k < played.rows(); ++k) {
+    const Vector3 place = played.position(k);
+    farthest = std::max({farthest, std::abs(place.x()), std::abs(place.z())});
+    lowest = std::min(lowest, place.y());
+    highest = std::max(highest, place.y());
+    unbalanced = std::max(unbalanced, played.unbalanced(k).norm());
+    for (int i = 0; i < 5; ++i) {
+      double& most = largest[static_cast<std::size_t>(i)];
+      most = std::max(most, played.body_force(k, 0, -1 - i).norm());
+    }
+  }
+  INFO("centre as far as " << farthest << " m, from " << lowest << " to " << highest
+                           << " m high, forces off by " << unbalanced << " N");
+  CHECK(farthest < inner + 0.01);
+  CHECK(lowest > 0.05);
+  CHECK(highest < 0.07);
+  CHECK(unbalanced < 1e-9);
+  for (const double most : largest) CHECK(most > 0.3);
+  const double weight = 9.81 * played.mass();
+  CHECK(played.body_force(played.rows() - 1, 0, -1).y() == Approx(weight).epsilon(0.02));
+}
+
+TEST_CASE("gallery, peg: both posts resist alike, until the cube has come between them") {
+  Played played("peg");
+  const double weight = 9.81 * played.mass();
+  const std::size_t pushed = played.row(3.0);
+  const Vector3 front = played.body_force(pushed, 0, -2);
+  const Vector3 back = played.body_force(pushed, 0, -3);
+  INFO("posts " << front.transpose() << " N, " << back.transpose() << " N");
+  CHECK(front.z() < -0.5);
+  CHECK((front + back).z() == Approx(0.0).margin(0.05 * back.z()));
+  CHECK((front - back).x() == Approx(0.0).margin(0.05 * back.x()));
+  CHECK(back.x() > 0.1);  // against the push
+  CHECK(played.force(pushed).x() > (front + back).x());
+  double unbalanced = 0.0;
+  for (std::size_t k = 1; k < played.rows(); ++k) {
+    unbalanced = std::max(unbalanced, played.unbalanced(k).norm());
+  }
+  INFO("forces off by " << unbalanced << " N");
+  CHECK(unbalanced < 1e-9);
+  // It stays in the gap when the stylus is gone, squeezed by both, its weight on the table.
+  const std::size_t end = played.rows() - 1;
+  CHECK(played.force(end).isZero(0.0));
+  CHECK(std::abs(played.position(end).x()) < 0.03);
+  CHECK((played.position(end) - played.position(played.row(5.5))).norm() < 5e-4);
+  const Vector3 in_front = played.body_force(end, 0, -2);
+  const Vector3 behind = played.body_force(end, 0, -3);
+  CHECK(behind.z() > 0.3);
+  CHECK((in_front + behind).z() == Approx(0.0).margin(0.1 * behind.z()));
+  CHECK((played.body_force(end, 0, -1) + in_front + behind).y() == Approx(weight).epsilon(0.01));
+}
+
+TEST_CASE("gallery, squeeze: friction alone lifts the ball, inside the cone, and carries it") {
+  Played played("squeeze");
+  const double weight = 9.81 * played.mass();
+  const Model ball = played.model();
+  const double friction = played.scene().objects[0].friction.static_;
+  const std::size_t begin = played.row(3.6);
+  const std::size_t end = played.row(4.1);
+  CHECK(played.position(begin).y() - played.position(played.row(0.9)).y() > 0.04);
+  double steepest = 0.0;  // of a force, as a share of that across the surface
+  double by_pressure = -weight;
+  double carried_off = 0.0;
+  double unbalanced = 0.0;
+  for (std::size_t k = begin; k < end; ++k) {
+    Vector3 pressure = Vector3::Zero();
+    for (int s = 0; s < 2; ++s) {
+      const Vector3 rest = played.contact_at_rest(k, s, ball);
+      const Vector3 normal = (played.orientation(k) * rest).normalized();  // of a ball
+      const Vector3 force = -played.force(k, s);
+      const Vector3 across = force.dot(normal) * normal;
+      steepest = std::max(steepest, (force - across).norm() / across.norm());
+      pressure += across;
+    }
+    by_pressure = std::max(by_pressure, pressure.y());
+    carried_off = std::max(
+        carried_off, std::abs(-(played.force(k, 0) + played.force(k, 1)).y() - weight) / weight);
+    unbalanced = std::max(unbalanced, played.unbalanced(k).norm());
+    CHECK(played.body_force(k, 0, -1).isZero(0.0));
+  }
+  INFO("forces along the surface up to " << steepest << " of those across it, which lift "
+                                         << by_pressure << " N of " << weight << " N");
+  CHECK(steepest < friction);
+  CHECK(by_pressure < 0.0);  // they hold it above its middle: pressing pushes it down
+  CHECK(carried_off < 0.01);
+  CHECK(unbalanced < 1e-9);
+  CHECK(played.body_force(played.rows() - 1, 0, -1).y() == Approx(weight).epsilon(0.1));
 }
 
 TEST_CASE("gallery, liver: it resists on both lobes, and stays where it is fixed", "[slow]") {

@@ -264,6 +264,28 @@ TEST_CASE("no R of a rigid body can be asked for") {
   }
 }
 
+TEST_CASE("a rigid body needs a sound mesh like any other, and says so in one line") {
+  ProgramRun run;
+  run.write("c.toml", "[mesh]\nfile = \"m.msh\"\n[material]\nrigid = true\ndensity = 800\n");
+  run.write("m.msh", with_words(kMsh, "2 4 2 0 1 2 3 4 5", "2 4 2 0 1 3 2 4 5"));
+  run.check_refused("m.msh: 1 of 2 tetrahedra are inverted");
+  run.write("m.msh", with_words(with_words(kMsh, "2 4 2 0 1 2 3 4 5", "2 4 2 0 1 3 2 4 5"),
+                                "1 4 2 0 1 1 2 3 4", "1 4 2 0 1 2 1 3 4"));
+  run.check_refused("m.msh: all 2 tetrahedra are inverted");
+  // A surface is filled: an open one cannot be, one turned inside out is turned round.
+  const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
+  const std::string faces = "f 1 3 2\nf 1 2 4\nf 1 4 3\n";
+  run.write("c.toml", "[mesh]\nfile = \"m.obj\"\n[material]\nrigid = true\ndensity = 800\n");
+  run.write("m.obj", corners + faces);
+  run.check_refused("m.obj: ");
+  run.write("m.obj", corners + "v 1 1 1\n" + faces + "f 2 3 5\nf 3 4 5\n");
+  run.check_refused("m.obj: the surface is open at 2 edges");
+  run.write("m.obj", corners + "f 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n");
+  run.start("c.toml -o made/model.h5");
+  CHECK(run.status == 0);
+  CHECK(read_model(run.model(), ResponseKind::kModal).body.mass == Approx(800.0 / 6.0));
+}
+
 TEST_CASE("a mesh file in millimetres becomes metres, and the wrong unit is hinted at") {
   ProgramRun run;
   std::string large = kMsh;

@@ -137,6 +137,7 @@ SimulationStylus read_stylus(TomlTable table, const ContactConfig& contact) {
       table.number("coupling_stiffness", lab::kStiffness, contact.coupling_stiffness);
   stylus.reach = table.number("reach", lab::kTipLength, stylus.reach);
   stylus.max_force = table.number("max_force", between(0.1, kMostAppliedForce), stylus.max_force);
+  if (table.has("tool")) table.table("tool");  // read_tool()
   table.finish();
   return stylus;
 }
@@ -175,6 +176,39 @@ ObjectConfig read_object(TomlTable table) {
   return config;
 }
 
+CouplingConstants read_coupling(TomlTable& table) {
+  const auto constant = [&](const char* key) -> std::optional<double> {
+    if (!table.has(key)) return std::nullopt;
+    return table.number(key, lab::kStiffness);
+  };
+  return {constant("stiffness"), constant("damping"), constant("angular_stiffness"),
+          constant("angular_damping")};
+}
+
+// Of a stylus that has one, when the objects are known. @param taken that other styluses lead
+void read_tool(TomlTable table, const std::vector<ObjectConfig>& objects, std::set<int>& taken,
+               SimulationStylus& stylus) {
+  for (const char* key : {"radius", "coupling_stiffness", "reach"}) {
+    if (table.has(key)) table.fail(key, "is nothing to a stylus that leads a tool", "leave it out");
+  }
+  TomlTable tool = table.table("tool");
+  const std::string name = tool.text("object");
+  const auto object =
+      std::find_if(objects.begin(), objects.end(),
+                   [&](const ObjectConfig& candidate) { return candidate.name == name; });
+  if (object == objects.end()) {
+    tool.fail("object", "is no object of the scene: " + in_quotes(name),
+              "give the name of an [[object]]");
+  }
+  const int number = static_cast<int>(object - objects.begin());
+  if (!taken.insert(number).second) {
+    tool.fail("object", "is led by another stylus: " + in_quotes(name),
+              "give each stylus a tool of its own");
+  }
+  stylus.tool = ToolCoupling{number, read_coupling(tool)};
+  tool.finish();
+}
+
 }  // namespace
 
 SceneConfig read_scene(TomlTable file) {
@@ -182,7 +216,8 @@ SceneConfig read_scene(TomlTable file) {
   scene.world = read_world(file.table("world"));
   scene.contact = read_contact(file.table("contact"));
   scene.floor = read_floor(file);
-  for (TomlTable& stylus : file.tables("stylus")) {
+  const std::vector<TomlTable> styluses = file.tables("stylus");
+  for (const TomlTable& stylus : styluses) {
     scene.styluses.push_back(read_stylus(stylus, scene.contact));
   }
   const int described = static_cast<int>(scene.styluses.size());
@@ -208,6 +243,10 @@ SceneConfig read_scene(TomlTable file) {
   if (scene.objects.empty()) file.fail("object", "is missing", "add [[object]] with a model");
   if (scene.objects.size() > kMaxObjects) {
     file.fail("object", "appears too often", "use at most " + std::to_string(kMaxObjects));
+  }
+  std::set<int> led;
+  for (std::size_t s = 0; s < styluses.size(); ++s) {
+    if (styluses[s].has("tool")) read_tool(styluses[s], scene.objects, led, scene.styluses[s]);
   }
   for (TomlTable& table : file.tables("scenery")) {
     scene.scenery.push_back(read_scenery(table));

@@ -242,6 +242,9 @@ NetworkSettings network_settings(const SceneConfig& scene, const ServerOptions& 
   // One bridge may have all of them, or each its own, with another one that comes in its place.
   settings.max_frame_rate = std::max(settings.max_frame_rate, 10'000 * settings.styluses);
   settings.max_connections = std::max(settings.max_connections, 2 * settings.styluses);
+  settings.contact_models =
+      std::none_of(scene.styluses.begin(), scene.styluses.end(),
+                   [](const SimulationStylus& stylus) { return stylus.tool.has_value(); });
   settings.scheduling = scheduling(scene, options);
   settings.udp = scene.server.udp;
   settings.tap = tap;
@@ -261,6 +264,7 @@ TraceHeader trace_header(const SceneConfig& scene, const ServerOptions& options,
   header.floor = scene.floor.has_value();
   header.bodies = touches_bodies(config);
   header.stylus_count = static_cast<int>(config.styluses.size());
+  header.tools = tool_styluses(config);
   return header;
 }
 

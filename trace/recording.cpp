@@ -99,6 +99,7 @@ struct Recording::Data {
   RigidState before(std::size_t object, std::size_t k) const;
   void object_step(std::size_t object, std::size_t k, ObjectRecord& out,
                    bool has_inertial_loading) const;
+  void tool(std::size_t stylus, std::size_t k, StylusRecord& out) const;
   ContactRecord contact(const trace::ContactRows& rows, std::size_t k,
                         const Quaternion& halfway) const;
 };
@@ -137,6 +138,12 @@ void Recording::Data::read_styluses(const hdf5::File& file, const trace::RowRead
     check.numbers(path + "/tip", rows.tip, 3);
     check.numbers(path + "/proxy", rows.proxy, 3);
     check.numbers(path + "/force", rows.force, 3);
+    if (config.styluses[s].tool) {
+      rows.orientation = reader.read<double>(path + "/orientation", 4);
+      rows.torque = reader.read<double>(path + "/torque", 3);
+      check.orientations(path + "/orientation", rows.orientation);
+      check.numbers(path + "/torque", rows.torque, 3);
+    }
     if (config.objects.size() > 1) rows.object = reader.read<std::int32_t>(path + "/object");
     for (const std::int32_t object : rows.object) {
       if (object < static_cast<std::int32_t>(config.objects.size())) continue;
@@ -304,6 +311,17 @@ void Recording::Data::object_step(std::size_t i, std::size_t k, ObjectRecord& ou
   }
 }
 
+void Recording::Data::tool(std::size_t s, std::size_t k, StylusRecord& stylus) const {
+  const std::optional<ToolCoupling>& tool = config.styluses[s].tool;
+  stylus.tool = tool ? tool->object : -1;
+  stylus.orientation.setIdentity();
+  stylus.torque.setZero();
+  if (!tool) return;
+  const double* q = styluses[s].orientation.data() + 4 * k;
+  stylus.orientation = Quaternion(q[0], q[1], q[2], q[3]);
+  stylus.torque = trace::vector_of(styluses[s].torque, k);
+}
+
 Recording::Recording(const std::filesystem::path& path, const SimulationConfig& config,
                      const std::vector<std::string>& names)
     : data_(std::make_unique<Data>()) {
@@ -352,6 +370,7 @@ void Recording::step(std::size_t k, StepRecord& record) const {
     stylus.proxy = trace::vector_of(rows.proxy, k);
     stylus.force = trace::vector_of(rows.force, k);
     stylus.bridged.reset();
+    data.tool(s, k, stylus);
     const bool free = data.objects.size() == 1 && data.objects[0].contacts[s].state[k] == 0;
     stylus.object = rows.object.empty() ? (free ? -1 : 0) : rows.object[k];
     stylus.contact = ContactState::kFree;

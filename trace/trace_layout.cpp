@@ -27,6 +27,10 @@ TraceHeader read_trace_header(const std::filesystem::path& path) {
   header.dt = trace::read_dt(file);
   header.stylus_count = 0;
   while (file.exists("/stylus/" + std::to_string(header.stylus_count))) ++header.stylus_count;
+  for (int s = 0; s < header.stylus_count; ++s) {
+    const std::string group = trace::stylus_path(static_cast<std::size_t>(s));
+    if (file.exists(group + "/orientation")) header.tools.push_back(s);
+  }
   header.bodies = file.exists(trace::kBodyContact);
   header.objects.push_back({"", file.read_string_attribute("/", "model_file"),
                             file.read_string_attribute("/", "model_checksum")});
@@ -50,7 +54,7 @@ std::vector<TraceObject> read_trace_objects(const std::filesystem::path& path,
 namespace irdm::trace {
 namespace {
 
-constexpr std::array<std::pair<const char*, const char*>, 25> kUnits{{
+constexpr std::array<std::pair<const char*, const char*>, 27> kUnits{{
     {"time", "s"},
     {"body_position", "m"},
     {"body_orientation", "1"},
@@ -76,6 +80,8 @@ constexpr std::array<std::pair<const char*, const char*>, 25> kUnits{{
     {"normal", "1"},
     {"slip", "m"},
     {"area", "m^2"},
+    {"orientation", "1"},
+    {"torque", "N m"},
 }};
 
 }  // namespace

@@ -34,6 +34,7 @@ struct StylusRows {
   std::vector<double> tip, proxy, force;
   std::vector<std::uint8_t> present;
   std::vector<std::int32_t> buttons, object;
+  std::vector<double> orientation = {}, torque = {};  ///< of one that leads a tool
 };
 
 /// What the floor did to an object.

@@ -35,6 +35,7 @@ TraceWriter::TraceWriter(const std::filesystem::path& path, const TraceHeader& h
     : file_(hdf5::File::create_for_swmr(path)),
       objects_(header.objects),
       stylus_count_(header.stylus_count),
+      tools_(header.tools),
       floor_(header.floor),
       bodies_(header.bodies) {
   try {
@@ -89,6 +90,11 @@ void TraceWriter::create_datasets() {
     create<std::uint8_t>(path + "/present", {});
     create<std::int32_t>(path + "/buttons", {});
     if (several()) create<std::int32_t>(path + "/object", {});
+  }
+  for (const int s : tools_) {
+    const std::string path = stylus_path(static_cast<std::size_t>(s));
+    create<double>(path + "/orientation", {4});
+    create<double>(path + "/torque", {3});
   }
 }
 
@@ -426,6 +432,17 @@ void TraceWriter::append_stylus(std::span<const StepRecord> records, std::size_t
   append_rows<std::int32_t>(
       path + "/object", 1, records,
       [&](const StepRecord& r, std::int32_t* row) { *row = r.stylus[s].object; });
+}
+
+void TraceWriter::append_tool(std::span<const StepRecord> records, std::size_t s) {
+  const std::string path = stylus_path(s);
+  append_rows<double>(path + "/orientation", 4, records, [&](const StepRecord& r, double* row) {
+    const Quaternion& q = r.stylus[s].orientation;
+    row[0] = q.w();
+    Eigen::Map<Vector3>(row + 1, 3) = q.vec();
+  });
+  append_rows<double>(path + "/torque", 3, records,
+                      [&](const StepRecord& r, double* row) { put(row, r.stylus[s].torque); });
 }
 
 template <typename Contact>

@@ -27,8 +27,9 @@ struct TraceHeader {
   std::string scene;  ///< the scene file's text
   double dt = 0.0;    ///< [s]
   int stylus_count = 1;
-  bool floor = false;   ///< the scene has one
-  bool bodies = false;  ///< objects can touch each other or scenery (touches_bodies())
+  bool floor = false;           ///< the scene has one
+  bool bodies = false;          ///< objects can touch each other or scenery (touches_bodies())
+  std::vector<int> tools = {};  ///< styluses that lead a tool (tool_styluses())
 };
 
 /// Writes the trace file of one run (HDF5, format "irdm-trace", docs/files.md). One thread.
@@ -70,6 +71,7 @@ class TraceWriter {
   void create(const std::string& path, const hdf5::Shape& row);
   void append_settings(std::span<const StepRecord> records);
   void append_stylus(std::span<const StepRecord> records, std::size_t stylus);
+  void append_tool(std::span<const StepRecord> records, std::size_t stylus);
   template <typename Contact>
   void append_contact(std::span<const StepRecord> records, const std::string& group,
                       const Contact& contact);
@@ -89,6 +91,7 @@ class TraceWriter {
   hdf5::File file_;
   std::vector<TraceObject> objects_;
   int stylus_count_;
+  std::vector<int> tools_;
   bool floor_;
   bool bodies_;
   std::uint64_t rows_ = 0;  ///< appended

@@ -17,8 +17,8 @@ Vector3 RigidStateHistory::Forces::torque(const Quaternion& orientation) const n
 }
 
 void RigidStateHistory::remember(const RigidState& before, const Quaternion& halfway,
-                                 const Forces& forces) noexcept {
-  steps_[count_++ % kKept] = {before, halfway, forces};
+                                 const Forces& forces, const CouplingStep& led) noexcept {
+  steps_[count_++ % kKept] = {before, halfway, forces, led};
 }
 
 void RigidStateHistory::add(int age, const Vector3& force, const Vector3& arm) noexcept {
@@ -33,23 +33,16 @@ RigidState RigidStateHistory::replay(const RigidBody& body, const FreeForces& fr
   for (int age = changed_; age >= 0; --age) {
     Step& step = at(age);
     step.before = now;
-    const FreeMotion motion = free_motion(body, free, now);
+    const FreeMotion motion = free_motion(body, free, now, step.led);
     step.halfway = motion.halfway;
-    now = end_of_step(body, free, motion, step.forces.sum, step.forces.torque(step.halfway));
+    const Vector3 torque = step.forces.torque(step.halfway);
+    now = end_of_step(body, free, motion, step.forces.sum, torque, step.led).state;
   }
   changed_ = -1;
   return now;
 }
 
 namespace {
-
-// The rotation vector of a rotation, |v| at most pi.
-Vector3 rotation_vector(const Quaternion& q) noexcept {
-  const Quaternion short_way = q.w() < 0 ? Quaternion(-q.coeffs()) : q;
-  const double sine = short_way.vec().norm();
-  if (sine == 0.0) return Vector3::Zero();
-  return 2.0 * std::atan2(sine, short_way.w()) / sine * short_way.vec();
-}
 
 // Half a step of damping.
 void damp(const RigidBody& body, const RigidDamping& damping, RigidState& state) noexcept {
@@ -69,15 +62,16 @@ Vector3 free_torque(const FreeForces& forces, const Quaternion& orientation) noe
          rotation_vector(orientation * forces.home_orientation.conjugate());
 }
 
-FreeMotion free_motion(const RigidBody& body, const FreeForces& forces,
-                       const RigidState& state) noexcept {
+FreeMotion free_motion(const RigidBody& body, const FreeForces& forces, const RigidState& state,
+                       const CouplingStep& led) noexcept {
   FreeMotion motion;
   motion.start = state;
+  if (led.any()) motion.damper = led.coupling->damp(led.home, body, motion.start, motion.work);
   damp(body, forces.damping, motion.start);
-  motion.force =
-      free_force(body.mass(), forces, state.position + 0.5 * body.dt() * motion.start.velocity);
-  const bool spins_freely =
-      !(forces.tether.angular_stiffness > 0) && !(forces.damping.angular > 0) && body.moves();
+  const Vector3 middle = state.position + 0.5 * body.dt() * motion.start.velocity;
+  motion.force = free_force(body.mass(), forces, middle);
+  const bool spins_freely = !(forces.tether.angular_stiffness > 0) &&
+                            !(forces.damping.angular > 0) && body.moves() && !led.any();
   if (spins_freely) {  // one angular velocity for both
     const Quaternion& Q = state.orientation;
     const Vector3 w = body.step_angular_velocity(Q, state.angular_momentum);
@@ -87,7 +81,14 @@ FreeMotion free_motion(const RigidBody& body, const FreeForces& forces,
     return motion;
   }
   motion.halfway = body.mid_step_orientation(state);
-  motion.torque = free_torque(forces, body.mid_step_orientation(motion.start));
+  const Quaternion turned = body.mid_step_orientation(motion.start);
+  motion.torque = free_torque(forces, turned);
+  if (led.any()) {
+    motion.spring = led.coupling->spring(led.home, middle, turned);
+    motion.spring_arm = turned * led.coupling->reference();
+    motion.force += motion.spring.force;
+    motion.torque += motion.spring_torque();
+  }
   const RigidState end = body.advance(motion.start, motion.force, motion.torque);
   motion.position = end.position;
   motion.orientation = end.orientation;
@@ -114,6 +115,21 @@ RigidState end_of_step(const RigidBody& body, const FreeForces& forces, const Fr
   RigidState end = body.advance(motion.start, motion.force + force, motion.torque + torque);
   damp(body, forces.damping, end);
   return end;
+}
+
+LedStep end_of_step(const RigidBody& body, const FreeForces& forces, const FreeMotion& motion,
+                    const Vector3& force, const Vector3& torque, const CouplingStep& led) noexcept {
+  LedStep step;
+  step.state = end_of_step(body, forces, motion, force, torque);
+  if (!led.any()) return step;
+  const Vector3 turn =
+      0.5 * body.dt() * (body.angular_velocity(motion.start) + body.angular_velocity(step.state));
+  step.work = motion.work + motion.spring.force.dot(step.state.position - motion.start.position) +
+              motion.spring_torque().dot(turn);
+  const Wrench last = led.coupling->damp(led.home, body, step.state, step.work);
+  step.coupling.force = motion.spring.force + 0.5 * (motion.damper.force + last.force);
+  step.coupling.torque = motion.spring.torque + 0.5 * (motion.damper.torque + last.torque);
+  return step;
 }
 
 }  // namespace irdm

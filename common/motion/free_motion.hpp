@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "common/geometry.hpp"
+#include "common/motion/pose_coupling.hpp"
 #include "common/motion/rigid_body.hpp"
 
 namespace irdm {
@@ -39,16 +40,30 @@ Vector3 free_force(double mass, const FreeForces& forces, const Vector3& positio
 /// Of the tether about the centre of mass of a body that stands so [N m], W.
 Vector3 free_torque(const FreeForces& forces, const Quaternion& orientation) noexcept;
 
+/// What leads a body in one step, if anything does.
+struct CouplingStep {
+  const PoseCoupling* coupling = nullptr;  ///< null: nothing
+  CouplingHome home;
+
+  bool any() const noexcept { return coupling != nullptr; }
+};
+
 /// Where everything but the contacts takes the body frame by the end of a step.
 struct FreeMotion {
   RigidState start;                    ///< with the velocities that half the damping leaves
-  Vector3 force = Vector3::Zero();     ///< of gravity and tether during the step [N], W
+  Vector3 force = Vector3::Zero();     ///< of gravity and springs during the step [N], W
   Vector3 torque = Vector3::Zero();    ///< the same about the centre of mass [N m], W
   Vector3 position = Vector3::Zero();  ///< c + dt v + dt^2/2 F/M [m], W
   Quaternion orientation = Quaternion::Identity();  ///< exp(dt w_free) Q
   /// RigidBody::mid_step_orientation() of the state.
   Quaternion halfway = Quaternion::Identity();
+  Wrench spring;                         ///< of the coupling, at its reference point
+  Vector3 spring_arm = Vector3::Zero();  ///< where that is half-way [m], W
+  Wrench damper;                         ///< of the coupling, mean over the first half of the step
+  double work = 0.0;                     ///< of that damper on the body [J]
 
+  /// Of the coupling's spring about the centre of mass [N m], W.
+  Vector3 spring_torque() const noexcept { return spring.torque + spring_arm.cross(spring.force); }
   /// A point of W in that frame.
   Vector3 to_body(const Vector3& x) const noexcept {
     return orientation.conjugate() * (x - position);
@@ -61,15 +76,26 @@ struct FreeMotion {
   }
 };
 
-/// The coming step of a body from a state. The tether's force is that half-way. Pure, real-time
-/// safe.
-FreeMotion free_motion(const RigidBody& body, const FreeForces& forces,
-                       const RigidState& state) noexcept;
+/// The coming step of a body from a state. The forces of tether and coupling are those half-way.
+/// Pure, real-time safe.
+FreeMotion free_motion(const RigidBody& body, const FreeForces& forces, const RigidState& state,
+                       const CouplingStep& led = {}) noexcept;
 
 /// The state at the end of that step, in which contacts exerted `force` [N] and `torque` about the
 /// centre of mass [N m] besides, both W. Pure, real-time safe.
 RigidState end_of_step(const RigidBody& body, const FreeForces& forces, const FreeMotion& motion,
                        const Vector3& force, const Vector3& torque) noexcept;
+
+/// The end of a step of a body that may be led.
+struct LedStep {
+  RigidState state;
+  Wrench coupling;    ///< on the body at the coupling's reference point, mean over the step, W
+  double work = 0.0;  ///< of the coupling on the body [J]
+};
+
+/// The same, of a body that `led` leads as it did in free_motion().
+LedStep end_of_step(const RigidBody& body, const FreeForces& forces, const FreeMotion& motion,
+                    const Vector3& force, const Vector3& torque, const CouplingStep& led) noexcept;
 
 /// Kinetic energy of a state, with the potentials of gravity (0 at the origin) and tether [J]. Of a
 /// fixed body: 0.
@@ -101,7 +127,8 @@ class RigidStateHistory {
   }
   /// A step from `before` under these contact forces.
   /// @param halfway RigidBody::mid_step_orientation(before)
-  void remember(const RigidState& before, const Quaternion& halfway, const Forces& forces) noexcept;
+  void remember(const RigidState& before, const Quaternion& halfway, const Forces& forces,
+                const CouplingStep& led = {}) noexcept;
   /// How many steps are known, at most kKept.
   int count() const noexcept { return static_cast<int>(count_ < kKept ? count_ : kKept); }
   /// Half-way through the step `age` steps before the last one, 0 <= age < count().
@@ -122,6 +149,7 @@ class RigidStateHistory {
     RigidState before;
     Quaternion halfway = Quaternion::Identity();
     Forces forces;
+    CouplingStep led;
   };
   const Step& at(int age) const noexcept {
     return steps_[(count_ - 1 - static_cast<std::uint64_t>(age)) % kKept];

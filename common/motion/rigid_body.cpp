@@ -12,6 +12,13 @@ Quaternion rotation_from_vector(const Vector3& v) noexcept {
   return {std::cos(half), xyz.x(), xyz.y(), xyz.z()};
 }
 
+Vector3 rotation_vector(const Quaternion& q) noexcept {
+  const Quaternion short_way = q.w() < 0 ? Quaternion(-q.coeffs()) : q;
+  const double sine = short_way.vec().norm();
+  if (sine == 0.0) return Vector3::Zero();
+  return 2.0 * std::atan2(sine, short_way.w()) / sine * short_way.vec();
+}
+
 RigidBody::RigidBody(const BodyProperties& properties, double dt)
     : mass_(properties.mass),
       inertia_(properties.inertia),

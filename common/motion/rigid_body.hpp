@@ -78,5 +78,7 @@ class RigidBody {
 
 /// The rotation by |v| about v.
 Quaternion rotation_from_vector(const Vector3& v) noexcept;
+/// The rotation vector of a rotation, |v| at most pi.
+Vector3 rotation_vector(const Quaternion& q) noexcept;
 
 }  // namespace irdm

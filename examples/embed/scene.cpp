@@ -25,6 +25,7 @@ irdm::TraceHeader header_of(const char* file, const irdm::SceneConfig& scene,
   header.stylus_count = static_cast<int>(scene.styluses.size());
   header.floor = scene.floor.has_value();
   header.bodies = irdm::touches_bodies(config);
+  header.tools = irdm::tool_styluses(config);
   return header;
 }
 

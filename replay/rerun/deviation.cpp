@@ -43,8 +43,9 @@ bool is_finite(const StepRecord& record) {
   }
   for (std::size_t s = 0; s < static_cast<std::size_t>(record.stylus_count); ++s) {
     const StylusRecord& stylus = record.stylus[s];
-    finite =
-        finite && stylus.tip.allFinite() && stylus.proxy.allFinite() && stylus.force.allFinite();
+    finite = finite && stylus.tip.allFinite() && stylus.proxy.allFinite() &&
+             stylus.force.allFinite() && stylus.orientation.coeffs().allFinite() &&
+             stylus.torque.allFinite();
   }
   return finite;
 }

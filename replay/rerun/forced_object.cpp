@@ -1,6 +1,18 @@
 #include "replay/rerun/forced_object.hpp"
 
+#include <string>
+
 namespace irdm::replay {
+namespace {
+
+StylusCommand led_as(const StylusRecord& stylus) {
+  StylusCommand command{stylus.present, stylus.buttons, stylus.tip, std::nullopt};
+  command.orientation = stylus.orientation;
+  return command;
+}
+
+}  // namespace
+
 ForcedObject::ForcedObject(const SimulationConfig& config, std::size_t number)
     : number_(static_cast<int>(number)),
       body_(config.objects[number], config.gravity),
@@ -9,10 +21,17 @@ ForcedObject::ForcedObject(const SimulationConfig& config, std::size_t number)
   for (const SimulationStylus& stylus : config.styluses) {
     masks_.emplace_back(surface_, stylus.radius);
   }
+  for (std::size_t s = 0; s < config.styluses.size(); ++s) {
+    const std::optional<ToolCoupling>& tool = config.styluses[s].tool;
+    if (!tool || tool->object != number_) continue;
+    lead_.emplace(*tool, config.objects[number], "tool of stylus " + std::to_string(s + 1));
+    led_by_ = s;
+  }
 }
 
 void ForcedObject::reset() {
   body_.reset();
+  if (lead_) lead_->reset();
 }
 
 void ForcedObject::insert_delayed_force(const LateForce& late) {
@@ -49,7 +68,14 @@ RigidStateHistory::Forces ForcedObject::collect(const ObjectRecord& recorded) {
   return forces;
 }
 
+void ForcedObject::lead(std::span<const StylusRecord> styluses) {
+  if (!lead_) return;
+  lead_->begin(led_as(styluses[led_by_]));
+  body_.lead(lead_->step());
+}
+
 void ForcedObject::step(ObjectRecord& again, const RecordedStep& recorded) {
+  lead(recorded.styluses);
   find_touch_forces(number_, again, recorded.body_contacts, touch_);
   body_.begin_step(again);
   const RigidStateHistory::Forces forces = collect(again);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -7,6 +8,7 @@
 #include "simulation/step/deformable_body.hpp"
 #include "simulation/step/nodal_forces.hpp"
 #include "simulation/step/step_record.hpp"
+#include "simulation/step/tool_lead.hpp"
 
 namespace irdm::replay {
 
@@ -51,6 +53,7 @@ class ForcedObject final : public ForcedBody {
 
  private:
   Vector3 place(const ContactPatch& patch) const;
+  void lead(std::span<const StylusRecord> styluses);
   RigidStateHistory::Forces collect(const ObjectRecord& recorded);
 
   int number_;
@@ -60,6 +63,8 @@ class ForcedObject final : public ForcedBody {
   RecordedForces forces_;
   ContactPatch patch_;
   std::vector<TouchForce> touch_;  ///< of the step under way
+  std::optional<ToolLead> lead_;   ///< it is a tool; by stylus led_by_
+  std::size_t led_by_ = 0;
 };
 
 }  // namespace irdm::replay

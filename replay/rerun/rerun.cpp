@@ -12,6 +12,7 @@ namespace {
 
 StylusCommand command_of(const StylusRecord& stylus, bool solve_bridged) {
   StylusCommand command{stylus.present, stylus.buttons, stylus.tip, std::nullopt};
+  command.orientation = stylus.orientation;
   if (!solve_bridged) command.bridged = stylus.bridged;
   return command;
 }
@@ -89,7 +90,9 @@ void ForceRerun::step(const StepRecord& recorded, StepRecord& again) {
 // In W, as the objects stand half-way through the step.
 void ForceRerun::write_floor_and_styluses(StepRecord& again) const {
   const auto styluses = static_cast<std::size_t>(again.stylus_count);
-  for (std::size_t s = 0; s < styluses; ++s) again.stylus[s].force.setZero();
+  for (std::size_t s = 0; s < styluses; ++s) {
+    if (again.stylus[s].tool < 0) again.stylus[s].force.setZero();
+  }
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     ObjectRecord& object = again.object[i];
     const Quaternion& Q = object.halfway;

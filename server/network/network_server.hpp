@@ -52,6 +52,7 @@ struct NetworkSettings {
   double dt = 0.002;                  ///< force step [s], (0, 1]
   bool lockstep = false;
   int styluses = 4;                 ///< slots, 1 to 64
+  bool contact_models = true;       ///< whether bridges may solve contacts themselves
   int max_connections = 16;         ///< >= 1
   int max_frame_rate = 40000;       ///< of one bridge [1/s], >= 1; not in lockstep
   int handshake_timeout_ms = 1000;  ///< from connection to Hello

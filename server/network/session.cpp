@@ -96,7 +96,9 @@ void Session::greet(const wire::Hello& hello) {
   }
   std::uint32_t capabilities = wire::kCapabilityReport;
   const bool simulated_link = (hello.capabilities & wire::kCapabilitySimulatedLink) != 0;
-  if (!settings.lockstep || simulated_link) capabilities |= wire::kCapabilityContactModel;
+  if (settings.contact_models && (!settings.lockstep || simulated_link)) {
+    capabilities |= wire::kCapabilityContactModel;
+  }
   if (settings.lockstep) capabilities |= wire::kCapabilitySimulatedLink;
   if (!settings.lockstep) capabilities |= wire::kCapabilityStatus;
   if (shared_.datagrams != nullptr) capabilities |= wire::kCapabilityDatagrams;

@@ -11,7 +11,9 @@ namespace irdm {
 namespace {
 
 StylusCommand to_command(const StylusInput& input) noexcept {
-  return {input.present, input.sample.buttons, input.sample.tip, std::nullopt};
+  StylusCommand command{input.present, input.sample.buttons, input.sample.tip, std::nullopt};
+  command.orientation = input.sample.orientation;
+  return command;
 }
 
 StylusForce to_answer(const StepRecord& record, const StylusRecord& stylus,
@@ -159,6 +161,7 @@ void ForceThread::fade_while_paused() noexcept {
     if (!port.in.front().present) continue;
     StylusRecord fading = record_.stylus[s];
     fading.force *= left;
+    fading.torque *= left;
     if (left == 0.0 || !fading.present) {
       fading = StylusRecord{};
       fading.proxy = port.in.front().sample.tip;

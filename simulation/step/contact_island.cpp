@@ -18,10 +18,10 @@ constexpr double kYielding = 0.1;
 }  // namespace
 
 ContactIsland::ContactIsland(int object_count, int capacity, int sides)
-    : problem_(capacity),
-      solver_(capacity),
-      first_(static_cast<std::size_t>(object_count), 0),
-      compliances_(static_cast<std::size_t>(object_count), SideCompliance(sides)) {
+    : problem_(capacity), solver_(capacity), first_(static_cast<std::size_t>(object_count), 0) {
+  // Each made in its place: a copy has no memory in reserve.
+  compliances_.reserve(first_.size());
+  for (int i = 0; i < object_count; ++i) compliances_.emplace_back(sides);
   sides_.reserve(static_cast<std::size_t>(sides));
   places_.reserve(static_cast<std::size_t>(sides));
 }

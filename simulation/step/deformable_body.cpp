@@ -22,6 +22,7 @@ DeformableBody::DeformableBody(const SimulationObject& object, const Vector3& gr
 void DeformableBody::reset() noexcept {
   state_ = start_;
   past_.clear();
+  end_ = {};
   engine_->reset();
 }
 
@@ -50,12 +51,20 @@ void DeformableBody::end_step(std::span<const NodalForce> nodal,
                               const RigidStateHistory::Forces& forces,
                               ObjectRecord& record) noexcept {
   engine_->advance(nodal);
-  past_.remember(state_, motion_.halfway, forces);
-  state_ = end_of_step(rigid_, free_forces_, motion_, forces.sum, forces.torque(motion_.halfway));
+  past_.remember(state_, motion_.halfway, forces, led_);
+  end_ =
+      end_of_step(rigid_, free_forces_, motion_, forces.sum, forces.torque(motion_.halfway), led_);
+  state_ = end_.state;
   record.position = state_.position;
   record.orientation = state_.orientation;
   record.velocity = state_.velocity;
   record.angular_velocity = rigid_.angular_velocity(state_);
+}
+
+Vector3 DeformableBody::coupling_torque() const noexcept {
+  if (!led_.any()) return Vector3::Zero();
+  const Vector3 arm = state_.orientation * led_.coupling->reference();
+  return end_.coupling.torque + arm.cross(end_.coupling.force);
 }
 
 void DeformableBody::insert_delayed_force(std::span<const NodalForce> nodal, const Vector3& force,

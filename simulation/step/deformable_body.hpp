@@ -28,6 +28,8 @@ class DeformableBody {
   /// Enters delayed forces in the motion, and begins the coming step. Start, spin and orientation
   /// half-way are written.
   void begin_step(ObjectRecord& record) noexcept;
+  /// What leads the body from the coming step on.
+  void lead(const CouplingStep& led) noexcept { led_ = led; }
   /// Ends it under these contact forces. The motion at its end is written.
   /// @param nodal the forces, on nodes [N], B  @param forces the same, on the body as a whole
   void end_step(std::span<const NodalForce> nodal, const RigidStateHistory::Forces& forces,
@@ -52,7 +54,15 @@ class DeformableBody {
   /// Of the step under way.
   const FreeMotion& motion() const noexcept { return motion_; }
   /// The motion of the coming step, between steps.
-  FreeMotion next_motion() const noexcept { return free_motion(rigid_, free_forces_, state_); }
+  FreeMotion next_motion() const noexcept {
+    return free_motion(rigid_, free_forces_, state_, led_);
+  }
+  /// Of what led it on the body in the last step, at the coupling's reference point, W.
+  const Wrench& coupling() const noexcept { return end_.coupling; }
+  /// The work of that on the body [J].
+  double coupling_work() const noexcept { return end_.work; }
+  /// That on the body about the centre of mass, as it is at the end of the step [N m], W.
+  Vector3 coupling_torque() const noexcept;
 
  private:
   SimulationObject object_;
@@ -66,6 +76,8 @@ class DeformableBody {
   RigidState state_;
   RigidStateHistory past_;
   FreeMotion motion_;
+  CouplingStep led_;
+  LedStep end_;  ///< of the last step
 };
 
 }  // namespace irdm

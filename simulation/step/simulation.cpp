@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <string>
 #include <utility>
 
 #include "common/error.hpp"
@@ -34,9 +35,27 @@ Simulation::Simulation(const SimulationConfig& config)
     objects_.push_back(std::make_unique<SoftObject>(object, config, static_cast<int>(i)));
   }
   check_settings(config, settings_);
+  for (std::size_t s = 0; s < stylus_count_; ++s) {
+    if (config.styluses[s].tool) add_tool(config, s);
+  }
   if (touches_bodies(config)) {
     world_ = std::make_unique<WorldContacts>(config, objects_);
   }
+}
+
+void Simulation::add_tool(const SimulationConfig& config, std::size_t s) {
+  const ToolCoupling& tool = *config.styluses[s].tool;
+  const std::string where = "tool of stylus " + std::to_string(s + 1);
+  if (tool.object < 0 || tool.object >= object_count()) {
+    throw Error(where, "is object " + std::to_string(tool.object + 1) + ", which is not there",
+                "use one of 1 to " + std::to_string(object_count()));
+  }
+  for (const auto& other : tools_) {
+    if (!other || other->object() != tool.object) continue;
+    throw Error(where, "is an object that another stylus leads", "give each stylus its own");
+  }
+  tools_[s] = std::make_unique<ToolLead>(
+      tool, config.objects[static_cast<std::size_t>(tool.object)], where);
 }
 
 void Simulation::set(const Settings& settings) noexcept {
@@ -62,6 +81,9 @@ std::uint64_t Simulation::limited() const noexcept {
 void Simulation::reset() noexcept {
   for (const auto& object : objects_) object->reset();
   if (world_) world_->reset();
+  for (const auto& tool : tools_) {
+    if (tool) tool->reset();
+  }
   late_.count = 0;
   was_reset_ = true;
   reset_step_ = next_step_;
@@ -100,6 +122,7 @@ void Simulation::step(std::span<const StylusCommand> commands, StepRecord& recor
     commands = commands_;
   }
   record.body_contact.clear();
+  const std::span<const StylusCommand> all = std::exchange(commands, lead_tools(commands));
   for (std::size_t i = 0; i < objects_.size(); ++i) objects_[i]->begin(commands, record.object[i]);
   if (world_) {
     world_->solve(record);
@@ -111,8 +134,25 @@ void Simulation::step(std::span<const StylusCommand> commands, StepRecord& recor
   }
   for (std::size_t i = 0; i < objects_.size(); ++i) objects_[i]->finish(commands, record.object[i]);
   for (std::size_t s = 0; s < stylus_count_; ++s) {
-    write_stylus(s, commands[s], record);
+    write_stylus(s, all[s], record);
   }
+}
+
+// For the objects, a stylus that leads a tool is not there.
+std::span<const StylusCommand> Simulation::lead_tools(
+    std::span<const StylusCommand> commands) noexcept {
+  std::span<const StylusCommand> contacts = commands;
+  for (std::size_t s = 0; s < stylus_count_; ++s) {
+    if (!tools_[s]) continue;
+    if (contacts.data() == commands.data()) {
+      std::copy_n(commands.begin(), stylus_count_, contacts_.begin());
+      contacts = {contacts_.data(), stylus_count_};
+    }
+    contacts_[s] = {};
+    tools_[s]->begin(commands[s]);
+    objects_[static_cast<std::size_t>(tools_[s]->object())]->lead(tools_[s]->step());
+  }
+  return contacts;
 }
 
 // The object that a stylus is in contact with, or else the nearest.
@@ -136,7 +176,7 @@ bool Simulation::predict_horizon(std::size_t s, const Vector3& tip, int horizon,
   model.step = next_step_ - 1;
   model.dt = dt_;
   local_model_object_[s] = -1;
-  if (next_step_ == 0 || !tip.allFinite()) return true;
+  if (next_step_ == 0 || !tip.allFinite() || tools_[s]) return true;
   local_model_object_[s] = touched_by(s, tip);
   if (local_model_object_[s] < 0) return true;
   SoftObject& touched = *objects_[static_cast<std::size_t>(local_model_object_[s])];
@@ -179,6 +219,11 @@ void Simulation::write_stylus(std::size_t s, const StylusCommand& command,
   stylus.buttons = command.buttons;
   stylus.tip = stylus.proxy = command.tip;
   stylus.bridged = command.bridged;
+  if (tools_[s]) {
+    stylus.orientation = command.orientation;
+    write_tool(*tools_[s], stylus);
+    return;
+  }
   double largest = -1.0;
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     const ContactRecord& contact = record.object[i].contact[s];
@@ -190,6 +235,14 @@ void Simulation::write_stylus(std::size_t s, const StylusCommand& command,
     stylus.contact = contact.state;
     stylus.proxy = contact.proxy;
   }
+}
+
+void Simulation::write_tool(const ToolLead& lead, StylusRecord& stylus) const noexcept {
+  const SoftObject& object = this->object(lead.object());
+  stylus.tool = lead.object();
+  stylus.proxy = object.state().position + object.state().orientation * lead.coupling().reference();
+  stylus.force = -lead.share() * object.coupling().force;
+  stylus.torque = -lead.share() * object.coupling().torque;
 }
 
 }  // namespace irdm

@@ -10,6 +10,7 @@
 #include "simulation/step/simulation_config.hpp"
 #include "simulation/step/soft_object.hpp"
 #include "simulation/step/step_record.hpp"
+#include "simulation/step/tool_lead.hpp"
 #include "simulation/step/world_contacts.hpp"
 
 namespace irdm {
@@ -21,8 +22,8 @@ namespace irdm {
 class Simulation {
  public:
   /// Throws Error when a model lacks the response that its engine needs, when models differ in dt,
-  /// when damping or tether are too strong for it, when there are too many objects or styluses, or
-  /// when bodies are inside one another.
+  /// when damping, tether or a tool's coupling are too strong for it, when there are too many
+  /// objects or styluses, or when bodies are inside one another.
   explicit Simulation(const SimulationConfig& config);
 
   /// Step k = 0, 1, ...: from time k dt to (k + 1) dt. Before it everything is reset to the
@@ -83,6 +84,9 @@ class Simulation {
   }
 
  private:
+  void add_tool(const SimulationConfig& config, std::size_t s);
+  std::span<const StylusCommand> lead_tools(std::span<const StylusCommand> commands) noexcept;
+  void write_tool(const ToolLead& lead, StylusRecord& stylus) const noexcept;
   int touched_by(std::size_t s, const Vector3& tip) noexcept;
   bool reset_pressed(std::span<const StylusCommand> commands) noexcept;
   void write_stylus(std::size_t s, const StylusCommand& command, StepRecord& record) const noexcept;
@@ -99,8 +103,10 @@ class Simulation {
   std::array<double, kMaxStyluses> max_force_{};  ///< of each stylus [N]
   std::vector<std::unique_ptr<SoftObject>> objects_;
   std::unique_ptr<WorldContacts> world_;  ///< null: objects touch neither each other nor scenery
-  std::array<int, kMaxStyluses> local_model_object_;  ///< object, -1: none
+  std::array<std::unique_ptr<ToolLead>, kMaxStyluses> tools_;  ///< of each stylus; null: none
+  std::array<int, kMaxStyluses> local_model_object_;           ///< object, -1: none
   std::array<StylusCommand, kMaxStyluses> commands_;  ///< of a step that begins with a reset
+  std::array<StylusCommand, kMaxStyluses> contacts_;  ///< of the styluses that lead no tool
   LateForces late_;                                   ///< entered since the last step
 };
 

@@ -10,6 +10,7 @@
 #include "common/geometry.hpp"
 #include "common/model/model.hpp"
 #include "common/motion/free_motion.hpp"
+#include "common/motion/pose_coupling.hpp"
 #include "simulation/collision/scenery.hpp"
 #include "simulation/engine/response_engine.hpp"
 
@@ -37,6 +38,13 @@ struct FloorConfig {
   Friction friction{0.5, 0.5};
 };
 
+/// A tool: the object that a stylus leads through a coupling at the object's reference point, the
+/// origin of its input mesh.
+struct ToolCoupling {
+  int object = 0;  ///< that floats, and that no other stylus leads
+  CouplingConstants constants;
+};
+
 /// How one stylus touches.
 struct SimulationStylus {
   double radius = 0.0;              ///< of the fingertip [m]; 0: a point
@@ -44,6 +52,8 @@ struct SimulationStylus {
   double reach = 0.0;  ///< pressed within it, the grab button holds the nearest node [m]
   /// Its bridge, if the contact is solved there, makes it exert at most this [N], > 0.
   double max_force = kMostAppliedForce;
+  /// It leads a tool, and makes no contact of its own; what is above means nothing then.
+  std::optional<ToolCoupling> tool = {};
 };
 
 /// Objects among their styluses. All models have the same dt.
@@ -68,6 +78,15 @@ inline std::string object_name(const SimulationConfig& config, std::size_t i) {
 /// Whether objects of the scene can touch each other or scenery.
 inline bool touches_bodies(const SimulationConfig& config) {
   return config.between_objects && (config.objects.size() > 1 || !config.scenery.empty());
+}
+
+/// The styluses that lead a tool.
+inline std::vector<int> tool_styluses(const SimulationConfig& config) {
+  std::vector<int> leading;
+  for (std::size_t s = 0; s < config.styluses.size(); ++s) {
+    if (config.styluses[s].tool) leading.push_back(static_cast<int>(s));
+  }
+  return leading;
 }
 
 }  // namespace irdm

@@ -35,6 +35,7 @@ SoftObject::SoftObject(const SimulationObject& object, const SimulationConfig& c
 void SoftObject::reset() noexcept {
   change_ = Change::kUnknown;
   body_.reset();
+  body_.lead({});
   account_.begin(body_.energy());
   contacts_.reset();
   if (floor_) floor_->reset();
@@ -108,7 +109,7 @@ void SoftObject::finish(std::span<const StylusCommand> commands, ObjectRecord& r
   if (floor_) floor_->update_contacts(body_.motion(), problem_);
   const RigidState before = state();
   end_step(record);
-  account_.settle(contacts_.work() + work_of_touch(before), body_.energy());
+  account_.settle(contacts_.work() + work_of_touch(before) + body_.coupling_work(), body_.energy());
   account_.forgive(model().dt, contacts_.count() > 0);
   for (ContactRecord& contact : record.contact) {
     if (contact.state != ContactState::kFree) {
@@ -252,6 +253,8 @@ void SoftObject::collect_others(std::size_t s, ContactModel& model) noexcept {
   touched_.add_to(nodal_);
   model.other_force += halfway.conjugate() * touched_as_.sum;
   model.other_torque += halfway.conjugate() * touched_as_.torque(halfway);
+  model.other_force += halfway.conjugate() * body_.coupling().force;
+  model.other_torque += halfway.conjugate() * body_.coupling_torque();
 }
 
 // The balance, and what the object may lose to hands within the horizon, as it comes or falls: one

@@ -31,6 +31,8 @@ class SoftObject {
 
   // One step of dt is begin(), a solution, write(), perhaps touch(), and finish().
 
+  /// What leads the object in the coming step, and between steps after it.
+  void lead(const CouplingStep& led) noexcept { body_.lead(led); }
   /// Free motion, and the contacts with styluses and floor. @param commands one a stylus
   void begin(std::span<const StylusCommand> commands, ObjectRecord& record) noexcept;
   /// The solution of the object's own contacts, where it touches no other body ...
@@ -91,6 +93,8 @@ class SoftObject {
 
   const Model& model() const noexcept { return body_.model(); }
   const RigidState& state() const noexcept { return body_.state(); }
+  /// Of what led it on the object in the last step, at its reference point, W.
+  const Wrench& coupling() const noexcept { return body_.coupling(); }
   const ResponseEngine& engine() const noexcept { return body_.engine(); }
   /// Nodes that forces began to act on while their columns of R were not there, so far.
   std::uint64_t cache_misses() const noexcept {

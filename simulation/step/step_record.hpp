@@ -41,6 +41,8 @@ struct StylusCommand {
       Vector3::Zero();  ///< at the end of the step [m], W; the step solves for the force ...
   std::optional<GivenForce> given;           ///< ... unless it is given
   std::optional<BridgedForce> bridged = {};  ///< the bridge solves the contact
+  /// Of the stylus at the end of the step, in W: leads a tool.
+  Quaternion orientation = Quaternion::Identity();
 };
 
 /// What one stylus did to one object in one step.
@@ -134,11 +136,16 @@ struct StylusRecord {
   std::uint32_t buttons = 0;
   int object =
       -1;  ///< the one that it touches (the one with the largest force, if several); -1: none
-  ContactState contact = ContactState::kFree;  ///< with that object
-  Vector3 tip = Vector3::Zero();               ///< [m], W
-  Vector3 proxy = Vector3::Zero();             ///< of that contact; free: the tip [m], W
-  Vector3 force = Vector3::Zero();             ///< on the stylus, of all objects [N], W
-  std::optional<BridgedForce> bridged = {};    ///< that the step was given, as it was given
+  ContactState contact = ContactState::kFree;       ///< with that object
+  Vector3 tip = Vector3::Zero();                    ///< [m], W
+  Vector3 proxy = Vector3::Zero();                  ///< of that contact; free: the tip [m], W
+  Vector3 force = Vector3::Zero();                  ///< on the stylus, of all objects [N], W
+  std::optional<BridgedForce> bridged = {};         ///< that the step was given, as it was given
+  int tool = -1;                                    ///< the object that it leads; -1: none
+  Quaternion orientation = Quaternion::Identity();  ///< as commanded, in W
+  /// Of its tool on the stylus about the tip [N m], W; `force` is the tool's, too, and `proxy` the
+  /// tool's reference point.
+  Vector3 torque = Vector3::Zero();
 };
 
 /// What a step has whatever takes part in it.

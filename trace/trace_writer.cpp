@@ -348,6 +348,7 @@ void TraceWriter::append(std::span<const StepRecord> records) {
   for (std::size_t s = 0; s < static_cast<std::size_t>(stylus_count_); ++s) {
     append_stylus(records, s);
   }
+  for (const int s : tools_) append_tool(records, static_cast<std::size_t>(s));
   correct_applied(records);
   rows_ += records.size();
 }

@@ -34,6 +34,9 @@ std::unique_ptr<Rerun> fem_reference(const TracedScene& scene, precompute::Elast
                                      double substep, bool follow_tips,
                                      const std::vector<DelayedForces>& delayed_forces,
                                      StepJournal* journal) {
+  if (!tool_styluses(scene.config).empty()) {
+    throw Error("--reference fem", "has no coupling that leads a tool", "leave --reference out");
+  }
   std::vector<std::unique_ptr<ForcedBody>> bodies;
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     check_model(*scene.config.objects[i].model, scene.objects[i].model.string());

@@ -72,7 +72,7 @@ TEST_CASE("bodies: three cubes at rest carry the weight above each, and do not d
   }
 }
 
-TEST_CASE("bodies: a soft cube on a soft cube slips from the friction angle on") {
+TEST_CASE("bodies: a soft cube on a soft cube slips from the friction angle on", "[slow]") {
   const double mu = 0.2;
   for (const double off : {-0.5, 0.5}) {
     const double tilt = std::atan(mu) + off * std::numbers::pi / 180.0;

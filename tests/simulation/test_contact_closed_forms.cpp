@@ -73,7 +73,8 @@ Pressed press_together(const HalfSpace& below, const HalfSpace& above, double ap
 
 }  // namespace
 
-TEST_CASE("hertz: force over approach and radius of contact, equal, unequal, on a plane") {
+TEST_CASE("hertz: force over approach and radius of contact, equal, unequal, on a plane",
+          "[slow]") {
   struct Case {
     const char* name;
     HalfSpace below, above;
@@ -104,7 +105,7 @@ TEST_CASE("hertz: force over approach and radius of contact, equal, unequal, on 
   }
 }
 
-TEST_CASE("mindlin: a contact that is pushed sideways slips from its edge inwards") {
+TEST_CASE("mindlin: a contact that is pushed sideways slips from its edge inwards", "[slow]") {
   const HalfSpace ball;
   const HertzPair pair = pair_of(ball, ball);
   const double a = 4.0 * ball.spacing;

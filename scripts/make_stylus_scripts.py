@@ -81,7 +81,7 @@ SQUEEZE = [(0.0, 0.08, 0.055, 0.0, 0), (1.0, 0.08, 0.055, 0.0, 0), (1.8, 0.034, 
 
 KNOB = (0.0, 0.12, 0.0)
 TRAY = (smooth([(0.0, 0.0, 0.15, 0.0, 0), (0.5, 0.0, 0.15, 0.0, 0), (0.9, *KNOB, 0), (1.0, *KNOB, 1), (1.2, *KNOB, 1)])[:-1]
-        + stir(1.2, KNOB, 0.09, 0.4, 4, 1)
+        + stir(1.2, KNOB, 0.085, 0.3, 3, 1)
         + [(11.4, *KNOB, 1), (11.5, *KNOB, 0), (12.0, 0.0, 0.15, 0.0, 0), (12.5, 0.0, 0.15, 0.0, 0)])
 
 SCRIPTS = {
@@ -90,7 +90,7 @@ SCRIPTS = {
     "slide": ("Down to 5 mm below a face at y = 6 cm, 6 cm along it, and off.", smooth(SLIDE)),
     "rest": ("Waits for 2.5 s, then pushes along -x from 4 cm off a face at x = 6 cm to 3 cm inside it, and back.", smooth(REST)),
     "stack": ("Waits for 3 s, then pushes along -x from 6 cm off a face at x = 6 cm to 11 cm inside it, and back.", smooth(STACK)),
-    "tray": ("To the top of a cube at y = 12 cm, takes hold (1 s), four circles of up to 9 cm, lets go (11.5 s).", TRAY),
+    "tray": ("To the top of a cube at y = 12 cm, takes hold (1 s), three circles of up to 8.5 cm, lets go (11.5 s).", TRAY),
     "peg": ("Waits for 1 s, then pushes along -x from x = 20 cm to 5 cm, stays for 1.5 s, and back.", smooth(PEG)),
     "squeeze": ("From 3 cm off a ball of 5 cm to 1.6 cm inside it, 5 cm up, down again, and off.", smooth(SQUEEZE)),
     "swing": ("To 4 mm above a face at y = 6 cm, takes hold (0.7 s), swings 3 cm at 1.5 Hz (1 s), lets go (5.2 s).", SWING),

@@ -54,7 +54,7 @@ Fall run(const SimulationConfig& config) {
   Fall fall;
   fall.lowest = {1.0, 1.0};
   for (int k = 0; k < 800; ++k) {
-    step_alone(simulation, *record);
+    irdm::test::step_alone(simulation, *record);
     fall.gain = std::max(fall.gain, energy() / start - 1.0);
     for (std::size_t i = 0; i < 2; ++i) {
       const ObjectRecord& object = record->object[i];

@@ -20,8 +20,6 @@ class BoundedQueue {
     overflows_.fetch_add(1, std::memory_order_relaxed);
     return false;
   }
-  /// Producer: how many items fit now.
-  std::size_t room() const noexcept { return queue_.write_available(); }
   /// Consumer: false when there is nothing to take.
   bool pop(T& item) noexcept { return queue_.pop(item); }
 

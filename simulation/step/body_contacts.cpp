@@ -7,7 +7,7 @@ namespace irdm {
 namespace {
 
 // Samples as near as this are given to the solver, which leaves them alone unless they come down.
-constexpr double kNear = 1e-4;
+constexpr double kNearBody = 1e-4;
 // As those of the floor: how far a sample may be from where it would be at rest, to be looked at.
 constexpr double kLeastReach = 2e-3;
 constexpr double kReachFactor = 2.0;
@@ -132,7 +132,7 @@ bool BodyContacts::begin(const ContactSampling::Sample& sample, const Vector3& p
   const Vector3 outward = motion.orientation * sample.normal;
   const Vector3 start = at_start(motion, place);
   if (other_body_ == nullptr) {
-    return begin_on_scenery(start - depth_ * outward, x + kNear * outward, outward, x, start,
+    return begin_on_scenery(start - depth_ * outward, x + kNearBody * outward, outward, x, start,
                             state);
   }
   const FreeMotion& there = other_body_->motion;
@@ -142,7 +142,7 @@ bool BodyContacts::begin(const ContactSampling::Sample& sample, const Vector3& p
   const SurfaceLocation nearest = other_body_->rest.closest(y);
   const SurfaceHit near{nearest.triangle, nearest.point, nearest.position, 0.0};
   const std::optional<SurfaceHit> hit = other_body_->surface.first_crossing(
-      y_start - depth_ * direction, y + kNear * direction, near);
+      y_start - depth_ * direction, y + kNearBody * direction, near);
   if (!hit) return false;
   state.anchor = {hit->triangle, hit->point,
                   at(other_body_->rest.corners(hit->triangle), hit->point.weights)};

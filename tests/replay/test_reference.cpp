@@ -352,7 +352,7 @@ double held_force_apart(double dt) {
   Points u;
   for (const StepRecord& recorded : run.records) {
     ObjectRecord again = recorded.object[0];
-    body.step(again, {recorded.stylus.data(), 1});
+    body.step(again, {{recorded.stylus.data(), 1}, recorded.body_contacts()});
     const ContactRecord& contact = recorded.object[0].contact[0];
     if (contact.state != ContactState::kHeld) continue;
     const Vector3 was = recorded.object[0].halfway * contact.force;

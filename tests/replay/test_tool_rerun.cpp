@@ -12,7 +12,7 @@ using namespace irdm::test;
 
 namespace {
 
-constexpr int kSteps = 600;
+constexpr int kToolSteps = 600;
 
 // A rod that comes down on a soft cube and turns, and whose stylus goes away for a while.
 SimulationConfig led_scene() {
@@ -36,8 +36,8 @@ StylusCommand command_at(int k) {
 struct LedRun {
   LedRun() {
     Simulation simulation(config);
-    records.resize(kSteps);
-    for (int k = 0; k < kSteps; ++k) {
+    records.resize(kToolSteps);
+    for (int k = 0; k < kToolSteps; ++k) {
       const StylusCommand command = command_at(k);
       simulation.step({&command, 1}, records[static_cast<std::size_t>(k)], k == 300);
     }
@@ -68,12 +68,12 @@ TEST_CASE("trace: orientation and torque of a stylus with a tool are read as the
     REQUIRE(stylus.tool == 0);
     REQUIRE(stylus.orientation.coeffs() == run.records[k].stylus[0].orientation.coeffs());
     REQUIRE(stylus.torque == run.records[k].stylus[0].torque);
-    touching += record->body_contact_count > 0 && !stylus.torque.isZero(0.0) ? 1 : 0;
+    touching += !record->body_contact.empty() && !stylus.torque.isZero(0.0) ? 1 : 0;
   }
   CHECK(touching > 100);
   const hdf5::File file = hdf5::File::open(run.path);
-  CHECK(file.stored_shape("/stylus/0/orientation") == hdf5::Shape{kSteps, 4});
-  CHECK(file.stored_shape("/stylus/0/torque") == hdf5::Shape{kSteps, 3});
+  CHECK(file.stored_shape("/stylus/0/orientation") == hdf5::Shape{kToolSteps, 4});
+  CHECK(file.stored_shape("/stylus/0/torque") == hdf5::Shape{kToolSteps, 3});
 }
 
 TEST_CASE("a run with a tool is rerun to the bit, from its commands and from its forces") {

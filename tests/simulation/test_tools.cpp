@@ -287,7 +287,7 @@ TEST_CASE("tool: what it stores is never more than what its hand put in, poked a
             record->stylus[0].torque.dot(rotation_vector(command.orientation * turned.conjugate()));
     largest = std::max(largest, energy());
     worst = std::max(worst, energy() - begun - work);
-    touching += record->body_contact_count > 0 ? 1 : 0;
+    touching += !record->body_contact.empty() ? 1 : 0;
   }
   INFO("E " << youngs_modulus << ": largest energy " << largest << " J, at most " << worst
             << " J above what was put in, touching in " << touching << " steps, at the end "
@@ -493,7 +493,7 @@ TEST_CASE("tool: its step allocates nothing, there or not, touching or reset") {
     StylusCommand command = lead_to(above_cube(0.005 - 0.015 * std::sin(0.02 * k)));
     command.present = k % 200 < 150;
     simulation.step({&command, 1}, *record, k == 400);
-    touching += record->body_contact_count > 0 ? 1 : 0;
+    touching += !record->body_contact.empty() ? 1 : 0;
   }
   CHECK(guard.count() == 0);
   CHECK(touching > 20);

@@ -111,14 +111,17 @@ bool BodyContacts::begin_on_scenery(const Vector3& from, const Vector3& to,
                                     const Vector3& direction, const Vector3& x,
                                     const Vector3& start, Sample& state) noexcept {
   const std::optional<SceneryHit> entry = first_crossing(*scenery_, from, to);
-  if (!entry || entry->normal.dot(direction) > kFacing) return false;
+  if (!entry || entry->normal.dot(direction) > kFacing) {
+    if (closest(*scenery_, x).signed_distance > 0.0) state.clear = step_;
+    return false;
+  }
   const SceneryHit hit = closest(*scenery_, x);
   const bool same_side = hit.normal.dot(direction) <= kFacing;
   state.normal = same_side ? hit.normal : entry->normal;
   state.anchor_W = same_side
                        ? hit.position
                        : Vector3(x - (x - entry->position).dot(entry->normal) * entry->normal);
-  if (state.listed + 1 != step_) {
+  if (state.clear + 1 != step_) {
     state.inset = std::max(0.0, (state.anchor_W - start).dot(state.normal));
   }
   return true;
@@ -143,14 +146,19 @@ bool BodyContacts::begin(const ContactSampling::Sample& sample, const Vector3& p
   const SurfaceHit near{nearest.triangle, nearest.point, nearest.position, 0.0};
   const std::optional<SurfaceHit> hit = other_body_->surface.first_crossing(
       y_start - depth_ * direction, y + kNearBody * direction, near);
-  if (!hit) return false;
+  if (!hit) {
+    const Vector3 there_now = nearest.position + other_displacement(nearest);
+    const Vector3 normal = other_body_->sampling.normal(nearest);
+    if ((y - there_now).dot(normal) > 0.0) state.clear = step_;
+    return false;
+  }
   state.anchor = {hit->triangle, hit->point,
                   at(other_body_->rest.corners(hit->triangle), hit->point.weights)};
   state.normal = other_body_->sampling.normal(state.anchor);
   if (state.normal.dot(direction) > kFacing) return false;
   const Vector3 there_now = state.anchor.position + other_displacement(state.anchor);
   state.offset = sideways(y - there_now, state.normal);
-  if (state.listed + 1 != step_)
+  if (state.clear + 1 != step_)
     state.inset = std::max(0.0, (there_now - y_start).dot(state.normal));
   return true;
 }
@@ -194,11 +202,17 @@ int BodyContacts::find() noexcept {
       const Vector3 x = motion.to_world(shape.place.position);
       const double way = (x - at_start(motion, shape.place.position)).norm();
       if (other_body_ == nullptr) {
-        if (closest(*scenery_, x).signed_distance > margin + way) continue;
+        if (closest(*scenery_, x).signed_distance > margin + way) {
+          state.clear = step_;
+          continue;
+        }
       } else {
         const Vector3 y = other_body_->motion.to_body(x);
         const double reach = margin + way;
-        if (box.squaredExteriorDistance(y) > reach * reach) continue;
+        if (box.squaredExteriorDistance(y) > reach * reach) {
+          state.clear = step_;
+          continue;
+        }
       }
     }
     const Vector3 place = displaced_place(shape);
@@ -222,7 +236,7 @@ int BodyContacts::find() noexcept {
               [](const Candidate& a, const Candidate& b) { return a.sample < b.sample; });
   }
   for (const Candidate& candidate : candidates_) {
-    samples_[static_cast<std::size_t>(candidate.sample)].listed = step_;
+    samples_[static_cast<std::size_t>(candidate.sample)].clear = step_;
     describe(candidate.sample, candidate.place, found_[static_cast<std::size_t>(count_++)]);
   }
   any_pressed_ = false;

@@ -84,7 +84,8 @@ class BodyContacts {
     /// How deep below the anchor it is wanted [m]: where it was inside already when the contact
     /// began. Pushed out at once it would get twice that depth a step as its speed.
     double inset = 0.0;
-    std::uint64_t listed = 0;         ///< the last step in which it was among the contacts; 0: none
+    /// The last step in which it was outside or among the contacts; 0: none.
+    std::uint64_t clear = 0;
     Vector3 force = Vector3::Zero();  ///< of the last step [N], B of the object
   };
 

@@ -279,7 +279,7 @@ TEST_CASE("a rigid body needs a sound mesh like any other, and says so in one li
   run.write("m.obj", corners + faces);
   run.check_refused("m.obj: ");
   run.write("m.obj", corners + "v 1 1 1\n" + faces + "f 2 3 5\nf 3 4 5\n");
-  run.check_refused("m.obj: the surface is open at 2 edges");
+  run.check_refused("m.obj: the surface is open at 3 edges");
   run.write("m.obj", corners + "f 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n");
   run.start("c.toml -o made/model.h5");
   CHECK(run.status == 0);

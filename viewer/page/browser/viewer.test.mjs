@@ -203,7 +203,8 @@ test("keys and controls do what they say, in dark and on a phone", async (contex
   await page.keyboard.press("w");
   await page.keyboard.press("c");
   await page.keyboard.press("]");
-  assert.deepEqual(await look(), { exaggeration: 1.5, colouring: "displacement", rigid: true, follow: true });
+  assert.deepEqual(await look(), { exaggeration: 1.5, colouring: "displacement", rigid: true,
+                                      follow: true, contacts: true });
   assert.equal(await page.locator("#legend").isVisible(), true);
   const wide = await page.evaluate(() => document.documentElement.scrollWidth);
   assert.ok(wide <= 375, `the page is ${wide} pixels wide`);

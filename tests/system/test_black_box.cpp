@@ -182,6 +182,7 @@ TEST_CASE(
   const Stage stage;
   stage.write("script.csv", hold_and_circle());
   SECTION("all is well, and the bridge ends in contact") {
+    if (!kKeepsPace) stage.hold_forces();
     Server server = stage.start_server({}, {.folder = stage.path("")});
     ChildProcess bridge =
         stage.start_bridge(server, {"--duration", "1"}, {.folder = stage.path("")});

@@ -105,8 +105,10 @@ TEST_CASE("hertz: moduli and radius of pairs that are known") {
 }
 
 TEST_CASE("hertz: under the pressure both half-spaces fill the gap, and nowhere overlap") {
-  const auto [first, second] = GENERATE(values<std::pair<HertzBody, HertzBody>>(
+  const std::pair<HertzBody, HertzBody> bodies = GENERATE(values<std::pair<HertzBody, HertzBody>>(
       {{kSoft, kSoft}, {kSoft, kHard}, {kSoft, kFlat}, {kRigid, kFlat}}));
+  const HertzBody& first = bodies.first;
+  const HertzBody& second = bodies.second;
   const HertzPair pair = hertz_pair(first, second);
   const double a = hertz_contact_radius(pair, kApproach);
   const EllipticalLoad pressure{hertz_pressure(pair, kApproach, 0.0), a};
@@ -133,8 +135,10 @@ TEST_CASE("hertz: a little more approach takes 2 a E* of force") {
 }
 
 TEST_CASE("mindlin: what sticks moves as one, by the displacement of the closed form") {
-  const auto [first, second] = GENERATE(
+  const std::pair<HertzBody, HertzBody> bodies = GENERATE(
       values<std::pair<HertzBody, HertzBody>>({{kSoft, kSoft}, {kHard, kHard}, {kSoft, kHard}}));
+  const HertzBody& first = bodies.first;
+  const HertzBody& second = bodies.second;
   const double share = GENERATE(0.05, 0.5, 0.9, 0.999);
   const MindlinContact contact{hertz_pair(first, second), kApproach, 0.4};
   const double pushed = share * contact.most_force();

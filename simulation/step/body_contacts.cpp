@@ -71,6 +71,7 @@ void BodyContacts::reset() noexcept {
   std::fill(samples_.begin(), samples_.end(), Sample{});
   count_ = 0;
   displaced_ = 0.0;
+  step_ = 1;
   any_pressed_ = false;
 }
 
@@ -112,7 +113,7 @@ bool BodyContacts::begin_on_scenery(const Vector3& from, const Vector3& to,
                                     const Vector3& start, Sample& state) noexcept {
   const std::optional<SceneryHit> entry = first_crossing(*scenery_, from, to);
   if (!entry || entry->normal.dot(direction) > kFacing) {
-    if (closest(*scenery_, x).signed_distance > 0.0) state.clear = step_;
+    if (closest(*scenery_, x).signed_distance > 0.0) state.mark_outside(step_);
     return false;
   }
   const SceneryHit hit = closest(*scenery_, x);
@@ -149,7 +150,7 @@ bool BodyContacts::begin(const ContactSampling::Sample& sample, const Vector3& p
   if (!hit) {
     const Vector3 there_now = nearest.position + other_displacement(nearest);
     const Vector3 normal = other_body_->sampling.normal(nearest);
-    if ((y - there_now).dot(normal) > 0.0) state.clear = step_;
+    if ((y - there_now).dot(normal) > 0.0) state.mark_outside(step_);
     return false;
   }
   state.anchor = {hit->triangle, hit->point,
@@ -158,8 +159,9 @@ bool BodyContacts::begin(const ContactSampling::Sample& sample, const Vector3& p
   if (state.normal.dot(direction) > kFacing) return false;
   const Vector3 there_now = state.anchor.position + other_displacement(state.anchor);
   state.offset = sideways(y - there_now, state.normal);
-  if (state.clear + 1 != step_)
+  if (state.clear + 1 != step_) {
     state.inset = std::max(0.0, (there_now - y_start).dot(state.normal));
+  }
   return true;
 }
 
@@ -203,14 +205,14 @@ int BodyContacts::find() noexcept {
       const double way = (x - at_start(motion, shape.place.position)).norm();
       if (other_body_ == nullptr) {
         if (closest(*scenery_, x).signed_distance > margin + way) {
-          state.clear = step_;
+          state.mark_outside(step_);
           continue;
         }
       } else {
         const Vector3 y = other_body_->motion.to_body(x);
         const double reach = margin + way;
         if (box.squaredExteriorDistance(y) > reach * reach) {
-          state.clear = step_;
+          state.mark_outside(step_);
           continue;
         }
       }

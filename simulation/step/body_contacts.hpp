@@ -87,6 +87,12 @@ class BodyContacts {
     /// The last step in which it was outside or among the contacts; 0: none.
     std::uint64_t clear = 0;
     Vector3 force = Vector3::Zero();  ///< of the last step [N], B of the object
+
+    /// It was seen outside in this step: what comes from there has no inset.
+    void mark_outside(std::uint64_t step) noexcept {
+      clear = step;
+      inset = 0.0;
+    }
   };
 
   bool near() noexcept;

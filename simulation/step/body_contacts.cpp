@@ -16,8 +16,12 @@ constexpr double kReachFading = 0.99;
 constexpr double kDepth = 0.5;
 // Surfaces touch where their outward normals point at each other: cosine of their angle at most.
 constexpr double kFacing = -0.3;
-// In which a sample that was inside when its contact began comes out [s].
+// In which a sample that was inside when its contact began comes out, and one that yields comes to
+// its anchor [s].
 constexpr double kInsetTime = 0.05;
+// A sample that comes back to its last anchor, as near as kNearBody sideways, after at most so many
+// steps without force is bound to that anchor again.
+constexpr std::uint64_t kBounceSteps = 3;
 
 double ball_radius(const RestSurface& rest) noexcept {
   double largest = 0.0;
@@ -165,6 +169,23 @@ bool BodyContacts::begin(const ContactSampling::Sample& sample, const Vector3& p
   return true;
 }
 
+// A bounce that the step does not resolve. With a new anchor friction would not know the way that
+// the sample slips in it, and a body that rests could go on so for ever.
+// @param before what begin() has found `state` as
+void BodyContacts::keep_anchor(const Sample& before, const Vector3& place, Sample& state) noexcept {
+  if (before.pressed == 0 || before.pressed + kBounceSteps < step_) return;
+  Vector3 way = body_.motion.to_world(place) - before.anchor_W;
+  if (other_body_ != nullptr) {
+    way = other_body_->motion.to_body(body_.motion.to_world(place)) - before.anchor.position -
+          other_displacement(before.anchor) - before.offset;
+  }
+  if (sideways(way, before.normal).norm() > kNearBody) return;
+  state.anchor = before.anchor;
+  state.offset = before.offset;
+  state.anchor_W = before.anchor_W;
+  state.normal = before.normal;
+}
+
 void BodyContacts::describe(int sample, const Vector3& place, Contact& contact) noexcept {
   const Sample& state = samples_[static_cast<std::size_t>(sample)];
   const ContactSampling::Sample& shape = body_.sampling.samples()[static_cast<std::size_t>(sample)];
@@ -218,7 +239,11 @@ int BodyContacts::find() noexcept {
       }
     }
     const Vector3 place = displaced_place(shape);
-    if (!pressed && !begin(shape, place, state)) continue;
+    if (!pressed) {
+      const Sample before = state;
+      if (!begin(shape, place, state)) continue;
+      keep_anchor(before, place, state);
+    }
     candidates_.push_back({i, pressed, 0.0, place});
   }
   for (Candidate& candidate : candidates_) {
@@ -254,14 +279,15 @@ void BodyContacts::pose(int i, const Friction& friction,
   constraint.force = body_.motion.halfway * state.force;
 }
 
-void BodyContacts::update(int i, const ContactConstraint& solved) noexcept {
+void BodyContacts::update(int i, const ContactConstraint& solved, const Vector3& yielded) noexcept {
   const Contact& contact = found_[static_cast<std::size_t>(i)];
   Sample& state = samples_[static_cast<std::size_t>(contact.sample)];
   const bool pressed = solved.mode != ContactMode::kOpen;
   const bool slipping = solved.mode == ContactMode::kSlipping;
   state.contact.begin(pressed ? ContactState::kTouching : ContactState::kFree, slipping);
   state.force = body_.motion.halfway.conjugate() * solved.force;
-  state.inset *= inset_left_;
+  state.inset = inset_left_ * state.inset - (1.0 - inset_left_) * yielded.dot(contact.normal);
+  if (pressed) state.pressed = step_;
   any_pressed_ = any_pressed_ || pressed;
   if (!slipping) return;
   if (other_body_ == nullptr) {

@@ -61,7 +61,8 @@ class BodyContacts {
   /// Writes contact i of the step as a constraint on the object, in W.
   void pose(int i, const Friction& friction, ContactConstraint& constraint) const noexcept;
   /// After the solution of its constraint: the anchor slips, the force is kept for the next start.
-  void update(int i, const ContactConstraint& solved) noexcept;
+  /// @param yielded from where it is to where it was wanted [m], W
+  void update(int i, const ContactConstraint& solved, const Vector3& yielded) noexcept;
   /// What became of contact i. Its position is left to the caller, who knows the motion.
   void write(int i, const ContactConstraint& solved, BodyContactRecord& record) const noexcept;
 
@@ -82,10 +83,12 @@ class BodyContacts {
     Vector3 anchor_W = Vector3::Zero();  ///< on scenery [m]
     Vector3 normal = Vector3::Zero();    ///< outward of the other, unit, B of the other or W
     /// How deep below the anchor it is wanted [m]: where it was inside already when the contact
-    /// began. Pushed out at once it would get twice that depth a step as its speed.
+    /// began (pushed out at once it would get twice that depth a step as its speed), less what it
+    /// yields, so that it comes to its anchor.
     double inset = 0.0;
     /// The last step in which it was outside or among the contacts; 0: none.
     std::uint64_t clear = 0;
+    std::uint64_t pressed = 0;        ///< the last step in which a force acted on it; 0: none
     Vector3 force = Vector3::Zero();  ///< of the last step [N], B of the object
 
     /// It was seen outside in this step: what comes from there has no inset.
@@ -101,6 +104,7 @@ class BodyContacts {
   bool begin(const ContactSampling::Sample& sample, const Vector3& place, Sample& state) noexcept;
   bool begin_on_scenery(const Vector3& from, const Vector3& to, const Vector3& direction,
                         const Vector3& x, const Vector3& start, Sample& state) noexcept;
+  void keep_anchor(const Sample& before, const Vector3& place, Sample& state) noexcept;
   void describe(int sample, const Vector3& place, Contact& contact) noexcept;
 
   int object_;

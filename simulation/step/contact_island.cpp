@@ -87,7 +87,8 @@ void ContactIsland::add_sides(const SoftObject& object, SideCompliance& complian
 }
 
 // The own contacts' solution, and what the contacts between bodies do to them.
-void ContactIsland::take_back(SoftObject& object, int first) noexcept {
+void ContactIsland::take_back(SoftObject& object, int first, std::span<IslandContact> contacts,
+                              int first_between) noexcept {
   const Matrix3 to_body = object.motion().halfway.toRotationMatrix().transpose();
   const RigidMobility mobility = object.rigid().mobility();
   Vector3 push = Vector3::Zero();
@@ -96,6 +97,11 @@ void ContactIsland::take_back(SoftObject& object, int first) noexcept {
     const Vector3 force = side.sign * (to_body * problem_.contact(side.row).force);
     push += force;
     turn += side.arm.cross(force);
+  }
+  for (const Side& side : sides_) {
+    const Vector3 moved = mobility.translation * push - side.arm.cross(mobility.rotation * turn);
+    contacts[static_cast<std::size_t>(side.row - first_between)].yielded +=
+        kYielding * side.sign * (to_body.transpose() * moved);
   }
   ContactProblem& own = object.problem();
   for (int a = 0; a < own.count(); ++a) {
@@ -152,7 +158,8 @@ ContactSolution ContactIsland::solve(std::span<SoftObject* const> objects,
   const ContactSolution solution = solver_.solve(problem_, kLimits);
   for (const int member : members) {
     collect_sides(member, contacts, first_between);
-    take_back(*objects[static_cast<std::size_t>(member)], first_[static_cast<std::size_t>(member)]);
+    take_back(*objects[static_cast<std::size_t>(member)], first_[static_cast<std::size_t>(member)],
+              contacts, first_between);
   }
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     contacts[c].solved = problem_.contact(first_between + static_cast<int>(c));

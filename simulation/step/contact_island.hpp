@@ -17,7 +17,8 @@ struct IslandContact {
   int i = 0;              ///< number in the pair
   std::uint64_t key = 0;  ///< of pair and sample: the same in the next step, increasing in a list
   Friction friction;
-  ContactConstraint solved = {};  ///< written, W
+  ContactConstraint solved = {};      ///< written, W
+  Vector3 yielded = Vector3::Zero();  ///< written: what of the gap it leaves [m], W
 };
 
 /// The contact problem of objects that touch each other, or scenery, in one step: one for the
@@ -47,7 +48,8 @@ class ContactIsland {
   };
   void add_own(SoftObject& object, int first) noexcept;
   void add_sides(const SoftObject& object, SideCompliance& compliance) noexcept;
-  void take_back(SoftObject& object, int first) noexcept;
+  void take_back(SoftObject& object, int first, std::span<IslandContact> contacts,
+                 int first_between) noexcept;
   void collect_sides(int object, std::span<const IslandContact> contacts, int first) noexcept;
 
   ContactProblem problem_;

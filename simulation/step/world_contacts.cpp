@@ -248,7 +248,9 @@ void WorldContacts::solve(StepRecord& record) noexcept {
   }
   for (std::size_t i = 0; i < objects_.size(); ++i) objects_[i]->write(record.object[i]);
   apply(solved_, record);
-  for (const IslandContact& contact : solved_) contact.pair->update(contact.i, contact.solved);
+  for (const IslandContact& contact : solved_) {
+    contact.pair->update(contact.i, contact.solved, contact.yielded);
+  }
 }
 
 }  // namespace irdm

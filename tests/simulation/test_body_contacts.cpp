@@ -77,7 +77,8 @@ TEST_CASE("bodies: a soft cube on a soft cube slips from the friction angle on",
   for (const double off : {-0.5, 0.5}) {
     const double tilt = std::atan(mu) + off * std::numbers::pi / 180.0;
     SimulationConfig config = stacked(2, {.cells = 4, .youngs_modulus = 2e5}, {mu, mu});
-    config.scenery[0].friction = {2.0, 2.0};
+    // Above about 1.5 a patch at an edge has no solution that sweeps find: mu W_nt > W_nn.
+    config.scenery[0].friction = {1.0, 1.0};
     Simulation simulation(config);
     const auto record = std::make_unique<StepRecord>();
     const auto way = [&](int steps) {

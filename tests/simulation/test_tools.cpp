@@ -234,9 +234,30 @@ TEST_CASE(
   CHECK(stylus.contact == ContactState::kFree);
   CHECK(stylus.object == -1);
   CHECK(off < 1e-9);
-  // It does not come to rest: its velocity changes sign each step, by 0.1 mm/s on the soft cube.
-  CHECK(off_at_rest < 0.01 * stylus.force.y());
-  CHECK(moment_off < 0.1 * stylus.torque.norm());
+  CHECK(off_at_rest < 1e-4 * stylus.force.y());
+  CHECK(moment_off < 1e-3 * stylus.torque.norm());
+}
+
+TEST_CASE("tool: pressed on a plane it comes to it, however light it is") {
+  SimulationConfig config = led_rod();
+  config.scenery.resize(1);
+  config.scenery[0].shape = PlaneShape{};
+  config.scenery[0].friction = {0.5, 0.5};
+  config.objects[0].position.y() += 0.005;
+  Simulation simulation(config);
+  StepRecord record;
+  double deepest = 0.0;
+  for (int k = 0; k < 1500; ++k) {
+    const StylusCommand command = lead_to(Vector3(0, 0.005 - 0.02 * std::min(1.0, k / 500.0), 0));
+    simulation.step({&command, 1}, record);
+    deepest = std::max(deepest, -tip_of(record.object[0]).y());
+  }
+  const double height = tip_of(record.object[0]).y();
+  INFO("pressed with " << record.stylus[0].force.y() << " N it ends at " << height
+                       << " m, at the deepest " << -deepest << " m");
+  CHECK(record.stylus[0].force.y() > 1.5);
+  CHECK(std::abs(height) < 1e-6);
+  CHECK(deepest < 1e-5);
 }
 
 TEST_CASE("tool: what it stores is never more than what its hand put in, poked at random") {
@@ -293,7 +314,8 @@ TEST_CASE("tool: what it stores is never more than what its hand put in, poked a
             << record->object[0].velocity.norm() << " m/s");
   CHECK(touching > 2000);
   CHECK(worst < 0.01 * largest);
-  CHECK(record->object[0].velocity.norm() < 2e-3);  // alternately, see above
+  // On 1e4 N/m^2 it goes on rocking between two of its samples, which slip in turns.
+  CHECK(record->object[0].velocity.norm() < (youngs_modulus == 1e4 ? 2e-3 : 1e-5));
 }
 
 TEST_CASE("tool: a stylus that appears far from it, or is reset, feels no jump") {

@@ -7,6 +7,8 @@
 #include <numeric>
 #include <utility>
 
+#include "simulation/contact/normal_cone.hpp"
+
 namespace irdm {
 namespace {
 
@@ -33,6 +35,8 @@ ContactSampling::ContactSampling(const RestSurface& surface, int most) : surface
   first_.push_back(0);
   for (int s = 0; s < static_cast<int>(sites_.size()); ++s) add_row({s});
   make_samples(choose(most));
+  find_creases();
+  add_edge_samples();
 }
 
 // Of each triangle.
@@ -138,8 +142,9 @@ void ContactSampling::make_samples(const std::vector<int>& chosen) {
       moment += site.moment;
     }
     sample.normal.normalize();
-    sample.row = sites.front();
+    sample.row = sample.site = sites.front();
     if (sites.size() > 1) {
+      sample.site = -1;
       sample.row = row_count();
       add_row(sites);
     }
@@ -148,6 +153,99 @@ void ContactSampling::make_samples(const std::vector<int>& chosen) {
     samples_.push_back(sample);
   }
   spacing_ = std::sqrt(total / static_cast<double>(samples_.size()));
+}
+
+// Of each node that lies on several parts: convex, where each part lies behind the others.
+void ContactSampling::find_creases() {
+  std::map<int, std::vector<int>> of_node;
+  for (int s = 0; s < static_cast<int>(sites_.size()); ++s) {
+    of_node[sites_[static_cast<std::size_t>(s)].node].push_back(s);
+  }
+  for (const auto& [node, here] : of_node) {
+    const Vector3& x = surface_.node(node);
+    bool convex = here.size() > 1;
+    for (const int s : here) {
+      const Site& site = sites_[static_cast<std::size_t>(s)];
+      for (const int t : here) {
+        const Vector3& normal = sites_[static_cast<std::size_t>(t)].normal;
+        convex = convex && (s == t || (site.moment / site.area - x).dot(normal) < 0.0);
+      }
+    }
+    if (!convex) continue;
+    const auto first = static_cast<int>(crease_sites_.size());
+    for (const int s : here) {
+      Site& site = sites_[static_cast<std::size_t>(s)];
+      site.first_at_node = first;
+      site.count_at_node = static_cast<int>(here.size());
+      crease_sites_.push_back(s);
+      crease_normals_.push_back(site.normal);
+    }
+  }
+}
+
+void ContactSampling::add_edge_samples() {
+  first_edge_ = static_cast<int>(samples_.size());
+  for (std::size_t i = 0; i < crease_sites_.size();) {
+    const int first = crease_sites_[i];
+    const Site& here = sites_[static_cast<std::size_t>(first)];
+    Sample sample;
+    for (const int end = static_cast<int>(i) + here.count_at_node; static_cast<int>(i) < end; ++i) {
+      const Site& site = sites_[static_cast<std::size_t>(crease_sites_[i])];
+      sample.area += site.area;
+      sample.normal += site.normal;
+    }
+    sample.normal.normalize();
+    sample.place = surface_.closest(surface_.node(here.node));
+    sample.row = sample.site = first;
+    samples_.push_back(sample);
+  }
+}
+
+// The normal beyond the edge of a triangle that lies opposite to a corner, if that is a convex
+// crease; else 0.
+Vector3 ContactSampling::across_edge(const SurfaceLocation& at,
+                                     std::size_t opposite) const noexcept {
+  const std::array<int, 3>& corner = sites(at.triangle);
+  const std::size_t j = (opposite + 1) % 3;
+  const std::size_t k = (opposite + 2) % 3;
+  const auto site = [&](int s) -> const Site& { return sites_[static_cast<std::size_t>(s)]; };
+  const Site& one = site(corner[j]);
+  const Site& two = site(corner[k]);
+  for (int a = 0; a < one.count_at_node; ++a) {
+    const Site& beyond = site(crease_sites_[static_cast<std::size_t>(one.first_at_node + a)]);
+    if (beyond.part == one.part) continue;
+    for (int b = 0; b < two.count_at_node; ++b) {
+      const Site& same = site(crease_sites_[static_cast<std::size_t>(two.first_at_node + b)]);
+      if (same.part != beyond.part) continue;
+      return (at.point.weights[j] * beyond.normal + at.point.weights[k] * same.normal).normalized();
+    }
+  }
+  return Vector3::Zero();
+}
+
+Vector3 ContactSampling::normal(const SurfaceLocation& at, const Vector3& direction,
+                                double reach) const noexcept {
+  std::array<Vector3, 4> faces{normal(at)};
+  std::size_t count = 1;
+  const TriangleCorners corners = surface_.corners(at.triangle);
+  const double twice_area = area_normal(corners).norm();
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double edge = (corners[(i + 2) % 3] - corners[(i + 1) % 3]).norm();
+    if (at.point.weights[i] * twice_area >= reach * edge) continue;
+    const Vector3 beyond = across_edge(at, i);
+    if (!beyond.isZero()) faces[count++] = beyond;
+  }
+  return nearest_in_cone({faces.data(), count}, direction);
+}
+
+std::span<const Vector3> ContactSampling::faces_near(const SurfaceLocation& at,
+                                                     double reach) const noexcept {
+  for (const int s : sites(at.triangle)) {
+    const Site& site = sites_[static_cast<std::size_t>(s)];
+    if (site.count_at_node == 0) continue;
+    if ((surface_.node(site.node) - at.position).norm() < reach) return faces_at(s);
+  }
+  return {};
 }
 
 Vector3 ContactSampling::normal(const SurfaceLocation& at) const noexcept {

@@ -36,11 +36,13 @@ Vector3 mean(const SurfacePatch& patch, const NodeValue& value) {
 /// with their areas, as finite elements load them: patches cover the surface once, and the same
 /// pressure on all of them is a uniform one. A wider patch would make the pressures of neighbours
 /// ill-determined: they then differ by a factor of two under a smooth contact.
+/// Besides, each node of a convex crease is an *edge sample*: where an edge or a corner meets a
+/// face, it touches there, and not where the areas beside it have their centroids.
 /// A contact lies between a sample of one object and a point of another, whose force goes to the
 /// sites of the point's triangle by barycentric weights. Built once, read only.
 class ContactSampling {
  public:
-  /// @param most samples, > 0; there are at least as many as smooth parts
+  /// @param most samples that are patches, > 0; there are at least as many as smooth parts
   /// @param surface must outlive this object
   ContactSampling(const RestSurface& surface, int most);
 
@@ -49,8 +51,16 @@ class ContactSampling {
     Vector3 normal = Vector3::Zero();  ///< outward, unit, B
     double area = 0.0;                 ///< [m^2]
     int row = 0;                       ///< of its patch
+    int site = -1;                     ///< its only one; -1: there are several
   };
+  /// Those that are patches of the surface come first, then edge samples.
   std::span<const Sample> samples() const noexcept { return samples_; }
+  int first_edge() const noexcept { return first_edge_; }
+  /// Outward unit normals of the smooth parts that meet at a sample's node, B; none: it has several
+  /// nodes, or one that is on no convex crease.
+  std::span<const Vector3> faces(const Sample& sample) const noexcept {
+    return sample.site < 0 ? std::span<const Vector3>() : faces_at(sample.site);
+  }
   /// Square root of the mean area of a sample [m].
   double spacing() const noexcept { return spacing_; }
 
@@ -68,6 +78,11 @@ class ContactSampling {
   }
   /// Outward unit normal that varies continuously over a smooth part, B.
   Vector3 normal(const SurfaceLocation& at) const noexcept;
+  /// The same, but nearer to a convex crease than `reach` [m] that of those between the faces which
+  /// is nearest to a direction: where something flat lies on an edge, its own normal counts.
+  Vector3 normal(const SurfaceLocation& at, const Vector3& direction, double reach) const noexcept;
+  /// Of a crease's node on the same triangle and nearer than `reach` [m]; none: there is none.
+  std::span<const Vector3> faces_near(const SurfaceLocation& at, double reach) const noexcept;
 
  private:
   struct Site {
@@ -76,7 +91,18 @@ class ContactSampling {
     double area = 0.0;
     Vector3 normal = Vector3::Zero();
     Vector3 moment = Vector3::Zero();  ///< area times centroid
+    /// Those of its node, in the order of their parts: from here on in crease_sites_; of no crease,
+    /// or of one that is not convex, count 0.
+    int first_at_node = 0;
+    int count_at_node = 0;
   };
+  std::span<const Vector3> faces_at(int site) const noexcept {
+    const Site& at = sites_[static_cast<std::size_t>(site)];
+    return {crease_normals_.data() + at.first_at_node, static_cast<std::size_t>(at.count_at_node)};
+  }
+  void find_creases();
+  void add_edge_samples();
+  Vector3 across_edge(const SurfaceLocation& at, std::size_t opposite) const noexcept;
   std::vector<int> smooth_parts() const;
   void make_sites(const std::vector<int>& parts);
   std::vector<int> choose(int most) const;
@@ -86,7 +112,10 @@ class ContactSampling {
   const RestSurface& surface_;
   std::vector<Site> sites_;
   std::vector<std::array<int, 3>> corner_sites_;  ///< of each triangle
+  std::vector<int> crease_sites_;
+  std::vector<Vector3> crease_normals_;  ///< of these
   std::vector<Sample> samples_;
+  int first_edge_ = 0;
   double spacing_ = 0.0;
   std::vector<int> first_;  ///< of each row, and one more
   std::vector<int> nodes_;

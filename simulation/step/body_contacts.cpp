@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "simulation/contact/normal_cone.hpp"
+
 namespace irdm {
 namespace {
 
@@ -16,6 +18,11 @@ constexpr double kReachFading = 0.99;
 constexpr double kDepth = 0.5;
 // Surfaces touch where their outward normals point at each other: cosine of their angle at most.
 constexpr double kFacing = -0.3;
+// An edge whose face is turned to the other's by a smaller angle than this lies flat: the samples
+// of the face touch. Cosine, 3 degrees.
+constexpr double kFlush = 0.9986;
+// An edge leads on a face whose normal is as near as this to its own ones. Cosine, 20 degrees.
+constexpr double kLeads = 0.94;
 // In which a sample that was inside when its contact began comes out, and one that yields comes to
 // its anchor [s].
 constexpr double kInsetTime = 0.05;
@@ -41,7 +48,7 @@ Vector3 at_start(const FreeMotion& motion, const Vector3& place) noexcept {
 }  // namespace
 
 BodyContacts::BodyContacts(int object, const ContactBody& body, int other,
-                           const ContactBody& other_body, double dt)
+                           const ContactBody& other_body, double dt, int first_sample)
     : object_(object),
       other_(other),
       body_(body),
@@ -50,6 +57,7 @@ BodyContacts::BodyContacts(int object, const ContactBody& body, int other,
       other_radius_(ball_radius(other_body.rest)),
       inset_left_(std::max(0.0, 1.0 - dt / kInsetTime)),
       depth_(kDepth * std::min(body.sampling.spacing(), other_body.sampling.spacing())),
+      first_sample_(first_sample),
       samples_(body.sampling.samples().size()),
       found_(kMost) {
   candidates_.reserve(samples_.size());
@@ -112,11 +120,44 @@ Vector3 BodyContacts::other_displacement(const SurfaceLocation& at) noexcept {
   return u;
 }
 
-bool BodyContacts::begin_on_scenery(const Vector3& from, const Vector3& to,
+// Whether a face beside an edge sample lies on the other's. @param normal of the other, B of the
+// object
+bool BodyContacts::flush(int sample, const Vector3& normal) const noexcept {
+  if (sample < body_.sampling.first_edge()) return false;
+  const std::span<const Vector3> faces =
+      body_.sampling.faces(body_.sampling.samples()[static_cast<std::size_t>(sample)]);
+  return std::any_of(faces.begin(), faces.end(),
+                     [&](const Vector3& face) { return -face.dot(normal) > kFlush; });
+}
+
+// Outward of the other where the sample touches it. An edge that meets a face takes the face's
+// normal, a patch that meets an edge its own. None: an edge that meets no face, and a patch so near
+// to a node of the other's edge that the edge sample there does what is needed (two contacts at one
+// place have no unique forces). @param outward unit, of the sample, B of the other
+std::optional<Vector3> BodyContacts::normal_at(int sample, const Vector3& outward,
+                                               const SurfaceLocation& at) const noexcept {
+  const ContactSampling& there = other_body_->sampling;
+  const Vector3 normal = there.normal(at);
+  if (-outward.dot(normal) > kFlush) return normal;
+  const std::span<const Vector3> faces =
+      body_.sampling.faces(body_.sampling.samples()[static_cast<std::size_t>(sample)]);
+  if (!faces.empty()) {
+    const Vector3 down =
+        -(body_.motion.orientation.conjugate() * (other_body_->motion.orientation * normal));
+    if (nearest_in_cone(faces, down).dot(down) > kLeads) return normal;
+    if (sample >= body_.sampling.first_edge()) return std::nullopt;
+  }
+  const std::span<const Vector3> node = there.faces_near(at, depth_);
+  if (!node.empty() && nearest_in_cone(node, -outward).dot(normal) < kFlush) return std::nullopt;
+  return there.normal(at, -outward, depth_);
+}
+
+bool BodyContacts::begin_on_scenery(int sample, const Vector3& from, const Vector3& to,
                                     const Vector3& direction, const Vector3& x,
                                     const Vector3& start, Sample& state) noexcept {
   const std::optional<SceneryHit> entry = first_crossing(*scenery_, from, to);
-  if (!entry || entry->normal.dot(direction) > kFacing) {
+  if (!entry || entry->normal.dot(direction) > kFacing ||
+      flush(sample, body_.motion.orientation.conjugate() * entry->normal)) {
     if (closest(*scenery_, x).signed_distance > 0.0) state.mark_outside(step_);
     return false;
   }
@@ -133,15 +174,16 @@ bool BodyContacts::begin_on_scenery(const Vector3& from, const Vector3& to,
 }
 
 // Sideways nothing is wanted in the step in which it begins.
-bool BodyContacts::begin(const ContactSampling::Sample& sample, const Vector3& place,
-                         Sample& state) noexcept {
+bool BodyContacts::begin(int number, const Vector3& place, Sample& state) noexcept {
+  const ContactSampling::Sample& sample =
+      body_.sampling.samples()[static_cast<std::size_t>(number)];
   const FreeMotion& motion = body_.motion;
   const Vector3 x = motion.to_world(place);
   const Vector3 outward = motion.orientation * sample.normal;
   const Vector3 start = at_start(motion, place);
   if (other_body_ == nullptr) {
-    return begin_on_scenery(start - depth_ * outward, x + kNearBody * outward, outward, x, start,
-                            state);
+    return begin_on_scenery(number, start - depth_ * outward, x + kNearBody * outward, outward, x,
+                            start, state);
   }
   const FreeMotion& there = other_body_->motion;
   const Vector3 y = there.to_body(x);
@@ -149,8 +191,12 @@ bool BodyContacts::begin(const ContactSampling::Sample& sample, const Vector3& p
   const Vector3 y_start = there.start.orientation.conjugate() * (start - there.start.position);
   const SurfaceLocation nearest = other_body_->rest.closest(y);
   const SurfaceHit near{nearest.triangle, nearest.point, nearest.position, 0.0};
-  const std::optional<SurfaceHit> hit = other_body_->surface.first_crossing(
-      y_start - depth_ * direction, y + kNearBody * direction, near);
+  const Quaternion to_own = motion.orientation.conjugate() * there.orientation;
+  std::optional<SurfaceHit> hit;
+  if (!flush(number, to_own * other_body_->sampling.normal(nearest))) {
+    hit = other_body_->surface.first_crossing(y_start - depth_ * direction,
+                                              y + kNearBody * direction, near);
+  }
   if (!hit) {
     const Vector3 there_now = nearest.position + other_displacement(nearest);
     const Vector3 normal = other_body_->sampling.normal(nearest);
@@ -159,8 +205,9 @@ bool BodyContacts::begin(const ContactSampling::Sample& sample, const Vector3& p
   }
   state.anchor = {hit->triangle, hit->point,
                   at(other_body_->rest.corners(hit->triangle), hit->point.weights)};
-  state.normal = other_body_->sampling.normal(state.anchor);
-  if (state.normal.dot(direction) > kFacing) return false;
+  const std::optional<Vector3> normal = normal_at(number, direction, state.anchor);
+  if (!normal || normal->dot(direction) > kFacing || flush(number, to_own * *normal)) return false;
+  state.normal = *normal;
   const Vector3 there_now = state.anchor.position + other_displacement(state.anchor);
   state.offset = sideways(y - there_now, state.normal);
   if (state.clear + 1 != step_) {
@@ -217,9 +264,14 @@ int BodyContacts::find() noexcept {
   const Eigen::AlignedBox3d box = other_box_;
   const double margin = kLeastReach + kReachFactor * displaced_;
   const std::span<const ContactSampling::Sample> shapes = body_.sampling.samples();
-  for (int i = 0; i < static_cast<int>(shapes.size()); ++i) {
+  const Quaternion normal_to_own =
+      other_body_ == nullptr
+          ? Quaternion(motion.orientation.conjugate())
+          : Quaternion(motion.orientation.conjugate() * other_body_->motion.orientation);
+  for (int i = first_sample_; i < static_cast<int>(shapes.size()); ++i) {
     const ContactSampling::Sample& shape = shapes[static_cast<std::size_t>(i)];
     Sample& state = samples_[static_cast<std::size_t>(i)];
+    if (state.contact.any() && flush(i, normal_to_own * state.normal)) state.contact.end();
     const bool pressed = state.contact.any();
     if (!pressed) {
       const Vector3 x = motion.to_world(shape.place.position);
@@ -241,7 +293,7 @@ int BodyContacts::find() noexcept {
     const Vector3 place = displaced_place(shape);
     if (!pressed) {
       const Sample before = state;
-      if (!begin(shape, place, state)) continue;
+      if (!begin(i, place, state)) continue;
       keep_anchor(before, place, state);
     }
     candidates_.push_back({i, pressed, 0.0, place});
@@ -303,12 +355,17 @@ void BodyContacts::update(int i, const ContactConstraint& solved, const Vector3&
   const FreeMotion& there = other_body_->motion;
   const Vector3 way = -(there.orientation.conjugate() * solved.slip);
   state.anchor = other_body_->rest.straight_on(state.anchor, way, way.norm());
-  state.normal = other_body_->sampling.normal(state.anchor);
-  state.offset = sideways(state.offset, state.normal);
+  const ContactSampling::Sample& sample =
+      body_.sampling.samples()[static_cast<std::size_t>(contact.sample)];
   const Vector3 outward =
-      there.orientation.conjugate() *
-      (body_.motion.orientation *
-       body_.sampling.samples()[static_cast<std::size_t>(contact.sample)].normal);
+      there.orientation.conjugate() * (body_.motion.orientation * sample.normal);
+  const std::optional<Vector3> normal = normal_at(contact.sample, outward, state.anchor);
+  if (!normal) {
+    state.contact.end();
+    return;
+  }
+  state.normal = *normal;
+  state.offset = sideways(state.offset, state.normal);
   if (state.normal.dot(outward) > kFacing) state.contact.end();
 }
 
@@ -330,7 +387,8 @@ void BodyContacts::write(int i, const ContactConstraint& solved,
 
 double BodyContacts::initial_depth() noexcept {
   double deepest = 0.0;
-  for (const ContactSampling::Sample& shape : body_.sampling.samples()) {
+  for (const ContactSampling::Sample& shape :
+       body_.sampling.samples().subspan(static_cast<std::size_t>(first_sample_))) {
     const Vector3 x = at_start(body_.motion, shape.place.position);
     double distance = 0.0;
     if (other_body_ == nullptr) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -46,8 +47,9 @@ class BodyContacts {
   };
 
   /// @param object, other are the numbers of objects; both bodies must outlive this
+  /// @param first_sample those before it are left to others
   BodyContacts(int object, const ContactBody& body, int other, const ContactBody& other_body,
-               double dt);
+               double dt, int first_sample = 0);
   /// @param scenery its number  @param shape must outlive this
   BodyContacts(int object, const ContactBody& body, int scenery, const SceneryConfig& shape,
                double dt);
@@ -101,9 +103,13 @@ class BodyContacts {
   bool near() noexcept;
   Vector3 displaced_place(const ContactSampling::Sample& sample) noexcept;
   Vector3 other_displacement(const SurfaceLocation& at) noexcept;
-  bool begin(const ContactSampling::Sample& sample, const Vector3& place, Sample& state) noexcept;
-  bool begin_on_scenery(const Vector3& from, const Vector3& to, const Vector3& direction,
-                        const Vector3& x, const Vector3& start, Sample& state) noexcept;
+  bool begin(int sample, const Vector3& place, Sample& state) noexcept;
+  bool begin_on_scenery(int sample, const Vector3& from, const Vector3& to,
+                        const Vector3& direction, const Vector3& x, const Vector3& start,
+                        Sample& state) noexcept;
+  std::optional<Vector3> normal_at(int sample, const Vector3& outward,
+                                   const SurfaceLocation& at) const noexcept;
+  bool flush(int sample, const Vector3& normal) const noexcept;
   void keep_anchor(const Sample& before, const Vector3& place, Sample& state) noexcept;
   void describe(int sample, const Vector3& place, Contact& contact) noexcept;
 
@@ -118,6 +124,7 @@ class BodyContacts {
   double inset_left_;              ///< share of an inset that is left after a step
   double depth_;                   ///< that a sample's way begins inside its object [m]
   double displaced_ = 0.0;         ///< how far surfaces were seen away from rest [m]
+  int first_sample_ = 0;
   std::vector<Sample> samples_;
   struct Candidate {
     int sample;

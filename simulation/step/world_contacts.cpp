@@ -82,7 +82,7 @@ WorldContacts::WorldContacts(const SimulationConfig& config,
   const auto others = static_cast<int>(objects_.size() - 1 + scenery_.size());
   island_ =
       std::make_unique<ContactIsland>(static_cast<int>(objects_.size()), capacity,
-                                      std::min(kMaxBodyContacts, others * BodyContacts::kMost));
+                                      std::min(kMaxBodyContacts, 2 * others * BodyContacts::kMost));
   members_.reserve(objects_.size());
   contacts_.reserve(kMaxBodyContacts);
   solved_.reserve(kMaxBodyContacts);
@@ -99,10 +99,12 @@ const WorldContacts::Shape& WorldContacts::shape_of(SoftObject& object, int samp
   return shapes_.back();
 }
 
-// Of two objects the one with the finer sampling gives the samples.
+// Of two objects the one with the finer sampling gives the patches; both give their edges.
 void WorldContacts::add_pairs(const SimulationConfig& config) {
   const int count = static_cast<int>(objects_.size());
   const double dt = objects_.front()->model().dt;
+  // Each made in its place: a copy has no memory in reserve.
+  pairs_.reserve(objects_.size() * (objects_.size() - 1 + config.scenery.size()));
   for (int a = 0; a < count; ++a) {
     const ContactBody& one = bodies_[static_cast<std::size_t>(a)];
     for (int b = a + 1; b < count; ++b) {
@@ -113,11 +115,9 @@ void WorldContacts::add_pairs(const SimulationConfig& config) {
         continue;
       }
       check_masses(config, a, b);
-      if (two.sampling.spacing() < one.sampling.spacing()) {
-        pairs_.emplace_back(b, two, a, one, dt);
-      } else {
-        pairs_.emplace_back(a, one, b, two, dt);
-      }
+      const bool second = two.sampling.spacing() < one.sampling.spacing();
+      pairs_.emplace_back(a, one, b, two, dt, second ? one.sampling.first_edge() : 0);
+      pairs_.emplace_back(b, two, a, one, dt, second ? 0 : two.sampling.first_edge());
     }
     for (std::size_t s = 0; s < config.scenery.size(); ++s) {
       if (!objects_[static_cast<std::size_t>(a)]->rigid().moves()) continue;

@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <stdexcept>
+#include <vector>
 
 #include "precompute/fem/assembly.hpp"
 #include "precompute/fem/mass_properties.hpp"
@@ -238,8 +239,9 @@ FemContact fem_contact(const FemContactBody& lower, const FemContactBody& upper,
   found.gap.resize(static_cast<Eigen::Index>(contacts.size()));
   std::vector<bool> closed = lowest(contacts);
   Equilibrium at;
-  for (bool settled = false; !settled; ++found.rounds) {
-    if (found.rounds == kMostRounds) throw std::runtime_error("contact does not settle");
+  int rounds = 0;
+  for (bool settled = false; !settled; ++rounds) {
+    if (rounds == kMostRounds) throw std::runtime_error("contact does not settle");
     at = equilibrium(C, G, gap, press, rows_of(closed, press.sticks));
     const Eigen::VectorXd left = gap + C * at.force + G * at.motion;
     settled = true;
@@ -260,7 +262,6 @@ FemContact fem_contact(const FemContactBody& lower, const FemContactBody& upper,
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     found.area(static_cast<Eigen::Index>(i)) =
         areas[static_cast<std::size_t>(contacts[i].upper.front().node)];
-    found.node.push_back(contacts[i].upper.front().node);
     found.position.row(static_cast<Eigen::Index>(i)) =
         (upper.position + contacts[i].arm).transpose();
   }

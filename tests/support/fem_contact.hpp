@@ -2,7 +2,6 @@
 
 #include <Eigen/Dense>
 #include <array>
-#include <vector>
 
 #include "common/geometry.hpp"
 #include "common/model/model.hpp"
@@ -33,13 +32,11 @@ struct FemPress {
 
 /// The solution: nodes of the upper body that face the lower one, and what acts on them.
 struct FemContact {
-  std::vector<int> node;  ///< of the upper mesh
   Points position;        ///< at rest [m], W
   Points force;           ///< of the lower on the upper body [N], W; 0: open
   Eigen::VectorXd gap;    ///< between the nodes and the face below them [m]
   Eigen::VectorXd area;   ///< of the upper surface about them that faces down, horizontal [m^2]
   double approach = 0.0;  ///< of the centres of mass, along y [m]
-  int rounds = 0;         ///< of the active set
 };
 
 /// Node to surface: a node of the upper body's surface that is above the lower body's face of

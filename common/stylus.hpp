@@ -31,6 +31,7 @@ struct StylusForce {
   ContactState contact = ContactState::kFree;
   Vector3 force = Vector3::Zero();  ///< on the stylus [N], W
   Vector3 proxy = Vector3::Zero();  ///< the god-object: where the tip is held by the surface [m], W
+  Vector3 torque = Vector3::Zero();  ///< on the stylus about its tip [N m], W; 0 without a tool
 };
 
 }  // namespace irdm

@@ -116,7 +116,7 @@ constexpr std::size_t kChecked = kHeaderSize - kChecksumSize;  // of the header,
 FrameBytes encode_frame(const Message& message, std::uint32_t session, std::uint64_t sequence,
                         std::int64_t send_time_ns) {
   const MessageType type = type_of(message);
-  const std::size_t size = payload_size(type).value();
+  const std::size_t size = payload_size(message);
   FrameBytes frame;
   frame.size = kHeaderSize + size;
   const std::span<std::uint8_t> header(frame.storage.data(), kHeaderSize);
@@ -169,7 +169,9 @@ void FrameReader::check_header() {
   if (!expected) {
     throw ProtocolError(ProtocolFault::kUnknownType, "message type " + type + " is unknown");
   }
-  if (header_.payload_size != *expected) {
+  const bool with_torque =
+      header_.type == MessageType::kForce && header_.payload_size == kForceWithTorqueSize;
+  if (header_.payload_size != *expected && !with_torque) {
     throw ProtocolError(ProtocolFault::kWrongLength,
                         "a message of type " + type + " with a payload of " + length + " bytes");
   }

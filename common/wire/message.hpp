@@ -54,6 +54,7 @@ inline constexpr std::uint32_t kCapabilityDatagrams = 1u << 4;  ///< type 20
 /// Contact models in lockstep too: the bridge simulates the link.
 inline constexpr std::uint32_t kCapabilitySimulatedLink = 1u << 5;
 inline constexpr std::uint32_t kCapabilityContactModel = 1u << 6;  ///< types 16 and 17
+inline constexpr std::uint32_t kCapabilityTorque = 1u << 7;        ///< type 6 carries the torque
 
 /// What goes before every payload. The CRC32C that ends it is the codec's business.
 struct Header {
@@ -120,10 +121,12 @@ struct SampleMessage {
   StylusSample sample = {};
 };
 
-/// Server to bridge: what step force_step answers to one sample. Force and proxy are finite.
+/// Server to bridge: what step force_step answers to one sample. Force, proxy and torque are
+/// finite.
 struct ForceMessage {
   std::uint16_t stylus = 0;  ///< server's slot
   StylusForce force = {};
+  bool with_torque = false;  ///< exactly where both sides are capable of it; else torque is 0
 };
 
 /// Server to bridge, after each step, where both sides are capable of it and not in lockstep: how

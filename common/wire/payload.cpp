@@ -150,10 +150,12 @@ void encode(const ForceMessage& message, ByteWriter& out) {
   out.put(message.force.sample_time_ns);
   out.put(message.force.force);
   out.put(message.force.proxy);
+  if (message.with_torque) out.put(message.force.torque);
 }
 
-ForceMessage decode_force(ByteReader& in) {
+ForceMessage decode_force(ByteReader& in, bool with_torque) {
   ForceMessage message;
+  message.with_torque = with_torque;
   message.stylus = in.get<std::uint16_t>();
   const auto contact = in.get<std::uint8_t>();
   if (contact > 2) bad_value("the contact state is " + std::to_string(contact));
@@ -164,8 +166,10 @@ ForceMessage decode_force(ByteReader& in) {
   message.force.sample_time_ns = in.get_signed();
   message.force.force = in.get_vector();
   message.force.proxy = in.get_vector();
+  if (with_torque) message.force.torque = in.get_vector();
   check_finite(message.force.force.allFinite(), "the force");
   check_finite(message.force.proxy.allFinite(), "the proxy");
+  check_finite(message.force.torque.allFinite(), "the torque");
   return message;
 }
 
@@ -280,6 +284,12 @@ std::optional<std::size_t> payload_size(MessageType type) noexcept {
   return std::nullopt;
 }
 
+std::size_t payload_size(const Message& message) noexcept {
+  const auto* force = std::get_if<ForceMessage>(&message);
+  if (force != nullptr && force->with_torque) return kForceWithTorqueSize;
+  return *payload_size(type_of(message));
+}
+
 void encode_payload(const Message& message, std::span<std::uint8_t> payload) {
   ByteWriter out(payload);
   std::visit([&out](const auto& each) { encode(each, out); }, message);
@@ -299,7 +309,7 @@ Message decode_payload(MessageType type, std::span<const std::uint8_t> payload) 
     case MessageType::kSample:
       return decode_sample(in);
     case MessageType::kForce:
-      return decode_force(in);
+      return decode_force(in, payload.size() == kForceWithTorqueSize);
     case MessageType::kReport:
       return decode_report(in);
     case MessageType::kContactModel:

@@ -15,10 +15,14 @@ namespace irdm::wire {
 inline constexpr std::size_t kLargestPayload = 4080;
 
 MessageType type_of(const Message& message) noexcept;
-/// The fixed size of a type's payload; nothing for a type that this version does not know.
+/// The size of a type's payload, of a Force without torque; nothing for a type that this version
+/// does not know.
 std::optional<std::size_t> payload_size(MessageType type) noexcept;
+/// A Force that carries the torque.
+inline constexpr std::size_t kForceWithTorqueSize = 104;
+std::size_t payload_size(const Message& message) noexcept;
 
-/// Fills `payload`, which has the size of the message's type.
+/// Fills `payload`, which has the message's size.
 void encode_payload(const Message& message, std::span<std::uint8_t> payload);
 /// Reads a payload of the right size. Throws ProtocolError for values outside their range.
 Message decode_payload(MessageType type, std::span<const std::uint8_t> payload);

@@ -18,8 +18,8 @@ StylusCommand to_command(const StylusInput& input) noexcept {
 
 StylusForce to_answer(const StepRecord& record, const StylusRecord& stylus,
                       const StylusSample& sample) noexcept {
-  return {record.force_step, sample.sequence, sample.time_ns,
-          stylus.contact,    stylus.force,    stylus.proxy};
+  return {record.force_step, sample.sequence, sample.time_ns, stylus.contact,
+          stylus.force,      stylus.proxy,    stylus.torque};
 }
 
 }  // namespace

@@ -113,6 +113,9 @@ void write_wire_frames(const Seeds& seeds) {
                 single);
   }
   seeds.write("wire_frames", "all", stream);
+  seeds.write(
+      "wire_frames", "type_6_torque",
+      framed(wire::ForceMessage{.force = {.torque = Vector3(0, 0.1, 0)}, .with_torque = true}));
   SeedBytes flags = framed(wire::ContactModelMessage{0, wall()});
   flags[1 + wire::kHeaderSize + 3] = 0xFF;
   seeds.write("wire_frames", "unknown_flags", flags);

@@ -155,6 +155,34 @@ TEST_CASE("force has its documented bytes") {
   CHECK(back.force.contact == ContactState::kHeld);
   CHECK(back.force.force == message.force.force);
   CHECK(back.force.proxy == message.force.proxy);
+  CHECK_FALSE(back.with_torque);
+  CHECK(back.force.torque.isZero(0.0));
+}
+
+TEST_CASE("force with torque has its documented bytes, and without it no torque at all") {
+  ForceMessage message{.stylus = 2,
+                       .force = {.force_step = 9,
+                                 .sample_sequence = 8,
+                                 .sample_time_ns = 6,
+                                 .contact = ContactState::kHeld,
+                                 .force = Vector3(1.0, -2.0, 0.5),
+                                 .torque = Vector3(-2.0, 0.5, 1.0)},
+                       .with_torque = true};
+  std::string zeros;
+  for (int i = 0; i < 24; ++i) zeros += "00 ";
+  CHECK(encoded(message) ==
+        golden("06 00 68 00 00 00", "28 cb 2f 06 ",
+               "02 00 02 00 00 00 00 00  09 00 00 00 00 00 00 00  08 00 00 00 00 00 00 00 "
+               "06 00 00 00 00 00 00 00 " +
+                   kThreeNumbers + zeros +
+                   "00 00 00 00 00 00 00 c0 00 00 00 00 00 00 e0 3f 00 00 00 00 00 00 f0 3f"));
+  const ForceMessage back = round_trip(message);
+  CHECK(back.with_torque);
+  CHECK(back.force.force == message.force.force);
+  CHECK(back.force.torque == message.force.torque);
+  message.with_torque = false;
+  CHECK(encoded(message).size() == kHeaderSize + 80);
+  CHECK(round_trip(message).force.torque.isZero(0.0));
 }
 
 TEST_CASE("report has its documented bytes") {

@@ -166,6 +166,11 @@ TEST_CASE("reader refuses each number of a force that is not finite, and an unkn
     CHECK(fault_of(with_value(force, at, bits(kInfinity), 8)) == ProtocolFault::kNotFinite);
   }
   CHECK(fault_of(with_value(force, 2, 3, 1)) == ProtocolFault::kBadValue);
+  const Bytes with_torque = encoded_bytes(ForceMessage{.with_torque = true});
+  for (std::size_t at = 32; at < 104; at += 8) {
+    CHECK(fault_of(with_value(with_torque, at, bits(kNan), 8)) == ProtocolFault::kNotFinite);
+    CHECK(fault_of(with_value(with_torque, at, bits(-kInfinity), 8)) == ProtocolFault::kNotFinite);
+  }
 }
 
 TEST_CASE("reserved bytes are not looked at") {

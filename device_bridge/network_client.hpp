@@ -45,6 +45,7 @@ struct ClientSettings {
   bool lockstep = true;              ///< whether all devices can run on the simulated clock
   bool predict = true;               ///< whether it wants to solve the contact itself
   bool simulated_link = false;       ///< whether it simulates the link; lockstep only
+  bool torque = false;               ///< whether it wants torques with the forces
   bool udp = false;                  ///< whether it wants the stream by datagrams
   int connect_timeout_ms = 75;       ///< of one attempt
   int back_off_ms = 20;              ///< from the begin of one attempt to the next, at least

@@ -112,6 +112,7 @@ void ServerSession::start(std::function<void(const SessionEnd&)> ended) {
   });
   std::uint32_t capabilities = wire::kCapabilityReport | wire::kCapabilityStatus;
   if (shared_.settings.predict) capabilities |= wire::kCapabilityContactModel;
+  if (shared_.settings.torque) capabilities |= wire::kCapabilityTorque;
   if (shared_.settings.udp) capabilities |= wire::kCapabilityDatagrams;
   if (shared_.settings.simulated_link) capabilities |= wire::kCapabilitySimulatedLink;
   connection_->send(
@@ -168,6 +169,7 @@ void ServerSession::welcomed(const wire::Welcome& welcome) {
   end_.lockstep = welcome.lockstep;
   connection_->set_session(welcome.session);
   first_stylus_ = welcome.first_stylus;
+  torques_ = shared_.settings.torque && (welcome.capabilities & wire::kCapabilityTorque) != 0;
   reports_ = (welcome.capabilities & wire::kCapabilityReport) != 0;
   const bool datagrams = (welcome.capabilities & wire::kCapabilityDatagrams) != 0;
   wants_datagrams_ = shared_.settings.udp && datagrams && !welcome.lockstep;
@@ -238,6 +240,9 @@ void ServerSession::take(const wire::ContactModelMessage& message) {
 }
 
 void ServerSession::take(const wire::ForceMessage& message) {
+  if (message.with_torque != torques_) {
+    unexpected(torques_ ? "a force without torque" : "a torque that was not asked for");
+  }
   const std::size_t stylus = ours(message.stylus);
   const std::int64_t now_ns = monotonic_ns();
   const std::optional<std::uint64_t> before = intakes_[stylus].answered();

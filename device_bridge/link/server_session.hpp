@@ -121,6 +121,7 @@ class ServerSession {
   std::uint16_t first_stylus_ = 0;
   bool wants_datagrams_ = false;  ///< asked for, and the server has them
   std::unique_ptr<ServerDatagrams> datagrams_;
+  bool torques_ = false;  ///< asked for, and the server has them
   bool reports_ = false;  ///< the server takes them
   std::int64_t next_report_ns_ = 0;
   std::vector<ForceReceiver> intakes_;       ///< one a stylus, from Welcome on

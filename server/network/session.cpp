@@ -94,7 +94,7 @@ void Session::greet(const wire::Hello& hello) {
     return refuse(wire::RefuseReason::kTooManyStyluses,
                   "the server has " + std::to_string(settings.styluses) + " styluses");
   }
-  std::uint32_t capabilities = wire::kCapabilityReport;
+  std::uint32_t capabilities = wire::kCapabilityReport | wire::kCapabilityTorque;
   const bool simulated_link = (hello.capabilities & wire::kCapabilitySimulatedLink) != 0;
   if (settings.contact_models && (!settings.lockstep || simulated_link)) {
     capabilities |= wire::kCapabilityContactModel;
@@ -105,6 +105,7 @@ void Session::greet(const wire::Hello& hello) {
   capabilities &= hello.capabilities;
   predicts_ = (capabilities & wire::kCapabilityContactModel) != 0;
   wants_status_ = (capabilities & wire::kCapabilityStatus) != 0;
+  wants_torque_ = (capabilities & wire::kCapabilityTorque) != 0;
   std::optional<int> first = shared_.slots.claim(hello.styluses, predicts_);
   if (!first) {
     shared_.make_room();
@@ -226,16 +227,17 @@ void Session::send_forces() {
   for (int slot = first_; slot < first_ + count_; ++slot) {
     std::optional<StylusForce> force = shared_.slots.take_force(slot);
     if (!force) continue;
-    if (!force->force.allFinite() || !force->proxy.allFinite()) {
+    if (!force->force.allFinite() || !force->proxy.allFinite() || !force->torque.allFinite()) {
       if (shared_.stats.forces_not_finite.fetch_add(1) == 0) {
         spdlog::error("step {}: the force is not finite; zero is sent", force->force_step);
       }
       force->force.setZero();
       force->proxy.setZero();
+      force->torque.setZero();
     }
-    const bool replaced =
-        connection_->send_newest(static_cast<std::size_t>(slot - first_),
-                                 wire::ForceMessage{static_cast<std::uint16_t>(slot), *force});
+    const bool replaced = connection_->send_newest(
+        static_cast<std::size_t>(slot - first_),
+        wire::ForceMessage{static_cast<std::uint16_t>(slot), *force, wants_torque_});
     if (replaced) shared_.stats.forces_replaced.fetch_add(1);
     shared_.stats.forces.fetch_add(1);
   }

@@ -84,6 +84,7 @@ class Session {
   bool over_ = false;
   bool left_ = false;  ///< its bridge said goodbye
   bool wants_status_ = false;
+  bool wants_torque_ = false;
   int first_ = 0;  ///< its slots
   int count_ = 0;
 };

@@ -92,6 +92,43 @@ TEST_CASE("client says hello, sends samples of its slot and takes their forces")
   CHECK(server.input().force.force == Vector3(1, 0, 0));
 }
 
+TEST_CASE("client takes torques where it asked for them and the server has them, else none") {
+  for (const bool wanted : {true, false}) {
+    for (const bool offered : {true, false}) {
+      for (const bool sent : {true, false}) {
+        CAPTURE(wanted, offered, sent);
+        ScriptedServer server({.torque = wanted});
+        RawPeer peer = server.listener.accept();
+        const auto hello = peer.receive_as<Hello>();
+        REQUIRE(hello);
+        CHECK(((hello->capabilities & wire::kCapabilityTorque) != 0) == wanted);
+        peer.session = 1;
+        peer.send(Welcome{.first_stylus = 2,
+                          .capabilities = offered ? wire::kCapabilityTorque : 0,
+                          .session = 1,
+                          .dt = 0.002});
+        REQUIRE(server.wait_for([&] { return server.link.state.front().linked; }));
+        server.give({.sequence = 4, .time_ns = 9});
+        REQUIRE(peer.receive_as<SampleMessage>());
+        peer.send(ForceMessage{.stylus = 2,
+                               .force = {.sample_sequence = 4,
+                                         .sample_time_ns = 9,
+                                         .force = Vector3(1, 0, 0),
+                                         .torque = Vector3(0, 0.5, 0)},
+                               .with_torque = sent});
+        if (sent == (wanted && offered)) {
+          REQUIRE(server.wait_for([&] { return server.input().any_force; }));
+          CHECK(server.input().force.torque == (sent ? Vector3(0, 0.5, 0) : Vector3(0, 0, 0)));
+        } else {
+          REQUIRE(server.wait_for([&] { return !server.link.state.front().linked; }));
+          CHECK_FALSE(server.input().any_force);
+          CHECK(server.end().protocol_errors == 1);
+        }
+      }
+    }
+  }
+}
+
 TEST_CASE("client says once a session that a force is scaled down, and why") {
   const auto kept = std::make_shared<spdlog::sinks::ringbuffer_sink_mt>(100);
   const std::shared_ptr<spdlog::logger> before = spdlog::default_logger();

@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <future>
 #include <string>
 #include <utility>
@@ -92,6 +93,40 @@ TEST_CASE(
   CHECK(port.in.receive());
   CHECK_FALSE(port.in.front().present);
   server.stop();
+}
+
+TEST_CASE("a torque goes to those bridges that want it, a finite one") {
+  const Vector3 torque(0.1, -0.2, 0.3);
+  for (const std::uint32_t wanted : {0U, wire::kCapabilityTorque}) {
+    for (const bool lockstep : {false, true}) {
+      CAPTURE(wanted, lockstep);
+      RunningServer running({.lockstep = lockstep});
+      RawPeer peer = running.connect();
+      peer.send(Hello{.capabilities = wanted, .lockstep = true, .name = "test"});
+      const auto welcome = peer.receive_as<Welcome>();
+      REQUIRE(welcome);
+      CHECK(welcome->capabilities == wanted);
+      const auto answer = [&](std::uint64_t step, const Vector3& given) {
+        peer.send(SampleMessage{.sample = {.sequence = step}});
+        running.next_input();
+        running.give({.force_step = step,
+                      .sample_sequence = step,
+                      .force = Vector3(0, 1, 0),
+                      .torque = given});
+        const auto force = peer.receive_as<wire::ForceMessage>();
+        REQUIRE(force);
+        CHECK(force->force.force_step == step);
+        CHECK(force->with_torque == (wanted != 0));
+        return force->force;
+      };
+      const Vector3 shown = wanted != 0 ? torque : Vector3(Vector3::Zero());
+      CHECK(answer(0, torque).torque == shown);
+      const StylusForce spoilt = answer(1, Vector3(0, std::nan(""), 0));
+      CHECK(spoilt.torque.isZero(0.0));
+      CHECK(spoilt.force.isZero(0.0));
+      CHECK(running.server.stats().forces_not_finite == 1);
+    }
+  }
 }
 
 TEST_CASE("a bridge's report is there for who watches, until the bridge goes") {

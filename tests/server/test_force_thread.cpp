@@ -50,6 +50,35 @@ TEST_CASE("a reset that is asked for comes before the next step, once") {
   }
 }
 
+TEST_CASE("a tool follows the sample's orientation, and its torque is in the answer") {
+  SimulationConfig config;
+  config.objects.resize(1);
+  config.objects[0].model = std::make_shared<const Model>(synthetic_cube(2, 5, 10));
+  config.styluses[0].tool = ToolCoupling{0, {}};
+  Simulation simulation(config);
+  NetworkServer network({});
+  StylusPort& port = network.port(0);
+  RunControl control(simulation.settings());
+  StepRecord record;
+  for (const double angle : {0.0, 0.2}) {
+    StylusInput input{.present = true};
+    input.sample.orientation = Quaternion(Eigen::AngleAxisd(angle, Vector3::UnitX()));
+    port.in.put(input);
+    NoClock clock;
+    StepSink sink(128);
+    ForceThread force(simulation, network, control, clock, {&sink}, 100);
+    force.start(RealTimeScheduling::kIgnore);
+    REQUIRE(force.finished().wait(kDeadlineMs));
+    force.finish();
+    for (int k = 0; k < 100; ++k) REQUIRE(sink.take(record));
+    CHECK(record.stylus[0].orientation.coeffs() == input.sample.orientation.coeffs());
+    REQUIRE(port.out.receive());
+    CHECK(port.out.front().force == record.stylus[0].force);
+    CHECK(port.out.front().torque == record.stylus[0].torque);
+    if (angle != 0.0) CHECK(port.out.front().torque.x() != 0.0);
+  }
+}
+
 TEST_CASE("the force thread tells how it fares while it runs, about once a second") {
   SimulationConfig config;
   config.objects.resize(1);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <memory>
 #include <set>
 #include <sstream>
@@ -249,7 +250,7 @@ SceneConfig read_scene(TomlTable file) {
     if (styluses[s].has("tool")) read_tool(styluses[s], scene.objects, led, scene.styluses[s]);
   }
   for (TomlTable& table : file.tables("scenery")) {
-    scene.scenery.push_back(read_scenery(table));
+    scene.scenery.push_back(read_scenery(table, scene.scenery_models.emplace_back()));
     if (!names.insert(scene.scenery.back().name).second) {
       table.fail("name", "is taken: " + in_quotes(scene.scenery.back().name),
                  "give each object and each scenery a name of its own");
@@ -317,6 +318,19 @@ class Models {
   std::vector<Read> read_;
 };
 
+// The scenery of a scene, with the surfaces of its meshes.
+std::vector<SceneryConfig> whole_scenery(const SceneConfig& scene) {
+  std::vector<SceneryConfig> scenery = scene.scenery;
+  std::map<std::filesystem::path, MeshShape> read;
+  for (std::size_t i = 0; i < scenery.size(); ++i) {
+    if (!std::holds_alternative<MeshShape>(scenery[i].shape)) continue;
+    MeshShape& mesh = read[scene.scenery_models.at(i)];
+    if (!mesh.surface) mesh = read_mesh_shape(scene.scenery_models.at(i));
+    scenery[i].shape = mesh;
+  }
+  return scenery;
+}
+
 }  // namespace
 
 bool has_viewer_stylus(const SceneConfig& scene, bool lockstep) {
@@ -347,7 +361,7 @@ SimulationConfig simulation_config(const SceneConfig& scene, bool viewer_stylus,
   if (viewer_stylus) config.styluses.push_back(scene.viewer.stylus);
   config.floor = scene.floor;
   config.release_time = scene.contact.release_time;
-  config.scenery = scene.scenery;
+  config.scenery = whole_scenery(scene);
   config.between_objects = scene.contact.between_objects;
   config.contact_samples = scene.contact.samples;
   return config;

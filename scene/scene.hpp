@@ -86,9 +86,10 @@ struct SceneConfig {
   ViewerConfig viewer;
   WorldConfig world;
   ContactConfig contact;
-  std::vector<SimulationStylus> styluses;  ///< [[stylus]], one for every slot
-  std::vector<ObjectConfig> objects;       ///< 1..kMaxObjects
-  std::vector<SceneryConfig> scenery;      ///< [[scenery]], at most kMaxScenery
+  std::vector<SimulationStylus> styluses;             ///< [[stylus]], one for every slot
+  std::vector<ObjectConfig> objects;                  ///< 1..kMaxObjects
+  std::vector<SceneryConfig> scenery;                 ///< [[scenery]], at most kMaxScenery
+  std::vector<std::filesystem::path> scenery_models;  ///< of each; empty: it is no mesh
 };
 
 /// Reads and checks a scene. Throws Error with file and line.

@@ -1,9 +1,12 @@
 #include "scene/scenery_keys.hpp"
 
 #include <cmath>
+#include <memory>
 #include <string>
 
 #include "common/config/range.hpp"
+#include "common/error.hpp"
+#include "common/model/model_file.hpp"
 #include "scene/common_keys.hpp"
 
 namespace irdm {
@@ -12,7 +15,7 @@ namespace {
 // The one key of a shape that the table has.
 std::string shape_of(const TomlTable& table) {
   std::string found;
-  for (const char* shape : {"plane", "box", "sphere", "capsule"}) {
+  for (const char* shape : {"plane", "box", "sphere", "capsule", "mesh"}) {
     if (!table.has(shape)) continue;
     if (!found.empty()) {
       table.fail(shape, "is a second shape", "leave it out, or give it a [[scenery]] of its own");
@@ -20,7 +23,7 @@ std::string shape_of(const TomlTable& table) {
     found = shape;
   }
   if (found.empty()) {
-    table.fail("", "has no shape", "add one of: plane | box | sphere | capsule");
+    table.fail("", "has no shape", "add one of: plane | box | sphere | capsule | mesh");
   }
   return found;
 }
@@ -65,9 +68,24 @@ SceneryShape read_capsule(TomlTable table) {
   return capsule;
 }
 
+// Its surface is read with the models of the objects.
+SceneryShape read_mesh(TomlTable table, std::filesystem::path& model) {
+  model = table.path("model");
+  table.finish();
+  return MeshShape{};
+}
+
 }  // namespace
 
-SceneryConfig read_scenery(TomlTable table) {
+MeshShape read_mesh_shape(const std::filesystem::path& model) {
+  if (!holds_rigid_body(hdf5::File::open(model))) {
+    throw Error(model.string(), "is not of a rigid body, as scenery of a mesh is",
+                "make its model with rigid = true in the configuration of irdm-precompute");
+  }
+  return {std::make_shared<const RestSurface>(read_model(model, ResponseKind::kModal).mesh)};
+}
+
+SceneryConfig read_scenery(TomlTable table, std::filesystem::path& model) {
   SceneryConfig scenery;
   scenery.name = read_name(table, scenery.name);
   const std::string shape = shape_of(table);
@@ -78,6 +96,7 @@ SceneryConfig read_scenery(TomlTable table) {
     if (shape == "box") scenery.shape = read_box(table.table(shape));
     if (shape == "sphere") scenery.shape = read_sphere(table.table(shape));
     if (shape == "capsule") scenery.shape = read_capsule(table.table(shape));
+    if (shape == "mesh") scenery.shape = read_mesh(table.table(shape), model);
   }
   scenery.position = read_vector(table, "position", lab::kPlace);
   scenery.friction = read_friction(table.table("friction"), scenery.friction);

@@ -135,6 +135,45 @@ Vector3 sizes(const SphereShape& sphere) {
 Vector3 sizes(const CapsuleShape& capsule) {
   return {capsule.radius, capsule.length, 0.0};
 }
+Vector3 sizes(const MeshShape& /*mesh*/) {
+  return Vector3::Zero();
+}
+
+void put_surface(Writer& writer, const RestSurface& surface) {
+  writer.put(static_cast<std::uint32_t>(surface.node_count()));
+  writer.put(static_cast<std::uint32_t>(surface.triangle_count()));
+  for (int i = 0; i < surface.node_count(); ++i) {
+    writer.put(Eigen::Vector3f(surface.node(i).cast<float>()));
+  }
+  for (int t = 0; t < surface.triangle_count(); ++t) {
+    for (const int node : surface.topology().corners(t)) {
+      writer.put(static_cast<std::uint32_t>(node));
+    }
+  }
+}
+
+MeshShape get_surface(Reader& reader) {
+  const auto nodes = reader.get<std::uint32_t>();
+  const auto triangles = reader.get<std::uint32_t>();
+  if (triangles == 0) throw MessageError("a mesh has no triangles");
+  ModelMesh mesh;
+  reader.expect(nodes, 12);
+  mesh.nodes.resize(nodes, 3);
+  for (Eigen::Index i = 0; i < mesh.nodes.rows(); ++i) {
+    mesh.nodes.row(i) = reader.get_single_vector().cast<double>().transpose();
+    mesh.surface_nodes.push_back(static_cast<int>(i));
+  }
+  reader.expect(triangles, 12);
+  mesh.triangles.resize(triangles, 3);
+  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
+    for (Eigen::Index corner = 0; corner < 3; ++corner) {
+      const auto node = reader.get<std::uint32_t>();
+      if (node >= nodes) throw MessageError("a triangle has a node that is not there");
+      mesh.triangles(t, corner) = static_cast<int>(node);
+    }
+  }
+  return {std::make_shared<const RestSurface>(mesh)};
+}
 
 /// @param number of the shape among those of SceneryShape
 SceneryShape shape_of(int number, const Vector3& size) {
@@ -147,6 +186,8 @@ SceneryShape shape_of(int number, const Vector3& size) {
       return SphereShape{size.x()};
     case 3:
       return CapsuleShape{size.x(), size.y()};
+    case 4:
+      return MeshShape{};  // its surface follows the name
     default:
       throw MessageError("a shape is unknown");
   }
@@ -162,6 +203,8 @@ void put_scenery(Writer& writer, const SceneryConfig& scenery) {
   put_orientation(writer, scenery.orientation);
   writer.put_text(name);
   writer.align();
+  const auto* const mesh = std::get_if<MeshShape>(&scenery.shape);
+  if (mesh != nullptr) put_surface(writer, *mesh->surface);
 }
 
 SceneryConfig get_scenery(Reader& reader) {
@@ -174,6 +217,7 @@ SceneryConfig get_scenery(Reader& reader) {
   scenery.orientation = get_orientation(reader);
   scenery.name = reader.get_text(length);
   reader.align();
+  if (std::holds_alternative<MeshShape>(scenery.shape)) scenery.shape = get_surface(reader);
   return scenery;
 }
 

@@ -9,6 +9,8 @@ namespace {
 
 // A way [m] as short as this has no direction: its square is no longer exact.
 constexpr double kNoLength = 1e-100;
+// Nearer than this to a mesh [m] is on it: what rounding makes of a point of its surface.
+constexpr double kOnMesh = 1e-12;
 
 // Points and hits are in the frame of the shape, up to to_shape().
 
@@ -40,6 +42,29 @@ SceneryHit nearest(const CapsuleShape& capsule, const Vector3& p) noexcept {
 
 SceneryHit nearest(const SphereShape& sphere, const Vector3& p) noexcept {
   return nearest(CapsuleShape{sphere.radius, 0.0}, p);
+}
+
+// Of the face, edge or corner that a point lies on; its sign tells inside from outside.
+Vector3 pseudonormal(const RestSurface& surface, const SurfaceLocation& at) noexcept {
+  const Barycentric& weights = at.point.weights;
+  const auto corners =
+      std::count_if(weights.begin(), weights.end(), [](double w) { return w > 0; });
+  if (corners == 1) return surface.smooth_normal(at.point);
+  const RestSurface::Plane& plane = surface.plane(at.triangle);
+  if (corners == 3) return plane.normal;
+  const auto far = std::find(weights.begin(), weights.end(), 0.0) - weights.begin();
+  const int beyond = plane.across[static_cast<std::size_t>(far)];
+  return (plane.normal + surface.plane(beyond).normal).normalized();
+}
+
+SceneryHit nearest(const MeshShape& mesh, const Vector3& p) noexcept {
+  const SurfaceLocation at = mesh.surface->closest(p);
+  const Vector3 outward = pseudonormal(*mesh.surface, at);
+  const Vector3 away = p - at.position;
+  const double distance = away.norm();
+  if (distance < kOnMesh) return {at.position, outward, away.dot(outward)};
+  const double side = std::copysign(1.0, away.dot(outward));
+  return {at.position, side / distance * away, side * distance};
 }
 
 std::optional<SceneryHit> crossing(const PlaneShape& /*plane*/, const Vector3& from,
@@ -115,6 +140,14 @@ std::optional<SceneryHit> crossing(const SphereShape& sphere, const Vector3& fro
   return crossing(CapsuleShape{sphere.radius, 0.0}, from, to);
 }
 
+std::optional<SceneryHit> crossing(const MeshShape& mesh, const Vector3& from,
+                                   const Vector3& to) noexcept {
+  const std::optional<SurfaceTree::Entry> entry = mesh.surface->tree().first_entry(from, to);
+  if (!entry || nearest(mesh, from).signed_distance < -kOnMesh) return std::nullopt;
+  return SceneryHit{from + entry->fraction * (to - from),
+                    mesh.surface->plane(entry->triangle).normal, 0.0};
+}
+
 double radius_of(const PlaneShape& /*plane*/) noexcept {
   return std::numeric_limits<double>::infinity();
 }
@@ -126,6 +159,14 @@ double radius_of(const SphereShape& sphere) noexcept {
 }
 double radius_of(const CapsuleShape& capsule) noexcept {
   return capsule.radius + 0.5 * capsule.length;
+}
+
+double radius_of(const MeshShape& mesh) noexcept {
+  double largest = 0.0;
+  for (int i = 0; i < mesh.surface->node_count(); ++i) {
+    largest = std::max(largest, mesh.surface->node(i).norm());
+  }
+  return largest;
 }
 
 Vector3 to_shape(const SceneryConfig& scenery, const Vector3& x) noexcept {

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
 
 #include "common/contact/contact_problem.hpp"
 #include "common/geometry.hpp"
+#include "simulation/collision/rest_surface.hpp"
 
 namespace irdm {
 
@@ -29,7 +31,12 @@ struct CapsuleShape {
   double length = 0.0;  ///< between the centres of the half balls [m], >= 0
 };
 
-using SceneryShape = std::variant<PlaneShape, BoxShape, SphereShape, CapsuleShape>;
+/// Any closed surface, hollows included; its nodes are in the frame of its pose.
+struct MeshShape {
+  std::shared_ptr<const RestSurface> surface;  ///< null only in a scene whose models are not read
+};
+
+using SceneryShape = std::variant<PlaneShape, BoxShape, SphereShape, CapsuleShape, MeshShape>;
 
 /// A body that never moves.
 struct SceneryConfig {

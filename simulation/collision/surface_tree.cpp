@@ -58,7 +58,7 @@ Barycentric closest_point(const TriangleCorners& triangle, const Vector3& p) noe
 }
 
 std::optional<Crossing> crossing(const TriangleCorners& triangle, const Vector3& from,
-                                 const Vector3& to) noexcept {
+                                 const Vector3& to, double slack) noexcept {
   const Vector3 normal = area_normal(triangle);
   const Vector3 path = to - from;
   const double approach = -path.dot(normal);
@@ -72,7 +72,7 @@ std::optional<Crossing> crossing(const TriangleCorners& triangle, const Vector3&
     const Vector3& a = triangle[(i + 1) % 3];
     const Vector3& b = triangle[(i + 2) % 3];
     found.weights[i] = (b - a).cross(point - a).dot(normal) / area2;
-    if (found.weights[i] < 0) return std::nullopt;
+    if (found.weights[i] < -slack) return std::nullopt;
   }
   return found;
 }
@@ -81,6 +81,27 @@ namespace {
 constexpr int kLeafSize = 4;
 // Halving the list at every level keeps the depth at log2 of the number of triangles.
 constexpr int kMaxDepth = 40;
+// Of fractions of a way and of barycentric weights: more than what rounding makes.
+constexpr double kRounding = 1e-9;
+
+// Fraction of a way at which it comes into a box; 2: not at all.
+double entry(const Eigen::AlignedBox3d& box, const Vector3& from, const Vector3& way) noexcept {
+  constexpr double kMisses = 2.0;
+  double enters = 0.0;
+  double leaves = 1.0;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    if (way[i] == 0) {
+      if (from[i] < box.min()[i] || from[i] > box.max()[i]) return kMisses;
+      continue;
+    }
+    const double one = (box.min()[i] - from[i]) / way[i];
+    const double other = (box.max()[i] - from[i]) / way[i];
+    enters = std::max(enters, std::min(one, other));
+    leaves = std::min(leaves, std::max(one, other));
+  }
+  return enters <= leaves + kRounding ? enters - kRounding : kMisses;
+}
+
 }  // namespace
 
 SurfaceTree::SurfaceTree(const ModelMesh& mesh) {
@@ -189,6 +210,31 @@ int SurfaceTree::overlapping(const Eigen::AlignedBox3d& box, std::span<int> foun
     }
   }
   return static_cast<int>(count);
+}
+
+std::optional<SurfaceTree::Entry> SurfaceTree::first_entry(const Vector3& from,
+                                                           const Vector3& to) const noexcept {
+  const Vector3 way = to - from;
+  std::array<int, kMaxDepth + 1> stack{};
+  int depth = 0;
+  stack[static_cast<std::size_t>(depth++)] = 0;
+  std::optional<Entry> first;
+  while (depth > 0) {
+    const int index = stack[static_cast<std::size_t>(--depth)];
+    const Node& node = nodes_[static_cast<std::size_t>(index)];
+    if (entry(node.box, from, way) > (first ? first->fraction : 1.0)) continue;
+    if (node.count == 0) {
+      stack[static_cast<std::size_t>(depth++)] = node.first;
+      stack[static_cast<std::size_t>(depth++)] = index + 1;
+      continue;
+    }
+    for (int i = node.first; i < node.first + node.count; ++i) {
+      const int t = order_[static_cast<std::size_t>(i)];
+      const auto found = crossing(triangles_[static_cast<std::size_t>(t)], from, to, kRounding);
+      if (found && (!first || found->fraction < first->fraction)) first = Entry{t, found->fraction};
+    }
+  }
+  return first;
 }
 
 }  // namespace irdm

@@ -26,12 +26,13 @@ Vector3 at(const TriangleCorners& triangle, const Barycentric& weights) noexcept
 Vector3 area_normal(const TriangleCorners& triangle) noexcept;
 
 /// Where the segment from `from` to `to` enters the triangle from the side of its normal.
+/// @param slack that weights may be below 0, so that no way passes between two triangles
 struct Crossing {
   double fraction = 0.0;  ///< of the way from `from` to `to`, in [0, 1]
   Barycentric weights{};
 };
 std::optional<Crossing> crossing(const TriangleCorners& triangle, const Vector3& from,
-                                 const Vector3& to) noexcept;
+                                 const Vector3& to, double slack = 0.0) noexcept;
 
 /// Bounding-box tree over the triangles of the surface at rest. Built once; queries are real-time
 /// safe and read only, so that several threads may ask at the same time.
@@ -45,6 +46,13 @@ class SurfaceTree {
   /// Triangles whose bounding box at rest overlaps a box, as many as `found` has room for; returns
   /// how many.
   int overlapping(const Eigen::AlignedBox3d& box, std::span<int> found) const noexcept;
+
+  /// Where a way first crosses a triangle of the rest surface from outside.
+  struct Entry {
+    int triangle = 0;
+    double fraction = 0.0;  ///< of the way, in [0, 1]
+  };
+  std::optional<Entry> first_entry(const Vector3& from, const Vector3& to) const noexcept;
 
  private:
   struct Node {

@@ -99,6 +99,15 @@ bool BodyContacts::near() noexcept {
   return (body_.motion.position - there).norm() <= reach + moved;
 }
 
+// Whether a point is farther than that from scenery: the distance changes by no more than the point
+// moves, so that it need not be computed anew in each step.
+bool BodyContacts::beyond(const Vector3& x, double reach, Sample& state) const noexcept {
+  if (state.distance - (x - state.looked_at).norm() > reach) return true;
+  state.looked_at = x;
+  state.distance = closest(*scenery_, x).signed_distance;
+  return state.distance > reach;
+}
+
 Vector3 BodyContacts::displaced_place(const ContactSampling::Sample& sample) noexcept {
   const Vector3 u = mean(body_.sampling.patch(sample.row), [&](int i) -> Vector3 {
     return body_.surface.node(i) - body_.rest.node(i);
@@ -277,7 +286,7 @@ int BodyContacts::find() noexcept {
       const Vector3 x = motion.to_world(shape.place.position);
       const double way = (x - at_start(motion, shape.place.position)).norm();
       if (other_body_ == nullptr) {
-        if (closest(*scenery_, x).signed_distance > margin + way) {
+        if (beyond(x, margin + way, state)) {
           state.mark_outside(step_);
           continue;
         }

@@ -90,8 +90,10 @@ class BodyContacts {
     double inset = 0.0;
     /// The last step in which it was outside or among the contacts; 0: none.
     std::uint64_t clear = 0;
-    std::uint64_t pressed = 0;        ///< the last step in which a force acted on it; 0: none
-    Vector3 force = Vector3::Zero();  ///< of the last step [N], B of the object
+    std::uint64_t pressed = 0;            ///< the last step in which a force acted on it; 0: none
+    Vector3 looked_at = Vector3::Zero();  ///< whose distance from scenery was computed last [m], W
+    double distance = 0.0;                ///< that [m]
+    Vector3 force = Vector3::Zero();      ///< of the last step [N], B of the object
 
     /// It was seen outside in this step: what comes from there has no inset.
     void mark_outside(std::uint64_t step) noexcept {
@@ -101,6 +103,7 @@ class BodyContacts {
   };
 
   bool near() noexcept;
+  bool beyond(const Vector3& x, double reach, Sample& state) const noexcept;
   Vector3 displaced_place(const ContactSampling::Sample& sample) noexcept;
   Vector3 other_displacement(const SurfaceLocation& at) noexcept;
   bool begin(int sample, const Vector3& place, Sample& state) noexcept;

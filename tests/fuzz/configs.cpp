@@ -49,9 +49,11 @@ void check_scene(const SceneConfig& scene) {
   for (const SceneryConfig& scenery : scene.scenery) {
     expect_unit(scenery.orientation.norm(), "an orientation has norm 1");
     expect(scenery.friction.kinetic <= scenery.friction.static_, "kinetic <= static");
+    if (std::holds_alternative<MeshShape>(scenery.shape)) continue;  // which has to be read
     expect(bounding_radius(scenery.shape) > 0.0, "scenery has a size");
   }
   expect(scene.scenery.size() <= kMaxScenery, "at most 16 scenery");
+  expect(scene.scenery_models.size() == scene.scenery.size(), "each scenery may have a model");
   expect(!scene.styluses.empty() && scene.styluses.size() <= kMaxStyluses, "1 to 16 styluses");
 }
 

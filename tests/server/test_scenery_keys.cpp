@@ -1,7 +1,11 @@
 #include <catch2/catch.hpp>
 
+#include "common/model/model_file.hpp"
 #include "tests/server/scene_text.hpp"
+#include "tests/support/synthetic_model.hpp"
+#include "tests/support/temporary_folder.hpp"
 
+using Catch::Matchers::Contains;
 using Catch::Matchers::StartsWith;
 using namespace irdm;
 using test::kObject;
@@ -79,7 +83,8 @@ TEST_CASE("scenery: the normal of a plane is the side that is free, whatever its
 
 TEST_CASE("scenery: one shape, no less and no more") {
   CHECK(rejection(with_scenery("position = [0, 0, 0]\n")) ==
-        "s.toml:1: [scenery[0]] has no shape; add one of: plane | box | sphere | capsule");
+        "s.toml:1: [scenery[0]] has no shape; add one of: plane | box | sphere | capsule | "
+        "mesh");
   CHECK(rejection(with_scenery(kSphere + "plane = { normal = [0, 1, 0] }\n")) ==
         "s.toml:2: scenery[0].sphere is a second shape; leave it out, or give it a [[scenery]] of "
         "its own");
@@ -162,4 +167,45 @@ TEST_CASE("scenery: each bad value of what all shapes have") {
         "s.toml:3: scenery[0].velocity is not a known key; remove it or correct its name");
   CHECK(rejection("[scenery]\n" + kSphere + kObject) ==
         "s.toml:1: scenery is not a list of tables; write it as [[scenery]]");
+}
+
+TEST_CASE("scenery: a mesh has the surface of a rigid body's model, read once a file") {
+  const test::TemporaryFolder folder;
+  const Model cube = test::synthetic_cube(2, 3, 4);
+  const auto write = [&](const char* name, const Model& model) {
+    ModelFileWriter writer(folder.path() / name);
+    writer.write_description(model);
+    if (!is_rigid(model)) writer.write_modal(std::get<ModalResponse>(model.response));
+    writer.commit();
+  };
+  write("cube.h5", test::made_rigid(cube));
+  write("soft.h5", cube);
+  SceneConfig config = scene(
+      "[[scenery]]\nmesh = { model = \"bowl.h5\" }\nposition = [1, 2, 3]\n"
+      "orientation = [0, 1, 0, 0]\n[[scenery]]\nname = \"other\"\nmesh = { model = \"bowl.h5\" "
+      "}\n" +
+      kObject);
+  REQUIRE(config.scenery_models.size() == 2);
+  CHECK(config.scenery_models[0].filename() == "bowl.h5");
+  config.objects.clear();
+  config.scenery_models.assign(2, folder.path() / "cube.h5");
+  const auto simulated = simulation_config(config, false).scenery;
+  const auto& surface = std::get<MeshShape>(simulated.at(0).shape).surface;
+  REQUIRE(surface);
+  CHECK(surface->triangle_count() == cube.mesh.triangles.rows());
+  CHECK(surface == std::get<MeshShape>(simulated.at(1).shape).surface);
+  CHECK(closest(simulated[0], {1, 2, 13}).signed_distance == Approx(10.0 - 0.06));
+  config.scenery_models[1] = folder.path() / "soft.h5";
+  CHECK_THROWS_WITH(simulation_config(config, false),
+                    Contains("soft.h5: is not of a rigid body, as scenery of a mesh is; make its "
+                             "model with rigid = true"));
+  config.scenery_models[1] = folder.path() / "nothing.h5";
+  CHECK_THROWS_AS(simulation_config(config, false), Error);
+}
+
+TEST_CASE("scenery: each bad key of a mesh") {
+  CHECK_THAT(rejection(with_scenery("mesh = {}\n")),
+             StartsWith("s.toml:2: scenery[0].mesh.model is missing"));
+  CHECK_THAT(rejection(with_scenery("mesh = { model = \"a.h5\", unit = \"mm\" }\n")),
+             StartsWith("s.toml:2: scenery[0].mesh.unit is not a known key"));
 }

@@ -9,6 +9,7 @@
 
 #include "simulation/collision/scenery.hpp"
 #include "tests/simulation/random_numbers.hpp"
+#include "tests/simulation/voxel_mesh.hpp"
 #include "tests/support/allocation_guard.hpp"
 #include "tests/support/left_out.hpp"
 
@@ -20,8 +21,17 @@ namespace {
 const Vector3 kBox(0.1, 0.16, 0.24);
 constexpr double kSphere = 0.07;
 constexpr CapsuleShape kCapsule{0.04, 0.12};
-const std::array<SceneryShape, 4> kShapes{PlaneShape{}, BoxShape{kBox}, SphereShape{kSphere},
-                                          kCapsule};
+constexpr double kCell = 0.04;
+
+// A cube of four cells an edge with a groove along z, two cells wide and deep, open at the top.
+MeshShape grooved() {
+  return {std::make_shared<const RestSurface>(voxel_surface(
+      {4, 4, 4}, kCell,
+      [](const std::array<int, 3>& cell) { return cell[0] < 1 || cell[0] > 2 || cell[1] < 2; }))};
+}
+
+const std::array<SceneryShape, 5> kShapes{PlaneShape{}, BoxShape{kBox}, SphereShape{kSphere},
+                                          kCapsule, grooved()};
 
 Vector3 random_direction(Random& random) {
   Vector3 way = anywhere(random, 1.0);
@@ -55,6 +65,11 @@ bool is_in(const CapsuleShape& capsule, const Vector3& p) {
   return cylinder || (p - end).norm() < capsule.radius || (p + end).norm() < capsule.radius;
 }
 
+bool is_in(const MeshShape& /*grooved*/, const Vector3& p) {
+  const bool groove = std::abs(p.x()) <= kCell && p.y() >= 0;
+  return (p.cwiseAbs().array() < 2.0 * kCell).all() && !groove;
+}
+
 bool is_inside(const SceneryConfig& scenery, const Vector3& x) {
   const Vector3 p = scenery.orientation.conjugate() * (x - scenery.position);
   return std::visit([&](const auto& shape) { return is_in(shape, p); }, scenery.shape);
@@ -81,6 +96,15 @@ Vector3 sample(const CapsuleShape& capsule, Random& random) {
   const double angle = between(random, -std::numbers::pi, std::numbers::pi);
   const double y = 0.5 * between(random, -capsule.length, capsule.length);
   return {capsule.radius * std::cos(angle), y, capsule.radius * std::sin(angle)};
+}
+
+Vector3 sample(const MeshShape& mesh, Random& random) {
+  const auto count = static_cast<unsigned>(mesh.surface->triangle_count());
+  const TriangleCorners corners = mesh.surface->corners(static_cast<int>(random() % count));
+  if (chance(random, 0.05)) return corners[0];
+  const double a = std::sqrt(between(random, 0.0, 1.0));
+  const double b = between(random, 0.0, 1.0);
+  return (1 - a) * corners[0] + a * (1 - b) * corners[1] + a * b * corners[2];
 }
 
 Vector3 on_surface(const SceneryConfig& scenery, Random& random) {
@@ -301,6 +325,7 @@ TEST_CASE("scenery: where several points are nearest, one of them is given") {
 TEST_CASE("scenery: mirrored queries give mirrored hits") {
   Random random(5);
   for (const SceneryShape& shape : kShapes) {
+    if (std::holds_alternative<MeshShape>(shape)) continue;  // its triangles are not symmetric
     const SceneryConfig scenery{"", shape};
     for (int n = 0; n < 300; ++n) {
       const Vector3 from = anywhere(random, 0.2);
@@ -340,7 +365,7 @@ TEST_CASE("scenery: all of its surface is within its bounding radius, and some o
 TEST_CASE("scenery: queries do not allocate") {
   if (!AllocationGuard::active()) return leave_out(kNotCounted);
   Random random(7);
-  std::array<SceneryConfig, 4> sceneries;
+  std::array<SceneryConfig, kShapes.size()> sceneries;
   for (std::size_t i = 0; i < kShapes.size(); ++i) sceneries[i] = posed(kShapes[i], random);
   double sum = 0.0;
   const AllocationGuard guard;

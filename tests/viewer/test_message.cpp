@@ -160,6 +160,43 @@ TEST_CASE("scenery's bytes are those of the document") {
                  "0000003f 0000003f 000000bf 0000003f 63617073756c6500"));
 }
 
+TEST_CASE("a mesh of scenery follows its name") {
+  Scene scene = one_point_scene();
+  const std::size_t before = encode(scene).size();
+  SceneryConfig bowl;
+  bowl.name = "bowl";
+  const Model cube = synthetic_cube(1, 1, 1);
+  bowl.shape = MeshShape{std::make_shared<const RestSurface>(cube.mesh)};
+  scene.scenery = {bowl};
+  Bytes bytes = encode(scene);
+  const std::size_t mesh = before + 60;
+  REQUIRE(bytes.size() == mesh + 8 + 8 * 12 + 12 * 12);
+  CHECK(Bytes(bytes.begin() + static_cast<std::ptrdiff_t>(before),
+              bytes.begin() + static_cast<std::ptrdiff_t>(before) + 4) == from_hex("0400 0400"));
+  CHECK(Bytes(bytes.begin() + static_cast<std::ptrdiff_t>(mesh),
+              bytes.begin() + static_cast<std::ptrdiff_t>(mesh) + 8) ==
+        from_hex("08000000 0c000000"));
+  const Scene back = decode_scene(bytes);
+  const RestSurface& surface = *std::get<MeshShape>(back.scenery.at(0).shape).surface;
+  REQUIRE(surface.node_count() == 8);
+  for (int i = 0; i < 8; ++i) {
+    CHECK((surface.node(i) - cube.mesh.rest_position(i)).norm() < 1e-8);
+  }
+  CHECK(surface.topology().corners(11) == std::array{cube.mesh.triangles(11, 0),
+                                                     cube.mesh.triangles(11, 1),
+                                                     cube.mesh.triangles(11, 2)});
+  SECTION("a node that is not there") {
+    bytes[bytes.size() - 4] = 8;
+  }
+  SECTION("no triangles") {
+    bytes[mesh + 4] = 0;
+  }
+  SECTION("more triangles than bytes") {
+    bytes[mesh + 4] = 13;
+  }
+  CHECK_THROWS_AS(decode_scene(bytes), MessageError);
+}
+
 TEST_CASE("viewers are sent the floor and the scenery of the simulation") {
   SimulationConfig config;
   config.objects.resize(1);
@@ -216,7 +253,7 @@ TEST_CASE("scenery that is too much, or of no known shape, is refused") {
   scene.scenery.resize(kMaxScenery);
   CHECK_NOTHROW(decode_scene(encode(scene)));
   Bytes bytes = encode(scene);
-  bytes[before] = 4;
+  bytes[before] = 5;
   CHECK_THROWS_AS(decode_scene(bytes), MessageError);
   scene.scenery.resize(kMaxScenery + 1);
   CHECK_THROWS_AS(decode_scene(encode(scene)), MessageError);

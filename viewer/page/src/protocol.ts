@@ -65,7 +65,8 @@ export type Shape =
   | { kind: "plane" }
   | { kind: "box"; size: Vec3 }
   | { kind: "sphere"; radius: number }
-  | { kind: "capsule"; radius: number; length: number };
+  | { kind: "capsule"; radius: number; length: number }
+  | { kind: "mesh"; nodes: Float32Array; triangles: Uint32Array };
 
 /** A body that never moves. */
 export interface Scenery {
@@ -297,9 +298,20 @@ function readShape(number: number, [x, y, z]: Vec3): Shape {
       return { kind: "sphere", radius: x };
     case 3:
       return { kind: "capsule", radius: x, length: y };
+    case 4:
+      return { kind: "mesh", nodes: new Float32Array(), triangles: new Uint32Array() };
     default:
       throw new ProtocolError("scenery of an unknown shape");
   }
+}
+
+function readMesh(reader: Reader): Shape {
+  const count = reader.u32();
+  const triangleCount = reader.u32();
+  const nodes = reader.singles(3 * count);
+  const triangles = reader.words(3 * triangleCount);
+  if (triangles.some((node) => node >= count)) throw new ProtocolError("a triangle has a node that is not there");
+  return { kind: "mesh", nodes, triangles };
 }
 
 function readScenery(reader: Reader): Scenery {
@@ -310,7 +322,7 @@ function readScenery(reader: Reader): Scenery {
   const orientation = reader.quaternion();
   const name = reader.text(length);
   reader.align();
-  return { name, shape, position, orientation };
+  return { name, shape: shape.kind === "mesh" ? readMesh(reader) : shape, position, orientation };
 }
 
 function readScene(reader: Reader): Scene {

@@ -57,5 +57,18 @@ function geometryOf(shape: Shape): THREE.BufferGeometry | null {
       return new THREE.SphereGeometry(shape.radius, 48, 32);
     case "capsule":
       return new THREE.CapsuleGeometry(shape.radius, shape.length, 16, 48);
+    case "mesh":
+      return facetted(shape.nodes, shape.triangles);
   }
+}
+
+/** Each triangle flat, as contacts find it. */
+function facetted(nodes: Float32Array, triangles: Uint32Array): THREE.BufferGeometry {
+  const indexed = new THREE.BufferGeometry();
+  indexed.setAttribute("position", new THREE.BufferAttribute(nodes, 3));
+  indexed.setIndex(new THREE.BufferAttribute(triangles, 1));
+  const flat = indexed.toNonIndexed();
+  indexed.dispose();
+  flat.computeVertexNormals();
+  return flat;
 }

@@ -28,11 +28,13 @@ import {
   type StateParts,
 } from "./server_messages.ts";
 
+const tetrahedron = { nodes: [0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1], triangles: [0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3] };
 const scenery: SceneryParts[] = [
   { name: "wall", shape: 0, size: [0, 0, 0], position: [0, -0.5, 0], orientation: [0.5, 0.5, 0.5, 0.5] },
   { name: "box", shape: 1, size: [1, 2, 3], position: [0, 0, 0], orientation: [1, 0, 0, 0] },
   { name: "ball", shape: 2, size: [0.5, 0, 0], position: [0, 0, 0], orientation: [1, 0, 0, 0] },
   { name: "capsule", shape: 3, size: [0.5, 2, 0], position: [1, 2, 3], orientation: [0, 0, 1, 0] },
+  { name: "mesh", shape: 4, size: [0, 0, 0], position: [0, 0, 0], orientation: [1, 0, 0, 0], surface: tetrahedron },
 ];
 const parts: SceneParts = {
   objects: [cube(0.1, 2)],
@@ -93,12 +95,13 @@ test("a frame says where a stylus touches the surface at rest and whether it sli
 });
 
 test("a scene has the scenery with the sizes of each shape", () => {
-  assert.deepEqual(scene.scenery.map(({ name }) => name), ["wall", "box", "ball", "capsule"]);
+  assert.deepEqual(scene.scenery.map(({ name }) => name), ["wall", "box", "ball", "capsule", "mesh"]);
   assert.deepEqual(scene.scenery.map(({ shape }) => shape), [
     { kind: "plane" },
     { kind: "box", size: [1, 2, 3] },
     { kind: "sphere", radius: 0.5 },
     { kind: "capsule", radius: 0.5, length: 2 },
+    { kind: "mesh", nodes: Float32Array.from(tetrahedron.nodes), triangles: Uint32Array.from(tetrahedron.triangles) },
   ]);
   assert.deepEqual(scene.scenery[0]!.orientation, [0.5, 0.5, 0.5, 0.5]);
   assert.deepEqual(scene.scenery[3]!.position, [1, 2, 3]);
@@ -168,7 +171,8 @@ test("a number out of its range is refused", () => {
   const recording = object + 80;
   const stylus = 32 + 88;
   const contact = frameBytes.byteLength - 36;
-  const capsule = sceneBytes.byteLength - 56 - 8;
+  const mesh = sceneBytes.byteLength - 56 - 4 - 104;
+  const capsule = mesh - 56 - 8;
   for (const [bytes, offset, value] of [
     [state, 34, 101], // recordings
     [state, 37, 3], // length of the notice, high byte
@@ -180,9 +184,11 @@ test("a number out of its range is refused", () => {
     [frameBytes, 15, 2], // contacts, high byte
     [frameBytes, contact, 1], // object that touches
     [frameBytes, contact + 1, 1], // object that is touched
-    [frameBytes, contact + 1, 0xfb], // scenery that is touched
+    [frameBytes, contact + 1, 0xfa], // scenery that is touched
     [sceneBytes, 14, 17], // scenery
-    [sceneBytes, capsule, 4], // shape
+    [sceneBytes, capsule, 5], // shape
+    [sceneBytes, mesh + 60, 5], // nodes of a mesh
+    [sceneBytes, mesh + 160, 4], // a node of its last triangle
     [sceneBytes, capsule + 3, 2], // length of a name, high byte
     [healthBytes, 120, 5], // bridges
     [healthBytes, 128, 2], // reports

@@ -110,11 +110,13 @@ export function cube(edge: number, cells: number, name = "cube"): ObjectParts {
 
 export interface SceneryParts {
   name: string;
-  /** 0 plane, 1 box, 2 sphere, 3 capsule */
+  /** 0 plane, 1 box, 2 sphere, 3 capsule, 4 mesh */
   shape: number;
   size: Vec3;
   position: Vec3;
   orientation: Quat;
+  /** of a mesh */
+  surface?: { nodes: number[]; triangles: number[] };
 }
 
 export interface SceneParts {
@@ -142,6 +144,9 @@ export function sceneMessage(parts: SceneParts): ArrayBuffer {
     const name = utf8(scenery.name);
     to.u16(scenery.shape, name.length).f32(...scenery.size).f64(...scenery.position).f32(...scenery.orientation);
     to.raw(name).align();
+    if (scenery.surface === undefined) continue;
+    const { nodes, triangles } = scenery.surface;
+    to.u32(nodes.length / 3, triangles.length / 3).f32(...nodes).u32(...triangles);
   }
   return to.done();
 }

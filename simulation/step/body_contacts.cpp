@@ -23,6 +23,12 @@ constexpr double kFacing = -0.3;
 constexpr double kFlush = 0.9986;
 // An edge leads on a face whose normal is as near as this to its own ones. Cosine, 20 degrees.
 constexpr double kLeads = 0.94;
+// How deep a sample that was outside can be at the start of a step, where it is displaced as at the
+// end without the step's forces: by rounding [m], and as shares of what forces closed in the step
+// before and of the displacements.
+constexpr double kRoundedDepth = 1e-5;
+constexpr double kClosedShare = 2.0;
+constexpr double kDisplacedShare = 0.2;
 // In which a sample that was inside when its contact began comes out, and one that yields comes to
 // its anchor [s].
 constexpr double kInsetTime = 0.05;
@@ -83,6 +89,7 @@ void BodyContacts::reset() noexcept {
   std::fill(samples_.begin(), samples_.end(), Sample{});
   count_ = 0;
   displaced_ = 0.0;
+  closed_ = 0.0;
   step_ = 1;
   any_pressed_ = false;
 }
@@ -176,9 +183,7 @@ bool BodyContacts::begin_on_scenery(int sample, const Vector3& from, const Vecto
   state.anchor_W = same_side
                        ? hit.position
                        : Vector3(x - (x - entry->position).dot(entry->normal) * entry->normal);
-  if (state.clear + 1 != step_) {
-    state.inset = std::max(0.0, (state.anchor_W - start).dot(state.normal));
-  }
+  state.inset = inset_of((state.anchor_W - start).dot(state.normal), state);
   return true;
 }
 
@@ -219,10 +224,17 @@ bool BodyContacts::begin(int number, const Vector3& place, Sample& state) noexce
   state.normal = *normal;
   const Vector3 there_now = state.anchor.position + other_displacement(state.anchor);
   state.offset = sideways(y - there_now, state.normal);
-  if (state.clear + 1 != step_) {
-    state.inset = std::max(0.0, (there_now - y_start).dot(state.normal));
-  }
+  state.inset = inset_of((there_now - y_start).dot(state.normal), state);
   return true;
+}
+
+// Of a contact that begins. A sample that was outside and is deeper than deformation explains comes
+// from beside an edge.
+// @param depth at the start of the step [m]
+double BodyContacts::inset_of(double depth, const Sample& state) const noexcept {
+  const bool outside = state.clear + 1 == step_;
+  const double deformed = kRoundedDepth + kClosedShare * closed_ + kDisplacedShare * displaced_;
+  return !outside || depth > deformed ? std::max(0.0, depth) : 0.0;
 }
 
 // A bounce that the step does not resolve. With a new anchor friction would not know the way that
@@ -267,6 +279,7 @@ int BodyContacts::find() noexcept {
   count_ = 0;
   ++step_;
   displaced_ *= kReachFading;
+  closed_ *= kReachFading;
   if (!any_pressed_ && !near()) return 0;
   candidates_.clear();
   const FreeMotion& motion = body_.motion;
@@ -311,6 +324,7 @@ int BodyContacts::find() noexcept {
     Contact& contact = found_.front();
     describe(candidate.sample, candidate.place, contact);
     candidate.depth = contact.gap.dot(contact.normal);
+    if (candidate.pressed) closed_ = std::max(closed_, candidate.depth);
   }
   if (candidates_.size() > kMost) {
     std::nth_element(candidates_.begin(), candidates_.begin() + kMost, candidates_.end(),

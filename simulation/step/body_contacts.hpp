@@ -113,6 +113,7 @@ class BodyContacts {
   std::optional<Vector3> normal_at(int sample, const Vector3& outward,
                                    const SurfaceLocation& at) const noexcept;
   bool flush(int sample, const Vector3& normal) const noexcept;
+  double inset_of(double depth, const Sample& state) const noexcept;
   void keep_anchor(const Sample& before, const Vector3& place, Sample& state) noexcept;
   void describe(int sample, const Vector3& place, Contact& contact) noexcept;
 
@@ -126,6 +127,7 @@ class BodyContacts {
   Eigen::AlignedBox3d other_box_;  ///< of its surface at rest, B
   double inset_left_;              ///< share of an inset that is left after a step
   double depth_;                   ///< that a sample's way begins inside its object [m]
+  double closed_ = 0.0;            ///< how deep samples were before forces closed it [m]
   double displaced_ = 0.0;         ///< how far surfaces were seen away from rest [m]
   int first_sample_ = 0;
   std::vector<Sample> samples_;

@@ -1,9 +1,18 @@
 #include "simulation/step/assembly_horizon.hpp"
 
+#include <cmath>
+
 #include "common/contact/applied_forces.hpp"
 #include "common/motion/free_motion.hpp"
 
 namespace irdm {
+namespace {
+
+// In which the velocity of another tip is expected to die away [s]. What a hand does later nobody
+// knows; a tip that is said to go on at its velocity feeds energy into a pinch across a delay.
+constexpr double kVelocityTime = 0.01;
+
+}  // namespace
 
 void AssemblyHorizon::answer(const Contact& other, ContactModel& model, const ContactPatch& patch,
                              const Vector3& force, std::span<const NodalForce> held,
@@ -58,7 +67,8 @@ void AssemblyHorizon::find_changes(const Contact& other, const ContactModel& mod
     motion = end_of_step(body, model.free_forces, free, free.halfway * model.other_force,
                          free.halfway * model.other_torque);
     const double time = model.dt * static_cast<double>(n + 1);
-    const Vector3 tip = other.tip + time * other.velocity;
+    const double lasting = kVelocityTime * (1.0 - std::exp(-time / kVelocityTime));
+    const Vector3 tip = other.tip + lasting * other.velocity;
     by_force += shared_[n].transpose() * force;
     Vector3 gap = motion.orientation.conjugate() * (tip - motion.position) -
                   (other.place + slid + path_[n] + by_force) + own_[0] * other.force;

@@ -24,7 +24,7 @@ class AssemblyHorizon {
     Vector3 normal = Vector3::Zero();    ///< outward, of a touching one
     Vector3 place = Vector3::Zero();     ///< where the tip feels it, object at rest [m]
     Vector3 tip = Vector3::Zero();       ///< in the last step [m], W
-    Vector3 velocity = Vector3::Zero();  ///< of the tip, with which it goes on [m/s], W
+    Vector3 velocity = Vector3::Zero();  ///< of the tip, dying away as it goes on [m/s], W
     Vector3 force = Vector3::Zero();     ///< that the model's path and forces have of it [N]
     double series = 0.0;                 ///< compliance of the coupling spring [m/N]
   };

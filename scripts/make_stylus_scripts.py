@@ -51,6 +51,17 @@ def stir(start, place, radius, rate, turns, button):
     return rows
 
 
+def circle(start, place, radius, rate, turns, button):
+    """Rows of circles about +y from +x towards -z that begin and end at rest."""
+    duration = turns / rate
+    rows = []
+    for i in range(round(duration / STEP) + 1):
+        share = i * STEP / duration
+        angle = 2 * math.pi * turns * (share - math.sin(2 * math.pi * share) / (2 * math.pi))
+        rows.append((start + i * STEP, place[0] + radius * math.cos(angle), place[1], place[2] - radius * math.sin(angle), button))
+    return rows
+
+
 TAP = [(0.0, 0.02, 0.09, 0.01, 0), (0.3, 0.02, 0.09, 0.01, 0), (0.5, 0.02, 0.052, 0.01, 0), (0.7, 0.02, 0.09, 0.01, 0),
        (2.0, 0.02, 0.09, 0.01, 0)]
 
@@ -84,6 +95,15 @@ TRAY = (smooth([(0.0, 0.0, 0.15, 0.0, 0), (0.5, 0.0, 0.15, 0.0, 0), (0.9, *KNOB,
         + stir(1.2, KNOB, 0.085, 0.3, 3, 1)
         + [(11.4, *KNOB, 1), (11.5, *KNOB, 0), (12.0, 0.0, 0.15, 0.0, 0), (12.5, 0.0, 0.15, 0.0, 0)])
 
+EDGE = (0.09, 0.01, -0.03)  # of the spatula, where its mesh begins
+SPATULA = [(0.0, *EDGE, 0), (1.5, *EDGE, 0), (3.5, -0.06, 0.01, -0.03, 0), (3.7, -0.06, 0.01, -0.03, 0),
+           (5.7, -0.06, 0.09, -0.03, 0), (7.7, -0.06, 0.09, -0.03, 0), (9.7, -0.06, 0.01, -0.03, 0), (10.0, -0.06, 0.01, -0.03, 0),
+           (11.5, *EDGE, 0), (12.0, *EDGE, 0)]
+
+FOOT = (-0.008, 0.01, -0.008)  # from the rod's axis to where its mesh begins, and its height
+BOWL = (smooth([(0.0, 0.09 + FOOT[0], *FOOT[1:], 0), (1.0, 0.09 + FOOT[0], *FOOT[1:], 0)])[:-1]
+        + circle(1.0, FOOT, 0.09, 0.25, 2, 0))
+
 SCRIPTS = {
     "tap": ("From 3 cm above a face at y = 6 cm to 8 mm below it and back, at once.", smooth(TAP)),
     "pinch": ("From 2 cm off a face at x = 6 cm to 1.2 cm inside it, 5 cm up, down again, and off.", smooth(PINCH)),
@@ -93,6 +113,8 @@ SCRIPTS = {
     "tray": ("To the top of a cube at y = 12 cm, takes hold (1 s), three circles of up to 8.5 cm, lets go (11.5 s).", TRAY),
     "peg": ("Waits for 1 s, then pushes along -x from x = 20 cm to 5 cm, stays for 1.5 s, and back.", smooth(PEG)),
     "squeeze": ("From 3 cm off a ball of 5 cm to 1.6 cm inside it, 5 cm up, down again, and off.", smooth(SQUEEZE)),
+    "spatula": ("Waits for 1.5 s, 15 cm along -x, 8 cm up, stays for 2 s, down and back.", smooth(SPATULA)),
+    "bowl": ("Waits for 1 s, then two circles of 9 cm.", BOWL),
     "swing": ("To 4 mm above a face at y = 6 cm, takes hold (0.7 s), swings 3 cm at 1.5 Hz (1 s), lets go (5.2 s).", SWING),
 }
 

@@ -415,6 +415,80 @@ TEST_CASE("gallery, squeeze: friction alone lifts the ball, inside the cone, and
   CHECK(played.body_force(played.rows() - 1, 0, -1).y() == Approx(weight).epsilon(0.1));
 }
 
+TEST_CASE("gallery, five fingers: they press alike, and friction carries the ball") {
+  Played played("five-fingers");
+  const double weight = 9.81 * played.mass();
+  double unbalanced = 0.0;
+  double carried_off = 0.0;
+  double aside = 0.0;
+  double least = 1e3;
+  double most = 0.0;
+  for (std::size_t k = played.row(3.6); k < played.row(4.1); ++k) {
+    Vector3 sum = Vector3::Zero();
+    for (int s = 0; s < 5; ++s) {
+      const Vector3 force = -played.force(k, s);
+      sum += force;
+      const double push = Vector3(force.x(), 0, force.z()).norm();
+      least = std::min(least, push);
+      most = std::max(most, push);
+    }
+    carried_off = std::max(carried_off, std::abs(sum.y() - weight) / weight);
+    aside = std::max(aside, Vector3(sum.x(), 0, sum.z()).norm());
+    unbalanced = std::max(unbalanced, played.unbalanced(k).norm());
+    CHECK(played.body_force(k, 0, -1).isZero(0.0));
+  }
+  INFO("they press with " << least << " to " << most << " N, aside " << aside << " N");
+  CHECK(carried_off < 0.01);
+  CHECK(aside < 0.01 * weight);
+  CHECK(least > 0.9 * most);
+  CHECK(unbalanced < 1e-9);
+  CHECK(played.position(played.row(4.0)).y() - played.position(played.row(0.9)).y() > 0.04);
+  CHECK(played.body_force(played.rows() - 1, 0, -1).y() == Approx(weight).epsilon(0.1));
+}
+
+TEST_CASE("gallery, spatula: it takes the slab's weight from the rails and gives it back") {
+  Played played("spatula");
+  const double weight = 9.81 * played.mass(0);
+  const double tool = 9.81 * played.mass(1);
+  const std::size_t lifted = played.row(7.5);
+  CHECK(played.body_force(lifted, 0, 1).y() == Approx(weight).epsilon(0.005));
+  CHECK(-played.force(lifted).y() == Approx(weight + tool).epsilon(0.005));
+  CHECK(played.body_force(lifted, 0, -1).isZero(0.0));
+  CHECK(played.body_force(lifted, 0, -2).isZero(0.0));
+  for (const std::size_t k : {played.row(1.4), played.rows() - 1}) {
+    const Vector3 front = played.body_force(k, 0, -1);
+    const Vector3 back = played.body_force(k, 0, -2);
+    CHECK((front + back).y() == Approx(weight).epsilon(0.005));
+    CHECK(front.y() == Approx(back.y()).epsilon(0.02));
+    CHECK((front + back).z() == Approx(0.0).margin(0.02 * weight));
+    CHECK(-played.force(k).y() == Approx(tool).epsilon(0.005));
+  }
+  const std::string slab = "/object/slab/body_position";
+  CHECK(played.vector(slab, lifted).y() - played.vector(slab, played.row(1.4)).y() > 0.03);
+}
+
+TEST_CASE("gallery, bowl: the rod stirs the cube, which stays inside") {
+  Played played("bowl");
+  const std::string cube = "/object/cube/body_position";
+  double way = 0.0;
+  double farthest = 0.0;
+  double pushed = 0.0;
+  for (std::size_t k = 1; k < played.rows(); ++k) {
+    const Vector3 place = played.vector(cube, k);
+    way += (place - played.vector(cube, k - 1)).norm();
+    farthest = std::max({farthest, std::abs(place.x()), std::abs(place.z())});
+    pushed = std::max(pushed, played.body_force(k, 0, 1).norm());
+  }
+  INFO("way " << way << " m, as far as " << farthest << " m, pushed with " << pushed << " N");
+  CHECK(way > 0.1);
+  CHECK(farthest < 0.13 - 0.03 + 0.01);
+  CHECK(pushed > 0.3);
+  const std::size_t end = played.rows() - 1;
+  const double weight = 9.81 * played.mass(0);
+  CHECK(played.body_force(end, 0, -1).y() == Approx(weight).epsilon(0.02));
+  CHECK(-played.force(end).y() == Approx(9.81 * played.mass(1)).epsilon(0.02));
+}
+
 TEST_CASE("gallery, liver: it resists on both lobes, and stays where it is fixed", "[slow]") {
   Played played("liver", "palpate");
   const std::size_t thick = played.row(2.4);

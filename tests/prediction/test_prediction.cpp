@@ -283,8 +283,8 @@ TEST_CASE("prediction: a pinch by two bridges", "[slow]") {
         0.1);
 }
 
-// A cube without weight, up to 20 kPa. Not so beyond: with the cube's weight in the fingers the error
-// at 20 kPa is 3.3 of the peak, and on a floor 1.2 and more.
+// A cube without weight, up to 20 kPa. Not so beyond: with the cube's weight in the fingers the
+// error at 20 kPa is 3.3 of the peak, and on a floor 1.2 and more.
 TEST_CASE("prediction: a pinch by friction in the air, 10 ms one way", "[slow]") {
   for (const double E : {2e3, 5e3, 2e4}) {
     for (const double depth : {0.014, 0.03}) {

@@ -53,9 +53,9 @@ class PressingDevice : public HapticDevice {
     above_ = height_ == kAbove;
     return {.tip = Vector3(0.01, height_, 0.005)};
   }
-  void write(const Vector3& force) noexcept override {
+  void write(const Wrench& shown) noexcept override {
     const std::size_t i = written_.load(std::memory_order_relaxed);
-    ticks_[i % kKept] = {monotonic_ns(), force.norm()};
+    ticks_[i % kKept] = {monotonic_ns(), shown.force.norm()};
     written_.store(i + 1, std::memory_order_release);
   }
   bool simulated() const noexcept override { return true; }

@@ -37,7 +37,8 @@ std::string percentiles_text(const Histogram& histogram) {
 }  // namespace
 
 std::string to_text(const BridgeReport& report) {
-  const auto& [servo, client, scheduling, styluses, peak_force, impulse, filter] = report;
+  const auto& [servo, client, scheduling, styluses, peak_force, impulse, peak_torque, filter] =
+      report;
   const std::uint64_t reconnects = client.sessions > 0 ? client.sessions - 1 : 0;
   std::ostringstream text;
   text << std::fixed << std::setprecision(3);
@@ -65,8 +66,9 @@ std::string to_text(const BridgeReport& report) {
     text << "servo: " << servo.ticks << " ticks, " << servo.missed << " missed, wake-up "
          << percentiles_text(servo.wakeup) << ", scheduling " << scheduling << '\n';
   }
-  text << "peak force: " << peak_force << " N, impulse " << impulse
-       << " N s; safety filter: " << filter.demands << " forces and " << filter.readings
+  text << "peak force: " << peak_force << " N, impulse " << impulse << " N s";
+  if (peak_torque > 0.0) text << ", peak torque " << peak_torque << " N m";
+  text << "; safety filter: " << filter.demands << " forces and " << filter.readings
        << " readings not used, force dropped " << filter.trips << " times, faults " << filter.faults
        << '\n';
   return text.str();
@@ -126,7 +128,10 @@ class BridgeBlackBox {
 FilterLimits limits_for(const HapticDevice& device, const BridgeConfig& config) {
   const ForceRating rating = device.rating();
   return {.max_force = std::min(config.max_force, rating.peak),
-          .continuous_force = std::min(config.continuous_force, rating.continuous)};
+          .continuous_force = std::min(config.continuous_force, rating.continuous),
+          .max_torque = std::min(config.max_torque, rating.peak_torque),
+          .continuous_torque = config.continuous_torque,
+          .torque_rate = {.rise = config.max_torque_rate, .fall = 4.0 * config.max_torque_rate}};
 }
 
 // Until a signal comes, a thread of ours ends, or a driver stops making ticks.
@@ -176,12 +181,14 @@ BridgeReport run_bridge(const BridgeConfig& config, StopSignal& stop_signal, dou
   std::vector<ServoLoop> loops;
   double longest = 0.0;
   bool simulated = true;
+  bool torque = false;
   for (const auto& device : devices.all()) {
     FilterLimits limits = limits_for(*device, config);
     limits.needed_success = LinkGate::kNeeded;
     loops.emplace_back(*device, limits, config.devices[loops.size()].mapping);
     longest = std::max(longest, device->duration());
     simulated = simulated && device->simulated();
+    torque = torque || limits.max_torque > 0.0;
   }
 
   if (config.link && !simulated) {
@@ -192,6 +199,7 @@ BridgeReport run_bridge(const BridgeConfig& config, StopSignal& stop_signal, dou
   ServoLink link(loops.size());
   ClientSettings settings = client_settings(config);
   settings.lockstep = simulated;
+  settings.torque = torque;
   BridgeBlackBox black_box(config.black_box);
   settings.tap = black_box.frames();
   NetworkClient client(link, settings, done);
@@ -220,6 +228,7 @@ BridgeReport run_bridge(const BridgeConfig& config, StopSignal& stop_signal, dou
   for (const ServoLoop& loop : loops) {
     report.peak_force = std::max(report.peak_force, loop.peak_force());
     report.impulse += loop.impulse();
+    report.peak_torque = std::max(report.peak_torque, loop.peak_torque());
     const FilterCounts counts = loop.counts();
     report.filter.readings += counts.readings;
     report.filter.demands += counts.demands;

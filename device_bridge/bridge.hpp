@@ -19,6 +19,7 @@ struct BridgeReport {
   int styluses = 0;
   double peak_force = 0.0;   ///< shown on any stylus [N]
   double impulse = 0.0;      ///< of the force's magnitude, on all styluses together [N s]
+  double peak_torque = 0.0;  ///< shown on any stylus [N m]
   FilterCounts filter = {};  ///< of all styluses
 };
 

@@ -17,6 +17,17 @@ HandParameters read_hand(TomlTable table) {
   hand.mass = table.number("mass", between(1e-3, 100.0), hand.mass);
   hand.damping = table.number("damping", between(0.0, 1e4), hand.damping);
   hand.stiffness = table.number("stiffness", between(1e-3, 1e6), hand.stiffness);
+  if (table.has("inertia")) {
+    hand.turn.emplace();
+    hand.turn->inertia = table.number("inertia", between(1e-7, 10.0));
+    hand.turn->damping = table.number("angular_damping", between(0.0, 100.0), hand.turn->damping);
+    hand.turn->stiffness =
+        table.number("angular_stiffness", between(1e-5, 1e4), hand.turn->stiffness);
+  } else {
+    for (const char* key : {"angular_damping", "angular_stiffness"}) {
+      if (table.has(key)) table.fail(key, "needs an inertia", "give hand.inertia, too");
+    }
+  }
   table.finish();
   return hand;
 }
@@ -33,12 +44,13 @@ SensorParameters read_sensor(TomlTable table) {
 }
 
 MotorParameters read_motors(TomlTable table) {
-  const Range force{.lowest = 0.0, .highest = 100.0, .lowest_included = false};
+  const Range force{.lowest = 0.0, .highest = 100.0, .lowest_included = false};  // N, N m
   MotorParameters motors;
   if (table.has("max_force")) motors.max_force = table.number("max_force", force);
   if (table.has("continuous_force")) {
     motors.continuous_force = table.number("continuous_force", force);
   }
+  if (table.has("max_torque")) motors.max_torque = table.number("max_torque", force);
   motors.time_constant = table.number("time_constant", between(0.01, 1e4), motors.time_constant);
   if (table.has("watchdog")) motors.watchdog = table.number("watchdog", between(0.001, 10.0));
   table.finish();
@@ -138,6 +150,12 @@ void read_bridge(TomlTable table, const std::string& file, BridgeConfig& config)
   config.continuous_force =
       table.number("continuous_force", {.lowest = 0.0, .highest = 40.0, .lowest_included = false},
                    config.continuous_force);
+  config.max_torque = table.number("max_torque", between(0.0, 10.0), config.max_torque);
+  config.continuous_torque =
+      table.number("continuous_torque", {.lowest = 0.0, .highest = 10.0, .lowest_included = false},
+                   config.continuous_torque);
+  config.max_torque_rate =
+      table.number("max_torque_rate", between(1.0, 1000.0), config.max_torque_rate);
   config.predict = table.choice("mode", {"predict", "hold"}, "predict") == "predict";
   if (table.has("link")) config.link = read_link(table.table("link"));
   config.udp = table.choice("stream", {"tcp", "udp"}, "tcp") == "udp";

@@ -34,10 +34,14 @@ struct DeviceConfig {
   // hand.mass [kg], 0.001 to 100, default 0.12
   // hand.damping [N s/m], 0 to 10000, default 2
   // hand.stiffness [N/m], 0.001 to 1e6, default 300
+  // hand.inertia [kg m^2], 1e-7 to 10; left out: turned exactly as scripted, and no torque; with it
+  // hand.angular_damping [N m s/rad], 0 to 100, default 0.005
+  // hand.angular_stiffness [N m/rad], 1e-5 to 1e4, default 0.75
   SensorParameters sensor = {};  ///< key `sensor`, a table, of a virtual device
   // sensor.resolution, sensor.noise [m], 0 to 0.01, default 0; sensor.seed, from 0, default 1
   MotorParameters motors = {};  ///< key `motors`, a table, of a virtual device
-  // motors.max_force, motors.continuous_force [N], (0, 100], default: no limit
+  // motors.max_force, motors.continuous_force [N], motors.max_torque [N m], (0, 100], default: no
+  // limit
   // motors.time_constant [s], 0.01 to 10000, default 60
   // motors.watchdog [s], 0.001 to 10, default: none
   DeviceMapping mapping = {};  ///< keys `workspace` and `buttons`, tables
@@ -52,6 +56,12 @@ struct BridgeConfig {
   double rate = 1000.0;                 ///< key `bridge.rate`: servo loop [Hz], 100 to 4000
   double max_force = 3.3;               ///< key `bridge.max_force`: shown at most [N], (0, 40]
   double continuous_force = 0.88;       ///< key `bridge.continuous_force`: for long [N], (0, 40]
+  /// key `bridge.max_torque`: shown at most, by devices that can [N m], 0 to 10; 0: none
+  double max_torque = 0.15;
+  double continuous_torque = 0.05;  ///< key `bridge.continuous_torque`: for long [N m], (0, 10]
+  /// key `bridge.max_torque_rate`: of one that rises or turns round [N m/s], 1 to 1000; four times
+  /// as fast towards zero
+  double max_torque_rate = 15.0;
   /// key `bridge.mode`: "predict": the contact is solved here, so that delay is not felt | "hold":
   /// the server's forces are held. In lockstep without a `link` there is no delay, and forces are
   /// held.

@@ -4,7 +4,7 @@
 #include <limits>
 #include <string>
 
-#include "common/geometry.hpp"
+#include "common/motion/wrench.hpp"
 #include "device_bridge/stylus_script.hpp"
 
 namespace irdm {
@@ -35,10 +35,11 @@ struct DeviceState {
   bool lost = false;               ///< and no readings either
 };
 
-/// The largest forces that a device is made for; infinity: it does not say.
+/// The largest forces and torques that a device is made for; infinity: it does not say.
 struct ForceRating {
   double peak = std::numeric_limits<double>::infinity();        ///< [N], > 0
   double continuous = std::numeric_limits<double>::infinity();  ///< for ever [N], > 0
+  double peak_torque = 0.0;                                     ///< [N m]; 0: it renders no torque
 };
 
 /// A force-feedback stylus, in its own frame D; the servo loop knows where D lies in W. Made and
@@ -59,8 +60,9 @@ class HapticDevice {
   /// of no use. Real-time safe.
   /// @param time since the session began, does not decrease; 0 before [s]
   virtual StylusPose read(double time) noexcept = 0;
-  /// Shows this force on the stylus until the next call [N], D. Real-time safe.
-  virtual void write(const Vector3& force) noexcept = 0;
+  /// Shows this on the stylus until the next call: the force at its tip and, where the device
+  /// renders torque, the torque about the tip; D. Real-time safe.
+  virtual void write(const Wrench& shown) noexcept = 0;
   /// As of the last read() and write(). Real-time safe.
   virtual DeviceState state() const noexcept { return {}; }
 

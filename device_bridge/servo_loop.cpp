@@ -34,6 +34,7 @@ void ServoLoop::read(double device_time) noexcept {
   device_state_ = device_.state();
   reading_ = finite ? pose.tip : Vector3::Constant(std::numeric_limits<double>::quiet_NaN());
   if (!finite) return;
+  orientation_ = pose.orientation;
   pose_ = mapping_.workspace.to_world(pose);
   pose_.tip = clutch_.move(pose_.tip, mapping_.buttons.clutched(pose.buttons));
   pose_.buttons = mapping_.buttons.to_wire(pose.buttons);
@@ -57,10 +58,11 @@ void ServoLoop::end_steps(std::int64_t now_ns) noexcept {
 }
 
 void ServoLoop::report_shown() noexcept {
-  if (contact_) contact_->shown(mapping_.workspace.force_to_world(shown_));
+  if (contact_) contact_->shown(mapping_.workspace.force_to_world(shown_.force));
 }
 
-// Force and normal in W.
+// Force, torque and normal in W. The server's torque is that of a tool, which only the server's
+// steps know: a contact that is solved here has none.
 ForceDemand ServoLoop::demand(std::int64_t now_ns, const ServoInput& input) noexcept {
   if (!contact_) {
     const StylusForce& newest = input.force;
@@ -68,7 +70,8 @@ ForceDemand ServoLoop::demand(std::int64_t now_ns, const ServoInput& input) noex
             .any = input.any_force,
             .sample_time_ns = newest.sample_time_ns,
             .contact = newest.contact,
-            .force = newest.force};
+            .force = newest.force,
+            .torque = newest.torque};
   }
   const BridgeContact::ForceCommand& wanted = contact_->wanted();
   return {.linked = input.linked && !wanted.paused,
@@ -105,20 +108,26 @@ void ServoLoop::apply(std::int64_t now_ns, const ServoInput& input) noexcept {
   }
   update_device_state();
   ForceDemand wanted = demand(now_ns, input);
-  wanted.force = clutch_.gain(now_ns) * mapping_.workspace.to_device(wanted.force);
+  const double gain = clutch_.gain(now_ns);
+  wanted.force = gain * mapping_.workspace.to_device(wanted.force);
+  wanted.torque = gain * mapping_.workspace.torque_to_device(wanted.torque);
   wanted.energy *= mapping_.workspace.force_scale / mapping_.workspace.scale;
   wanted.normal = mapping_.workspace.direction_to_device(wanted.normal);
-  const Vector3 force = filter_.step(
-      now_ns, {.tip = *reading_, .motor_temperature = device_state_.motor_temperature}, wanted);
+  const Wrench wrench = filter_.step(now_ns,
+                                     {.tip = *reading_,
+                                      .orientation = orientation_,
+                                      .motor_temperature = device_state_.motor_temperature},
+                                     wanted);
   demanded_ = wanted;
   if (applied_ns_) {
     constexpr std::int64_t kLongest = 50'000'000;
     const auto held_ns = std::clamp<std::int64_t>(now_ns - *applied_ns_, 0, kLongest);
-    impulse_ += kNanosecond * static_cast<double>(held_ns) * shown_.norm();
+    impulse_ += kNanosecond * static_cast<double>(held_ns) * shown_.force.norm();
   }
   applied_ns_ = now_ns;
-  peak_force_ = std::max(peak_force_, force.norm());
-  show(force);
+  peak_force_ = std::max(peak_force_, wrench.force.norm());
+  peak_torque_ = std::max(peak_torque_, wrench.torque.norm());
+  show(wrench);
   report_shown();
 }
 

@@ -19,12 +19,12 @@ struct DeviceMapping {
 };
 
 /// One stylus of the servo loop: device (D) through workspace and clutch to sample (W), and force
-/// (W) through workspace, clutch and safety filter to device (D). Knows no thread, clock or socket;
-/// nothing in it allocates or throws.
+/// and torque (W) through workspace, clutch and safety filter to device (D). Knows no thread, clock
+/// or socket; nothing in it allocates or throws.
 /// Large: each stage between device and sample is a member; the order among them is this class.
 class ServoLoop {
  public:
-  /// @param limits of the force at the device
+  /// @param limits of force and torque at the device
   ServoLoop(HapticDevice& device, const FilterLimits& limits, const DeviceMapping& mapping = {});
 
   /// Begins a session of the device's time: samples are numbered from 0 again, the clutch's
@@ -62,7 +62,7 @@ class ServoLoop {
   /// @param now_ns the clock that samples are stamped with
   void apply(std::int64_t now_ns, const ServoInput& input) noexcept;
   /// Shows no force.
-  void rest() noexcept { show(Vector3::Zero()); }
+  void rest() noexcept { show({}); }
 
   /// A tick without a session: reads the device, so that its driver and its state go on, and shows
   /// no force.
@@ -73,16 +73,18 @@ class ServoLoop {
 
   const FilterLimits& limits() const noexcept { return limits_; }
   const SafetyFilter& filter() const noexcept { return filter_; }
-  double peak_force() const noexcept { return peak_force_; }  ///< shown so far [N], D
-  double impulse() const noexcept { return impulse_; }        ///< of its magnitude, so far [N s]
+  double peak_force() const noexcept { return peak_force_; }    ///< shown so far [N], D
+  double impulse() const noexcept { return impulse_; }          ///< of its magnitude, so far [N s]
+  double peak_torque() const noexcept { return peak_torque_; }  ///< shown so far [N m], D
   /// Of all sessions.
   FilterCounts counts() const noexcept;
   HapticDevice& device() noexcept { return device_; }
   /// Tip as it was read last, not a number if of no use [m], D.
   Vector3 reading() const noexcept { return reading_.value_or(pose_.tip); }
-  /// The force that was asked for last, and the one that was shown [N], D.
+  /// What was asked for last, and the force [N] and torque [N m] that were shown, D.
   const ForceDemand& demanded() const noexcept { return demanded_; }
-  const Vector3& shown() const noexcept { return shown_; }
+  const Vector3& shown() const noexcept { return shown_.force; }
+  const Vector3& shown_torque() const noexcept { return shown_.torque; }
   /// As of the last read().
   const DeviceState& device_state() const noexcept { return device_state_; }
 
@@ -90,9 +92,9 @@ class ServoLoop {
   void report_shown() noexcept;
   ForceDemand demand(std::int64_t now_ns, const ServoInput& input) noexcept;
   void update_device_state() noexcept;
-  void show(const Vector3& force) noexcept {
-    shown_ = force;
-    device_.write(force);
+  void show(const Wrench& wrench) noexcept {
+    shown_ = wrench;
+    device_.write(wrench);
   }
 
   HapticDevice& device_;
@@ -105,14 +107,16 @@ class ServoLoop {
   StylusPose pose_;                       ///< the last good one, W; buttons as on the wire
   /// Tip as it was read last, not a number if of no use; none since restart() [m], D.
   std::optional<Vector3> reading_;
+  Quaternion orientation_ = Quaternion::Identity();  ///< the last good one, D
   ForceDemand demanded_;
-  Vector3 shown_ = Vector3::Zero();
+  Wrench shown_;
   DeviceState device_state_;
   bool was_ready_ = true;
   std::uint64_t next_sequence_ = 0;
   StylusSample sample_;  ///< that was taken last
   double peak_force_ = 0.0;
   double impulse_ = 0.0;
+  double peak_torque_ = 0.0;
   std::optional<std::int64_t> applied_ns_;  ///< time of the last apply() since restart()
   FilterCounts counts_;                     ///< of the sessions before
 };

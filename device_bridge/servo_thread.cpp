@@ -202,7 +202,8 @@ void ServoThread::write_down(std::size_t i, std::int64_t now_ns) noexcept {
                       .port_energy = filter.port_energy(),
                       .gain = filter.gain(),
                       .warmth = filter.warmth(),
-                      .force = loop.shown()});
+                      .force = loop.shown(),
+                      .torque = loop.shown_torque()});
 }
 
 void ServoThread::begin_session(const LinkState& state) noexcept {

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <utility>
 
+#include "common/motion/rigid_body.hpp"
 #include "device_bridge/bridge_config.hpp"
 
 namespace irdm {
@@ -28,6 +29,26 @@ Decay decay(double a, double discriminant, double t) noexcept {
   return {0.5 * (slow + fast), 0.5 * (slow - fast) / w};
 }
 
+/// A damped oscillator relative to where it rests: place and velocity, after `dt` of swinging.
+struct Swing {
+  Vector3 place;
+  Vector3 velocity;
+
+  Swing after(double dt, double inertia, double damping, double stiffness) const noexcept {
+    const double a = 0.5 * damping / inertia;
+    const double square = stiffness / inertia;  // of the undamped angular frequency
+    const Decay d = decay(a, square - a * a, dt);
+    return {(d.cosine + a * d.sine) * place + d.sine * velocity,
+            (d.cosine - a * d.sine) * velocity - square * d.sine * place};
+  }
+};
+
+Vector3 shortened(const Vector3& vector, double most) noexcept {
+  if (!vector.allFinite()) return Vector3::Zero();
+  const double magnitude = vector.norm();
+  return magnitude > most ? Vector3(most / magnitude * vector) : vector;
+}
+
 }  // namespace
 
 VirtualHand::VirtualHand(const HandParameters& parameters, const Vector3& start)
@@ -35,25 +56,37 @@ VirtualHand::VirtualHand(const HandParameters& parameters, const Vector3& start)
 
 void VirtualHand::advance(double dt, const Vector3& target, const Vector3& force) noexcept {
   if (!(dt > 0.0)) return;
-  const auto& [mass, damping, stiffness] = parameters_;
-  const double a = 0.5 * damping / mass;
-  const double square = stiffness / mass;  // of the undamped angular frequency
-  const Decay d = decay(a, square - a * a, dt);
+  const auto& [mass, damping, stiffness, turn] = parameters_;
   // Relative to the moving target, and to where the force would hold it for good.
   const Vector3 target_velocity = (target - target_) / dt;
   const Vector3 sag = force / stiffness;
-  const Vector3 y = position_ - target_ - sag;
-  const Vector3 u = velocity_ - target_velocity;
-  position_ = target + sag + (d.cosine + a * d.sine) * y + d.sine * u;
-  velocity_ = target_velocity + (d.cosine - a * d.sine) * u - square * d.sine * y;
+  const Swing begin{position_ - target_ - sag, velocity_ - target_velocity};
+  const Swing end = begin.after(dt, mass, damping, stiffness);
+  position_ = target + sag + end.place;
+  velocity_ = target_velocity + end.velocity;
   target_ = target;
 }
 
-void VirtualMotors::set(const Vector3& force) noexcept {
+VirtualWrist::VirtualWrist(const TurnParameters& parameters, const Quaternion& start)
+    : parameters_(parameters), target_(start), orientation_(start) {}
+
+void VirtualWrist::advance(double dt, const Quaternion& target, const Vector3& torque) noexcept {
+  if (!(dt > 0.0)) return;
+  const auto& [inertia, damping, stiffness] = parameters_;
+  const Vector3 target_velocity = rotation_vector(target * target_.conjugate()) / dt;
+  const Vector3 sag = torque / stiffness;
+  const Swing begin{rotation_vector(orientation_ * target_.conjugate()) - sag,
+                    angular_velocity_ - target_velocity};
+  const Swing end = begin.after(dt, inertia, damping, stiffness);
+  orientation_ = (rotation_from_vector(sag + end.place) * target).normalized();
+  angular_velocity_ = target_velocity + end.velocity;
+  target_ = target;
+}
+
+void VirtualMotors::set(const Wrench& wrench) noexcept {
   age_ = 0.0;
-  force_ = force.allFinite() ? force : Vector3(Vector3::Zero());
-  const double magnitude = force_.norm();
-  if (magnitude > parameters_.max_force) force_ *= parameters_.max_force / magnitude;
+  shown_ = {shortened(wrench.force, parameters_.max_force),
+            shortened(wrench.torque, parameters_.max_torque)};
 }
 
 double VirtualMotors::on_for(double seconds) const noexcept {
@@ -62,7 +95,7 @@ double VirtualMotors::on_for(double seconds) const noexcept {
 
 void VirtualMotors::advance(double seconds) noexcept {
   const double on = on_for(seconds);
-  const double load = force_.norm() / parameters_.continuous_force;
+  const double load = shown_.force.norm() / parameters_.continuous_force;
   const auto settle = [&](double towards, double time) {
     warmth_ += (towards - warmth_) * -std::expm1(-time / parameters_.time_constant);
   };
@@ -118,12 +151,21 @@ VirtualStylus::VirtualStylus(StylusScript script, const std::optional<HandParame
       sensor_(sensor),
       motors_(motors),
       rating_{.peak = motors.max_force, .continuous = motors.continuous_force} {
-  if (hand) hand_.emplace(*hand, script_.at(0.0).tip);
+  if (!hand) return;
+  const StylusPose start = script_.at(0.0);
+  hand_.emplace(*hand, start.tip);
+  if (!hand->turn) return;
+  wrist_.emplace(*hand->turn, start.orientation);
+  rating_.peak_torque = motors.max_torque;
 }
 
 StylusPose VirtualStylus::read(double time) noexcept {
   StylusPose pose = script_.at(time);
-  if (hand_) pose.tip = move_hand(time, pose.tip);
+  if (hand_) {
+    move_hand(time, pose);
+    pose.tip = hand_->position();
+  }
+  if (wrist_) pose.orientation = wrist_->orientation();
   motors_.advance(std::max(0.0, time - time_));
   warm_.store(motors_.warmth() >= 1.0, std::memory_order_relaxed);
   time_ = time;
@@ -132,16 +174,21 @@ StylusPose VirtualStylus::read(double time) noexcept {
 }
 
 // The motors may go off on the way.
-Vector3 VirtualStylus::move_hand(double time, const Vector3& target) noexcept {
+void VirtualStylus::move_hand(double time, const StylusPose& target) noexcept {
   const double elapsed = time - time_;
   const double on = elapsed > 0.0 ? motors_.on_for(elapsed) : elapsed;
   if (on < elapsed) {
-    hand_->advance(on, script_.at(time_ + on).tip, motors_.force());
-    hand_->advance(elapsed - on, target, Vector3::Zero());
+    advance_hand(on, script_.at(time_ + on), motors_.shown());
+    advance_hand(elapsed - on, target, {});
   } else {
-    hand_->advance(elapsed, target, motors_.force());
+    advance_hand(elapsed, target, motors_.shown());
   }
-  return hand_->position();
+}
+
+void VirtualStylus::advance_hand(double dt, const StylusPose& target,
+                                 const Wrench& shown) noexcept {
+  hand_->advance(dt, target.tip, shown.force);
+  if (wrist_) wrist_->advance(dt, target.orientation, shown.torque);
 }
 
 DeviceState VirtualStylus::state() const noexcept {

@@ -6,17 +6,26 @@
 #include <memory>
 #include <optional>
 
-#include "common/geometry.hpp"
+#include "common/motion/wrench.hpp"
 #include "device_bridge/haptic_device.hpp"
 
 namespace irdm {
 
+/// How a hand turns the stylus, as HandParameters move it. The defaults are those of a hand that
+/// holds it 5 cm from the tip.
+struct TurnParameters {
+  double inertia = 3e-4;    ///< of hand and stylus, about any axis [kg m^2], > 0
+  double damping = 5e-3;    ///< [N m s/rad], >= 0
+  double stiffness = 0.75;  ///< [N m/rad], > 0
+};
+
 /// A hand that holds the stylus: a mass between a spring with a damper, whose other end moves as
 /// the hand wants, and the force of the device.
 struct HandParameters {
-  double mass = 0.12;        ///< of hand and stylus [kg], > 0
-  double damping = 2.0;      ///< [N s/m], >= 0
-  double stiffness = 300.0;  ///< [N/m], > 0
+  double mass = 0.12;                       ///< of hand and stylus [kg], > 0
+  double damping = 2.0;                     ///< [N s/m], >= 0
+  double stiffness = 300.0;                 ///< [N/m], > 0
+  std::optional<TurnParameters> turn = {};  ///< none: it turns the stylus exactly as it wants
 };
 
 /// m a = stiffness (target - x) + damping (target' - v) + force, solved in closed form over each
@@ -41,10 +50,34 @@ class VirtualHand {
   Vector3 velocity_ = Vector3::Zero();
 };
 
+/// The same for the orientation: inertia w' = stiffness r + damping (w_target - w) + torque, r the
+/// rotation vector to the target. In closed form likewise, exact for turns about one axis.
+class VirtualWrist {
+ public:
+  /// At rest at `start`, D.
+  VirtualWrist(const TurnParameters& parameters, const Quaternion& start);
+
+  /// @param dt [s], >= 0
+  /// @param target how the hand wants to hold the stylus at the end of the step, D; it turns there
+  /// evenly
+  /// @param torque of the device on the hand, constant over the step [N m], D
+  void advance(double dt, const Quaternion& target, const Vector3& torque) noexcept;
+
+  const Quaternion& orientation() const noexcept { return orientation_; }         ///< D
+  const Vector3& angular_velocity() const noexcept { return angular_velocity_; }  ///< [rad/s], D
+
+ private:
+  TurnParameters parameters_;
+  Quaternion target_;
+  Quaternion orientation_;
+  Vector3 angular_velocity_ = Vector3::Zero();
+};
+
 /// What the motors of a device can do. The defaults are motors without any limit.
 struct MotorParameters {
   static constexpr double kNone = std::numeric_limits<double>::infinity();
   double max_force = kNone;         ///< that they show, longer ones are shortened to it [N], > 0
+  double max_torque = kNone;        ///< the same of a torque [N m], > 0
   double continuous_force = kNone;  ///< at which they get as warm as they may [N], > 0
   double time_constant = 60.0;      ///< of their warming up [s], > 0
   double watchdog = kNone;          ///< without a new force for so long they go off [s], > 0
@@ -55,10 +88,10 @@ class VirtualMotors {
  public:
   explicit VirtualMotors(const MotorParameters& parameters) : parameters_(parameters) {}
 
-  /// A new force [N], D; anything: what is not finite is none.
-  void set(const Vector3& force) noexcept;
-  /// What they show, as long as they are on [N], D.
-  const Vector3& force() const noexcept { return force_; }
+  /// A new force and torque, D; anything: what is not finite is none.
+  void set(const Wrench& wrench) noexcept;
+  /// What they show, as long as they are on, D.
+  const Wrench& shown() const noexcept { return shown_; }
   /// For how long of the next `seconds` they are on.
   double on_for(double seconds) const noexcept;
   /// @param seconds that go by, >= 0
@@ -68,8 +101,8 @@ class VirtualMotors {
 
  private:
   MotorParameters parameters_;
-  Vector3 force_ = Vector3::Zero();
-  double age_ = 0.0;  ///< of the force [s]
+  Wrench shown_;
+  double age_ = 0.0;  ///< of it [s]
   double warmth_ = 0.0;
 };
 
@@ -100,8 +133,8 @@ class VirtualSensor {
 struct DeviceConfig;
 
 /// A stylus without hardware: it moves as scripted, or is held by a simulated hand that follows the
-/// script and feels what the motors show of the force. Orientation and buttons are always those of
-/// the script.
+/// script and feels what the motors show of the force, and of the torque where it has an inertia.
+/// Buttons are always those of the script, and so is the orientation without such a hand.
 class VirtualStylus : public HapticDevice {
  public:
   explicit VirtualStylus(StylusScript script, const std::optional<HandParameters>& hand = {},
@@ -110,7 +143,7 @@ class VirtualStylus : public HapticDevice {
   void open() override {}
   void close() noexcept override {}
   StylusPose read(double time) noexcept override;
-  void write(const Vector3& force) noexcept override { motors_.set(force); }
+  void write(const Wrench& shown) noexcept override { motors_.set(shown); }
   DeviceState state() const noexcept override;
   bool simulated() const noexcept override { return true; }
   double duration() const noexcept override { return script_.end(); }
@@ -118,10 +151,12 @@ class VirtualStylus : public HapticDevice {
   std::string trouble() const override;
 
  private:
-  Vector3 move_hand(double time, const Vector3& target) noexcept;
+  void move_hand(double time, const StylusPose& target) noexcept;
+  void advance_hand(double dt, const StylusPose& target, const Wrench& shown) noexcept;
 
   StylusScript script_;
   std::optional<VirtualHand> hand_;
+  std::optional<VirtualWrist> wrist_;
   VirtualSensor sensor_;
   VirtualMotors motors_;
   ForceRating rating_;

@@ -34,6 +34,10 @@ Vector3 Workspace::to_device(const Vector3& force_W) const noexcept {
   return force_scale * (rotation.conjugate() * force_W);
 }
 
+Vector3 Workspace::torque_to_device(const Vector3& torque_W) const noexcept {
+  return force_scale / scale * (rotation.conjugate() * torque_W);
+}
+
 Vector3 Workspace::force_to_world(const Vector3& force_D) const noexcept {
   return rotation * force_D / force_scale;
 }

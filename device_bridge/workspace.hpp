@@ -60,9 +60,10 @@ struct ButtonMap {
 /// Where the frame D of a device lies in W: p_W = position + scale rotation p_D. Pure.
 ///
 /// With v_W = scale R v_D and f_D = force_scale R^T f_W, what the device does to the hand is
-/// f_D . v_D = (force_scale / scale) f_W . v_W: a fixed positive multiple of what happens in W. So
-/// any positive pair keeps a passive world passive at the device; only its stiffness in the hand
-/// changes, by force_scale times scale, and with it how soon a delayed loop becomes unstable.
+/// f_D . v_D = (force_scale / scale) f_W . v_W: a fixed positive multiple of what happens in W.
+/// Turns have no scale, w_W = R w_D, so torques have this multiple: t_D = (force_scale / scale) R^T
+/// t_W. Any positive pair keeps a passive world passive at the device; only its stiffness in the
+/// hand changes, by force_scale times scale, and with it how soon a delayed loop becomes unstable.
 struct Workspace {
   Vector3 position = Vector3::Zero();            ///< of D's origin [m], W
   Quaternion rotation = Quaternion::Identity();  ///< D to W, norm 1
@@ -75,6 +76,8 @@ struct Workspace {
   StylusPose to_world(const StylusPose& pose_D) const noexcept;
   /// A force in W as the device shows it [N], D.
   Vector3 to_device(const Vector3& force_W) const noexcept;
+  /// A torque in W as the device shows it [N m], D.
+  Vector3 torque_to_device(const Vector3& torque_W) const noexcept;
   /// The force in W that the device shows as this one [N], D.
   Vector3 force_to_world(const Vector3& force_D) const noexcept;
   /// A direction in W, in D.

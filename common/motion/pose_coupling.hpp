@@ -6,14 +6,9 @@
 #include "common/geometry.hpp"
 #include "common/model/model.hpp"
 #include "common/motion/rigid_body.hpp"
+#include "common/motion/wrench.hpp"
 
 namespace irdm {
-
-/// Force [N] and torque [N m] on a body at a point of it, W.
-struct Wrench {
-  Vector3 force = Vector3::Zero();
-  Vector3 torque = Vector3::Zero();
-};
 
 /// Constants of a PoseCoupling. Those left out: default_coupling().
 struct CouplingConstants {
@@ -53,11 +48,11 @@ class PoseCoupling {
   PoseCoupling(const BodyProperties& body, const Vector3& reference,
                const CouplingConstants& constants, double dt, const std::string& where);
 
-  /// Of the spring on a body that stands so, at the reference point.
+  /// Of the spring on a body that stands so, at the reference point, W.
   Wrench spring(const CouplingHome& home, const Vector3& position,
                 const Quaternion& orientation) const noexcept;
   /// Half a step of the damper, which changes the velocities of the state.
-  /// @param work that it does on the body [J], added  @return mean over that half
+  /// @param work that it does on the body [J], added  @return mean over that half, W
   Wrench damp(const CouplingHome& home, const RigidBody& body, RigidState& state,
               double& work) const noexcept;
   /// Energy of the spring [J].

@@ -9,7 +9,7 @@ namespace irdm {
 namespace {
 
 bool felt(const TickRow& row) {
-  return !row.force.isZero(0.0) &&
+  return !(row.force.isZero(0.0) && row.torque.isZero(0.0)) &&
          (row.state == FilterState::kEngaged || row.state == FilterState::kFading);
 }
 
@@ -58,6 +58,7 @@ void write_force(ColumnGroup<TickRow>& columns, std::int64_t origin_ns) {
   columns.number<std::uint8_t>("contact", "",
                                [](const TickRow& row) { return row.demand.contact; });
   columns.vector("demand", "N", [](const TickRow& row) { return row.demand.force; });
+  columns.vector("demand_torque", "N m", [](const TickRow& row) { return row.demand.torque; });
   columns.vector("normal", "", [](const TickRow& row) { return row.demand.normal; });
   columns.number<std::uint8_t>("state", "", [](const TickRow& row) { return row.state; });
   columns.number<std::uint64_t>("readings_unused", "",
@@ -71,6 +72,7 @@ void write_force(ColumnGroup<TickRow>& columns, std::int64_t origin_ns) {
   columns.number<double>("gain", "", [](const TickRow& row) { return row.gain; });
   columns.number<double>("warmth", "", [](const TickRow& row) { return row.warmth; });
   columns.vector("force", "N", [](const TickRow& row) { return row.force; });
+  columns.vector("torque", "N m", [](const TickRow& row) { return row.torque; });
 }
 
 }  // namespace

@@ -31,10 +31,11 @@ struct TickRow {
   FilterState state = FilterState::kDisarmed;
   FilterCounts counts;
   double success_rate = 0.0;
-  double port_energy = 0.0;         ///< see Passivity [J]
-  double gain = 1.0;                ///< see OscillationDetector
-  double warmth = 0.0;              ///< of the motors, 0 to 1
-  Vector3 force = Vector3::Zero();  ///< that was shown [N], D
+  double port_energy = 0.0;          ///< see Passivity [J]
+  double gain = 1.0;                 ///< see OscillationDetector
+  double warmth = 0.0;               ///< of the motors, 0 to 1
+  Vector3 force = Vector3::Zero();   ///< that was shown [N], D
+  Vector3 torque = Vector3::Zero();  ///< the same [N m], D
 };
 
 /// Every tick of every stylus. Faults are a device that fails or is lost, a latched fault of the

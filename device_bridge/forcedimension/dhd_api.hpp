@@ -4,8 +4,8 @@
 #include <vector>
 
 /// The part of Force Dimension's DHD that the bridge uses, as its binary interface is on Linux.
-/// Declarations of our own: nothing of the vendor's is needed to build. Lengths in m, forces in N;
-/// +x towards the person, +y right, +z up.
+/// Declarations of our own: nothing of the vendor's is needed to build. Lengths in m, forces in N,
+/// torques in N m; +x towards the person, +y right, +z up.
 namespace irdm::dhd {
 
 /// The functions, by what follows `dhd` in their names. A result below zero is a failure, in words
@@ -19,7 +19,11 @@ struct Api {
   int (*get_position)(double* x, double* y, double* z, char id);
   int (*get_orientation_frame)(double rows[3][3], char id);
   unsigned (*get_button_mask)(char id);
+  bool (*has_active_wrist)(char id);  ///< it renders torque
   int (*set_force)(double x, double y, double z, char id);
+  /// Force and then torque; of a device with an active wrist.
+  int (*set_force_and_torque)(double fx, double fy, double fz, double tx, double ty, double tz,
+                              char id);
   const char* (*error_get_last_str)();
 };
 

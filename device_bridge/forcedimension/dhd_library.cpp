@@ -31,7 +31,9 @@ Api load_library(const std::vector<std::string>& names) {
   library.bind("dhdGetPosition", api.get_position);
   library.bind("dhdGetOrientationFrame", api.get_orientation_frame);
   library.bind("dhdGetButtonMask", api.get_button_mask);
+  library.bind("dhdHasActiveWrist", api.has_active_wrist);
   library.bind("dhdSetForce", api.set_force);
+  library.bind("dhdSetForceAndTorque", api.set_force_and_torque);
   library.bind("dhdErrorGetLastStr", api.error_get_last_str);
   return api;
 }

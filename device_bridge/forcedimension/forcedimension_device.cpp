@@ -20,6 +20,12 @@ const Matrix3& axes() noexcept {
   return kAxes;
 }
 
+// Of a force or torque; what is not finite is none.
+Vector3 to_driver(const Vector3& vector) noexcept {
+  if (!vector.allFinite()) return Vector3::Zero();
+  return axes().transpose() * vector;
+}
+
 }  // namespace
 
 ForceDimensionDevice::ForceDimensionDevice(std::string name, const dhd::Api& api)
@@ -48,14 +54,17 @@ void ForceDimensionDevice::open() {
   if (id < 0) fail("cannot be opened: ");
   id_ = id;
   if (dhd_.enable_force(kOn, static_cast<char>(id_)) < 0) fail("its force cannot be turned on: ");
+  const bool wrist = dhd_.has_active_wrist(static_cast<char>(id_));
+  if (wrist) rating_.peak_torque = std::numeric_limits<double>::infinity();
   const char* const model = dhd_.get_system_name(static_cast<char>(id_));
-  spdlog::info("{}: {}", label(), model != nullptr ? model : "unknown");
+  spdlog::info("{}: {}, {}", label(), model != nullptr ? model : "unknown",
+               wrist ? "force and torque" : "force");
 }
 
 void ForceDimensionDevice::close() noexcept {
   if (id_ == kClosed) return;
+  write({});
   const auto id = static_cast<char>(std::exchange(id_, kClosed));
-  dhd_.set_force(0.0, 0.0, 0.0, id);
   dhd_.enable_force(kOff, id);
   dhd_.close(id);
 }
@@ -85,9 +94,15 @@ void ForceDimensionDevice::count(bool failed) noexcept {
   if (failures_ >= kMostFailures) lost_.store(true, std::memory_order_relaxed);
 }
 
-void ForceDimensionDevice::write(const Vector3& force) noexcept {
-  const Vector3 shown = axes().transpose() * (force.allFinite() ? force : Vector3(Vector3::Zero()));
-  dhd_.set_force(shown.x(), shown.y(), shown.z(), static_cast<char>(id_));
+void ForceDimensionDevice::write(const Wrench& shown) noexcept {
+  const auto id = static_cast<char>(id_);
+  const Vector3 f = to_driver(shown.force);
+  const Vector3 t = to_driver(shown.torque);
+  if (rating_.peak_torque > 0.0) {
+    dhd_.set_force_and_torque(f.x(), f.y(), f.z(), t.x(), t.y(), t.z(), id);
+  } else {
+    dhd_.set_force(f.x(), f.y(), f.z(), id);
+  }
 }
 
 DeviceState ForceDimensionDevice::state() const noexcept {

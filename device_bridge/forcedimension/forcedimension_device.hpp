@@ -11,7 +11,8 @@ namespace irdm {
 
 struct DeviceConfig;
 
-/// A device of Force Dimension (Omega, Delta, Sigma, Lambda) or a Falcon. D has its origin where
+/// A device of Force Dimension (Omega, Delta, Sigma, Lambda) or a Falcon; it renders torque where
+/// its wrist is active. D has its origin where
 /// the driver has it, +x right, +y up, +z towards the person, as for OpenHaptics. Its driver has no
 /// thread of its own: the ticks are the servo thread's.
 class ForceDimensionDevice : public HapticDevice {
@@ -24,10 +25,11 @@ class ForceDimensionDevice : public HapticDevice {
   void open() override;
   void close() noexcept override;
   StylusPose read(double time) noexcept override;
-  void write(const Vector3& force) noexcept override;
+  void write(const Wrench& shown) noexcept override;
   DeviceState state() const noexcept override;
   bool simulated() const noexcept override { return false; }
   double duration() const noexcept override { return std::numeric_limits<double>::infinity(); }
+  ForceRating rating() const noexcept override { return rating_; }
   std::string trouble() const override;
 
  private:
@@ -40,6 +42,7 @@ class ForceDimensionDevice : public HapticDevice {
   std::string name_;
   const dhd::Api& dhd_;
   int id_ = kClosed;
+  ForceRating rating_;
   int failures_ = 0;  ///< in a row
   std::atomic<bool> lost_{false};
 };

@@ -13,6 +13,11 @@ std::size_t bytes_of(wire::MessageType type) {
   return wire::kHeaderSize + wire::payload_size(type).value();
 }
 
+// Of a force, which is longer where torque comes with it.
+std::size_t bytes_of_force(bool with_torque) {
+  return wire::kHeaderSize + wire::payload_size(wire::ForceMessage{.with_torque = with_torque});
+}
+
 std::int64_t simulated_ns(double seconds) {
   return std::llround(1e9 * seconds);
 }
@@ -26,6 +31,7 @@ LinkSimulation::LinkSimulation(std::vector<ServoLoop>& loops, const SimulatedLin
       ticks_(std::max(1, static_cast<int>(std::lround(dt * rate)))),
       server_(link.server_overruns, dt, 4 * link.seed) {
   for (std::size_t i = 0; i < loops.size(); ++i) {
+    torque_ = torque_ || loops[i].limits().max_torque > 0.0;
     const std::uint64_t seed = 4 * (link.seed + 1000 * i);
     styluses_.push_back({{link.channel, seed + 1},
                          {link.channel, seed + 2},
@@ -92,7 +98,7 @@ const AppliedForces* LinkSimulation::applied(std::size_t stylus) {
 
 void LinkSimulation::answer(std::size_t stylus, const ServoInput& input,
                             const ContactModel* model) {
-  std::size_t bytes = bytes_of(wire::MessageType::kForce);
+  std::size_t bytes = bytes_of_force(torque_);
   if (model != nullptr) bytes += bytes_of(wire::MessageType::kContactModel);
   styluses_[stylus].down.send(time_, {input, model ? std::optional(*model) : std::nullopt}, bytes);
 }

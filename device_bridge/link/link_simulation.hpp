@@ -55,6 +55,7 @@ class LinkSimulation {
   double dt_;
   int ticks_;  ///< a step
   SimulatedSteps server_;
+  bool torque_ = false;  ///< the bridge asked for it
   std::vector<Stylus> styluses_;
   double time_ = 0.0;
 };

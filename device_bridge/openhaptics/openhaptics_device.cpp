@@ -133,7 +133,7 @@ void OpenHapticsDevice::begin_frame() noexcept {
 }
 
 StylusPose OpenHapticsDevice::read(double) noexcept {
-  if (in_frame_) write(Vector3::Zero());
+  if (in_frame_) write({});
   begin_frame();
   Transform transform;
   transform.fill(std::numeric_limits<double>::quiet_NaN());
@@ -174,11 +174,11 @@ void OpenHapticsDevice::calibrate() noexcept {
   calibration_.store(found, std::memory_order_relaxed);
 }
 
-void OpenHapticsDevice::write(const Vector3& force) noexcept {
+void OpenHapticsDevice::write(const Wrench& shown) noexcept {
   if (!in_frame_) begin_frame();
-  const bool sound = force.allFinite() && state_.ready;
-  const Vector3 shown = sound ? force : Vector3(Vector3::Zero());
-  hd_.set_doublev(hd::kForce, shown.data());
+  const bool sound = shown.force.allFinite() && state_.ready;
+  const Vector3 force = sound ? shown.force : Vector3(Vector3::Zero());
+  hd_.set_doublev(hd::kForce, force.data());
   hd_.end_frame(handle_);
   in_frame_ = false;
   scheduler_->fetch_errors(*this);

@@ -26,7 +26,7 @@ class OpenHapticsDevice : public HapticDevice {
   void open() override;
   void close() noexcept override;
   StylusPose read(double time) noexcept override;
-  void write(const Vector3& force) noexcept override;
+  void write(const Wrench& shown) noexcept override;
   DeviceState state() const noexcept override;
   bool simulated() const noexcept override { return false; }
   double duration() const noexcept override { return std::numeric_limits<double>::infinity(); }

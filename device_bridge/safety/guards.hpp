@@ -6,22 +6,28 @@
 
 namespace irdm {
 
+/// What relates torques to forces and turns to ways: how far from its tip a stylus is held [m]. A
+/// turn counts like the way that the hand makes in it, a torque like its force in that hand.
+inline constexpr double kLever = 0.05;
+
+/// Of a force; those of a torque are in N m/s.
 struct RateLimits {
   double rise = 300.0;      ///< of a force that does not become smaller [N/s]
   double fall = 1200.0;     ///< towards zero [N/s]
   double longest = 2.0e-3;  ///< what is more between two ticks does not count [s]
 };
 
-/// How far towards `to` a force may go from `from` [N]. One that becomes half as large or less goes
-/// straight at the falling rate as long as that takes it nearer to zero; one that does not become
-/// smaller goes at the rising rate, and so does what is left of a way; in between the rates blend.
-/// So the magnitude never rises faster than `rise`, and nothing changes faster than `fall`; and a
-/// wrong force that is larger than the one shown moves it by no more than `rise`, whatever its
-/// direction. Pure.
+/// How far towards `to` a force may go from `from` [N]; likewise a torque [N m]. One that becomes
+/// half as large or less goes straight at the falling rate as long as that takes it nearer to zero;
+/// one that does not become smaller goes at the rising rate, and so does what is left of a way; in
+/// between the rates blend. So the magnitude never rises faster than `rise`, and nothing changes
+/// faster than `fall`; and a wrong force that is larger than the one shown moves it by no more than
+/// `rise`, whatever its direction. Pure.
 /// @param elapsed since `from` was first shown [s]
 Vector3 limit_rate(const Vector3& from, const Vector3& to, const RateLimits& limits,
                    double elapsed) noexcept;
 
+/// Of a force; those of a torque are in N m and N m/s.
 struct ThermalLimits {
   double peak = 3.3;            ///< force while the motors are cold [N], > 0
   double continuous = 0.88;     ///< force that they bear for ever [N], > 0
@@ -38,12 +44,12 @@ class ThermalDerating {
  public:
   explicit ThermalDerating(const ThermalLimits& limits) : limits_(limits), limit_(limits.peak) {}
 
-  /// @param force shown [N]
+  /// @param force shown [N], its magnitude
   /// @param elapsed for so long [s]
   /// @param reported warmth by the device, 0 to 1; 0 where it says nothing. Anything.
   void heat(double force, double elapsed, double reported) noexcept;
 
-  double limit() const noexcept { return limit_; }    ///< [N]
+  double limit() const noexcept { return limit_; }    ///< as peak
   double warmth() const noexcept { return warmth_; }  ///< by our own account
 
  private:
@@ -71,7 +77,7 @@ enum class Guard : std::uint32_t {
   kFadeDamping,    ///< a force that fades damps
   kRiseLimit,      ///< of the force per time, away from zero
   kFallLimit,      ///< the same, towards zero
-  kForceLimit,     ///< largest force; what is not finite becomes zero
+  kForceLimit,     ///< largest force and torque; what is not finite becomes zero
   kThermal,        ///< a warm motor is not overheated
 };
 inline constexpr std::uint32_t kGuardCount = 19;

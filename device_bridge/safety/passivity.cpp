@@ -4,21 +4,26 @@
 #include <cmath>
 #include <utility>
 
+#include "common/motion/rigid_body.hpp"
+
 namespace irdm {
 
-void WorldWork::observe(std::int64_t now_ns, const Vector3& tip) noexcept {
-  tips_[count_ % kKept] = {now_ns, tip};
+void WorldWork::observe(std::int64_t now_ns, const Vector3& tip,
+                        const Quaternion& orientation) noexcept {
+  poses_[count_ % kKept] = {now_ns, tip, orientation};
   ++count_;
 }
 
-double WorldWork::answer(std::int64_t time_ns, const Vector3& force) noexcept {
-  const Tip* tip = at(time_ns);
-  if (tip == nullptr || (any_ && time_ns <= answered_.time_ns)) return 0.0;
-  const Tip before = std::exchange(answered_, *tip);
-  const bool follows = std::exchange(any_, true) && tip->time_ns - before.time_ns <= kLongest;
+double WorldWork::answer(std::int64_t time_ns, const Wrench& wrench) noexcept {
+  const Pose* pose = at(time_ns);
+  if (pose == nullptr || (any_ && time_ns <= answered_.time_ns)) return 0.0;
+  const Pose before = std::exchange(answered_, *pose);
+  const bool follows = std::exchange(any_, true) && pose->time_ns - before.time_ns <= kLongest;
   if (!follows) return 0.0;
   // As the step has it: the force is the one at its end.
-  const double given = force.dot(tip->place - before.place);
+  const double given =
+      work(wrench, {pose->tip - before.tip,
+                    rotation_vector(pose->orientation * before.orientation.conjugate())});
   if (!std::isfinite(given)) return 0.0;
   taken_ -= given;
   const double beyond = std::max(0.0, -taken_);
@@ -27,30 +32,30 @@ double WorldWork::answer(std::int64_t time_ns, const Vector3& force) noexcept {
 }
 
 // The newest that is not later; null where that is forgotten.
-const WorldWork::Tip* WorldWork::at(std::int64_t time_ns) const noexcept {
+const WorldWork::Pose* WorldWork::at(std::int64_t time_ns) const noexcept {
   for (std::size_t back = 1; back <= std::min(count_, kKept); ++back) {
-    const Tip& tip = tips_[(count_ - back) % kKept];
-    if (tip.time_ns <= time_ns) return &tip;
+    const Pose& pose = poses_[(count_ - back) % kKept];
+    if (pose.time_ns <= time_ns) return &pose;
   }
   return nullptr;
 }
 
-void Passivity::observe(const Vector3& displacement, const Vector3& force) noexcept {
+void Passivity::observe(const Twist& displacement, const Wrench& shown) noexcept {
   before_ = last_;
-  last_ = displacement;
-  const double work = force.dot(displacement);
-  if (!std::isfinite(work)) return;
-  energy_ = std::clamp(energy_ - work, limits_.least, limits_.most);
+  last_ = displacement.linear;
+  const double given = work(shown, displacement);
+  if (!std::isfinite(given)) return;
+  energy_ = std::clamp(energy_ - given, limits_.least, limits_.most);
 }
 
 void Passivity::forgive(double elapsed) noexcept {
   if (energy_ < 0.0) energy_ = std::min(0.0, energy_ + limits_.forgiven * elapsed);
 }
 
-double Passivity::damping(const Vector3& force, const Vector3& velocity,
-                          double tick) const noexcept {
-  const double lacking = force.dot(velocity) * tick - energy();
-  const double per_damping = velocity.squaredNorm() * tick;
+double Passivity::damping(const Wrench& wrench, const Twist& velocity, double tick) const noexcept {
+  const double lacking = work(wrench, velocity) * tick - energy();
+  const double per_damping =
+      (velocity.linear.squaredNorm() + kLever * kLever * velocity.angular.squaredNorm()) * tick;
   if (!(lacking > 0.0)) return 0.0;
   if (!(lacking < limits_.damping * per_damping)) return limits_.damping;
   return lacking / per_damping;

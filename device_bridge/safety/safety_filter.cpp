@@ -23,20 +23,47 @@ bool finite_magnitude(const Vector3& v) noexcept {
   return v.allFinite() && std::isfinite(v.stableNorm());
 }
 
+// At most so long; what is not finite becomes zero.
+Vector3 cut_off(const Vector3& vector, double most) noexcept {
+  if (!finite_magnitude(vector)) return Vector3::Zero();
+  const double magnitude = vector.stableNorm();
+  return magnitude > most ? Vector3(most / magnitude * vector) : vector;
+}
+
+// The limits as the guards leave them. One of the magnitude that becomes lower takes its share of
+// the falling rate.
+RateLimits rate_limits(RateLimits rate, double slew, Guards guards) noexcept {
+  constexpr double kNone = 1e9;
+  rate.fall -= slew;
+  if (!guards.on(Guard::kRiseLimit)) rate.rise = kNone;
+  if (!guards.on(Guard::kFallLimit)) rate.fall = kNone;
+  return rate;
+}
+
+constexpr double kTorqueSlew = kLever * ThermalLimits{}.slew;
+
+// A device that renders torque has an orientation that counts.
+ReadingLimits reading_limits(const FilterLimits& limits) noexcept {
+  ReadingLimits reading = limits.reading;
+  reading.turns = limits.max_torque > 0.0;
+  return reading;
+}
+
 }  // namespace
 
 SafetyFilter::SafetyFilter(const FilterLimits& limits, Guards guards)
     : limits_(limits),
       guards_(guards),
-      reading_(limits.reading, guards),
+      reading_(reading_limits(limits), guards),
       arming_(limits.arming, guards),
       passivity_(limits.passivity),
       oscillation_(limits.oscillation),
-      thermal_({.peak = limits.max_force, .continuous = limits.continuous_force}) {
-  // A limit of force that becomes lower takes its share of the falling rate.
-  limits_.rate.fall -= ThermalLimits{}.slew;
-  if (!guards_.on(Guard::kRiseLimit)) limits_.rate.rise = 1e9;
-  if (!guards_.on(Guard::kFallLimit)) limits_.rate.fall = 1e9;
+      thermal_({.peak = limits.max_force, .continuous = limits.continuous_force}),
+      torque_thermal_({.peak = limits.max_torque,
+                       .continuous = limits.continuous_torque,
+                       .slew = kTorqueSlew}) {
+  limits_.rate = rate_limits(limits.rate, ThermalLimits{}.slew, guards);
+  limits_.torque_rate = rate_limits(limits.torque_rate, kTorqueSlew, guards);
 }
 
 void SafetyFilter::arm() noexcept {
@@ -56,43 +83,45 @@ void SafetyFilter::fail() noexcept {
   arming_.fail();
 }
 
-Vector3 SafetyFilter::step(std::int64_t now_ns, const DeviceReading& reading,
-                           const ForceDemand& demand) noexcept {
+Wrench SafetyFilter::step(std::int64_t now_ns, const DeviceReading& reading,
+                          const ForceDemand& demand) noexcept {
   const ReadingVerdict verdict = check(now_ns, reading);
   observe(now_ns);
-  thermal_.heat(sent_.norm(), reading_.elapsed(), reading.motor_temperature);
+  thermal_.heat(sent_.force.norm(), reading_.elapsed(), reading.motor_temperature);
+  torque_thermal_.heat(sent_.torque.norm(), reading_.elapsed(), reading.motor_temperature);
   accept(now_ns, demand);
   age_ = age(now_ns);
   const double fresh_share = fresh(now_ns);
   watch_link(fresh_share);
-  const Vector3 force = wanted();
+  const Wrench wrench = wanted();
   // Where no force is shown or asked for there is none to drop: a hand may be fast in free air.
-  if (verdict == ReadingVerdict::kTrip && !(sent_.isZero(0.0) && force.isZero(0.0))) {
+  if (verdict == ReadingVerdict::kTrip && !(sent_.is_zero() && wrench.is_zero())) {
     ++counts_.trips;
     arming_.trip();
   }
-  const double share = arming_.step(reading_.elapsed(), fresh_share, force.norm());
-  sent_ = limited(damped(share * force, share));
+  const double most = std::max(wrench.force.norm(), wrench.torque.norm() / kLever);
+  const double share = arming_.step(reading_.elapsed(), fresh_share, most);
+  sent_ = limited(damped({share * wrench.force, share * wrench.torque}, share));
   return sent_;
 }
 
 // Sanity of the reading and of the time.
 ReadingVerdict SafetyFilter::check(std::int64_t now_ns, const DeviceReading& reading) noexcept {
-  const ReadingVerdict verdict = reading_.look(now_ns, reading.tip);
+  const ReadingVerdict verdict = reading_.look(now_ns, reading.tip, reading.orientation);
   counts_.readings = reading_.unused();
   if (verdict == ReadingVerdict::kFault) fail();
   return verdict;
 }
 
-// What the hand did against the force that was really sent.
+// What the hand did against what was really sent.
 void SafetyFilter::observe(std::int64_t now_ns) noexcept {
   passivity_.observe(reading_.displacement(), sent_);
   if (held_.solved_here && held_.contact == ContactState::kFree) {
     passivity_.forgive(reading_.elapsed());
   }
-  oscillation_.observe(-sent_.dot(reading_.displacement()), reading_.elapsed(), age_,
-                       !sent_.isZero(0.0));
-  world_.observe(now_ns, reading_.tip());
+  oscillation_.observe(-work(sent_, reading_.displacement()), reading_.elapsed(), age_,
+                       !sent_.is_zero());
+  world_.observe(now_ns, reading_.tip(), reading_.orientation());
 }
 
 // The newest demand. One that is not used changes nothing: the one before stays, and grows old.
@@ -102,7 +131,8 @@ void SafetyFilter::accept(std::int64_t now_ns, const ForceDemand& demand) noexce
     return;
   }
   if (!demand.any) return;
-  const bool finite = finite_magnitude(demand.force) && demand.normal.allFinite();
+  const bool finite = finite_magnitude(demand.force) && finite_magnitude(demand.torque) &&
+                      demand.normal.allFinite();
   const bool ordered = demand.sample_time_ns <= now_ns &&
                        (!held_.any || demand.sample_time_ns >= held_.sample_time_ns);
   if ((!finite && guards_.on(Guard::kFrameFinite)) ||
@@ -119,7 +149,7 @@ void SafetyFilter::accept(std::int64_t now_ns, const ForceDemand& demand) noexce
 // What the world gave of its own the device may give.
 void SafetyFilter::grant(const ForceDemand& demand) noexcept {
   const std::int64_t time_ns = demand.solved_here ? demand.solved_ns : demand.sample_time_ns;
-  const double energy = world_.answer(time_ns, demand.force);
+  const double energy = world_.answer(time_ns, {demand.force, demand.torque});
   passivity_.grant(energy);
   passivity_.bound(demand.solved_here ? demand.energy : limits_.passivity.most);
   oscillation_.grant(energy);
@@ -159,43 +189,52 @@ void SafetyFilter::watch_link(double fresh) noexcept {
 }
 
 // Outward only, unless held.
-Vector3 SafetyFilter::wanted() const noexcept {
+Wrench SafetyFilter::wanted() const noexcept {
   if (held_.contact == ContactState::kTouching && guards_.on(Guard::kPushOnly) &&
       held_.force.dot(held_.normal) < 0.0) {
-    return Vector3::Zero();
+    return {};
   }
   const double gain = guards_.on(Guard::kOscillation) ? oscillation_.gain() : 1.0;
-  return gain * (guards_.on(Guard::kForceLimit) ? shortened(held_.force) : held_.force);
+  const Wrench asked{held_.force, held_.torque};
+  const Wrench wrench = guards_.on(Guard::kForceLimit) ? shortened(asked) : asked;
+  return {gain * wrench.force, gain * wrench.torque};
 }
 
-// What passivity asks for, and damping while the force fades. It fades as well.
-Vector3 SafetyFilter::damped(const Vector3& force, double share) const noexcept {
-  if (share == 0.0 || held_.contact == ContactState::kFree) return force;
-  const Vector3& velocity = reading_.velocity();
+// What passivity asks for, and damping while the force fades. It fades as well. A tool pulls and
+// turns without a contact of its tip.
+Wrench SafetyFilter::damped(const Wrench& wrench, double share) const noexcept {
+  const bool asked = held_.contact != ContactState::kFree || !wrench.is_zero();
+  if (share == 0.0 || !asked) return wrench;
+  const Twist& velocity = reading_.velocity();
   double damping = 0.0;
   if (guards_.on(Guard::kPassivity)) {
-    damping = passivity_.damping(force, velocity, reading_.elapsed());
+    damping = passivity_.damping(wrench, velocity, reading_.elapsed());
   }
   if (arming_.state() == FilterState::kFading && guards_.on(Guard::kFadeDamping)) {
     damping = std::max(damping, limits_.fade_damping);
   }
-  const Vector3 damped = force - share * damping * velocity;
-  return held_.solved_here && guards_.on(Guard::kPassivity) ? passivity_.withheld(damped) : damped;
+  Wrench damped{wrench.force - share * damping * velocity.linear,
+                wrench.torque - share * damping * kLever * kLever * velocity.angular};
+  if (held_.solved_here && guards_.on(Guard::kPassivity)) {
+    damped.force = passivity_.withheld(damped.force);
+  }
+  return damped;
 }
 
-Vector3 SafetyFilter::limited(const Vector3& force) const noexcept {
+Wrench SafetyFilter::limited(const Wrench& wrench) const noexcept {
   const bool on = guards_.on(Guard::kForceLimit);
-  const Vector3 aim = on ? shortened(force) : force;
-  const Vector3 reached = limit_rate(sent_, aim, limits_.rate, reading_.elapsed());
+  const Wrench aim = on ? shortened(wrench) : wrench;
+  const double elapsed = reading_.elapsed();
+  const Wrench reached{limit_rate(sent_.force, aim.force, limits_.rate, elapsed),
+                       limit_rate(sent_.torque, aim.torque, limits_.torque_rate, elapsed)};
   return on ? shortened(reached) : reached;
 }
 
-// At most the largest force that the motors bear now; what is not finite becomes zero.
-Vector3 SafetyFilter::shortened(const Vector3& force) const noexcept {
-  if (!finite_magnitude(force)) return Vector3::Zero();
-  const double magnitude = force.stableNorm();
-  const double most = guards_.on(Guard::kThermal) ? thermal_.limit() : limits_.max_force;
-  return magnitude > most ? Vector3(most / magnitude * force) : force;
+// At most what the motors bear now.
+Wrench SafetyFilter::shortened(const Wrench& wrench) const noexcept {
+  const bool thermal = guards_.on(Guard::kThermal);
+  return {cut_off(wrench.force, thermal ? thermal_.limit() : limits_.max_force),
+          cut_off(wrench.torque, thermal ? torque_thermal_.limit() : limits_.max_torque)};
 }
 
 }  // namespace irdm

@@ -1,7 +1,9 @@
 #include "device_bridge/safety/sensor_plausibility.hpp"
 
 #include <algorithm>
+#include <cmath>
 
+#include "common/motion/rigid_body.hpp"
 #include "common/realtime/clock.hpp"
 
 namespace irdm {
@@ -9,12 +11,20 @@ namespace {
 
 // Two ticks can follow one another closely after a late one; no speed is told from less [s].
 constexpr double kShortest = 5e-4;
+// Of a quaternion's norm from 1.
+constexpr double kOffNorm = 0.01;
+
+// The way of the tip or that of the hand by the turn, whichever is longer [m, m/s].
+double length(const Twist& twist) noexcept {
+  return std::max(twist.linear.norm(), kLever * twist.angular.norm());
+}
 
 }  // namespace
 
-ReadingVerdict SensorPlausibility::look(std::int64_t now_ns, const Vector3& tip) noexcept {
+ReadingVerdict SensorPlausibility::look(std::int64_t now_ns, const Vector3& tip,
+                                        const Quaternion& orientation) noexcept {
   const ReadingVerdict clock = look_at_clock(now_ns);
-  const ReadingVerdict reading = look_at_tip(now_ns, tip);
+  const ReadingVerdict reading = look_at_pose(now_ns, tip, orientation);
   return std::max(clock, reading);
 }
 
@@ -34,30 +44,38 @@ ReadingVerdict SensorPlausibility::look_at_clock(std::int64_t now_ns) noexcept {
   return long_gap && guards_.on(Guard::kClock) ? ReadingVerdict::kTrip : ReadingVerdict::kGood;
 }
 
-ReadingVerdict SensorPlausibility::look_at_tip(std::int64_t now_ns, const Vector3& tip) noexcept {
-  displacement_.setZero();
-  velocity_.setZero();
-  const bool sane = tip.allFinite() && tip.cwiseAbs().maxCoeff() <= limits_.farthest;
-  if (!sane && guards_.on(Guard::kReadingFinite)) {
+bool SensorPlausibility::sane(const Vector3& tip, const Quaternion& orientation) const noexcept {
+  if (!tip.allFinite() || tip.cwiseAbs().maxCoeff() > limits_.farthest) return false;
+  return !limits_.turns || std::abs(orientation.norm() - 1.0) <= kOffNorm;
+}
+
+ReadingVerdict SensorPlausibility::look_at_pose(std::int64_t now_ns, const Vector3& tip,
+                                                const Quaternion& orientation) noexcept {
+  displacement_ = Twist{};
+  velocity_ = Twist{};
+  if (!sane(tip, orientation) && guards_.on(Guard::kReadingFinite)) {
     ++unused_;
     bad_ = std::min(bad_ + 1, limits_.bad_ticks);
     return bad_ >= limits_.bad_ticks ? ReadingVerdict::kFault : ReadingVerdict::kUnused;
   }
   bad_ = 0;
+  const Quaternion turned = limits_.turns ? orientation.normalized() : Quaternion::Identity();
   if (last_good_ns_) {
-    displacement_ = tip - tip_;
+    displacement_ = {tip - tip_, rotation_vector(turned * orientation_.conjugate())};
     const double seconds =
         kNanosecond * (static_cast<double>(now_ns) - static_cast<double>(*last_good_ns_));
-    velocity_ = displacement_ / std::max(seconds, kShortest);
+    const double time = std::max(seconds, kShortest);
+    velocity_ = {displacement_.linear / time, displacement_.angular / time};
   }
   tip_ = tip;
+  orientation_ = turned;
   last_good_ns_ = now_ns;
   return look_at_speed();
 }
 
 ReadingVerdict SensorPlausibility::look_at_speed() noexcept {
-  const double speed = velocity_.norm();
-  const bool jumped = displacement_.norm() > limits_.jump && speed > limits_.jump_speed;
+  const double speed = length(velocity_);
+  const bool jumped = length(displacement_) > limits_.jump && speed > limits_.jump_speed;
   fast_ = speed > limits_.top_speed ? std::min(fast_ + 1, limits_.speed_ticks) : 0;
   if (jumped && guards_.on(Guard::kReadingJump)) return ReadingVerdict::kTrip;
   if (fast_ >= limits_.speed_ticks && guards_.on(Guard::kSpeed)) return ReadingVerdict::kTrip;

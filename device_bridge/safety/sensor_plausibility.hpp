@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "common/geometry.hpp"
+#include "common/motion/wrench.hpp"
 #include "device_bridge/safety/guards.hpp"
 
 namespace irdm {
@@ -16,6 +16,7 @@ struct ReadingLimits {
   double jump_speed = 10.0;  ///< ... at such a speed is no hand's way [m/s]
   int bad_ticks = 3;         ///< readings of no use in a row that are a fault
   std::int64_t gap_ns = 50'000'000;  ///< a longer time between two ticks drops the force
+  bool turns = false;                ///< the orientation counts as well, a turn as a way of kLever
 };
 
 /// What a reading of the device means for the force.
@@ -33,21 +34,27 @@ class SensorPlausibility {
       : limits_(limits), guards_(guards) {}
 
   /// Once a tick.
-  /// @param tip [m], D; anything
-  ReadingVerdict look(std::int64_t now_ns, const Vector3& tip) noexcept;
+  /// @param tip [m], D; anything  @param orientation in D; anything
+  ReadingVerdict look(std::int64_t now_ns, const Vector3& tip,
+                      const Quaternion& orientation) noexcept;
 
   /// Of the last good reading.
   const Vector3& tip() const noexcept { return tip_; }
-  /// Since the good reading before it; zero when the reading was not used [m, m/s].
-  const Vector3& displacement() const noexcept { return displacement_; }
-  const Vector3& velocity() const noexcept { return velocity_; }
+  /// The same; where turns do not count, the identity.
+  const Quaternion& orientation() const noexcept { return orientation_; }
+  /// Since the good reading before it; zero when the reading was not used. No turn where turns do
+  /// not count.
+  const Twist& displacement() const noexcept { return displacement_; }
+  const Twist& velocity() const noexcept { return velocity_; }
   /// Since the last tick [s], 0 to the longest gap.
   double elapsed() const noexcept { return elapsed_; }
   std::uint64_t unused() const noexcept { return unused_; }  ///< so far
 
  private:
   ReadingVerdict look_at_clock(std::int64_t now_ns) noexcept;
-  ReadingVerdict look_at_tip(std::int64_t now_ns, const Vector3& tip) noexcept;
+  ReadingVerdict look_at_pose(std::int64_t now_ns, const Vector3& tip,
+                              const Quaternion& orientation) noexcept;
+  bool sane(const Vector3& tip, const Quaternion& orientation) const noexcept;
   ReadingVerdict look_at_speed() noexcept;
 
   ReadingLimits limits_;
@@ -55,8 +62,9 @@ class SensorPlausibility {
   std::optional<std::int64_t> last_ns_;       ///< of the last tick
   std::optional<std::int64_t> last_good_ns_;  ///< of the last good reading
   Vector3 tip_ = Vector3::Zero();
-  Vector3 displacement_ = Vector3::Zero();
-  Vector3 velocity_ = Vector3::Zero();
+  Quaternion orientation_ = Quaternion::Identity();
+  Twist displacement_;
+  Twist velocity_;
   double elapsed_ = 0.0;
   int bad_ = 0;
   int fast_ = 0;

@@ -16,7 +16,9 @@ struct FilterRig {
   /// One tick later.
   const Vector3& tick() {
     now_ns += kMs;
-    shown = filter.step(now_ns, {.tip = tip}, demand);
+    const Wrench wrench = filter.step(now_ns, {.tip = tip, .orientation = orientation}, demand);
+    shown = wrench.force;
+    torque = wrench.torque;
     return shown;
   }
   /// So many ticks, each with a demand of its own moment.
@@ -43,8 +45,10 @@ struct FilterRig {
   SafetyFilter filter;
   std::int64_t now_ns = 5'000 * kMs;
   Vector3 tip = Vector3::Zero();
+  Quaternion orientation = Quaternion::Identity();
   ForceDemand demand{.contact = ContactState::kTouching, .normal = Vector3::UnitY()};
-  Vector3 shown = Vector3::Zero();
+  Vector3 shown = Vector3::Zero();   ///< force
+  Vector3 torque = Vector3::Zero();  ///< shown with it
 };
 
 }  // namespace irdm::test

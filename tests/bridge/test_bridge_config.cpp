@@ -47,6 +47,9 @@ TEST_CASE("bridge configuration has defaults for all but the script") {
   CHECK_FALSE(config.server);
   CHECK(config.rate == 1000.0);
   CHECK(config.max_force == 3.3);
+  CHECK(config.max_torque == 0.15);
+  CHECK(config.continuous_torque == 0.05);
+  CHECK(config.max_torque_rate == 15.0);
   CHECK(config.connect_timeout == 0.075);
   CHECK_FALSE(config.udp);
   CHECK(config.predict);
@@ -100,6 +103,31 @@ TEST_CASE("bridge configuration refuses a workspace or buttons that do not fit")
   check_refused(kDevice + "buttons = { reset = 1.5 }\n", "not a whole number");
   check_refused(kDevice + "buttons = { grab = 1 }\n", "clutch is 1, which another function has");
   check_refused(kDevice + "buttons = { fire = 1 }\n", "not a known key");
+}
+
+TEST_CASE("bridge configuration: torque at the device, and a hand that feels it") {
+  const BridgeConfig config =
+      ConfigFile(
+          "[bridge]\nmax_torque = 0.4\ncontinuous_torque = 0.1\nmax_torque_rate = 20\n" + kDevice +
+          "hand = { inertia = 1e-4, angular_stiffness = 0.5 }\nmotors = { max_torque = 0.2 }\n" +
+          kDevice + "hand = {}\n")
+          .load();
+  CHECK(config.max_torque == 0.4);
+  CHECK(config.continuous_torque == 0.1);
+  CHECK(config.max_torque_rate == 20.0);
+  REQUIRE(config.devices.at(0).hand->turn);
+  CHECK(config.devices[0].hand->turn->inertia == 1e-4);
+  CHECK(config.devices[0].hand->turn->damping == 5e-3);
+  CHECK(config.devices[0].hand->turn->stiffness == 0.5);
+  CHECK(config.devices[0].motors.max_torque == 0.2);
+  CHECK_FALSE(config.devices.at(1).hand->turn);
+  check_refused("[bridge]\nmax_torque = -0.1\n" + kDevice, "max_torque is -0.1");
+  check_refused("[bridge]\nmax_torque = 11\n" + kDevice, "max_torque is 11");
+  check_refused("[bridge]\ncontinuous_torque = 0\n" + kDevice, "continuous_torque is 0");
+  check_refused("[bridge]\nmax_torque_rate = 0.5\n" + kDevice, "max_torque_rate is 0.5");
+  check_refused(kDevice + "hand = { inertia = 0 }\n", "inertia is 0");
+  check_refused(kDevice + "hand = { angular_damping = 0.01 }\n", "needs an inertia");
+  check_refused(kDevice + "motors = { max_torque = 0 }\n", "max_torque is 0");
 }
 
 TEST_CASE("bridge configuration takes every key") {

@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <limits>
 #include <random>
 
+#include "common/motion/rigid_body.hpp"
 #include "device_bridge/safety/safety_filter.hpp"
 
 using namespace irdm;
@@ -12,6 +14,9 @@ namespace {
 constexpr double kMaxForce = 3.3;
 constexpr double kRise = 300.0;
 constexpr double kFall = 1200.0;
+constexpr double kMaxTorque = 0.15;
+constexpr double kTorqueRise = 15.0;
+constexpr double kTorqueFall = 60.0;
 
 /// Everything that can go wrong with what the filter is told, mixed with stretches in which all is
 /// well, so that it gets to show large forces.
@@ -84,6 +89,13 @@ class Hostility {
     if (!reading.tip.allFinite() || reading.tip.norm() > 1.0) reading.tip.setZero();
     reading.tip += vector(calm_ ? 3e-4 : 2e-3);
     if (!calm_ && one_in(50)) reading.tip = wild_vector();
+    turn();
+  }
+  void turn() {
+    Quaternion& at = reading.orientation;
+    if (!(std::abs(at.norm() - 1.0) < 1e-3)) at.setIdentity();
+    at = (rotation_from_vector(vector(calm_ ? 6e-3 : 4e-2)) * at).normalized();
+    if (!calm_ && one_in(50)) at.coeffs() << wild(), wild(), wild(), wild();
   }
   void demand_something() {
     demand.any = !one_in(50);
@@ -91,6 +103,7 @@ class Hostility {
     demand.horizon_ns = one_in(5) ? wild_time() : ForceDemand::kHoldHorizonNs;
     demand.contact = static_cast<ContactState>(random_() % 3);
     demand.force = one_in(calm_ ? 100 : 5) ? wild_vector() : vector(one_in(3) ? 8.0 : 1.0);
+    demand.torque = one_in(calm_ ? 100 : 5) ? wild_vector() : vector(one_in(3) ? 0.4 : 0.05);
     demand.normal = one_in(10) ? wild_vector() : vector(1.0).normalized();
   }
   void act(SafetyFilter& filter) {
@@ -102,11 +115,24 @@ class Hostility {
   bool calm_ = false;
 };
 
+/// Of a force [N] or a torque [N m].
 struct Extremes {
   bool finite = true;
-  double force = 0.0;   ///< [N]
-  double rise = 0.0;    ///< of the magnitude, beyond what the time since the last tick allows [N]
-  double change = 0.0;  ///< the same of any change [N]
+  double most = 0.0;
+  double rise = 0.0;    ///< of the magnitude, beyond what the time since the last tick allows
+  double change = 0.0;  ///< the same of any change
+
+  void look(const Vector3& before, const Vector3& now, double rise_allowed, double change_allowed) {
+    finite = finite && now.allFinite();
+    most = std::max(most, now.norm());
+    rise = std::max(rise, now.norm() - before.norm() - rise_allowed);
+    change = std::max(change, (now - before).norm() - change_allowed);
+  }
+};
+
+struct Outcome {
+  Extremes force;
+  Extremes torque;
   std::uint64_t engaged = 0;
 };
 
@@ -117,35 +143,38 @@ double since(std::int64_t earlier, std::int64_t later) {
   return 1e-9 * static_cast<double>(std::min(way, std::uint64_t{2'000'000}));
 }
 
-Extremes run(std::uint64_t seed, int ticks, Guards guards) {
-  SafetyFilter filter({.max_force = kMaxForce}, guards);
+Outcome run(std::uint64_t seed, int ticks, Guards guards) {
+  SafetyFilter filter({.max_force = kMaxForce, .max_torque = kMaxTorque}, guards);
   Hostility hostility(seed);
-  Extremes most;
-  Vector3 before = Vector3::Zero();
+  Outcome outcome;
+  Wrench before;
   std::int64_t before_ns = 0;
   for (int i = 0; i < ticks; ++i) {
     hostility.next(filter);
-    const Vector3 force = filter.step(hostility.now_ns, hostility.reading, hostility.demand);
+    const Wrench shown = filter.step(hostility.now_ns, hostility.reading, hostility.demand);
     const double elapsed = since(before_ns, hostility.now_ns);
-    most.finite = most.finite && force.allFinite();
-    most.force = std::max(most.force, force.norm());
-    most.rise = std::max(most.rise, force.norm() - before.norm() - kRise * elapsed);
-    most.change = std::max(most.change, (force - before).norm() - kFall * elapsed);
-    most.engaged += filter.state() == FilterState::kEngaged ? 1 : 0;
-    before = force;
+    outcome.force.look(before.force, shown.force, kRise * elapsed, kFall * elapsed);
+    outcome.torque.look(before.torque, shown.torque, kTorqueRise * elapsed, kTorqueFall * elapsed);
+    outcome.engaged += filter.state() == FilterState::kEngaged ? 1 : 0;
+    before = shown;
     before_ns = hostility.now_ns;
   }
-  return most;
+  return outcome;
 }
 
-Extremes check(std::uint64_t seed, int ticks, Guards guards = {}) {
-  const Extremes most = run(seed, ticks, guards);
-  CHECK(most.finite);
-  CHECK(most.force <= kMaxForce * (1.0 + 1e-12));
-  CHECK(most.rise <= 1e-12);
-  CHECK(most.change <= 1e-12);
-  CHECK(most.engaged > static_cast<std::uint64_t>(ticks) / 10);
-  return most;
+void check_limits(const Extremes& extremes, double most) {
+  CHECK(extremes.finite);
+  CHECK(extremes.most <= most * (1.0 + 1e-12));
+  CHECK(extremes.rise <= 1e-12);
+  CHECK(extremes.change <= 1e-12);
+}
+
+Outcome check(std::uint64_t seed, int ticks, Guards guards = {}) {
+  const Outcome outcome = run(seed, ticks, guards);
+  check_limits(outcome.force, kMaxForce);
+  check_limits(outcome.torque, kMaxTorque);
+  CHECK(outcome.engaged > static_cast<std::uint64_t>(ticks) / 10);
+  return outcome;
 }
 
 }  // namespace
@@ -153,11 +182,13 @@ Extremes check(std::uint64_t seed, int ticks, Guards guards = {}) {
 TEST_CASE("safety filter: nothing that comes in gets a force out that is beyond the limits") {
   for (const std::uint64_t seed : {1u, 2u}) check(seed, 300'000);
   // Hostile forces shake the hand, so that hardly any is shown in full with all guards.
-  CHECK(check(3, 300'000, Guards{}.without(Guard::kOscillation)).force > 0.99 * kMaxForce);
+  const Outcome most = check(3, 300'000, Guards{}.without(Guard::kOscillation));
+  CHECK(most.force.most > 0.99 * kMaxForce);
+  CHECK(most.torque.most > 0.99 * kMaxTorque);
 }
 
 TEST_CASE("safety filter: the same for a hundred million ticks", "[exhaustive]") {
   for (std::uint64_t seed = 10; seed < 20; ++seed) check(seed, 10'000'000);
   const Guards no_gain = Guards{}.without(Guard::kOscillation);
-  CHECK(check(20, 10'000'000, no_gain).force > 0.99 * kMaxForce);
+  CHECK(check(20, 10'000'000, no_gain).force.most > 0.99 * kMaxForce);
 }

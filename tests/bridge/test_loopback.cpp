@@ -62,9 +62,9 @@ class WallServer {
 class WatchedStylus : public VirtualStylus {
  public:
   using VirtualStylus::VirtualStylus;
-  void write(const Vector3& force) noexcept override {
-    shown = force.norm();
-    VirtualStylus::write(force);
+  void write(const Wrench& wrench) noexcept override {
+    shown = wrench.force.norm();
+    VirtualStylus::write(wrench);
   }
   std::atomic<double> shown{0.0};
 };

@@ -121,7 +121,7 @@ TEST_CASE("safety filter: what the device says of its motors counts") {
   for (int i = 0; i < 1000; ++i) {
     rig.demand_now(3.0 * kOneUp);
     rig.now_ns += kMs;
-    rig.shown = rig.filter.step(rig.now_ns, {.motor_temperature = 1.0}, rig.demand);
+    rig.shown = rig.filter.step(rig.now_ns, {.motor_temperature = 1.0}, rig.demand).force;
   }
   CHECK(rig.shown.norm() == Approx(0.88));
 }

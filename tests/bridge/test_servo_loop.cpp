@@ -19,7 +19,10 @@ class ProbeDevice : public HapticDevice {
   void open() override {}
   void close() noexcept override {}
   StylusPose read(double) noexcept override { return pose; }
-  void write(const Vector3& given) noexcept override { force = given; }
+  void write(const Wrench& given) noexcept override {
+    force = given.force;
+    torque = given.torque;
+  }
   bool simulated() const noexcept override { return true; }
   double duration() const noexcept override { return 1.0; }
 
@@ -28,6 +31,7 @@ class ProbeDevice : public HapticDevice {
   StylusPose pose;
   DeviceState said;
   Vector3 force = Vector3::Constant(7.0);
+  Vector3 torque = Vector3::Constant(7.0);
 };
 
 constexpr std::int64_t kTickNs = 1'000'000;
@@ -135,6 +139,44 @@ TEST_CASE("servo loop takes a device to W and the force back to it") {
   CHECK(device.force.isApprox(Vector3(0, 0, 3)));
 }
 
+TEST_CASE("servo loop: the torque goes to the device with the force, and fades with it") {
+  ProbeDevice device;
+  const Quaternion turned(Eigen::AngleAxisd(M_PI / 2, Vector3::UnitY()));
+  const DeviceMapping mapping{.workspace = {.rotation = turned, .scale = 2.0, .force_scale = 0.5}};
+  ServoLoop loop(device, {.max_torque = 0.1}, mapping);
+  ServoInput input{.linked = true, .any_force = true};
+  std::int64_t now_ns = 0;
+  const auto run = [&](int ticks) {
+    for (int i = 0; i < ticks; ++i, now_ns += kTickNs) {
+      if (input.linked) input.force.sample_time_ns = now_ns;
+      loop.read(0.0);
+      loop.apply(now_ns, input);
+    }
+  };
+  run(3);
+  input.force.force = Vector3(2, 0, 0);
+  input.force.torque = Vector3(0.2, 0, 0);
+  run(20);
+  CHECK(device.force.isApprox(Vector3(0, 0, 1)));
+  CHECK(device.torque.isApprox(Vector3(0, 0, 0.05)));  // force_scale / scale of it
+  CHECK(loop.shown_torque() == device.torque);
+  CHECK(loop.peak_torque() == Approx(0.05));
+  device.pose.buttons = 2;  // the clutch
+  run(60);
+  CHECK(device.force.isZero(0.0));
+  CHECK(device.torque.isZero(0.0));
+  device.pose.buttons = 0;
+  run(60);
+  CHECK(device.torque.isApprox(Vector3(0, 0, 0.05)));
+  input.linked = false;
+  run(15);
+  CHECK(device.torque.norm() < 0.05);
+  CHECK(device.torque.norm() / 0.05 == Approx(device.force.norm()));
+  run(20);
+  CHECK(device.force.isZero(0.0));
+  CHECK(device.torque.isZero(0.0));
+}
+
 TEST_CASE("servo loop: clutched, the tip stays in W, the force fades, the orientation follows") {
   ProbeDevice device;
   const DeviceMapping mapping{.workspace = {.position = Vector3(0, 1, 0), .scale = 2.0}};
@@ -182,18 +224,21 @@ TEST_CASE("a servo tick allocates nothing, and the guard would see it") {
   }
   std::istringstream text(
       "time,x,y,z,qw,qx,qy,qz,button\n0,0,0,0,1,0,0,0,7\n1,0.1,0,0,0,1,0,0,0\n");
-  VirtualStylus device(StylusScript::parse(text, "motion.csv"), HandParameters{});
+  VirtualStylus device(StylusScript::parse(text, "motion.csv"),
+                       HandParameters{.turn = TurnParameters{}});
   // Every bit of the button field does something, clutch and reset included.
-  ServoLoop loop(device, {}, {.workspace = {.scale = 2.0, .force_scale = 0.5}});
+  ServoLoop loop(device, {.max_torque = 0.15}, {.workspace = {.scale = 2.0, .force_scale = 0.5}});
   ServoLink link(1);
   const test::AllocationGuard guard;
   for (int tick = 0; tick < 2000; ++tick) {
     const std::int64_t now_ns = 1'000'000LL * tick;
     loop.read(1e-3 * tick);
     link.styluses[0].sample.put(loop.take_sample(now_ns));
-    link.styluses[0].input.put({.linked = tick % 500 < 400,
-                                .any_force = true,
-                                .force = {.sample_time_ns = now_ns, .force = Vector3(0, 9, 0)}});
+    link.styluses[0].input.put(
+        {.linked = tick % 500 < 400,
+         .any_force = true,
+         .force = {
+             .sample_time_ns = now_ns, .force = Vector3(0, 9, 0), .torque = Vector3(0, 0, 0.5)}});
     link.styluses[0].input.receive();
     loop.apply(now_ns, link.styluses[0].input.front());
     link.samples_ready.signal();

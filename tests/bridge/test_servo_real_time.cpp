@@ -38,7 +38,7 @@ ContactModel wall() {
 VirtualStylus pressing() {
   std::istringstream text("time,x,y,z,button\n0,0,0.002,0,0\n0.4,0,-0.002,0,0\n0.8,0,0.002,0,0\n");
   return VirtualStylus(StylusScript::parse(text, "motion.csv"),
-                       HandParameters{.mass = 0.12, .damping = 2.0, .stiffness = 300.0});
+                       HandParameters{.turn = TurnParameters{}});
 }
 
 template <typename Action>
@@ -75,7 +75,7 @@ TEST_CASE("a million servo ticks touch neither heap, locks, exceptions nor files
   if (!AllocationGuard::active()) return leave_out(kNotCounted);
   const bool predicts = GENERATE(true, false);
   VirtualStylus device = pressing();
-  ServoLoop loop(device, {});
+  ServoLoop loop(device, {.max_torque = 0.15});
   ServoLink link(1);
   TickLog log;
   ContactModel model = wall();
@@ -102,7 +102,8 @@ TEST_CASE("a million servo ticks touch neither heap, locks, exceptions nor files
          .any_force = true,
          .force = {.sample_time_ns = now_ns,
                    .contact = depth > 0 ? ContactState::kTouching : ContactState::kFree,
-                   .force = Vector3(0, std::max(0.0, 400.0 * depth), 0)}});
+                   .force = Vector3(0, std::max(0.0, 400.0 * depth), 0),
+                   .torque = Vector3(0, 0, std::max(0.0, 20.0 * depth))}});
     link.styluses[0].input.receive();
     loop.apply(now_ns, link.styluses[0].input.front());
     told += loop.applied() != nullptr ? 1 : 0;

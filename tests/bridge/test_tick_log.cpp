@@ -55,6 +55,10 @@ TEST_CASE("tick log: a connection that is lost is a fault while a force is felt"
   CHECK(fault_in(again) == "connection lost with a force");
   CHECK(fault_in(lost, felt_but([](TickRow& row) { row.force.setZero(); })).empty());
   CHECK(fault_in(lost, felt_but([](TickRow& row) { row.linked = false; })).empty());
+  CHECK(fault_in(lost, felt_but([](TickRow& row) {
+                   row.force.setZero();
+                   row.torque = Vector3(0.1, 0, 0);
+                 })) == "connection lost with a force");
   CHECK(fault_in(felt_but([](TickRow& row) {
           row.linked = false;
           row.server_ended = true;

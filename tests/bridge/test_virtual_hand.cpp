@@ -2,11 +2,10 @@
 #include <cmath>
 #include <random>
 
+#include "common/motion/rigid_body.hpp"
 #include "device_bridge/virtual_stylus.hpp"
 
-using irdm::HandParameters;
-using irdm::Vector3;
-using irdm::VirtualHand;
+using namespace irdm;
 
 TEST_CASE("hand let go swings as the damped oscillator of the textbook") {
   const HandParameters hand{.mass = 0.12, .damping = 2.0, .stiffness = 300.0};
@@ -71,6 +70,42 @@ TEST_CASE("hand rests where spring and force balance, and follows an even motion
     moved.advance(1e-3, target, Vector3::Zero());
   }
   CHECK((moved.position() - target).norm() < 1e-9);
+}
+
+TEST_CASE("wrist: turns about one axis are the damped oscillator of the textbook") {
+  const TurnParameters turn;
+  const Vector3 axis = Vector3(1, -2, 2) / 3.0;
+  const double torque = 0.3;
+  VirtualWrist simulated(turn, Quaternion::Identity());
+  const double w0 = std::sqrt(turn.stiffness / turn.inertia);
+  const double zeta = turn.damping / (2.0 * std::sqrt(turn.stiffness * turn.inertia));
+  const double root = std::sqrt(1.0 - zeta * zeta);
+  for (int tick = 1; tick <= 1000; ++tick) {
+    simulated.advance(1e-3, Quaternion::Identity(), torque * axis);
+    const double t = 1e-3 * tick;
+    const double shape = 1.0 - std::exp(-zeta * w0 * t) * (std::cos(root * w0 * t) +
+                                                           zeta / root * std::sin(root * w0 * t));
+    REQUIRE(
+        (rotation_vector(simulated.orientation()) - shape * torque / turn.stiffness * axis).norm() <
+        1e-11);
+  }
+}
+
+TEST_CASE("wrist: it follows a hand that turns evenly without lag, and rests by the torque") {
+  const TurnParameters turn;
+  VirtualWrist simulated(turn, Quaternion::Identity());
+  const Vector3 rate(0, 0, 2.0);  // [rad/s]
+  Quaternion target;
+  for (int tick = 1; tick <= 3000; ++tick) {
+    target = rotation_from_vector(1e-3 * tick * rate);
+    simulated.advance(1e-3, target, Vector3::Zero());
+  }
+  CHECK(simulated.orientation().angularDistance(target) < 1e-7);
+  CHECK((simulated.angular_velocity() - rate).norm() < 1e-6);
+  const Vector3 torque(0.1, -0.2, 0.05);
+  for (int tick = 1; tick <= 5000; ++tick) simulated.advance(1e-3, target, torque);
+  const Vector3 found = rotation_vector(simulated.orientation() * target.conjugate());
+  CHECK((found - torque / turn.stiffness).norm() < 1e-9);
 }
 
 TEST_CASE("hand stays finite for any parameters and steps") {

@@ -51,6 +51,11 @@ TEST_CASE("power at the device is power in W times force_scale over scale") {
   // Exactly linear, so that a difference of positions is a velocity.
   const Vector3 velocity_W =
       kSomewhere.to_world(velocity_D) - kSomewhere.to_world(Vector3(0, 0, 0));
+  const double ratio = kSomewhere.force_scale / kSomewhere.scale;
   CHECK(kSomewhere.to_device(force_W).dot(velocity_D) ==
-        Approx(kSomewhere.force_scale / kSomewhere.scale * force_W.dot(velocity_W)).epsilon(1e-13));
+        Approx(ratio * force_W.dot(velocity_W)).epsilon(1e-13));
+  // What turns in D turns in W as fast, about the axis as it lies there.
+  const Vector3 torque_W(0.02, -0.01, 0.05);
+  CHECK(kSomewhere.torque_to_device(torque_W).dot(velocity_D) ==
+        Approx(ratio * torque_W.dot(kSomewhere.rotation * velocity_D)).epsilon(1e-13));
 }

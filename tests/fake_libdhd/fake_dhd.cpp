@@ -10,6 +10,8 @@ struct Device {
   std::array<double, 3> position{};
   std::array<double, 9> frame{1, 0, 0, 0, 1, 0, 0, 0, 1};
   std::array<double, 3> force{};
+  std::array<double, 3> torque{};
+  bool active_wrist = false;
   unsigned buttons = 0;
   bool open = false;
   bool on = false;
@@ -91,9 +93,25 @@ unsigned dhdGetButtonMask(char id) {
       std::max(0, with_open(id, [](Device& device) { return static_cast<int>(device.buttons); })));
 }
 
+bool dhdHasActiveWrist(char id) {
+  return with_open(id, [](Device& device) { return device.active_wrist ? 1 : 0; }) == 1;
+}
+
+// As the driver has it, the torque that was set before is off.
 int dhdSetForce(double x, double y, double z, char id) {
   return with_open(id, [&](Device& device) {
     device.force = {x, y, z};
+    device.torque = {};
+    return 0;
+  });
+}
+
+int dhdSetForceAndTorque(double fx, double fy, double fz, double tx, double ty, double tz,
+                         char id) {
+  return with_open(id, [&](Device& device) {
+    if (!device.active_wrist) return -1;
+    device.force = {fx, fy, fz};
+    device.torque = {tx, ty, tz};
     return 0;
   });
 }
@@ -133,6 +151,18 @@ void fakedhd_unplug(int index, int unplugged) {
 void fakedhd_force(int index, double* newton) {
   with(index, [&](Device& device) {
     std::copy(device.force.begin(), device.force.end(), newton);
+    return 0;
+  });
+}
+void fakedhd_activate_wrist(int index) {
+  with(index, [](Device& device) {
+    device.active_wrist = true;
+    return 0;
+  });
+}
+void fakedhd_torque(int index, double* newton_metre) {
+  with(index, [&](Device& device) {
+    std::copy(device.torque.begin(), device.torque.end(), newton_metre);
     return 0;
   });
 }

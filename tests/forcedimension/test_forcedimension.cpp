@@ -30,6 +30,12 @@ Vector3 force_of(int index) {
   return force;
 }
 
+Vector3 torque_of(int index) {
+  Vector3 torque;
+  fakedhd_torque(index, torque.data());
+  return torque;
+}
+
 }  // namespace
 
 TEST_CASE("libdhd.so is looked for by its usual names, or by the one that is given alone") {
@@ -76,10 +82,34 @@ TEST_CASE("positions, orientations and forces are taken from the driver's axes t
   CHECK(pose.buttons == 2);
   CHECK((pose.orientation * Vector3::UnitY()).isApprox(Vector3::UnitY()));
   CHECK((pose.orientation * Vector3::UnitZ()).isApprox(Vector3::UnitX()));
-  device.write(Vector3(1, 2, 3));
+  device.write({Vector3(1, 2, 3)});
   CHECK(force_of(0).isApprox(Vector3(3, 1, 2)));
-  device.write(Vector3(0, std::nan(""), 0));
+  device.write({Vector3(0, std::nan(""), 0)});
   CHECK(force_of(0).isZero(0.0));
+}
+
+TEST_CASE("a device with an active wrist gets torques, in the driver's axes, and others none") {
+  fakedhd_reset();
+  fakedhd_activate_wrist(1);
+  ForceDimensionDevice passive("0", api());
+  passive.open();
+  CHECK(passive.rating().peak_torque == 0.0);
+  passive.write({Vector3(1, 2, 3), Vector3(0.1, 0.2, 0.3)});
+  CHECK(force_of(0).isApprox(Vector3(3, 1, 2)));
+  CHECK(torque_of(0).isZero(0.0));
+  ForceDimensionDevice active("1", api());
+  active.open();
+  CHECK(active.rating().peak_torque > 0.0);
+  active.write({Vector3(1, 2, 3), Vector3(0.1, 0.2, 0.3)});
+  CHECK(force_of(1).isApprox(Vector3(3, 1, 2)));
+  CHECK(torque_of(1).isApprox(Vector3(0.3, 0.1, 0.2)));
+  active.write({Vector3(1, 2, 3), Vector3(0.1, std::nan(""), 0.3)});
+  CHECK(force_of(1).isApprox(Vector3(3, 1, 2)));
+  CHECK(torque_of(1).isZero(0.0));
+  active.write({Vector3(1, 2, 3), Vector3(0.1, 0.2, 0.3)});
+  active.close();
+  CHECK(force_of(1).isZero(0.0));
+  CHECK(torque_of(1).isZero(0.0));
 }
 
 TEST_CASE("readings that fail are of no use, and after fifty the device is lost") {
@@ -106,7 +136,7 @@ TEST_CASE("a tick with a device of Force Dimension allocates nothing") {
   const AllocationGuard guard;
   for (int tick = 0; tick < 100; ++tick) {
     device.read(0.0);
-    device.write(Vector3(0, 1, 0));
+    device.write({Vector3(0, 1, 0)});
   }
   CHECK(guard.count() == 0);
 }

@@ -24,7 +24,7 @@ class SteppedDevice {
     device.open();
     scheduler->start(1000.0, [this] {
       pose = device.read(0.0);
-      device.write(wanted);
+      device.write({wanted});
       return true;
     });
   }
@@ -241,9 +241,9 @@ TEST_CASE("two devices in one tick: each gets its own force and its own errors")
   right.open();
   scheduler->start(1000.0, [&] {
     left.read(0.0);
-    left.write(Vector3(1, 0, 0));
+    left.write({Vector3(1, 0, 0)});
     right.read(0.0);
-    right.write(Vector3(0, 2, 0));
+    right.write({Vector3(0, 2, 0)});
     return true;
   });
   fakehd_tick(1);
@@ -332,7 +332,7 @@ TEST_CASE("a tick with a device of OpenHaptics allocates nothing of its own") {
   int ticks = 0;
   scheduler->start(1000.0, [&] {
     device.read(0.0);
-    device.write(Vector3(0, 1, 0));
+    device.write({Vector3(0, 1, 0)});
     if (ticks == 500) device.take({.code = 0x0203});
     return ++ticks < 1000;
   });

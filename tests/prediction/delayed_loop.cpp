@@ -157,7 +157,8 @@ class Loop {
       stylus.asked.any = true;
       stylus.asked.horizon_ns = setup_.hold_horizon_ns;
     }
-    stylus.shown = stylus.filter.step(to_ns(now), {.tip = run_.tip[s].back()}, stylus.asked);
+    const DeviceReading reading{.tip = run_.tip[s].back()};
+    stylus.shown = stylus.filter.step(to_ns(now), reading, stylus.asked).force;
     run_.lowest_gain[s] = std::min(run_.lowest_gain[s], stylus.filter.gain());
   }
 

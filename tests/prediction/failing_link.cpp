@@ -55,7 +55,7 @@ class FailingLink::Device : public HapticDevice {
     height = std::max(height - 5e-5, kTop - depth);
     return {.tip = Vector3(0.01, height, 0.005)};
   }
-  void write(const Vector3& given) noexcept override { force = given.norm(); }
+  void write(const Wrench& given) noexcept override { force = given.force.norm(); }
   bool simulated() const noexcept override { return true; }
   double duration() const noexcept override { return 1e9; }
 

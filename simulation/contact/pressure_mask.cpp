@@ -76,6 +76,16 @@ void PressureMask::spread(const SurfacePoint& middle, ContactPatch& patch) noexc
     patch = ContactPatch(middle);
     return;
   }
+  if (laid_.count == 0 || middle_.nodes != middle.nodes || middle_.weights != middle.weights) {
+    lay(middle, laid_);
+    middle_ = middle;
+  }
+  patch.count = laid_.count;
+  std::copy_n(laid_.nodes.begin(), laid_.count, patch.nodes.begin());
+  std::copy_n(laid_.weights.begin(), laid_.count, patch.weights.begin());
+}
+
+void PressureMask::lay(const SurfacePoint& middle, ContactPatch& patch) noexcept {
   patch.count = 0;
   const SurfaceLocation centre = surface_.locate(middle);
   const Vector3 normal = area_normal(surface_.corners(centre.triangle)).normalized();

@@ -23,7 +23,8 @@ class PressureMask {
   PressureMask(const RestSurface& surface, double radius);
 
   double radius() const noexcept { return radius_; }
-  /// The nodes under a fingertip whose middle is at a point of the surface.
+  /// The nodes under a fingertip whose middle is at a point of the surface. As long as that stays
+  /// it is copied.
   void spread(const SurfacePoint& middle, ContactPatch& patch) noexcept;
 
  private:
@@ -34,11 +35,14 @@ class PressureMask {
   };
   void add(const SurfacePoint& sample, double weight, ContactPatch& patch) noexcept;
   void normalise(ContactPatch& patch) noexcept;
+  void lay(const SurfacePoint& middle, ContactPatch& patch) noexcept;
 
   const RestSurface& surface_;
   double radius_;
   std::vector<Sample> samples_;
   std::vector<int> slot_;  ///< of a node in the patch under construction; -1: not there
+  SurfacePoint middle_;    ///< that laid_ lies about
+  ContactPatch laid_;      ///< empty: none
 };
 
 }  // namespace irdm

@@ -40,7 +40,16 @@ SmoothedSurface::SmoothedSurface(const RestSurface& surface, double tip_radius)
   }
 }
 
-SmoothedSurface::Place SmoothedSurface::at(const SurfacePoint& middle) const noexcept {
+const SmoothedSurface::Place& SmoothedSurface::at(const SurfacePoint& middle) noexcept {
+  if (!found_ || middle_.nodes != middle.nodes || middle_.weights != middle.weights) {
+    place_ = find(middle);
+    middle_ = middle;
+    found_ = true;
+  }
+  return place_;
+}
+
+SmoothedSurface::Place SmoothedSurface::find(const SurfacePoint& middle) const noexcept {
   const SurfaceLocation centre = surface_.locate(middle);
   const Vector3 normal = area_normal(surface_.corners(centre.triangle)).normalized();
   const Vector3 x = normal.unitOrthogonal();

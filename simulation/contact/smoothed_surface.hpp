@@ -13,7 +13,7 @@ namespace irdm {
 /// round an edge on a curve of nearly even curvature that sets in smoothly: at speed, both a sharp
 /// bend and a sudden one change the force from one step to the next. The normal is that of the
 /// surface that these places form, so that a force along it does no work in a slip: no energy comes
-/// from nowhere. Real-time safe after construction, read only.
+/// from nowhere. Real-time safe after construction; one thread.
 class SmoothedSurface {
  public:
   /// @param tip_radius of the fingertip [m]; where it is small, edges of the mesh set the disc's
@@ -24,7 +24,8 @@ class SmoothedSurface {
     Vector3 position = Vector3::Zero();  ///< [m], B
     Vector3 normal = Vector3::Zero();    ///< outward, unit, B
   };
-  Place at(const SurfacePoint& middle) const noexcept;
+  /// Of a point that stays it is found once.
+  const Place& at(const SurfacePoint& middle) noexcept;
 
  private:
   /// Many: each one that comes to lie beyond an edge or on the other side of a corner moves the
@@ -38,12 +39,16 @@ class SmoothedSurface {
   struct Ray {
     double cosine, sine;
   };
+  Place find(const SurfacePoint& middle) const noexcept;
   void add_ray(const SurfaceLocation& centre, const Vector3& direction, const Ray& ray,
                Means& means) const noexcept;
 
   const RestSurface& surface_;
   double radius_;
   std::array<Ray, kRays> rays_;
+  bool found_ = false;  ///< any
+  SurfacePoint middle_;
+  Place place_;  ///< of that
 };
 
 }  // namespace irdm

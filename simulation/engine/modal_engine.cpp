@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kBlock = 16;  // rows of Phi that a thread takes at a time
 constexpr std::size_t kMostHeld = kMaxContacts * kMaxPatchNodes;
-constexpr std::size_t kSlice = 512;  // modes whose shapes under a contact fill a part of the cache
+constexpr std::size_t kSlice = 512;  // modes whose forces fill a part of the cache
 
 void add_to(double* sum, const double* numbers, std::size_t n) noexcept {
   for (std::size_t i = 0; i < n; ++i) sum[i] += numbers[i];
@@ -24,12 +24,13 @@ void add_to(double* sum, const double* numbers, std::size_t n) noexcept {
 template <typename Scalar>
 ModalEngine<Scalar>::ModalEngine(std::shared_ptr<const Model> model)
     : model_(std::move(model)),
+      shapes_(&std::get<RowMatrix<Scalar>>(std::get<ModalResponse>(model_->response).shapes)),
+      contact_shapes_(*shapes_),
       horizon_(static_cast<std::size_t>(std::get<ModalResponse>(model_->response).mode_count())),
       residual_(std::get<ModalResponse>(model_->response).residual,
                 model_->mesh.surface_node_count()),
       gravity_(std::get<ModalResponse>(model_->response)) {
   const auto& response = std::get<ModalResponse>(model_->response);
-  shapes_ = &std::get<RowMatrix<Scalar>>(response.shapes);
   const Eigen::VectorXd largest =
       shapes_->cwiseAbs().colwise().maxCoeff().transpose().template cast<double>();
   largest_shape_.assign(largest.data(), largest.data() + largest.size());
@@ -41,7 +42,6 @@ ModalEngine<Scalar>::ModalEngine(std::shared_ptr<const Model> model)
     values->assign(modes_, 0.0);
   }
   held_.reserve(kMostHeld);
-  contact_shapes_.assign(3 * kMaxContacts * modes_, 0.0);
   coordinate_after_.assign(kMaxHorizon * modes_, 0.0);
   velocity_after_.assign(kMaxHorizon * modes_, 0.0);
   set_transitions(1.0);
@@ -63,6 +63,7 @@ void ModalEngine<Scalar>::set_transitions(double damping) noexcept {
   }
   horizon_.set_transitions({a11_.data(), a12_.data(), a21_.data(), a22_.data()}, b1_.data(),
                            b2_.data(), response.angular_frequency.data());
+  contact_shapes_.forget();
   tabulate_delayed();
 }
 
@@ -185,68 +186,15 @@ double ModalEngine<Scalar>::free_change_bound() const noexcept {
   return sum;
 }
 
-// Three nodes at a time; where fewer are left, the last ones count with weight 0.
-template <typename Scalar>
-void ModalEngine<Scalar>::mean_shape(const ContactPatch& patch, int axis, const ModeRange& modes,
-                                     double* shape) const noexcept {
-  for (int first = 0; first < patch.count; first += 3) {
-    std::array<double, 3> weights{};
-    std::array<const Scalar*, 3> rows{};
-    for (int i = 0; i < 3; ++i) {
-      const auto from = static_cast<std::size_t>(std::min(first + i, patch.count - 1));
-      weights[static_cast<std::size_t>(i)] = first + i < patch.count ? patch.weights[from] : 0.0;
-      rows[static_cast<std::size_t>(i)] = shape_row(3 * patch.nodes[from] + axis) + modes.first;
-    }
-    if (first == 0) {
-      combine(weights, rows[0], rows[1], rows[2], shape, modes.count);
-    } else {
-      accumulate(weights, rows[0], rows[1], rows[2], shape, modes.count);
-    }
-  }
-}
-
-// R[0] = Phi diag(b1) Phi^T, symmetric. Slice after slice of the modes, so that the mean shapes
-// stay in the first level of the cache.
 template <typename Scalar>
 void ModalEngine<Scalar>::predict(std::span<const ContactPatch> patches, std::span<Vector3> h,
                                   ContactMatrix& compliance) noexcept {
-  compliance.setZero(static_cast<Eigen::Index>(3 * patches.size()),
-                     static_cast<Eigen::Index>(3 * patches.size()));
-  std::fill(h.begin(), h.begin() + static_cast<std::ptrdiff_t>(patches.size()), Vector3::Zero());
-  for (std::size_t first = 0; first < modes_; first += kSlice) {
-    add_slice(patches, {first, std::min(kSlice, modes_ - first)}, h, compliance);
-  }
+  contact_shapes_.predict(patches, {b1_.data(), free_coordinate_.data()}, h, compliance);
   residual_.add_compliance(patches, compliance);
   for (std::size_t a = 0; gravity_.adds_rest() && a < patches.size(); ++a) {
     h[a] += mean(patches[a], [&](int node) { return gravity_.rest(node); });
   }
   compliance.template triangularView<Eigen::StrictlyUpper>() = compliance.transpose();
-}
-
-// The lower triangle of the compliance.
-template <typename Scalar>
-void ModalEngine<Scalar>::add_slice(std::span<const ContactPatch> patches, const ModeRange& modes,
-                                    std::span<Vector3> h, ContactMatrix& compliance) noexcept {
-  const auto rows = [&](std::size_t a) { return contact_shapes_.data() + 3 * a * modes.count; };
-  const auto at = [](std::size_t a) { return static_cast<Eigen::Index>(3 * a); };
-  const double* const weights = b1_.data() + modes.first;
-  for (std::size_t a = 0; a < patches.size(); ++a) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      mean_shape(patches[a], static_cast<int>(axis), modes, rows(a) + axis * modes.count);
-    }
-    const Sums<9> own =
-        moments(rows(a), weights, free_coordinate_.data() + modes.first, modes.count);
-    h[a] += Vector3(own[0], own[1], own[2]);
-    std::size_t entry = 3;
-    for (Eigen::Index j = 0; j < 3; ++j) {
-      for (Eigen::Index k = 0; k <= j; ++k) compliance(at(a) + j, at(a) + k) += own[entry++];
-    }
-    for (std::size_t b = 0; b < a; ++b) {
-      const Sums<9> shared = cross_moments(rows(a), rows(b), weights, modes.count);
-      compliance.template block<3, 3>(at(a), at(b)) +=
-          Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(shared.data());
-    }
-  }
 }
 
 // Three nodes at a time; where fewer are left, the last one counts with weight 0.
@@ -277,7 +225,8 @@ ModalHorizon::Contact& ModalEngine<Scalar>::horizon_contact(const ContactPatch& 
   if (contact == nullptr) {
     contact = &horizon_.begin(patch);
     for (std::size_t i = 0; i < 3; ++i) {
-      mean_shape(patch, static_cast<int>(i), {0, modes_}, &contact->shapes[i * horizon_.stride()]);
+      contact_shapes_.mean_shape(patch, static_cast<int>(i), {0, modes_},
+                                 &contact->shapes[i * horizon_.stride()]);
     }
   }
   contact->used = state_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "simulation/engine/active_modes.hpp"
+#include "simulation/engine/contact_shapes.hpp"
 #include "simulation/engine/kernels.hpp"
 #include "simulation/engine/modal_gravity.hpp"
 #include "simulation/engine/modal_horizon.hpp"
@@ -74,10 +75,6 @@ class ModalEngine final : public ResponseEngine,
   void go_on() noexcept;
   ModalHorizon::Contact& horizon_contact(const ContactPatch& patch) noexcept;
   void hold(std::span<const NodalForce> forces) noexcept;
-  void mean_shape(const ContactPatch& patch, int axis, const ModeRange& modes,
-                  double* shape) const noexcept;
-  void add_slice(std::span<const ContactPatch> patches, const ModeRange& modes,
-                 std::span<Vector3> h, ContactMatrix& compliance) noexcept;
   void collect_modal_forces(std::span<const NodalForce> forces, const ModeRange& modes,
                             double* modal) const noexcept;
   const Scalar* shape_row(int dof) const noexcept {
@@ -85,7 +82,8 @@ class ModalEngine final : public ResponseEngine,
   }
 
   std::shared_ptr<const Model> model_;
-  const RowMatrix<Scalar>* shapes_;      ///< Phi (3n, r)
+  const RowMatrix<Scalar>* shapes_;  ///< Phi (3n, r)
+  ContactShapes<Scalar> contact_shapes_;
   const double* centrifugal_ = nullptr;  ///< g (r, 6); null: the model has none
   std::size_t modes_;                    ///< r
   AlignedNumbers largest_shape_;         ///< (r) max_a |Phi_ai|
@@ -95,7 +93,6 @@ class ModalEngine final : public ResponseEngine,
   /// At the end of the coming step, no force but those of the held spin and of gravity.
   AlignedNumbers free_coordinate_, free_velocity_;
   AlignedNumbers modal_force_;
-  AlignedNumbers contact_shapes_;  ///< (3 kMaxContacts, r): rows sum_i w_i Phi_i
   /// (kMaxHorizon, r): coordinate and velocity of each mode at the end of the n-th step after the
   /// one in which a modal force of 1 acted.
   AlignedNumbers coordinate_after_, velocity_after_;

@@ -157,6 +157,47 @@ TEST_CASE("engines predict the coming step: free displacement, and R[0] between 
   }
 }
 
+TEST_CASE(
+    "engines predict contacts that stay, change, come and go as an engine that sees them "
+    "for the first time, to the bit") {
+  const auto model = share(synthetic_cube(3, 70, 80));
+  const auto engine = make_engine(model);
+  std::mt19937 random(3);
+  const auto patch = [&](int first) {
+    ContactPatch at;
+    for (int i = 0; i < 4 + first % 3; ++i) at.add((5 * first + 3 * i) % 56, 0.1 + 0.05 * i);
+    return at;
+  };
+  std::vector<ContactPatch> patches{patch(0), patch(1), patch(2)};
+  std::vector<std::vector<NodalForce>> history;
+  for (int k = 0; k < 60; ++k) {
+    if (k % 4 == 1) patches[random() % patches.size()] = patch(static_cast<int>(random() % 11));
+    if (k % 7 == 2) patches[random() % patches.size()].weights[1] += 0.01;
+    if (k % 9 == 3 && patches.size() > 1) patches.erase(patches.begin());
+    if (k % 5 == 4) patches.push_back(patch(static_cast<int>(random() % 11)));
+    const double damping = k < 40 ? 1.0 : 1.5;
+    if (k == 40) engine->capabilities().damping->scale_damping(damping);
+    std::vector<Vector3> h(patches.size());
+    ContactMatrix W;
+    engine->predict(patches, h, W);
+
+    const auto fresh = make_engine(model);
+    for (std::size_t i = 0; i < history.size(); ++i) {
+      if (i == 40) fresh->capabilities().damping->scale_damping(damping);
+      fresh->advance(history[i]);
+    }
+    if (history.size() == 40) fresh->capabilities().damping->scale_damping(damping);
+    std::vector<Vector3> expected(patches.size());
+    ContactMatrix expected_W;
+    fresh->predict(patches, expected, expected_W);
+    REQUIRE(h == expected);
+    REQUIRE(W == expected_W);
+    history.push_back(
+        {{k % 56, Vector3(0.1 * k, -1.0, 0.3)}, {(k + 7) % 56, Vector3(0.2, 0.5, 0.02 * k)}});
+    engine->advance(history.back());
+  }
+}
+
 TEST_CASE("engine's surface is the same to the bit with one, two and three OpenMP threads") {
   const Model modal = synthetic_cube(5, 200, 50);
   for (const Model& model : {modal, with_dense_response<float>(modal)}) {

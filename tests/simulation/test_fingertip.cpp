@@ -1,10 +1,13 @@
 // What a fingertip presses on, and that the force under it is the object's, not the mesh's.
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <iostream>
 #include <map>
 
+#include "simulation/contact/pressure_mask.hpp"
+#include "simulation/contact/smoothed_surface.hpp"
 #include "tests/simulation/pressed_cube.hpp"
 #include "tests/support/static_cube.hpp"
 
@@ -60,6 +63,29 @@ TEST_CASE("fingertip: the mask of a fingertip sums to one, is symmetric, and mov
     before = now;
   }
   CHECK(largest < 0.02);  // 0.2 mm of a fingertip of 15 mm
+}
+
+TEST_CASE("fingertip: what is kept of a middle that stays is that middle's") {
+  const auto model = fem_cube({3});
+  const RestSurface surface(model->mesh);
+  const std::array middles{surface.closest({0.01, kHalfEdge, 0.02}).point,
+                           surface.closest({0.01, kHalfEdge, 0.03}).point,
+                           surface.closest({0.0105, kHalfEdge, 0.03}).point};
+  PressureMask mask(surface, 0.04);
+  SmoothedSurface felt(surface, 0.04);
+  for (const std::size_t i : {0UL, 0UL, 1UL, 2UL, 2UL, 0UL}) {
+    ContactPatch kept, made;
+    mask.spread(middles[i], kept);
+    PressureMask(surface, 0.04).spread(middles[i], made);
+    REQUIRE(kept.count == made.count);
+    for (std::size_t j = 0; j < static_cast<std::size_t>(made.count); ++j) {
+      CHECK(kept.nodes[j] == made.nodes[j]);
+      CHECK(kept.weights[j] == made.weights[j]);
+    }
+    SmoothedSurface fresh(surface, 0.04);
+    CHECK(felt.at(middles[i]).position == fresh.at(middles[i]).position);
+    CHECK(felt.at(middles[i]).normal == fresh.at(middles[i]).normal);
+  }
 }
 
 TEST_CASE("fingertip: the force spreads as wide as asked on any mesh that is fine enough") {

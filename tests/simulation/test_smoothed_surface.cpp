@@ -51,7 +51,7 @@ Place summed(double d) {
 TEST_CASE("rounded surface: round an edge it is the mean over the disc, with the normal of that") {
   const auto model = fem_cube({8});
   const RestSurface surface(model->mesh);
-  const SmoothedSurface rounded(surface, kTip);
+  SmoothedSurface rounded(surface, kTip);
   for (int i = -11; i <= 11; ++i) {
     const double d = 0.1 * i * kDisc;
     CAPTURE(d);
@@ -69,7 +69,7 @@ TEST_CASE("rounded surface: round an edge it is the mean over the disc, with the
 TEST_CASE("rounded surface: an edge bends no more than a circle of 0.7 discs, and smoothly") {
   const auto model = fem_cube({8});
   const RestSurface surface(model->mesh);
-  const SmoothedSurface rounded(surface, kTip);
+  SmoothedSurface rounded(surface, kTip);
   constexpr double kStep = 0.05 * kDisc;
   SmoothedSurface::Place last = rounded.at(surface.closest(on_the_way(-1.2 * kDisc)).point);
   double last_bend = 0.0;

@@ -1,6 +1,6 @@
 // How long a force step takes with contacts of all kinds, on the paper's cube (866 surface nodes,
 // all its modes): points and fingertips, held, sticking and slipping, one, two and ten, the floor,
-// and cubes on each other. With a word as argument: the lines that have it in them.
+// a tool, and cubes on each other. With a word as argument: the lines that have it in them.
 
 #include <algorithm>
 #include <array>
@@ -14,6 +14,7 @@
 
 #include "bench/statistics.hpp"
 #include "simulation/step/simulation.hpp"
+#include "tests/simulation/led_rod.hpp"
 #include "tests/support/fem_cube.hpp"
 
 using namespace irdm;
@@ -113,6 +114,30 @@ std::vector<StylusCommand> pinch_with_ten(int k) {
   return commands;
 }
 
+const Quaternion kLying(std::sqrt(0.5), 0.0, 0.0, -std::sqrt(0.5));
+
+Vector3 above_top(double height) {
+  return {0.0, kHalfEdge + 0.5 * test::kRodWidth + height, 0.003};
+}
+
+// A rod, which a stylus leads, lies across a cube.
+SimulationConfig rod_on_cube() {
+  SimulationConfig config = scene(0.0, 1, {0.5, 0.5});
+  config.objects.emplace_back();
+  config.objects[1].model = test::rod();
+  config.objects[1].friction = {0.5, 0.5};
+  config.objects[1].position = above_top(0.002);
+  config.objects[1].orientation = kLying;
+  config.styluses[0].tool = ToolCoupling{1, {}};
+  return config;
+}
+
+std::vector<StylusCommand> press_with_rod(int k) {
+  const double height = 0.002 - 0.008 * std::min(1.0, k / 200.0);
+  const Vector3 along(0.001 * std::sin(0.01 * k) - 0.5 * test::kRodLength, 0.0, 0.0);
+  return {test::lead_to(above_top(height) + along, kLying)};
+}
+
 // Down on the top within 0.2 s, then to and fro.
 Vector3 press(int k, double amplitude) {
   const double down = std::min(1.0, k / 100.0);
@@ -149,6 +174,7 @@ int main(int argc, char** argv) {
                                       at({depth - kHalfEdge, 0.0, 0.0})};
   });
   measure("ten fingertips of 1.5 cm, dt = 1 ms", ten_fingertips(), pinch_with_ten);
+  measure("tool: a rod lies across a cube and rubs", rod_on_cube(), press_with_rod);
   SimulationConfig resting = scene(0.0, 1, rough);
   resting.gravity = Vector3(0, -9.81, 0);
   resting.objects[0].tether = {};

@@ -142,7 +142,7 @@ TracedScene read_traced_scene(const std::filesystem::path& trace,
   TracedScene traced = std::move(reading.traced);
   traced.config =
       simulation_config(scene, recorded_viewer_stylus(scene, header.stylus_count, trace.string()));
-  if (!header.bodies) traced.config.between_objects = false;
+  if (!header.bodies) traced.config.between_objects = traced.config.self_contact = false;
   check_dt(traced, header.dt, trace.string());
   return traced;
 }

@@ -98,6 +98,7 @@ ContactConfig read_contact(TomlTable table) {
       table.number("coupling_stiffness", lab::kStiffness, config.coupling_stiffness);
   config.release_time = table.number("release_time", between(1e-3, 1.0), config.release_time);
   config.between_objects = table.boolean("between_objects", config.between_objects);
+  config.self = table.boolean("self", config.self);
   config.samples = table.integer("samples", 16, 4096, config.samples);
   table.finish();
   return config;
@@ -363,6 +364,7 @@ SimulationConfig simulation_config(const SceneConfig& scene, bool viewer_stylus,
   config.release_time = scene.contact.release_time;
   config.scenery = whole_scenery(scene);
   config.between_objects = scene.contact.between_objects;
+  config.self_contact = scene.contact.self;
   config.contact_samples = scene.contact.samples;
   return config;
 }

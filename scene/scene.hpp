@@ -59,6 +59,7 @@ struct ContactConfig {
   double coupling_stiffness = 0.0;
   double release_time = 0.03;   ///< in which a held point that pulls is given up, 0.001..1 [s]
   bool between_objects = true;  ///< whether objects touch each other and scenery
+  bool self = false;            ///< whether parts of one object touch each other
   int samples = 384;            ///< patches of an object's surface for such contacts, 16..4096
 };
 

@@ -45,8 +45,9 @@ void check_place(const BodyContactRecord& contact, const SimulationConfig& confi
                  SampleCounts& samples, const std::string& file) {
   const auto objects = static_cast<int>(config.objects.size());
   const auto scenery = static_cast<int>(config.scenery.size());
-  if (!touches_bodies(config) || !within(contact.object, objects) || contact.other < -scenery ||
-      contact.other >= objects || contact.other == contact.object) {
+  const bool may = contact.other == contact.object ? config.self_contact : touches_others(config);
+  if (!may || !within(contact.object, objects) || contact.other < -scenery ||
+      contact.other >= objects) {
     throw Error(file, "/body_contact has a contact of bodies that the scene does not have",
                 "use the scene that it was recorded with");
   }

@@ -39,7 +39,8 @@ void add_body_contacts(const StepRecord& record, int i, CsvRow& row) {
   int count = 0;
   for (const BodyContactRecord& contact : record.body_contacts()) {
     if (contact.object != i && contact.other != i) continue;
-    sum += contact.object == i ? contact.force : Vector3(-contact.force);
+    if (contact.object == i) sum += contact.force;
+    if (contact.other == i) sum -= contact.force;
     ++count;
   }
   row.add(sum);

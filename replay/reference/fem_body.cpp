@@ -220,7 +220,7 @@ Vector3 FemBody::place(const TouchForce& touch) const {
     return mean(sampling_->patch(row), [&](int node) { return place(node); });
   };
   const BodyContactRecord& contact = *touch.contact;
-  if (contact.object == number_) {
+  if (touch.first) {
     return of_row(sampling_->samples()[static_cast<std::size_t>(contact.sample)].row);
   }
   Vector3 sum = Vector3::Zero();

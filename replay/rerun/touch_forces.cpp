@@ -8,10 +8,11 @@ void find_touch_forces(int number, const ObjectRecord& recorded,
   forces.clear();
   const Vector3 middle = 0.5 * (recorded.start.position + recorded.position);
   for (const BodyContactRecord& contact : contacts) {
-    if (contact.object != number && contact.other != number) continue;
-    const bool first = contact.object == number;
-    forces.push_back(
-        {first ? contact.force : Vector3(-contact.force), contact.position - middle, &contact});
+    for (const bool first : {true, false}) {
+      if ((first ? contact.object : contact.other) != number) continue;
+      forces.push_back({first ? contact.force : Vector3(-contact.force), contact.position - middle,
+                        &contact, first});
+    }
   }
 }
 

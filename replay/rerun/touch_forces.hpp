@@ -8,11 +8,13 @@
 
 namespace irdm::replay {
 
-/// What another body did to an object at one contact, on the object as a whole.
+/// What another body, or another part of it, did to an object at one contact, on the object as a
+/// whole.
 struct TouchForce {
   Vector3 force = Vector3::Zero();  ///< on the object [N], W
   Vector3 arm = Vector3::Zero();    ///< from the centre of mass half-way through the step [m], W
   const BodyContactRecord* contact = nullptr;
+  bool first = true;  ///< the sample of the contact is this object's
 };
 
 /// Those of one object in a recorded step.

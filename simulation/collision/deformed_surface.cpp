@@ -13,6 +13,13 @@ constexpr std::size_t kMaxCandidates = 64;
 // much less than kSlack [m].
 constexpr double kLargestChange = 1.0;
 constexpr double kSlack = 1e-12;
+// Barycentric weights by which triangles of a set overlap: nodes that mirror each other meet
+// exactly, and a way through a node may miss all triangles by rounding.
+constexpr double kSeam = 1e-9;
+
+bool has(TriangleSet among, int triangle) noexcept {
+  return among.empty() || among[static_cast<std::size_t>(triangle)] != 0;
+}
 }  // namespace
 
 DeformedSurface::DeformedSurface(const RestSurface& rest)
@@ -101,10 +108,11 @@ void DeformedSurface::visit_neighbours(int triangle, const Visit& visit) noexcep
   }
 }
 
-SurfaceHit DeformedSurface::descend(SurfaceHit best, const Vector3& p) noexcept {
+SurfaceHit DeformedSurface::descend(SurfaceHit best, const Vector3& p, TriangleSet among) noexcept {
   for (int move = 0; move < kMaxSlides; ++move) {
     const int here = best.triangle;
     visit_neighbours(here, [&](int neighbour) {
+      if (!has(among, neighbour)) return;
       if (least_distance(neighbour, p) >= best.signed_distance) return;
       const SurfaceHit hit = hit_on(neighbour, p);
       if (hit.signed_distance < best.signed_distance) best = hit;
@@ -168,17 +176,25 @@ SurfaceHit DeformedSurface::closest(const Vector3& p) noexcept {
   return best;
 }
 
+SurfaceHit DeformedSurface::closest_from(int triangle, const Vector3& p,
+                                         TriangleSet among) noexcept {
+  return descend(hit_on(triangle, p), p, among);
+}
+
 std::optional<SurfaceHit> DeformedSurface::first_crossing(const Vector3& from, const Vector3& to,
-                                                          const SurfaceHit& near) noexcept {
+                                                          const SurfaceHit& near,
+                                                          TriangleSet among) noexcept {
   std::optional<SurfaceHit> found;
   double earliest = 2.0;
   const double length = (to - from).norm();
   const auto consider = [&](int candidate) {
+    if (!has(among, candidate)) return;
     if (least_distance(candidate, to) > length) return;
     const TriangleCorners deformed = corners(candidate);
-    const std::optional<Crossing> here = crossing(deformed, from, to);
+    std::optional<Crossing> here = crossing(deformed, from, to, among.empty() ? 0.0 : kSeam);
     if (!here || here->fraction >= earliest) return;
     earliest = here->fraction;
+    for (double& weight : here->weights) weight = std::max(0.0, weight);
     const SurfacePoint point{rest_.topology().corners(candidate), here->weights};
     found = SurfaceHit{candidate, point, at(deformed, here->weights), 0.0};
   };

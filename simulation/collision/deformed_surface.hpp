@@ -21,6 +21,9 @@ struct SurfaceHit {
   double signed_distance = 0.0;
 };
 
+/// Some of a surface's triangles: a flag each; empty: all.
+using TriangleSet = std::span<const std::uint8_t>;
+
 /// The surface as it would be at the end of the coming step if no force acted during it, in B. Only
 /// the nodes that a query looks at are computed, each once a step, so that what a query costs does
 /// not depend on the size of the object. Real-time safe after construction; one thread.
@@ -57,8 +60,29 @@ class DeformedSurface {
 
   /// Where the way from `from` to `to` first crosses the surface from outside, the triangles around
   /// `near` and those along the way being looked at: a thin part is not passed through.
+  /// @param among only these triangles count
   std::optional<SurfaceHit> first_crossing(const Vector3& from, const Vector3& to,
-                                           const SurfaceHit& near) noexcept;
+                                           const SurfaceHit& near, TriangleSet among = {}) noexcept;
+
+  /// The point nearest to p that is reached from a triangle by going to whichever neighbour among
+  /// these is nearer, until none is. Its distance has no sign.
+  SurfaceHit closest_from(int triangle, const Vector3& p, TriangleSet among) noexcept;
+
+  /// What no component of any node's displacement is larger than [m]; may be infinite.
+  double bound() noexcept;
+
+  /// A state of the surface that later ones are compared with.
+  struct Mark {
+    std::uint64_t bounded_since = 0;
+    double change = 0.0;
+  };
+  Mark mark() const noexcept { return {bounded_since_, change_}; }
+  /// By what no component of any node's displacement has changed since then [m]; may be infinite.
+  double change_since(const Mark& then) const noexcept {
+    return then.bounded_since == bounded_since_ ? change_ - then.change : kUnknown;
+  }
+  /// As if a node had been asked for: what is known in this state is wanted in the next one.
+  void keep() noexcept { queried_ = true; }
 
   /// Outward unit normal of a deformed triangle.
   Vector3 normal(int triangle) noexcept;
@@ -68,12 +92,10 @@ class DeformedSurface {
   double least_distance(int triangle, const Vector3& p) noexcept;
   void mark_seen(std::size_t node) noexcept;
   SurfaceHit hit_on(int triangle, const Vector3& p) noexcept;
-  SurfaceHit descend(SurfaceHit best, const Vector3& p) noexcept;
+  SurfaceHit descend(SurfaceHit best, const Vector3& p, TriangleSet among = {}) noexcept;
   Vector3 pseudonormal(const SurfaceHit& hit) noexcept;
   template <typename Visit>
   void visit_neighbours(int triangle, const Visit& visit) noexcept;
-
-  double bound() noexcept;
 
   const RestSurface& rest_;
   Eigen::AlignedBox3d rest_box_;

@@ -47,7 +47,7 @@ PatchCompliance::PatchCompliance(const Model& model, const ContactSampling& samp
                 "an object with " + std::to_string(nodes) +
                     " surface nodes is too large to touch other objects",
                 "use a mesh of at most " + std::to_string(kMaxNodes) +
-                    " surface nodes, or set contact.between_objects = false");
+                    " surface nodes, or set contact.between_objects and contact.self = false");
   }
   const Eigen::SparseMatrix<double> spread = spreading(sampling, nodes);
   const Eigen::MatrixXd at_nodes = stored_response(model)->zero_lag() * spread;

@@ -10,6 +10,8 @@ namespace {
 
 // Samples as near as this are given to the solver, which leaves them alone unless they come down.
 constexpr double kNearBody = 1e-4;
+// The same of parts of one body, by the samples' spacing: a force of this step bends both.
+constexpr double kNearItself = 0.1;
 // As those of the floor: how far a sample may be from where it would be at rest, to be looked at.
 constexpr double kLeastReach = 2e-3;
 constexpr double kReachFactor = 2.0;
@@ -85,7 +87,14 @@ BodyContacts::BodyContacts(int object, const ContactBody& body, int scenery,
   candidates_.reserve(samples_.size());
 }
 
+BodyContacts::BodyContacts(int object, const ContactBody& body, const SelfReach& reach, double dt)
+    : BodyContacts(object, body, object, body, dt) {
+  self_.emplace(reach, body.surface, kNearItself * body.sampling.spacing());
+}
+
 void BodyContacts::reset() noexcept {
+  if (self_) self_->reset();
+  clear_ = 0;
   std::fill(samples_.begin(), samples_.end(), Sample{});
   count_ = 0;
   displaced_ = 0.0;
@@ -96,6 +105,11 @@ void BodyContacts::reset() noexcept {
 
 // Whether the balls round both meet.
 bool BodyContacts::near() noexcept {
+  if (self_) {
+    const bool any = self_->begin_step();
+    if (!any) clear_ = step_;
+    return any;
+  }
   const Vector3& there = other_body_ != nullptr ? other_body_->motion.position : scenery_->position;
   const double reach = radius_ + other_radius_ + kLeastReach + kReachFactor * displaced_;
   const Vector3 way = body_.motion.position - body_.motion.start.position;
@@ -203,11 +217,21 @@ bool BodyContacts::begin(int number, const Vector3& place, Sample& state) noexce
   const Vector3 y = there.to_body(x);
   const Vector3 direction = there.orientation.conjugate() * outward;
   const Vector3 y_start = there.start.orientation.conjugate() * (start - there.start.position);
-  const SurfaceLocation nearest = other_body_->rest.closest(y);
-  const SurfaceHit near{nearest.triangle, nearest.point, nearest.position, 0.0};
   const Quaternion to_own = motion.orientation.conjugate() * there.orientation;
+  SurfaceLocation nearest;
   std::optional<SurfaceHit> hit;
-  if (!flush(number, to_own * other_body_->sampling.normal(nearest))) {
+  if (self_) {
+    const SelfSearch::Found found = self_->find(number, place, sample.normal, depth_);
+    nearest = {found.nearest.triangle, found.nearest.point,
+               at(body_.rest.corners(found.nearest.triangle), found.nearest.point.weights)};
+    hit = found.entry;
+  } else {
+    nearest = other_body_->rest.closest(y);
+  }
+  if (flush(number, to_own * other_body_->sampling.normal(nearest))) {
+    hit.reset();
+  } else if (!self_) {
+    const SurfaceHit near{nearest.triangle, nearest.point, nearest.position, 0.0};
     hit = other_body_->surface.first_crossing(y_start - depth_ * direction,
                                               y + kNearBody * direction, near);
   }
@@ -232,9 +256,10 @@ bool BodyContacts::begin(int number, const Vector3& place, Sample& state) noexce
 // from beside an edge.
 // @param depth at the start of the step [m]
 double BodyContacts::inset_of(double depth, const Sample& state) const noexcept {
-  const bool outside = state.clear + 1 == step_;
+  const bool outside = std::max(state.clear, clear_) + 1 == step_;
   const double deformed = kRoundedDepth + kClosedShare * closed_ + kDisplacedShare * displaced_;
-  return !outside || depth > deformed ? std::max(0.0, depth) : 0.0;
+  // What is beside an edge of the object itself was not marked.
+  return !outside || (!self_ && depth > deformed) ? std::max(0.0, depth) : 0.0;
 }
 
 // A bounce that the step does not resolve. With a new anchor friction would not know the way that
@@ -280,7 +305,7 @@ int BodyContacts::find() noexcept {
   ++step_;
   displaced_ *= kReachFading;
   closed_ *= kReachFading;
-  if (!any_pressed_ && !near()) return 0;
+  if (!near() && !any_pressed_) return 0;
   candidates_.clear();
   const FreeMotion& motion = body_.motion;
   const Eigen::AlignedBox3d box = other_box_;
@@ -298,7 +323,12 @@ int BodyContacts::find() noexcept {
     if (!pressed) {
       const Vector3 x = motion.to_world(shape.place.position);
       const double way = (x - at_start(motion, shape.place.position)).norm();
-      if (other_body_ == nullptr) {
+      if (self_) {
+        if (self_->is_far(i)) {
+          state.mark_outside(step_);
+          continue;
+        }
+      } else if (other_body_ == nullptr) {
         if (beyond(x, margin + way, state)) {
           state.mark_outside(step_);
           continue;
@@ -409,6 +439,7 @@ void BodyContacts::write(int i, const ContactConstraint& solved,
 }
 
 double BodyContacts::initial_depth() noexcept {
+  if (self_) return 0.0;
   double deepest = 0.0;
   for (const ContactSampling::Sample& shape :
        body_.sampling.samples().subspan(static_cast<std::size_t>(first_sample_))) {

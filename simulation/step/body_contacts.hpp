@@ -12,6 +12,7 @@
 #include "simulation/collision/scenery.hpp"
 #include "simulation/contact/contact_sampling.hpp"
 #include "simulation/contact/patch_compliance.hpp"
+#include "simulation/contact/self_contact.hpp"
 #include "simulation/step/step_record.hpp"
 
 namespace irdm {
@@ -19,13 +20,13 @@ namespace irdm {
 /// What the contacts of an object with other bodies need of it: its shape, and the step under way.
 struct ContactBody {
   const ContactSampling& sampling;
-  const PatchCompliance& compliance;
   const RestSurface& rest;
   DeformedSurface& surface;
   const FreeMotion& motion;
 };
 
-/// The contacts of one object's samples with another object or with scenery, from step to step.
+/// The contacts of one object's samples with another object, with scenery, or with other parts of
+/// the same object, from step to step.
 /// Each is a touching contact whose "tip" is an anchor on the other's surface: where the sample
 /// came down, moved along as far as it slips. A sample begins to touch where its way in the step,
 /// begun somewhat inside its own object, crosses the other's surface from outside: fast ones do not
@@ -53,6 +54,8 @@ class BodyContacts {
   /// @param scenery its number  @param shape must outlive this
   BodyContacts(int object, const ContactBody& body, int scenery, const SceneryConfig& shape,
                double dt);
+  /// Of an object with itself. @param reach of the body's samples; must outlive this
+  BodyContacts(int object, const ContactBody& body, const SelfReach& reach, double dt);
 
   void reset() noexcept;
 
@@ -71,10 +74,11 @@ class BodyContacts {
   int count() const noexcept { return count_; }
   const Contact& contact(int i) const noexcept { return found_[static_cast<std::size_t>(i)]; }
   int object() const noexcept { return object_; }
-  /// The other object; -1 - i: scenery i.
+  /// The other object, or the same; -1 - i: scenery i.
   int other() const noexcept { return other_; }
 
-  /// The largest depth of a sample inside the other as both stand at the start [m], 0: none.
+  /// The largest depth of a sample inside the other as both stand at the start [m], 0: none, or the
+  /// other is the object itself.
   double initial_depth() noexcept;
 
  private:
@@ -122,6 +126,7 @@ class BodyContacts {
   ContactBody body_;
   const ContactBody* other_body_ = nullptr;
   const SceneryConfig* scenery_ = nullptr;
+  std::optional<SelfSearch> self_;  ///< the other is the object itself
   double radius_ = 0.0;  ///< of a ball about the centre of mass that has the surface at rest [m]
   double other_radius_ = 0.0;
   Eigen::AlignedBox3d other_box_;  ///< of its surface at rest, B
@@ -141,6 +146,7 @@ class BodyContacts {
   std::vector<Contact> found_;
   int count_ = 0;
   std::uint64_t step_ = 1;
+  std::uint64_t clear_ = 0;  ///< the last step in which no part of the object was near another
   bool any_pressed_ = false;
 };
 

@@ -33,14 +33,16 @@ void ContactIsland::collect_sides(int object, std::span<const IslandContact> con
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     const BodyContacts::Contact& contact = contacts[c].pair->contact(contacts[c].i);
     const int row = first + static_cast<int>(c);
-    if (contacts[c].pair->object() == object) {
+    const bool ours = contacts[c].pair->object() == object;
+    if (ours) {
       sides_.push_back({row, 1.0, &contact.place, contact.arm});
-    } else if (contacts[c].pair->other() == object) {
-      sides_.push_back({row, -1.0, &contact.other_place, contact.other_arm});
-    } else {
-      continue;
+      places_.push_back({2 * contacts[c].key, contact.place});
     }
-    places_.push_back({contacts[c].key, *sides_.back().place});
+    if (contacts[c].pair->other() == object) {
+      // Of an object with itself both forces act at one point of the body.
+      sides_.push_back({row, -1.0, &contact.other_place, ours ? contact.arm : contact.other_arm});
+      places_.push_back({2 * contacts[c].key + 1, contact.other_place});
+    }
   }
 }
 

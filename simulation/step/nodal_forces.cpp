@@ -63,8 +63,10 @@ std::span<const NodalForce> RecordedForces::of(
   }
   sums_.clear();
   for (const BodyContactRecord& contact : contacts) {
-    if (contact.object != number_ && contact.other != number_) continue;
-    add_body_contact(contact, contact.object == number_, *sampling_, record.halfway, sums_);
+    for (const bool first : {true, false}) {
+      if ((first ? contact.object : contact.other) != number_) continue;
+      add_body_contact(contact, first, *sampling_, record.halfway, sums_);
+    }
   }
   sums_.add_to(forces_);
   return forces_.view();

@@ -40,6 +40,7 @@ Simulation::Simulation(const SimulationConfig& config)
   }
   if (touches_bodies(config)) {
     world_ = std::make_unique<WorldContacts>(config, objects_);
+    if (!world_->any()) world_.reset();
   }
 }
 

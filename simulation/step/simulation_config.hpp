@@ -66,6 +66,8 @@ struct SimulationConfig {
   std::vector<SceneryConfig> scenery;  ///< at most kMaxScenery
   /// Whether objects touch each other and scenery.
   bool between_objects = true;
+  /// Whether parts of one object touch each other, where they face each other at rest.
+  bool self_contact = false;
   int contact_samples = 384;  ///< of an object's surface, for such contacts, > 0
 };
 
@@ -76,8 +78,13 @@ inline std::string object_name(const SimulationConfig& config, std::size_t i) {
 }
 
 /// Whether objects of the scene can touch each other or scenery.
-inline bool touches_bodies(const SimulationConfig& config) {
+inline bool touches_others(const SimulationConfig& config) {
   return config.between_objects && (config.objects.size() > 1 || !config.scenery.empty());
+}
+
+/// Whether they can touch those or themselves.
+inline bool touches_bodies(const SimulationConfig& config) {
+  return config.self_contact || touches_others(config);
 }
 
 /// The styluses that lead a tool.

@@ -64,54 +64,73 @@ std::string pair_name(const SimulationConfig& config, const BodyContacts& pair) 
 WorldContacts::WorldContacts(const SimulationConfig& config,
                              const std::vector<std::unique_ptr<SoftObject>>& objects)
     : scenery_(config.scenery), leader_(objects.size(), 0) {
-  if (config.floor && objects.size() > kMostOnFloor) {
+  if (touches_others(config) && config.floor && objects.size() > kMostOnFloor) {
     throw Error("floor",
                 "is for at most " + std::to_string(kMostOnFloor) + " objects that touch each other",
                 "use a [[scenery]] with a plane instead, or set contact.between_objects = false");
   }
   for (const auto& object : objects) objects_.push_back(object.get());
   for (SoftObject* const object : objects_) {
-    const Shape& shape = shape_of(*object, config.contact_samples);
-    object->set_contact_shape(*shape.sampling, *shape.compliance);
-    bodies_.push_back({*shape.sampling, *shape.compliance, object->surface(),
-                       object->deformed_surface(), object->motion()});
+    const Shape& shape = shape_of(config, *object);
+    if (shape.compliance) object->set_contact_shape(*shape.sampling, *shape.compliance);
+    bodies_.push_back(
+        {*shape.sampling, object->surface(), object->deformed_surface(), object->motion()});
   }
   add_pairs(config);
-  int capacity = kMaxBodyContacts;
-  for (SoftObject* const object : objects_) capacity += object->problem().capacity();
   const auto others = static_cast<int>(objects_.size() - 1 + scenery_.size());
-  island_ =
-      std::make_unique<ContactIsland>(static_cast<int>(objects_.size()), capacity,
-                                      std::min(kMaxBodyContacts, 2 * others * BodyContacts::kMost));
+  const int with_others = std::min(kMaxBodyContacts, 2 * others * BodyContacts::kMost);
+  island_ = std::make_unique<ContactIsland>(
+      static_cast<int>(objects_.size()), capacity(config),
+      with_others + (config.self_contact ? 2 * BodyContacts::kMost : 0));
   members_.reserve(objects_.size());
   contacts_.reserve(kMaxBodyContacts);
   solved_.reserve(kMaxBodyContacts);
   refuse_overlaps(config);
 }
 
-const WorldContacts::Shape& WorldContacts::shape_of(SoftObject& object, int samples) {
+// Of the largest island.
+int WorldContacts::capacity(const SimulationConfig& config) const {
+  int own = 0;
+  for (SoftObject* const object : objects_) {
+    const int more = object->problem().capacity();
+    own = touches_others(config) ? own + more : std::max(own, more);
+  }
+  return own + kMaxBodyContacts;
+}
+
+const WorldContacts::Shape& WorldContacts::shape_of(const SimulationConfig& config,
+                                                    SoftObject& object) {
   for (const Shape& shape : shapes_) {
     if (shape.model == &object.model()) return shape;
   }
-  Shape shape{&object.model(), std::make_unique<ContactSampling>(object.surface(), samples), {}};
-  shape.compliance = std::make_unique<PatchCompliance>(object.model(), *shape.sampling);
+  Shape shape{&object.model(), nullptr, nullptr, nullptr};
+  shape.sampling = std::make_unique<ContactSampling>(object.surface(), config.contact_samples);
+  if (config.self_contact && !is_rigid(object.model())) {
+    shape.self = std::make_unique<SelfReach>(object.surface(), *shape.sampling);
+    if (!shape.self->any()) shape.self.reset();
+  }
+  if (touches_others(config) || shape.self) {
+    shape.compliance = std::make_unique<PatchCompliance>(object.model(), *shape.sampling);
+  }
   shapes_.push_back(std::move(shape));
   return shapes_.back();
 }
 
-// Of two objects the one with the finer sampling gives the patches; both give their edges.
+// Of two objects the one with the finer sampling gives the patches; both give their edges. An
+// object with itself comes last.
 void WorldContacts::add_pairs(const SimulationConfig& config) {
   const int count = static_cast<int>(objects_.size());
   const double dt = objects_.front()->model().dt;
   // Each made in its place: a copy has no memory in reserve.
-  pairs_.reserve(objects_.size() * (objects_.size() - 1 + config.scenery.size()));
-  for (int a = 0; a < count; ++a) {
+  pairs_.reserve(objects_.size() * (objects_.size() + config.scenery.size()));
+  for (int a = 0; a < count && touches_others(config); ++a) {
     const ContactBody& one = bodies_[static_cast<std::size_t>(a)];
     for (int b = a + 1; b < count; ++b) {
       const ContactBody& two = bodies_[static_cast<std::size_t>(b)];
       if (!objects_[static_cast<std::size_t>(a)]->rigid().moves() &&
-          !objects_[static_cast<std::size_t>(b)]->rigid().moves() && one.compliance.rigid() &&
-          two.compliance.rigid()) {
+          !objects_[static_cast<std::size_t>(b)]->rigid().moves() &&
+          is_rigid(objects_[static_cast<std::size_t>(a)]->model()) &&
+          is_rigid(objects_[static_cast<std::size_t>(b)]->model())) {
         continue;
       }
       check_masses(config, a, b);
@@ -123,6 +142,11 @@ void WorldContacts::add_pairs(const SimulationConfig& config) {
       if (!objects_[static_cast<std::size_t>(a)]->rigid().moves()) continue;
       pairs_.emplace_back(a, one, static_cast<int>(s), scenery_[s], dt);
     }
+  }
+  for (int a = 0; a < count; ++a) {
+    const auto index = static_cast<std::size_t>(a);
+    const Shape& shape = shape_of(config, *objects_[index]);
+    if (shape.self) pairs_.emplace_back(a, bodies_[index], *shape.self, dt);
   }
 }
 

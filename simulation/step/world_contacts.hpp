@@ -11,9 +11,9 @@
 
 namespace irdm {
 
-/// Contacts of a scene's objects with each other and with scenery. In each step objects that touch
-/// form islands, each of which is one contact problem. Real-time safe after construction; one
-/// thread.
+/// Contacts of a scene's objects with each other, with scenery, and of parts of one object. In each
+/// step objects that touch form islands, each of which is one contact problem. Real-time safe after
+/// construction; one thread.
 class WorldContacts {
  public:
   /// Throws Error when an object is too large to touch others, when their masses are too far apart,
@@ -22,6 +22,8 @@ class WorldContacts {
   WorldContacts(const SimulationConfig& config,
                 const std::vector<std::unique_ptr<SoftObject>>& objects);
 
+  /// False: nothing of the scene can touch anything else of it.
+  bool any() const noexcept { return !pairs_.empty(); }
   void reset() noexcept;
   /// After SoftObject::begin() of all objects: solves their problems and writes the records, up to
   /// SoftObject::finish().
@@ -33,8 +35,10 @@ class WorldContacts {
     const Model* model;
     std::unique_ptr<ContactSampling> sampling;
     std::unique_ptr<PatchCompliance> compliance;
+    std::unique_ptr<SelfReach> self;  ///< null: it does not touch itself
   };
-  const Shape& shape_of(SoftObject& object, int samples);
+  const Shape& shape_of(const SimulationConfig& config, SoftObject& object);
+  int capacity(const SimulationConfig& config) const;
   void add_pairs(const SimulationConfig& config);
   void check_masses(const SimulationConfig& config, int a, int b) const;
   void refuse_overlaps(const SimulationConfig& config);

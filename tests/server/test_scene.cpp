@@ -22,7 +22,8 @@ TEST_CASE("every key of a scene arrives where it belongs") {
       "deformation_threads = 2\nkey_file = \"/k/irdm.key\"\nstatus_period = 5\nudp = "
       "false\n[world]\ngravity = "
       "[1, 2, 3]\n"
-      "[contact]\ncoupling_stiffness = 1500\nrelease_time = 0.2\nbetween_objects = false\n"
+      "[contact]\ncoupling_stiffness = 1500\nrelease_time = 0.2\nbetween_objects = false\nself = "
+      "true\n"
       "samples = 500\n"
       "[floor]\nheight = -0.5\nnormal = [0, 0, 2]\nfriction = { static = 0.9, kinetic = 0.7 }\n"
       "[[stylus]]\nradius = 0.01\ncoupling_stiffness = 800\nreach = 0.02\n[[stylus]]\n"
@@ -62,6 +63,7 @@ TEST_CASE("every key of a scene arrives where it belongs") {
   CHECK(object.tether.angular_stiffness == 0.3);
   CHECK(read.contact.release_time == 0.2);
   CHECK_FALSE(read.contact.between_objects);
+  CHECK(read.contact.self);
   CHECK(read.contact.samples == 500);
   REQUIRE(read.floor);
   CHECK(read.floor->height == -0.5);
@@ -109,6 +111,7 @@ TEST_CASE("a scene needs only a model, the rest has defaults") {
   CHECK(object.tether.angular_stiffness == 0.0);
   CHECK(read.contact.release_time == 0.03);
   CHECK(read.contact.between_objects);
+  CHECK_FALSE(read.contact.self);
   CHECK(read.contact.samples == 384);
   CHECK_FALSE(read.floor);
   REQUIRE(read.styluses.size() == 1);
@@ -440,10 +443,13 @@ TEST_CASE("names of objects and keys of their contacts are a part of what is sim
   CHECK(simulated.objects[1].name == "lid");
   CHECK(simulated.between_objects);
   CHECK(simulated.contact_samples == 384);
+  CHECK_FALSE(simulated.self_contact);
   config.contact.between_objects = false;
+  config.contact.self = true;
   config.contact.samples = 16;
   simulated = simulation_config(config, false);
   CHECK_FALSE(simulated.between_objects);
+  CHECK(simulated.self_contact);
   CHECK(simulated.contact_samples == 16);
 }
 

@@ -185,4 +185,8 @@ int main(int argc, char** argv) {
   measure("two cubes face on face, the lower one fixed by a tether", face_on_face(rough), nobody);
   measure("the same, sliding", face_on_face(smooth), nobody);
   measure("a stack of three cubes", stack(3, {0.5, 0.5}), nobody);
+  SimulationConfig asleep = stack(3, {0.5, 0.5});
+  for (SimulationObject& cube : asleep.objects) cube.model = test::fem_cube({12, 1e6});
+  asleep.sleep_time = 0.5;
+  measure("stack of three stiff cubes, asleep", asleep, nobody);
 }

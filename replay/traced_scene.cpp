@@ -143,6 +143,7 @@ TracedScene read_traced_scene(const std::filesystem::path& trace,
   traced.config =
       simulation_config(scene, recorded_viewer_stylus(scene, header.stylus_count, trace.string()));
   if (!header.bodies) traced.config.between_objects = traced.config.self_contact = false;
+  if (!header.sleep) traced.config.sleep_time = 0.0;
   check_dt(traced, header.dt, trace.string());
   return traced;
 }

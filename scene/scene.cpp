@@ -100,6 +100,7 @@ ContactConfig read_contact(TomlTable table) {
   config.between_objects = table.boolean("between_objects", config.between_objects);
   config.self = table.boolean("self", config.self);
   config.samples = table.integer("samples", 16, 4096, config.samples);
+  config.sleep_time = table.number("sleep_time", between(0.0, 60.0), config.sleep_time);
   table.finish();
   return config;
 }
@@ -366,6 +367,7 @@ SimulationConfig simulation_config(const SceneConfig& scene, bool viewer_stylus,
   config.between_objects = scene.contact.between_objects;
   config.self_contact = scene.contact.self;
   config.contact_samples = scene.contact.samples;
+  config.sleep_time = scene.contact.sleep_time;
   return config;
 }
 

@@ -61,6 +61,7 @@ struct ContactConfig {
   bool between_objects = true;  ///< whether objects touch each other and scenery
   bool self = false;            ///< whether parts of one object touch each other
   int samples = 384;            ///< patches of an object's surface for such contacts, 16..4096
+  double sleep_time = 0.5;      ///< at rest, after which objects sleep, 0..60 [s]; 0: never
 };
 
 /// [[object]]

@@ -265,6 +265,7 @@ TraceHeader trace_header(const SceneConfig& scene, const ServerOptions& options,
   header.bodies = touches_bodies(config);
   header.stylus_count = static_cast<int>(config.styluses.size());
   header.tools = tool_styluses(config);
+  header.sleep = config.sleep_time > 0;
   return header;
 }
 

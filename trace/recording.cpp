@@ -74,6 +74,7 @@ struct Recording::Data {
   double dt = 0.0;
   std::vector<std::uint64_t> force_step;
   std::vector<std::uint8_t> reset;
+  std::vector<std::uint8_t> asleep;      ///< of each step and object; empty: never
   std::vector<std::size_t> settings_of;  ///< row in `settings`, of each step
   trace::SettingsRows settings;
   std::vector<std::size_t> last_reset;  ///< step of the recording, of each step
@@ -109,6 +110,9 @@ void Recording::Data::read(const hdf5::File& file, const std::vector<std::string
   dt = trace::read_dt(file);
   force_step = reader.read<std::uint64_t>("/step/force_step");
   reset = reader.read<std::uint8_t>("/step/reset");
+  if (file.exists(trace::kAsleep)) {
+    asleep = reader.read<std::uint8_t>(trace::kAsleep, config.objects.size());
+  }
   if (force_step.empty()) throw Error(file.name(), "holds no step", "record something");
   if (std::adjacent_find(force_step.begin(), force_step.end(), std::greater_equal<>()) !=
       force_step.end()) {
@@ -288,7 +292,9 @@ ContactRecord Recording::Data::contact(const trace::ContactRows& rows, std::size
 void Recording::Data::object_step(std::size_t i, std::size_t k, ObjectRecord& out,
                                   bool has_inertial_loading) const {
   const trace::ObjectRows& rows = objects[i];
-  const RigidState start = before(i, k);
+  out.asleep = !asleep.empty() && asleep[objects.size() * k + i] != 0;
+  RigidState start = before(i, k);
+  if (out.asleep) start.velocity = start.angular_momentum = Vector3::Zero();
   const double* q = rows.orientation.data() + 4 * k;
   out.start = start;
   out.halfway = bodies[i].mid_step_orientation(start);

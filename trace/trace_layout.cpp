@@ -32,6 +32,7 @@ TraceHeader read_trace_header(const std::filesystem::path& path) {
     if (file.exists(group + "/orientation")) header.tools.push_back(s);
   }
   header.bodies = file.exists(trace::kBodyContact);
+  header.sleep = file.exists(trace::kAsleep);
   header.objects.push_back({"", file.read_string_attribute("/", "model_file"),
                             file.read_string_attribute("/", "model_checksum")});
   return header;

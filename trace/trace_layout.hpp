@@ -35,6 +35,9 @@ inline constexpr std::int64_t kVersion = 2;
 /// How many steps are whole: a killed server may leave sets that are longer.
 inline constexpr const char* kCommitted = "/committed";
 
+/// Whether each object was asleep: not in the trace of a scene in which none can sleep.
+inline constexpr const char* kAsleep = "/step/asleep";
+
 /// Contacts of objects with each other and with scenery: none in the trace of a scene without.
 inline constexpr const char* kBodyContact = "/body_contact";
 

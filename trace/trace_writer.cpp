@@ -37,7 +37,8 @@ TraceWriter::TraceWriter(const std::filesystem::path& path, const TraceHeader& h
       stylus_count_(header.stylus_count),
       tools_(header.tools),
       floor_(header.floor),
-      bodies_(header.bodies) {
+      bodies_(header.bodies),
+      sleep_(header.sleep) {
   try {
     write_header(header);
     create_datasets();
@@ -65,6 +66,9 @@ void TraceWriter::create_datasets() {
   create<double>("/step/time", {});
   create<std::uint64_t>("/step/force_step", {});
   create<std::uint8_t>("/step/reset", {});
+  if (sleep_) {
+    create<std::uint8_t>(trace::kAsleep, several() ? hdf5::Shape{objects_.size()} : hdf5::Shape{});
+  }
   create_settings();
   create_late();
   create_bridged();
@@ -340,6 +344,14 @@ void TraceWriter::append(std::span<const StepRecord> records) {
                             [](const StepRecord& r, std::uint8_t* row) { *row = r.reset ? 1 : 0; });
   append_rows<double>("/step/time", 1, records,
                       [](const StepRecord& r, double* row) { *row = r.time; });
+  if (sleep_) {
+    append_rows<std::uint8_t>(trace::kAsleep, objects_.size(), records,
+                              [&](const StepRecord& r, std::uint8_t* row) {
+                                for (std::size_t i = 0; i < objects_.size(); ++i) {
+                                  row[i] = r.object[i].asleep ? 1 : 0;
+                                }
+                              });
+  }
   append_settings(records);
   append_late(records);
   append_bridged(records);

@@ -30,6 +30,7 @@ struct TraceHeader {
   bool floor = false;           ///< the scene has one
   bool bodies = false;          ///< objects can touch each other or scenery (touches_bodies())
   std::vector<int> tools = {};  ///< styluses that lead a tool (tool_styluses())
+  bool sleep = false;           ///< objects can sleep
 };
 
 /// Writes the trace file of one run (HDF5, format "irdm-trace", docs/files.md). One thread.
@@ -94,6 +95,7 @@ class TraceWriter {
   std::vector<int> tools_;
   bool floor_;
   bool bodies_;
+  bool sleep_;
   std::uint64_t rows_ = 0;  ///< appended
   std::deque<RecentStep> recent_;
   std::optional<std::uint32_t> settings_change_;  ///< that was written last

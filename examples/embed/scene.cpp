@@ -26,6 +26,7 @@ irdm::TraceHeader header_of(const char* file, const irdm::SceneConfig& scene,
   header.floor = scene.floor.has_value();
   header.bodies = irdm::touches_bodies(config);
   header.tools = irdm::tool_styluses(config);
+  header.sleep = config.sleep_time > 0;
   return header;
 }
 

@@ -397,6 +397,14 @@ void FemBody::step(ObjectRecord& again, const RecordedStep& recorded) {
   again.angular_velocity = angular_velocity(end);
 }
 
+void FemBody::rest(ObjectRecord& again) {
+  state_.v.setZero();
+  ++steps_;
+  again.start = rigid_state();
+  again.position = again.start.position;
+  again.halfway = again.orientation = again.start.orientation;
+}
+
 void FemBody::displacement(Points& u) const {
   const Points all =
       precompute::elastic_part(mesh_->body.rest(), as_points(state_.u), rigid_motion());

@@ -46,6 +46,8 @@ class FemBody final : public ForcedBody {
   void set(const Vector3& gravity, const ObjectSettings& settings) override;
   /// Contact forces and the floor's are written as they stand in B here.
   void step(ObjectRecord& again, const RecordedStep& recorded) override;
+  /// The mesh stops.
+  void rest(ObjectRecord& again) override;
   void displacement(Points& u) const override;
 
  private:

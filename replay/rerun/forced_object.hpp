@@ -33,6 +33,8 @@ class ForcedBody {
   /// and the motion are written, and forces, where they are not kept in B
   /// @param recorded what else is in it: other bodies' forces act, too
   virtual void step(ObjectRecord& again, const RecordedStep& recorded) = 0;
+  /// Instead, where the object is asleep: start of the step and motion are written.
+  virtual void rest(ObjectRecord& again) = 0;
   /// Of all surface nodes at the end of the last step, (n, 3) [m], B.
   virtual void displacement(Points& u) const = 0;
 };
@@ -49,6 +51,7 @@ class ForcedObject final : public ForcedBody {
   void insert_delayed_force(const LateForce& late) override;
   void set(const Vector3& gravity, const ObjectSettings& settings) override;
   void step(ObjectRecord& again, const RecordedStep& recorded) override;
+  void rest(ObjectRecord& again) override { body_.rest(again); }
   void displacement(Points& u) const override { body_.engine().displacement(u); }
 
  private:

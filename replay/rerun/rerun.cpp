@@ -83,7 +83,10 @@ void ForceRerun::step(const StepRecord& recorded, StepRecord& again) {
   const RecordedStep whole{
       {recorded.stylus.data(), static_cast<std::size_t>(recorded.stylus_count)},
       recorded.body_contacts()};
-  for (std::size_t i = 0; i < objects_.size(); ++i) objects_[i]->step(again.object[i], whole);
+  for (std::size_t i = 0; i < objects_.size(); ++i) {
+    ObjectRecord& object = again.object[i];
+    object.asleep ? objects_[i]->rest(object) : objects_[i]->step(object, whole);
+  }
   write_floor_and_styluses(again);
 }
 

@@ -37,6 +37,7 @@ Deformation::Deformation(const SimulationConfig& config, double tolerance) {
 
 void Deformation::advance(const StepRecord& record) {
   for (std::size_t i = 0; i < objects_.size(); ++i) {
+    if (record.object[i].asleep) continue;
     InertialLoading* const loading = objects_[i].engine->capabilities().inertial_loading;
     if (objects_[i].has_inertial_loading && loading != nullptr) {
       loading->set_angular_velocity(record.object[i].spin);

@@ -104,12 +104,8 @@ void BodyContacts::reset() noexcept {
 }
 
 // Whether the balls round both meet.
-bool BodyContacts::near() noexcept {
-  if (self_) {
-    const bool any = self_->begin_step();
-    if (!any) clear_ = step_;
-    return any;
-  }
+bool BodyContacts::near() const noexcept {
+  if (self_) return true;
   const Vector3& there = other_body_ != nullptr ? other_body_->motion.position : scenery_->position;
   const double reach = radius_ + other_radius_ + kLeastReach + kReachFactor * displaced_;
   const Vector3 way = body_.motion.position - body_.motion.start.position;
@@ -300,12 +296,19 @@ void BodyContacts::describe(int sample, const Vector3& place, Contact& contact) 
   contact.gap = other_body_->motion.to_world(contact.other_arm) - x;
 }
 
+// Whether any of its samples may meet another part of the object.
+bool BodyContacts::near_itself() noexcept {
+  const bool any = self_->begin_step();
+  if (!any) clear_ = step_;
+  return any;
+}
+
 int BodyContacts::find() noexcept {
   count_ = 0;
   ++step_;
   displaced_ *= kReachFading;
   closed_ *= kReachFading;
-  if (!near() && !any_pressed_) return 0;
+  if (!(self_ ? near_itself() : near()) && !any_pressed_) return 0;
   candidates_.clear();
   const FreeMotion& motion = body_.motion;
   const Eigen::AlignedBox3d box = other_box_;

@@ -71,6 +71,9 @@ class BodyContacts {
   /// What became of contact i. Its position is left to the caller, who knows the motion.
   void write(int i, const ContactConstraint& solved, BodyContactRecord& record) const noexcept;
 
+  /// Whether both may touch in the step under way; an object and itself: always.
+  bool near() const noexcept;
+
   int count() const noexcept { return count_; }
   const Contact& contact(int i) const noexcept { return found_[static_cast<std::size_t>(i)]; }
   int object() const noexcept { return object_; }
@@ -106,7 +109,7 @@ class BodyContacts {
     }
   };
 
-  bool near() noexcept;
+  bool near_itself() noexcept;
   bool beyond(const Vector3& x, double reach, Sample& state) const noexcept;
   Vector3 displaced_place(const ContactSampling::Sample& sample) noexcept;
   Vector3 other_displacement(const SurfaceLocation& at) noexcept;

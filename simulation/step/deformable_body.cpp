@@ -61,6 +61,16 @@ void DeformableBody::end_step(std::span<const NodalForce> nodal,
   record.angular_velocity = rigid_.angular_velocity(state_);
 }
 
+void DeformableBody::rest(ObjectRecord& record) noexcept {
+  state_.velocity.setZero();
+  state_.angular_momentum.setZero();
+  motion_ = next_motion();
+  record.start = state_;
+  record.halfway = record.orientation = state_.orientation;
+  record.position = state_.position;
+  record.velocity = record.angular_velocity = record.spin = Vector3::Zero();
+}
+
 Vector3 DeformableBody::coupling_torque() const noexcept {
   if (!led_.any()) return Vector3::Zero();
   const Vector3 arm = state_.orientation * led_.coupling->reference();

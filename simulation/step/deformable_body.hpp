@@ -35,6 +35,9 @@ class DeformableBody {
   void end_step(std::span<const NodalForce> nodal, const RigidStateHistory::Forces& forces,
                 ObjectRecord& record) noexcept;
 
+  /// Between steps: it stands still from now on, and the record is that of a step in which it does.
+  void rest(ObjectRecord& record) noexcept;
+
   /// Between steps: a force [N], B, acted besides at `arm` [m], B, in the step `age` steps before
   /// the last one, age < past().count(). @param nodal the same, on nodes
   void insert_delayed_force(std::span<const NodalForce> nodal, const Vector3& force,

@@ -42,6 +42,7 @@ Simulation::Simulation(const SimulationConfig& config)
     world_ = std::make_unique<WorldContacts>(config, objects_);
     if (!world_->any()) world_.reset();
   }
+  if (config.sleep_time > 0) sleep_ = std::make_unique<Sleep>(config, objects_, world_.get());
 }
 
 void Simulation::add_tool(const SimulationConfig& config, std::size_t s) {
@@ -60,8 +61,10 @@ void Simulation::add_tool(const SimulationConfig& config, std::size_t s) {
 }
 
 void Simulation::set(const Settings& settings) noexcept {
+  const bool changed = !(settings == settings_);
   settings_ = settings;
   ++settings_change_;
+  if (sleep_ && changed) sleep_->wake_all();
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     objects_[i]->set(settings.gravity, settings.object[i]);
   }
@@ -80,6 +83,7 @@ std::uint64_t Simulation::limited() const noexcept {
 }
 
 void Simulation::reset() noexcept {
+  if (sleep_) sleep_->wake_all();
   for (const auto& object : objects_) object->reset();
   if (world_) world_->reset();
   for (const auto& tool : tools_) {
@@ -124,19 +128,32 @@ void Simulation::step(std::span<const StylusCommand> commands, StepRecord& recor
   }
   record.body_contact.clear();
   const std::span<const StylusCommand> all = std::exchange(commands, lead_tools(commands));
-  for (std::size_t i = 0; i < objects_.size(); ++i) objects_[i]->begin(commands, record.object[i]);
+  begin_objects(commands, record);
   if (world_) {
     world_->solve(record);
   } else {
     for (std::size_t i = 0; i < objects_.size(); ++i) {
+      if (objects_[i]->asleep()) continue;
       objects_[i]->solve(record.object[i]);
       objects_[i]->write(record.object[i]);
     }
   }
-  for (std::size_t i = 0; i < objects_.size(); ++i) objects_[i]->finish(commands, record.object[i]);
+  for (std::size_t i = 0; i < objects_.size(); ++i) {
+    if (!objects_[i]->asleep()) objects_[i]->finish(commands, record.object[i]);
+  }
+  if (sleep_) sleep_->end(record);
   for (std::size_t s = 0; s < stylus_count_; ++s) {
     write_stylus(s, all[s], record);
   }
+}
+
+void Simulation::begin_objects(std::span<const StylusCommand> commands,
+                               StepRecord& record) noexcept {
+  if (sleep_) {
+    sleep_->begin(commands, record);
+    return;
+  }
+  for (std::size_t i = 0; i < objects_.size(); ++i) objects_[i]->begin(commands, record.object[i]);
 }
 
 // For the objects, a stylus that leads a tool is not there.
@@ -199,6 +216,7 @@ bool Simulation::insert_delayed_force(std::size_t s, const AppliedForce& applied
   if (entry.object < 0) return false;
   SoftObject& touched = *objects_[static_cast<std::size_t>(entry.object)];
   if (!touched.insert_delayed_force(s, applied, entry)) return false;
+  if (sleep_) sleep_->wake(entry.object);
   ++late_.count;
   return true;
 }
@@ -207,6 +225,7 @@ bool Simulation::insert_delayed_force(const LateForce& late) noexcept {
   const NoDenormals here;
   if (late_.count == LateForces::kMost) return false;
   if (!objects_[static_cast<std::size_t>(late.object)]->insert_delayed_force(late)) return false;
+  if (sleep_) sleep_->wake(late.object);
   late_.force[late_.count++] = late;
   return true;
 }

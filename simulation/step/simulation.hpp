@@ -8,6 +8,7 @@
 
 #include "common/contact/applied_forces.hpp"
 #include "simulation/step/simulation_config.hpp"
+#include "simulation/step/sleep.hpp"
 #include "simulation/step/soft_object.hpp"
 #include "simulation/step/step_record.hpp"
 #include "simulation/step/tool_lead.hpp"
@@ -85,6 +86,7 @@ class Simulation {
 
  private:
   void add_tool(const SimulationConfig& config, std::size_t s);
+  void begin_objects(std::span<const StylusCommand> commands, StepRecord& record) noexcept;
   std::span<const StylusCommand> lead_tools(std::span<const StylusCommand> commands) noexcept;
   void write_tool(const ToolLead& lead, StylusRecord& stylus) const noexcept;
   int touched_by(std::size_t s, const Vector3& tip) noexcept;
@@ -103,6 +105,7 @@ class Simulation {
   std::array<double, kMaxStyluses> max_force_{};  ///< of each stylus [N]
   std::vector<std::unique_ptr<SoftObject>> objects_;
   std::unique_ptr<WorldContacts> world_;  ///< null: objects touch neither each other nor scenery
+  std::unique_ptr<Sleep> sleep_;          ///< null: objects never sleep
   std::array<std::unique_ptr<ToolLead>, kMaxStyluses> tools_;  ///< of each stylus; null: none
   std::array<int, kMaxStyluses> local_model_object_;           ///< object, -1: none
   std::array<StylusCommand, kMaxStyluses> commands_;  ///< of a step that begins with a reset

@@ -69,6 +69,7 @@ struct SimulationConfig {
   /// Whether parts of one object touch each other, where they face each other at rest.
   bool self_contact = false;
   int contact_samples = 384;  ///< of an object's surface, for such contacts, > 0
+  double sleep_time = 0.0;    ///< at rest, after which objects sleep [s]; 0: never
 };
 
 /// What messages call object i: object "NAME", or object 1, 2, ...

@@ -57,6 +57,7 @@ void SoftObject::set(const Vector3& gravity, const ObjectSettings& settings) noe
 }
 
 void SoftObject::begin(std::span<const StylusCommand> commands, ObjectRecord& record) noexcept {
+  record.asleep = false;
   body_.begin_step(record);
   update_surface(!record.spin.isZero(0.0));
   prefetch_columns(commands);
@@ -64,6 +65,13 @@ void SoftObject::begin(std::span<const StylusCommand> commands, ObjectRecord& re
   pose(commands, floor_count, record);
   touched_.clear();
   touched_as_ = {};
+}
+
+void SoftObject::fall_asleep(ObjectRecord& record) noexcept {
+  asleep_ = record.asleep = true;
+  body_.rest(record);
+  record.sweeps = 0;
+  account_.set_energy(body_.energy());
 }
 
 void SoftObject::write(ObjectRecord& record) noexcept {

@@ -50,6 +50,16 @@ class SoftObject {
   void touch(const BodyContactRecord& contact, bool first, const Vector3& arm) noexcept;
   void finish(std::span<const StylusCommand> commands, ObjectRecord& record) noexcept;
 
+  /// Between steps: it stands still, and its steps are left out (Sleep) until wake().
+  /// @param record of the last step that was made; that of those that are left out is written
+  void fall_asleep(ObjectRecord& record) noexcept;
+  /// Instead of a step that is left out: where the styluses are, none of which may touch it.
+  void rest(std::span<const StylusCommand> commands) noexcept {
+    contacts_.find(commands, body_.motion());
+  }
+  void wake() noexcept { asleep_ = false; }
+  bool asleep() const noexcept { return asleep_; }
+
   /// Of the contacts with styluses and floor in the step under way, B.
   ContactProblem& problem() noexcept { return problem_; }
   const FreeMotion& motion() const noexcept { return body_.motion(); }
@@ -87,6 +97,8 @@ class SoftObject {
   /// From the surface to a point of W, positive outside [m]. Between steps.
   double distance(const Vector3& tip) noexcept;
   ContactState contact_state(std::size_t s) const noexcept { return contacts_.state(s); }
+  /// In the last step.
+  bool touched_by_stylus() const noexcept { return contacts_.count() > 0; }
 
   /// Forces of bridges that EnergyAccount has let act in part or not at all, so far.
   std::uint64_t limited() const noexcept { return contacts_.limited() + limited_late_; }
@@ -137,6 +149,7 @@ class SoftObject {
   RigidStateHistory::Forces touched_as_;  ///< the same on the body as a whole
   RigidStateHistory::Forces own_;         ///< of styluses and floor in the step
   EnergyAccount account_;
+  bool asleep_ = false;
   std::uint64_t limited_late_ = 0;
   AssemblyHorizon assembly_;
   AssemblyHorizon::Contact other_;  ///< that answers in a contact model

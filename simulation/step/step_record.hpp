@@ -102,6 +102,8 @@ struct ObjectStep {
   double residual = 0.0;                  ///< of the contact problem [m]
   int sweeps = 0;                         ///< of its solver; 0: solved directly
   bool solved = true;  ///< false: the contact problem had no finite solution and no force acted
+  /// Nothing changed in the step; the contact forces are those that the last one before had.
+  bool asleep = false;
 };
 
 /// What became of one object in one step.
@@ -173,6 +175,9 @@ struct StepRecord : StepHead {
     return {body_contact.data(), body_contact.size()};
   }
 };
+
+/// Makes `to` the same of an object, contacts of the first `styluses`. Real-time safe.
+void copy_object(const ObjectRecord& from, std::size_t styluses, ObjectRecord& to) noexcept;
 
 /// Makes `to` the same step. What is beyond the counts stays as it was. Real-time safe.
 void copy_step(const StepRecord& from, StepRecord& to) noexcept;

@@ -85,6 +85,7 @@ WorldContacts::WorldContacts(const SimulationConfig& config,
   members_.reserve(objects_.size());
   contacts_.reserve(kMaxBodyContacts);
   solved_.reserve(kMaxBodyContacts);
+  held_.reserve(kMaxBodyContacts);
   refuse_overlaps(config);
 }
 
@@ -185,6 +186,19 @@ void WorldContacts::reset() noexcept {
   for (BodyContacts& pair : pairs_) pair.reset();
 }
 
+void WorldContacts::hold(const StepRecord& record) noexcept {
+  held_.clear();
+  for (const BodyContactRecord& contact : record.body_contacts()) {
+    if (!asleep(contact.object)) continue;
+    held_.push_back(contact);
+    held_.back().slip.setZero();
+  }
+}
+
+void WorldContacts::release_awake() noexcept {
+  std::erase_if(held_, [&](const BodyContactRecord& held) { return !asleep(held.object); });
+}
+
 Friction WorldContacts::friction(const BodyContacts& pair) const noexcept {
   const Friction& own = objects_[static_cast<std::size_t>(pair.object())]->friction();
   if (pair.other() < 0) {
@@ -213,7 +227,7 @@ void WorldContacts::solve_island(int leader, StepRecord& record) noexcept {
     BodyContacts& pair = pairs_[p];
     if (leader_[static_cast<std::size_t>(pair.object())] != leader) continue;
     for (int i = 0; i < pair.count(); ++i) {
-      if (contacts_.size() + solved_.size() == kMaxBodyContacts) break;
+      if (contacts_.size() + solved_.size() + held_.size() == kMaxBodyContacts) break;
       const std::uint64_t sample = static_cast<std::uint64_t>(pair.contact(i).sample);
       contacts_.push_back(
           {&pair, i, (static_cast<std::uint64_t>(p) << 32) + sample, friction(pair)});
@@ -264,14 +278,19 @@ void WorldContacts::apply(std::span<const IslandContact> contacts, StepRecord& r
 }
 
 void WorldContacts::solve(StepRecord& record) noexcept {
-  for (BodyContacts& pair : pairs_) pair.find();
+  for (BodyContacts& pair : pairs_) {
+    if (!rests(pair)) pair.find();
+  }
   find_islands();
   solved_.clear();
   for (int i = 0; i < static_cast<int>(objects_.size()); ++i) {
-    if (leader_[static_cast<std::size_t>(i)] == i) solve_island(i, record);
+    if (leader_[static_cast<std::size_t>(i)] == i && !asleep(i)) solve_island(i, record);
   }
-  for (std::size_t i = 0; i < objects_.size(); ++i) objects_[i]->write(record.object[i]);
+  for (std::size_t i = 0; i < objects_.size(); ++i) {
+    if (!objects_[i]->asleep()) objects_[i]->write(record.object[i]);
+  }
   apply(solved_, record);
+  for (const BodyContactRecord& held : held_) record.body_contact.push_back(held);
   for (const IslandContact& contact : solved_) {
     contact.pair->update(contact.i, contact.solved, contact.yielded);
   }

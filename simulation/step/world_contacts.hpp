@@ -29,6 +29,12 @@ class WorldContacts {
   /// SoftObject::finish().
   void solve(StepRecord& record) noexcept;
 
+  std::span<const BodyContacts> pairs() const noexcept { return pairs_; }
+  /// Contacts of this step on objects that are asleep now are in the records of those that follow.
+  void hold(const StepRecord& record) noexcept;
+  /// ... until the objects are awake.
+  void release_awake() noexcept;
+
  private:
   /// What all objects of a model share.
   struct Shape {
@@ -46,6 +52,12 @@ class WorldContacts {
   void solve_island(int leader, StepRecord& record) noexcept;
   void apply(std::span<const IslandContact> contacts, StepRecord& record) noexcept;
   Friction friction(const BodyContacts& pair) const noexcept;
+  bool asleep(int object) const noexcept {
+    return objects_[static_cast<std::size_t>(object)]->asleep();
+  }
+  bool rests(const BodyContacts& pair) const noexcept {
+    return asleep(pair.object()) && (pair.other() < 0 || asleep(pair.other()));
+  }
 
   std::vector<SoftObject*> objects_;
   std::vector<SceneryConfig> scenery_;
@@ -56,7 +68,8 @@ class WorldContacts {
   std::unique_ptr<ContactIsland> island_;
   std::vector<int> members_;
   std::vector<IslandContact> contacts_;
-  std::vector<IslandContact> solved_;  ///< of the step, all islands
+  std::vector<IslandContact> solved_;    ///< of the step, all islands
+  std::vector<BodyContactRecord> held_;  ///< of objects that are asleep
 };
 
 }  // namespace irdm

@@ -36,7 +36,9 @@ class KeptRun {
                        config.objects[0].model->dt,
                        static_cast<int>(config.styluses.size()),
                        config.floor.has_value(),
-                       touches_bodies(config)};
+                       touches_bodies(config),
+                       {},
+                       config.sleep_time > 0};
     for (const std::string& name : names) header.objects.push_back({name, "cube.h5", "sum"});
     const TemporaryFolder folder;
     const std::filesystem::path path = folder.path() / "trace.h5";

@@ -102,6 +102,36 @@ TEST_CASE("a run of objects that touch is rerun, to the bit from its tips") {
   check_from_forces(run);
 }
 
+TEST_CASE("a run of objects that fall asleep and wake is rerun, to the bit from its tips") {
+  SimulationConfig config;
+  config.objects.resize(2);
+  config.sleep_time = 0.1;
+  config.gravity = Vector3(0, -5, 0);
+  for (std::size_t i = 0; i < 2; ++i) {
+    SimulationObject& object = config.objects[i];
+    object.model = fem_cube({.cells = 2, .youngs_modulus = 1e6, .poisson_ratio = 0.45});
+    object.position = Vector3(0, 0.06 + 0.12 * static_cast<double>(i), 0);
+  }
+  config.scenery.resize(1);
+  KeptRun run(config);
+  Simulation simulation(config);
+  const auto record = std::make_unique<StepRecord>();
+  int slept = 0;
+  int changes = 0;
+  bool asleep = false;
+  for (int k = 0; k < 800; ++k) {
+    StylusCommand command;
+    if (k >= 400 && k < 500) command = {true, 0u, Vector3(0, 0.35 - 0.0012 * (k - 400), 0), {}};
+    simulation.step({&command, 1}, *record);
+    run.keep(simulation, *record);
+    slept += record->object[0].asleep ? 1 : 0;
+    if (std::exchange(asleep, record->object[1].asleep) != asleep) ++changes;
+  }
+  REQUIRE(slept > 200);
+  REQUIRE(changes >= 2);
+  check_to_the_bit(run);
+}
+
 TEST_CASE("forces of objects on each other add nothing to their momentum when they act again") {
   const KeptRun run = bounce(touching_cubes(small_cube(), false));
   REQUIRE((run.records.back().object[0].velocity - run.records[0].object[0].velocity).norm() > 0.1);
@@ -254,7 +284,9 @@ TEST_CASE("a trace from before objects could touch is rerun as it was") {
   older.objects = {{"left cube", "cube.h5", sha256_of_file(run.folder.path() / "cube.h5")},
                    {"right", "cube.h5", sha256_of_file(run.folder.path() / "cube.h5")}};
   older.bodies = false;
+  older.sleep = false;
   const std::filesystem::path path = run.folder.path() / "older.h5";
   TraceWriter(path, older).close();
   CHECK_FALSE(read_traced_scene(path, {}, std::nullopt).config.between_objects);
+  CHECK(read_traced_scene(path, {}, std::nullopt).config.sleep_time == 0.0);
 }

@@ -24,7 +24,7 @@ TEST_CASE("every key of a scene arrives where it belongs") {
       "[1, 2, 3]\n"
       "[contact]\ncoupling_stiffness = 1500\nrelease_time = 0.2\nbetween_objects = false\nself = "
       "true\n"
-      "samples = 500\n"
+      "samples = 500\nsleep_time = 2.5\n"
       "[floor]\nheight = -0.5\nnormal = [0, 0, 2]\nfriction = { static = 0.9, kinetic = 0.7 }\n"
       "[[stylus]]\nradius = 0.01\ncoupling_stiffness = 800\nreach = 0.02\n[[stylus]]\n"
       "[[object]]\nname = \"liver\"\nmodel = \"/models/liver.h5\"\nengine = \"dense\"\n"
@@ -65,6 +65,7 @@ TEST_CASE("every key of a scene arrives where it belongs") {
   CHECK_FALSE(read.contact.between_objects);
   CHECK(read.contact.self);
   CHECK(read.contact.samples == 500);
+  CHECK(read.contact.sleep_time == 2.5);
   REQUIRE(read.floor);
   CHECK(read.floor->height == -0.5);
   CHECK(read.floor->normal == Vector3(0, 0, 1));
@@ -113,6 +114,7 @@ TEST_CASE("a scene needs only a model, the rest has defaults") {
   CHECK(read.contact.between_objects);
   CHECK_FALSE(read.contact.self);
   CHECK(read.contact.samples == 384);
+  CHECK(read.contact.sleep_time == 0.5);
   CHECK_FALSE(read.floor);
   REQUIRE(read.styluses.size() == 1);
   CHECK(read.styluses[0].radius == 0.0);
@@ -234,6 +236,8 @@ TEST_CASE("each limit of a scene: the last good value passes, the first bad one 
       {"contact", "between_objects", "true", "1", "is not true or false; give true or false"},
       {"contact", "samples", "16", "15", "is 15; give a whole number from 16 to 4096"},
       {"contact", "samples", "4096", "4097", "is 4097; give a whole number from 16 to 4096"},
+      {"contact", "sleep_time", "0", "-0.1", "is -0.1; give a finite number >= 0 and <= 60"},
+      {"contact", "sleep_time", "60", "61", "is 61; give a finite number >= 0 and <= 60"},
   }));
   const auto text = [&](const char* value) {
     return std::string("[") + limit.table + "]\n" + limit.key + " = " + value + "\n" + kObject;
@@ -444,13 +448,16 @@ TEST_CASE("names of objects and keys of their contacts are a part of what is sim
   CHECK(simulated.between_objects);
   CHECK(simulated.contact_samples == 384);
   CHECK_FALSE(simulated.self_contact);
+  CHECK(simulated.sleep_time == 0.5);
   config.contact.between_objects = false;
   config.contact.self = true;
   config.contact.samples = 16;
+  config.contact.sleep_time = 0.0;
   simulated = simulation_config(config, false);
   CHECK_FALSE(simulated.between_objects);
   CHECK(simulated.self_contact);
   CHECK(simulated.contact_samples == 16);
+  CHECK(simulated.sleep_time == 0.0);
 }
 
 TEST_CASE("a rigid body is taken whatever the engine, but not with inertial loading") {

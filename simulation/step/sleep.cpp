@@ -89,8 +89,10 @@ bool Sleep::reached(int i, std::span<const StylusCommand> commands) const noexce
 
 void Sleep::begin(std::span<const StylusCommand> commands, StepRecord& record) noexcept {
   const int count = static_cast<int>(bodies_.size());
-  for (int i = 0; asleep_ > 0 && i < count; ++i) {
-    if (asleep(i) && reached(i, commands)) wake(i);
+  for (int i = 0; i < count; ++i) {
+    if (!reached(i, commands)) continue;
+    wake(i);
+    body(i).rested = 0;
   }
   for (std::size_t s = 0; s < commands.size(); ++s) {
     tips_[s].reset();
@@ -101,7 +103,7 @@ void Sleep::begin(std::span<const StylusCommand> commands, StepRecord& record) n
   if (wake_neighbours()) begin_awake(commands, record);
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     if (!bodies_[i].object->asleep()) continue;
-    bodies_[i].object->rest(commands);
+    bodies_[i].object->rest(commands, bodies_[i].held);
     copy_object(bodies_[i].held, commands.size(), record.object[i]);
   }
 }

@@ -69,9 +69,13 @@ void SoftObject::begin(std::span<const StylusCommand> commands, ObjectRecord& re
 
 void SoftObject::fall_asleep(ObjectRecord& record) noexcept {
   asleep_ = record.asleep = true;
-  body_.rest(record);
   record.sweeps = 0;
+}
+
+void SoftObject::rest(std::span<const StylusCommand> commands, ObjectRecord& record) noexcept {
+  body_.rest(record);
   account_.set_energy(body_.energy());
+  contacts_.find(commands, body_.motion());
 }
 
 void SoftObject::write(ObjectRecord& record) noexcept {

@@ -50,13 +50,12 @@ class SoftObject {
   void touch(const BodyContactRecord& contact, bool first, const Vector3& arm) noexcept;
   void finish(std::span<const StylusCommand> commands, ObjectRecord& record) noexcept;
 
-  /// Between steps: it stands still, and its steps are left out (Sleep) until wake().
-  /// @param record of the last step that was made; that of those that are left out is written
+  /// Between steps: its steps are left out (Sleep) until wake().
+  /// @param record of the last step that was made; becomes that of those that are left out
   void fall_asleep(ObjectRecord& record) noexcept;
-  /// Instead of a step that is left out: where the styluses are, none of which may touch it.
-  void rest(std::span<const StylusCommand> commands) noexcept {
-    contacts_.find(commands, body_.motion());
-  }
+  /// Instead of a step that is left out: it stands still, and the styluses are where none of them
+  /// touches it. @param record the same
+  void rest(std::span<const StylusCommand> commands, ObjectRecord& record) noexcept;
   void wake() noexcept { asleep_ = false; }
   bool asleep() const noexcept { return asleep_; }
 

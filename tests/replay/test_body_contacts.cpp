@@ -130,6 +130,7 @@ TEST_CASE("a run of objects that fall asleep and wake is rerun, to the bit from 
   REQUIRE(slept > 200);
   REQUIRE(changes >= 2);
   check_to_the_bit(run);
+  check_from_forces(run);
 }
 
 TEST_CASE("forces of objects on each other add nothing to their momentum when they act again") {

@@ -200,10 +200,11 @@ Wrench SafetyFilter::wanted() const noexcept {
   return {gain * wrench.force, gain * wrench.torque};
 }
 
-// What passivity asks for, and damping while the force fades. It fades as well. A tool pulls and
-// turns without a contact of its tip.
+// What passivity asks for, and damping while the force fades. It fades as well. At a device that
+// renders torque a tool pulls and turns without a contact of its tip.
 Wrench SafetyFilter::damped(const Wrench& wrench, double share) const noexcept {
-  const bool asked = held_.contact != ContactState::kFree || !wrench.is_zero();
+  const bool tool = limits_.max_torque > 0.0 && !wrench.is_zero();
+  const bool asked = held_.contact != ContactState::kFree || tool;
   if (share == 0.0 || !asked) return wrench;
   const Twist& velocity = reading_.velocity();
   double damping = 0.0;

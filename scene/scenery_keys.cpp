@@ -68,6 +68,19 @@ SceneryShape read_capsule(TomlTable table) {
   return capsule;
 }
 
+SceneryMotion read_motion(TomlTable table) {
+  SceneryMotion motion;
+  motion.velocity = read_vector(table, "velocity", lab::kVelocity);
+  motion.angular_velocity = read_vector(table, "angular_velocity", lab::kAngularVelocity);
+  motion.stroke = read_vector(table, "stroke", lab::kPlace);
+  motion.frequency = table.number("frequency", between(0.0, 100.0), motion.frequency);
+  if (!motion.stroke.isZero(0.0) && motion.frequency == 0.0) {
+    table.fail("stroke", "is given without a frequency", "give motion.frequency, above 0");
+  }
+  table.finish();
+  return motion;
+}
+
 // Its surface is read with the models of the objects.
 SceneryShape read_mesh(TomlTable table, std::filesystem::path& model) {
   model = table.path("model");
@@ -100,6 +113,7 @@ SceneryConfig read_scenery(TomlTable table, std::filesystem::path& model) {
   }
   scenery.position = read_vector(table, "position", lab::kPlace);
   scenery.friction = read_friction(table.table("friction"), scenery.friction);
+  scenery.motion = read_motion(table.table("motion"));
   table.finish();
   return scenery;
 }

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
+
+#include "common/motion/rigid_body.hpp"
 
 namespace irdm {
 namespace {
@@ -194,6 +197,19 @@ std::optional<SceneryHit> first_crossing(const SceneryConfig& scenery, const Vec
       std::visit([&](const auto& shape) { return crossing(shape, begin, end); }, scenery.shape);
   if (!hit) return std::nullopt;
   return to_world(scenery, *hit);
+}
+
+void SceneryStep::go_on(double t) noexcept {
+  const SceneryMotion& motion = now.motion;
+  const double phase = 2.0 * std::numbers::pi * motion.frequency * t;
+  const Quaternion orientation =
+      (rotation_from_vector(t * motion.angular_velocity) * first_orientation).normalized();
+  const Vector3 position =
+      first_position + t * motion.velocity + 0.5 * (1.0 - std::cos(phase)) * motion.stroke;
+  before = t > 0 ? now.position : position;
+  turn = t > 0 ? Quaternion(orientation * now.orientation.conjugate()) : Quaternion::Identity();
+  now.position = position;
+  now.orientation = orientation;
 }
 
 double bounding_radius(const SceneryShape& shape) noexcept {

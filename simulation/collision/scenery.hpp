@@ -38,13 +38,45 @@ struct MeshShape {
 
 using SceneryShape = std::variant<PlaneShape, BoxShape, SphereShape, CapsuleShape, MeshShape>;
 
-/// A body that never moves.
+/// How scenery moves from its pose at the start, by the time t since then or since the last reset:
+/// velocity t + stroke (1 - cos(2 pi frequency t)) / 2, turned by angular_velocity t.
+struct SceneryMotion {
+  Vector3 velocity = Vector3::Zero();          ///< [m/s], W
+  Vector3 angular_velocity = Vector3::Zero();  ///< about the origin of its pose [rad/s], W
+  Vector3 stroke = Vector3::Zero();            ///< there and back in a period [m], W
+  double frequency = 0.0;                      ///< of that [Hz]
+
+  bool any() const noexcept {
+    return !velocity.isZero(0.0) || !angular_velocity.isZero(0.0) ||
+           (!stroke.isZero(0.0) && frequency > 0.0);
+  }
+};
+
+/// A body that moves as it is told, if at all.
 struct SceneryConfig {
   std::string name = "scenery";
   SceneryShape shape;
   Vector3 position = Vector3::Zero();               ///< [m], W
   Quaternion orientation = Quaternion::Identity();  ///< shape to W, unit
   Friction friction{0.5, 0.5};
+  SceneryMotion motion;
+};
+
+/// Scenery in the step under way.
+struct SceneryStep {
+  SceneryConfig now;                         ///< as it stands at the end of the step
+  Vector3 before = now.position;             ///< its position at the start of the step [m], W
+  Quaternion turn = Quaternion::Identity();  ///< of its orientation in the step, W
+  Vector3 first_position = now.position;     ///< at the start [m], W
+  Quaternion first_orientation = now.orientation;
+
+  bool moves() const noexcept { return now.motion.any(); }
+  /// The step that ends at time t [s]; 0: none, it is at the start. Real-time safe.
+  void go_on(double t) noexcept;
+  /// Where the step takes a point of W that moves along.
+  Vector3 carried(const Vector3& x) const noexcept {
+    return moves() ? Vector3(now.position + turn * (x - before)) : x;
+  }
 };
 
 inline constexpr std::size_t kMaxScenery = 16;  ///< bodies in a scene

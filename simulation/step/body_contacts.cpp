@@ -73,13 +73,13 @@ BodyContacts::BodyContacts(int object, const ContactBody& body, int other,
 }
 
 BodyContacts::BodyContacts(int object, const ContactBody& body, int scenery,
-                           const SceneryConfig& shape, double dt)
+                           const SceneryStep& there, double dt)
     : object_(object),
       other_(-1 - scenery),
       body_(body),
-      scenery_(&shape),
+      scenery_(&there),
       radius_(ball_radius(body.rest)),
-      other_radius_(bounding_radius(shape.shape)),
+      other_radius_(bounding_radius(there.now.shape)),
       inset_left_(std::max(0.0, 1.0 - dt / kInsetTime)),
       depth_(kDepth * body.sampling.spacing()),
       samples_(body.sampling.samples().size()),
@@ -106,23 +106,31 @@ void BodyContacts::reset() noexcept {
 // Whether the balls round both meet.
 bool BodyContacts::near() const noexcept {
   if (self_) return true;
-  const Vector3& there = other_body_ != nullptr ? other_body_->motion.position : scenery_->position;
+  const Vector3& there =
+      other_body_ != nullptr ? other_body_->motion.position : scenery_->now.position;
   const double reach = radius_ + other_radius_ + kLeastReach + kReachFactor * displaced_;
   const Vector3 way = body_.motion.position - body_.motion.start.position;
   const double moved =
       way.norm() + (other_body_ != nullptr
                         ? (other_body_->motion.position - other_body_->motion.start.position).norm()
-                        : 0.0);
+                        : (scenery_->now.position - scenery_->before).norm());
   return (body_.motion.position - there).norm() <= reach + moved;
 }
 
 // Whether a point is farther than that from scenery: the distance changes by no more than the point
 // moves, so that it need not be computed anew in each step.
 bool BodyContacts::beyond(const Vector3& x, double reach, Sample& state) const noexcept {
-  if (state.distance - (x - state.looked_at).norm() > reach) return true;
+  if (!scenery_->moves() && state.distance - (x - state.looked_at).norm() > reach) return true;
   state.looked_at = x;
-  state.distance = closest(*scenery_, x).signed_distance;
+  state.distance = closest(scenery_->now, x).signed_distance;
   return state.distance > reach;
+}
+
+// Where a point that moves with the body was at the start of the step; beside scenery, carried
+// along with that.
+Vector3 BodyContacts::started(const Vector3& place) const noexcept {
+  const Vector3 x = at_start(body_.motion, place);
+  return scenery_ != nullptr ? scenery_->carried(x) : x;
 }
 
 Vector3 BodyContacts::displaced_place(const ContactSampling::Sample& sample) noexcept {
@@ -181,13 +189,13 @@ std::optional<Vector3> BodyContacts::normal_at(int sample, const Vector3& outwar
 bool BodyContacts::begin_on_scenery(int sample, const Vector3& from, const Vector3& to,
                                     const Vector3& direction, const Vector3& x,
                                     const Vector3& start, Sample& state) noexcept {
-  const std::optional<SceneryHit> entry = first_crossing(*scenery_, from, to);
+  const std::optional<SceneryHit> entry = first_crossing(scenery_->now, from, to);
   if (!entry || entry->normal.dot(direction) > kFacing ||
       flush(sample, body_.motion.orientation.conjugate() * entry->normal)) {
-    if (closest(*scenery_, x).signed_distance > 0.0) state.mark_outside(step_);
+    if (closest(scenery_->now, x).signed_distance > 0.0) state.mark_outside(step_);
     return false;
   }
-  const SceneryHit hit = closest(*scenery_, x);
+  const SceneryHit hit = closest(scenery_->now, x);
   const bool same_side = hit.normal.dot(direction) <= kFacing;
   state.normal = same_side ? hit.normal : entry->normal;
   state.anchor_W = same_side
@@ -204,7 +212,7 @@ bool BodyContacts::begin(int number, const Vector3& place, Sample& state) noexce
   const FreeMotion& motion = body_.motion;
   const Vector3 x = motion.to_world(place);
   const Vector3 outward = motion.orientation * sample.normal;
-  const Vector3 start = at_start(motion, place);
+  const Vector3 start = started(place);
   if (other_body_ == nullptr) {
     return begin_on_scenery(number, start - depth_ * outward, x + kNearBody * outward, outward, x,
                             start, state);
@@ -321,11 +329,15 @@ int BodyContacts::find() noexcept {
   for (int i = first_sample_; i < static_cast<int>(shapes.size()); ++i) {
     const ContactSampling::Sample& shape = shapes[static_cast<std::size_t>(i)];
     Sample& state = samples_[static_cast<std::size_t>(i)];
+    if (driven()) {
+      state.anchor_W = scenery_->carried(state.anchor_W);
+      state.normal = scenery_->turn * state.normal;
+    }
     if (state.contact.any() && flush(i, normal_to_own * state.normal)) state.contact.end();
     const bool pressed = state.contact.any();
     if (!pressed) {
       const Vector3 x = motion.to_world(shape.place.position);
-      const double way = (x - at_start(motion, shape.place.position)).norm();
+      const double way = (x - started(shape.place.position)).norm();
       if (self_) {
         if (self_->is_far(i)) {
           state.mark_outside(step_);
@@ -399,7 +411,7 @@ void BodyContacts::update(int i, const ContactConstraint& solved, const Vector3&
   any_pressed_ = any_pressed_ || pressed;
   if (!slipping) return;
   if (other_body_ == nullptr) {
-    const SceneryHit hit = closest(*scenery_, state.anchor_W - solved.slip);
+    const SceneryHit hit = closest(scenery_->now, state.anchor_W - solved.slip);
     if (hit.normal.dot(state.normal) < -kFacing) {  // it has come to another side
       state.contact.end();
       return;
@@ -449,7 +461,7 @@ double BodyContacts::initial_depth() noexcept {
     const Vector3 x = at_start(body_.motion, shape.place.position);
     double distance = 0.0;
     if (other_body_ == nullptr) {
-      distance = closest(*scenery_, x).signed_distance;
+      distance = closest(scenery_->now, x).signed_distance;
     } else {
       const Vector3 y = other_body_->motion.start.orientation.conjugate() *
                         (x - other_body_->motion.start.position);

@@ -51,8 +51,8 @@ class BodyContacts {
   /// @param first_sample those before it are left to others
   BodyContacts(int object, const ContactBody& body, int other, const ContactBody& other_body,
                double dt, int first_sample = 0);
-  /// @param scenery its number  @param shape must outlive this
-  BodyContacts(int object, const ContactBody& body, int scenery, const SceneryConfig& shape,
+  /// @param scenery its number  @param there must outlive this
+  BodyContacts(int object, const ContactBody& body, int scenery, const SceneryStep& there,
                double dt);
   /// Of an object with itself. @param reach of the body's samples; must outlive this
   BodyContacts(int object, const ContactBody& body, const SelfReach& reach, double dt);
@@ -73,6 +73,8 @@ class BodyContacts {
 
   /// Whether both may touch in the step under way; an object and itself: always.
   bool near() const noexcept;
+  /// Whether it is with scenery that moves.
+  bool driven() const noexcept { return scenery_ != nullptr && scenery_->moves(); }
 
   int count() const noexcept { return count_; }
   const Contact& contact(int i) const noexcept { return found_[static_cast<std::size_t>(i)]; }
@@ -111,6 +113,7 @@ class BodyContacts {
 
   bool near_itself() noexcept;
   bool beyond(const Vector3& x, double reach, Sample& state) const noexcept;
+  Vector3 started(const Vector3& place) const noexcept;
   Vector3 displaced_place(const ContactSampling::Sample& sample) noexcept;
   Vector3 other_displacement(const SurfaceLocation& at) noexcept;
   bool begin(int sample, const Vector3& place, Sample& state) noexcept;
@@ -128,7 +131,7 @@ class BodyContacts {
   int other_;
   ContactBody body_;
   const ContactBody* other_body_ = nullptr;
-  const SceneryConfig* scenery_ = nullptr;
+  const SceneryStep* scenery_ = nullptr;
   std::optional<SelfSearch> self_;  ///< the other is the object itself
   double radius_ = 0.0;  ///< of a ball about the centre of mass that has the surface at rest [m]
   double other_radius_ = 0.0;

@@ -128,6 +128,7 @@ void Simulation::step(std::span<const StylusCommand> commands, StepRecord& recor
   }
   record.body_contact.clear();
   const std::span<const StylusCommand> all = std::exchange(commands, lead_tools(commands));
+  if (world_) world_->move_scenery();
   begin_objects(commands, record);
   if (world_) {
     world_->solve(record);

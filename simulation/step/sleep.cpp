@@ -124,9 +124,10 @@ bool Sleep::wake_neighbours() noexcept {
   for (bool woken = true; woken;) {
     woken = false;
     for (const BodyContacts& pair : world_->pairs()) {
-      if (pair.other() < 0 || asleep(pair.object()) == asleep(pair.other())) continue;
-      if (!pair.near()) continue;
-      wake(asleep(pair.object()) ? pair.object() : pair.other());
+      const bool first = asleep(pair.object());
+      const bool wakes = pair.other() < 0 ? first && pair.driven() : first != asleep(pair.other());
+      if (!wakes || !pair.near()) continue;
+      wake(first ? pair.object() : pair.other());
       woken = any = true;
     }
   }
@@ -166,10 +167,12 @@ void Sleep::follow(Body& body) noexcept {
   body.places = now;
 }
 
+// What may touch scenery that moves does not rest.
 void Sleep::find_groups() noexcept {
   std::iota(leader_.begin(), leader_.end(), 0);
   if (world_ == nullptr) return;
   for (const BodyContacts& pair : world_->pairs()) {
+    if (pair.driven() && pair.near()) body(pair.object()).rested = 0;
     if (pair.other() < 0 || !pair.near()) continue;
     const int a = leader_[static_cast<std::size_t>(pair.object())];
     const int b = leader_[static_cast<std::size_t>(pair.other())];

@@ -63,7 +63,8 @@ std::string pair_name(const SimulationConfig& config, const BodyContacts& pair) 
 
 WorldContacts::WorldContacts(const SimulationConfig& config,
                              const std::vector<std::unique_ptr<SoftObject>>& objects)
-    : scenery_(config.scenery), leader_(objects.size(), 0) {
+    : dt_(objects.front()->model().dt), leader_(objects.size(), 0) {
+  for (const SceneryConfig& scenery : config.scenery) scenery_.push_back({scenery});
   if (touches_others(config) && config.floor && objects.size() > kMostOnFloor) {
     throw Error("floor",
                 "is for at most " + std::to_string(kMostOnFloor) + " objects that touch each other",
@@ -182,7 +183,18 @@ void WorldContacts::refuse_overlaps(const SimulationConfig& config) {
   for (SoftObject* const object : objects_) object->reset();
 }
 
+void WorldContacts::move_scenery() noexcept {
+  ++steps_;
+  for (SceneryStep& scenery : scenery_) {
+    if (scenery.moves()) scenery.go_on(static_cast<double>(steps_) * dt_);
+  }
+}
+
 void WorldContacts::reset() noexcept {
+  steps_ = 0;
+  for (SceneryStep& scenery : scenery_) {
+    if (scenery.moves()) scenery.go_on(0.0);
+  }
   for (BodyContacts& pair : pairs_) pair.reset();
 }
 
@@ -202,7 +214,7 @@ void WorldContacts::release_awake() noexcept {
 Friction WorldContacts::friction(const BodyContacts& pair) const noexcept {
   const Friction& own = objects_[static_cast<std::size_t>(pair.object())]->friction();
   if (pair.other() < 0) {
-    return scenery_[static_cast<std::size_t>(-1 - pair.other())].friction;
+    return scenery_[static_cast<std::size_t>(-1 - pair.other())].now.friction;
   }
   return mixed(own, objects_[static_cast<std::size_t>(pair.other())]->friction());
 }

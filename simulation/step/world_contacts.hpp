@@ -25,6 +25,8 @@ class WorldContacts {
   /// False: nothing of the scene can touch anything else of it.
   bool any() const noexcept { return !pairs_.empty(); }
   void reset() noexcept;
+  /// Before SoftObject::begin(): scenery goes where it is at the end of the step.
+  void move_scenery() noexcept;
   /// After SoftObject::begin() of all objects: solves their problems and writes the records, up to
   /// SoftObject::finish().
   void solve(StepRecord& record) noexcept;
@@ -60,7 +62,9 @@ class WorldContacts {
   }
 
   std::vector<SoftObject*> objects_;
-  std::vector<SceneryConfig> scenery_;
+  std::vector<SceneryStep> scenery_;
+  double dt_;                ///< of a step [s]
+  std::uint64_t steps_ = 0;  ///< begun since the start or the last reset
   std::vector<Shape> shapes_;
   std::vector<ContactBody> bodies_;  ///< of each object
   std::vector<BodyContacts> pairs_;

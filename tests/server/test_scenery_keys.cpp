@@ -48,6 +48,24 @@ TEST_CASE("scenery: every key arrives, in the order of the file") {
   CHECK(read.scenery[3].position == Vector3(7, 8, 9));
 }
 
+TEST_CASE("scenery: it stands still, or moves as it is told") {
+  CHECK_FALSE(scenery(kSphere).motion.any());
+  const SceneryMotion motion = scenery(kSphere +
+                                       "motion = { velocity = [1, 2, 3], "
+                                       "angular_velocity = [4, 5, 6], stroke = "
+                                       "[0.1, 0.2, 0.3], frequency = 2 }\n")
+                                   .motion;
+  CHECK(motion.velocity == Vector3(1, 2, 3));
+  CHECK(motion.angular_velocity == Vector3(4, 5, 6));
+  CHECK(motion.stroke == Vector3(0.1, 0.2, 0.3));
+  CHECK(motion.frequency == 2.0);
+  CHECK_THAT(rejection(with_scenery(kSphere + "motion = { stroke = [1, 0, 0] }\n")),
+             Contains("stroke is given without a frequency"));
+  CHECK_THAT(rejection(with_scenery(kSphere + "motion = { frequency = 101 }\n")),
+             Contains("is 101; give a finite number >= 0 and <= 100"));
+  CHECK_THAT(rejection(with_scenery(kSphere + "motion = { speed = 1 }\n")), Contains("speed"));
+}
+
 TEST_CASE("scenery: it is a part of what is simulated") {
   SceneConfig config;
   config.scenery.push_back(scenery(kSphere + "position = [1, 2, 3]\n"));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <variant>
 
 #include "simulation/contact/normal_cone.hpp"
 
@@ -51,6 +52,11 @@ Vector3 sideways(const Vector3& v, const Vector3& normal) noexcept {
 // Where a point that moves with the body was at the start of the step, W.
 Vector3 at_start(const FreeMotion& motion, const Vector3& place) noexcept {
   return motion.start.position + motion.start.orientation * place;
+}
+
+// Whether no part of the surface is flat.
+bool is_round(const SceneryShape& shape) noexcept {
+  return std::holds_alternative<SphereShape>(shape) || std::holds_alternative<CapsuleShape>(shape);
 }
 
 }  // namespace
@@ -154,10 +160,11 @@ Vector3 BodyContacts::other_displacement(const SurfaceLocation& at) noexcept {
   return u;
 }
 
-// Whether a face beside an edge sample lies on the other's. @param normal of the other, B of the
-// object
+// Whether a face beside an edge sample lies on the other's; never on one that is round, where the
+// samples of the face are away from the edge. @param normal of the other, B of the object
 bool BodyContacts::flush(int sample, const Vector3& normal) const noexcept {
   if (sample < body_.sampling.first_edge()) return false;
+  if (scenery_ != nullptr && is_round(scenery_->now.shape)) return false;
   const std::span<const Vector3> faces =
       body_.sampling.faces(body_.sampling.samples()[static_cast<std::size_t>(sample)]);
   return std::any_of(faces.begin(), faces.end(),

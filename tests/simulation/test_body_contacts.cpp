@@ -287,3 +287,44 @@ TEST_CASE("bodies: those that begin inside one another are refused, by name and 
   config.between_objects = false;
   CHECK_NOTHROW(Simulation(config));
 }
+
+// Where the edge passes the middle of a post, the post's normal is that of the face beside it.
+TEST_CASE("body contacts: edges of a cube that is pushed between two posts do not sink into them") {
+  constexpr double kRadius = 0.03;
+  constexpr double kAside = 0.085;
+  SimulationConfig config;
+  config.objects.resize(1);
+  config.objects[0].model = fem_cube({.cells = 4, .poisson_ratio = 0.45});
+  config.objects[0].position = Vector3(0.1, 0, 0);
+  config.objects[0].damping = {20.0, 20.0};
+  config.styluses = {{0.02, 2000.0, 0.0}};
+  config.scenery.resize(2);
+  for (SceneryConfig& post : config.scenery) {
+    post.shape = CapsuleShape{kRadius, 0.2};
+    post.position = Vector3(0, 0, &post == config.scenery.data() ? kAside : -kAside);
+    post.friction = {0.1, 0.1};
+  }
+  Simulation simulation(config);
+  const auto record = std::make_unique<StepRecord>();
+  double deepest = 0.0;
+  bool past = false;
+  Points u;
+  for (int k = 0; k < 1000; ++k) {
+    const StylusCommand command = at_tip(Vector3(0.17 - 0.0001 * k, 0, 0));
+    simulation.step({&command, 1}, *record);
+    const SoftObject& cube = simulation.object();
+    cube.engine().displacement(u);
+    for (int i = 0; i < cube.model().mesh.surface_node_count(); ++i) {
+      const Vector3 node = cube.state().position +
+                           cube.state().orientation *
+                               (cube.model().mesh.rest_position(i) + Vector3(u.row(i).transpose()));
+      for (const double z : {kAside, -kAside}) {
+        deepest = std::max(deepest, kRadius - std::hypot(node.x(), node.z() - z));
+      }
+      past = past || node.x() < -0.01;
+    }
+  }
+  INFO("deepest node " << deepest << " m inside");
+  CHECK(past);
+  CHECK(deepest < 1e-4);
+}

@@ -59,7 +59,7 @@ struct SceneryConfig {
   Vector3 position = Vector3::Zero();               ///< [m], W
   Quaternion orientation = Quaternion::Identity();  ///< shape to W, unit
   Friction friction{0.5, 0.5};
-  SceneryMotion motion;
+  SceneryMotion motion{};
 };
 
 /// Scenery in the step under way.

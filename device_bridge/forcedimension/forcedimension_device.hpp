@@ -12,9 +12,9 @@ namespace irdm {
 struct DeviceConfig;
 
 /// A device of Force Dimension (Omega, Delta, Sigma, Lambda) or a Falcon; it renders torque where
-/// its wrist is active. D has its origin where
-/// the driver has it, +x right, +y up, +z towards the person, as for OpenHaptics. Its driver has no
-/// thread of its own: the ticks are the servo thread's.
+/// its wrist is active. D has its origin where the driver has it, +x right, +y up, +z towards the
+/// person, as for OpenHaptics. Its driver has no thread of its own: the ticks are the servo
+/// thread's.
 class ForceDimensionDevice : public HapticDevice {
  public:
   /// @param name the driver's number of the device, "0" to "9"; empty: the first that is free

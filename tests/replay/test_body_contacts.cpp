@@ -1,4 +1,6 @@
 // Runs in which objects touch each other and scenery, rerun from their traces.
+#include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <map>
@@ -9,9 +11,11 @@
 #include "replay/reference/fem_reference.hpp"
 #include "replay/replay.hpp"
 #include "replay/traced_scene.hpp"
+#include "simulation/collision/rest_surface.hpp"
 #include "tests/replay/rerun_checks.hpp"
 #include "tests/server/touching_cubes.hpp"
 #include "tests/support/fem_cube.hpp"
+#include "tests/support/slotted_body.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "trace/trace_layout.hpp"
 
@@ -129,6 +133,54 @@ TEST_CASE("a run of objects that fall asleep and wake is rerun, to the bit from 
   }
   REQUIRE(slept > 200);
   REQUIRE(changes >= 2);
+  check_to_the_bit(run);
+  check_from_forces(run);
+}
+
+TEST_CASE("a run on scenery that moves is rerun, to the bit from its tips") {
+  SimulationConfig config = touching_cubes(small_cube(), true);
+  config.scenery[0].motion.stroke = Vector3(0.01, 0, 0);
+  config.scenery[0].motion.velocity = Vector3(0, 0.05, 0);
+  config.scenery[0].motion.frequency = 5.0;
+  const KeptRun run = bounce(config);
+  REQUIRE(count_contacts(run).second > 50);
+  check_to_the_bit(run);
+  check_from_forces(run);
+}
+
+TEST_CASE("a run of an object that touches itself is rerun, to the bit from its tips") {
+  const std::shared_ptr<const Model> model = slotted_body({});
+  const RestSurface rest(model->mesh);
+  SimulationConfig config;
+  config.objects.resize(1);
+  config.objects[0].model = model;
+  config.objects[0].friction = {0.5, 0.5};
+  config.objects[0].damping = {20.0, 20.0};
+  config.self_contact = true;
+  config.styluses = {{0.0, 500.0, 0.0}, {0.0, 500.0, 0.0}};
+  std::array<Vector3, 2> outside;
+  for (std::size_t s = 0; s < 2; ++s) {
+    const double side = s == 0 ? -1.0 : 1.0;
+    outside[s] = rest.node(corner_node(*model, kVoxel * Vector3(2.5 * side, 8, 1)));
+  }
+  KeptRun run(config);
+  Simulation simulation(config);
+  const auto record = std::make_unique<StepRecord>();
+  int closed = 0;
+  for (int k = 0; k < 250; ++k) {
+    const double in = 0.008 * std::min(1.0, k / 100.0) - 0.001;
+    std::array<StylusCommand, 2> commands;
+    for (std::size_t s = 0; s < 2; ++s) {
+      commands[s] = {true, 0u, outside[s] + Vector3(s == 0 ? in : -in, 0, 0), {}};
+    }
+    simulation.step(commands, *record);
+    run.keep(simulation, *record);
+    for (const BodyContactRecord& contact : record->body_contacts()) {
+      REQUIRE(contact.other == contact.object);
+      ++closed;
+    }
+  }
+  REQUIRE(closed > 50);
   check_to_the_bit(run);
   check_from_forces(run);
 }

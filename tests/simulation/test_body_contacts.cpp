@@ -290,7 +290,7 @@ TEST_CASE("bodies: those that begin inside one another are refused, by name and 
 
 // Where the edge passes the middle of a post, the post's normal is that of the face beside it.
 TEST_CASE("body contacts: edges of a cube that is pushed between two posts do not sink into them") {
-  constexpr double kRadius = 0.03;
+  constexpr double kPostRadius = 0.03;
   constexpr double kAside = 0.085;
   SimulationConfig config;
   config.objects.resize(1);
@@ -300,7 +300,7 @@ TEST_CASE("body contacts: edges of a cube that is pushed between two posts do no
   config.styluses = {{0.02, 2000.0, 0.0}};
   config.scenery.resize(2);
   for (SceneryConfig& post : config.scenery) {
-    post.shape = CapsuleShape{kRadius, 0.2};
+    post.shape = CapsuleShape{kPostRadius, 0.2};
     post.position = Vector3(0, 0, &post == config.scenery.data() ? kAside : -kAside);
     post.friction = {0.1, 0.1};
   }
@@ -319,7 +319,7 @@ TEST_CASE("body contacts: edges of a cube that is pushed between two posts do no
                            cube.state().orientation *
                                (cube.model().mesh.rest_position(i) + Vector3(u.row(i).transpose()));
       for (const double z : {kAside, -kAside}) {
-        deepest = std::max(deepest, kRadius - std::hypot(node.x(), node.z() - z));
+        deepest = std::max(deepest, kPostRadius - std::hypot(node.x(), node.z() - z));
       }
       past = past || node.x() < -0.01;
     }

@@ -47,8 +47,8 @@ struct Squeeze {
 };
 
 std::array<int, 2> pressed_nodes(const Model& model, double y) {
-  return {node_at(model, Vector3(-kOutside, y, kVoxel)),
-          node_at(model, Vector3(kOutside, y, kVoxel))};
+  return {corner_node(model, Vector3(-kOutside, y, kVoxel)),
+          corner_node(model, Vector3(kOutside, y, kVoxel))};
 }
 
 std::array<StylusCommand, 2> squeezing(const Model& model, const Squeeze& squeeze) {
@@ -82,10 +82,10 @@ std::vector<AcrossSlot> across_slot(const Model& model) {
   std::vector<AcrossSlot> pairs;
   for (int y = 2; y <= 9; ++y) {
     // Beyond the slot of a frame there is no face.
-    if (node_at(model, kVoxel * Vector3(0.5, y, 1)) < 0) break;
+    if (corner_node(model, kVoxel * Vector3(0.5, y, 1)) < 0) break;
     for (int z = 0; z <= 2; ++z) {
-      const int left = node_at(model, kVoxel * Vector3(-0.5, y, z));
-      const int right = node_at(model, kVoxel * Vector3(0.5, y, z));
+      const int left = corner_node(model, kVoxel * Vector3(-0.5, y, z));
+      const int right = corner_node(model, kVoxel * Vector3(0.5, y, z));
       if (left >= 0 && right >= 0) pairs.push_back({left, right});
     }
   }

@@ -102,7 +102,7 @@ std::shared_ptr<const Model> slotted_body(const SlottedBody& body, ResponseKind 
   return model;
 }
 
-int node_at(const Model& model, const Vector3& point) {
+int corner_node(const Model& model, const Vector3& point) {
   for (int i = 0; i < model.mesh.surface_node_count(); ++i) {
     if ((model.mesh.rest_position(i) + model.mesh.com_offset - point).norm() < 1e-9) return i;
   }

@@ -27,6 +27,6 @@ std::shared_ptr<const Model> slotted_body(const SlottedBody& body,
                                           ResponseKind kind = ResponseKind::kModal);
 
 /// The surface node at a point of the input's coordinates [m]; -1: there is none.
-int node_at(const Model& model, const Vector3& point);
+int corner_node(const Model& model, const Vector3& point);
 
 }  // namespace irdm::test

@@ -16,6 +16,7 @@ struct Frame {
   bool failed = false;
   double height = 0.0;  ///< of the stylus [mm]
   double force = 0.0;   ///< asked for [N]
+  double begun = 0.0;   ///< monotonic [s]
 };
 
 /// A bridge with a device of the fake driver (tests/fake_libhd), whose hand comes down onto the
@@ -47,8 +48,9 @@ class DeviceStage {
     double ignored = 0.0;
     Frame frame;
     for (double x = 0, y = 0, z = 0; text >> frame.tick >> frame.failed >> ignored >>
-                                     frame.height >> ignored >> x >> y >> z >> ignored;) {
+                                     frame.height >> ignored >> x >> y >> z >> frame.begun;) {
       frame.force = std::sqrt(x * x + y * y + z * z);
+      frame.begun *= 1e-9;
       found.push_back(frame);
     }
     return found;

@@ -317,7 +317,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("gallery, tray: led against all four walls, the cube stays inside") {
+TEST_CASE("gallery, tray: led against all four walls, the cube stays inside", "[slow]") {
   Played played("tray");
   const double inner = 0.13 - 0.06;  // m, of the centre, if the cube were rigid
   double farthest = 0.0;
@@ -347,7 +347,7 @@ TEST_CASE("gallery, tray: led against all four walls, the cube stays inside") {
   CHECK(played.body_force(played.rows() - 1, 0, -1).y() == Approx(weight).epsilon(0.02));
 }
 
-TEST_CASE("gallery, peg: both posts resist alike, until the cube has come between them") {
+TEST_CASE("gallery, peg: both posts resist alike, until the cube has come between them", "[slow]") {
   Played played("peg");
   const double weight = 9.81 * played.mass();
   const std::size_t pushed = played.row(3.0);
@@ -378,7 +378,8 @@ TEST_CASE("gallery, peg: both posts resist alike, until the cube has come betwee
   CHECK((played.body_force(end, 0, -1) + in_front + behind).y() == Approx(weight).epsilon(0.01));
 }
 
-TEST_CASE("gallery, squeeze: friction alone lifts the ball, inside the cone, and carries it") {
+TEST_CASE("gallery, squeeze: friction alone lifts the ball, inside the cone, and carries it",
+          "[slow]") {
   Played played("squeeze");
   const double weight = 9.81 * played.mass();
   const Model ball = played.model();
@@ -415,7 +416,7 @@ TEST_CASE("gallery, squeeze: friction alone lifts the ball, inside the cone, and
   CHECK(played.body_force(played.rows() - 1, 0, -1).y() == Approx(weight).epsilon(0.1));
 }
 
-TEST_CASE("gallery, five fingers: they press alike, and friction carries the ball") {
+TEST_CASE("gallery, five fingers: they press alike, and friction carries the ball", "[slow]") {
   Played played("five-fingers");
   const double weight = 9.81 * played.mass();
   double unbalanced = 0.0;
@@ -446,7 +447,8 @@ TEST_CASE("gallery, five fingers: they press alike, and friction carries the bal
   CHECK(played.body_force(played.rows() - 1, 0, -1).y() == Approx(weight).epsilon(0.1));
 }
 
-TEST_CASE("gallery, spatula: it takes the slab's weight from the rails and gives it back") {
+TEST_CASE("gallery, spatula: it takes the slab's weight from the rails and gives it back",
+          "[slow]") {
   Played played("spatula");
   const double weight = 9.81 * played.mass(0);
   const double tool = 9.81 * played.mass(1);
@@ -467,7 +469,7 @@ TEST_CASE("gallery, spatula: it takes the slab's weight from the rails and gives
   CHECK(played.vector(slab, lifted).y() - played.vector(slab, played.row(1.4)).y() > 0.03);
 }
 
-TEST_CASE("gallery, bowl: the rod stirs the cube, which stays inside") {
+TEST_CASE("gallery, bowl: the rod stirs the cube, which stays inside", "[slow]") {
   Played played("bowl");
   const std::string cube = "/object/cube/body_position";
   double way = 0.0;

@@ -7,12 +7,12 @@ namespace irdm {
 namespace {
 // Enough to cross a dozen triangles from a good start, and a bound on the cost of a bad one.
 constexpr int kMaxSlides = 16;
-// Triangles along the way of a tip in one step that are looked at.
-constexpr std::size_t kMaxCandidates = 64;
+// Triangles in a box that are looked at.
+constexpr std::size_t kMaxCandidates = 256;
 // Sum of changes beyond which nothing is known of nodes from before; below it the sum is exact to
-// much less than kSlack [m].
+// much less than kSlack [m], which is also more than kSeam of a triangle.
 constexpr double kLargestChange = 1.0;
-constexpr double kSlack = 1e-12;
+constexpr double kSlack = 1e-9;
 // Barycentric weights by which triangles of a set overlap: nodes that mirror each other meet
 // exactly, and a way through a node may miss all triangles by rounding.
 constexpr double kSeam = 1e-9;
@@ -63,21 +63,43 @@ const Vector3& DeformedSurface::node(int i) noexcept {
   return positions_[index];
 }
 
-// At least so far is a point from a triangle, by what is known without computing a node.
-double DeformedSurface::least_distance(int triangle, const Vector3& p) noexcept {
+// The corners of a triangle as they were computed last, and by how much they have moved since at
+// most [m]; none: that is not known.
+std::optional<double> DeformedSurface::known(int triangle, TriangleCorners& then) noexcept {
   constexpr double kRounding = 1e-9;
-  TriangleCorners then;
   double change = 0.0;
   const std::array<int, 3>& nodes = rest_.topology().corners(triangle);
   for (std::size_t i = 0; i < 3; ++i) {
     const auto index = static_cast<std::size_t>(nodes[i]);
-    if (known_in_[index] < bounded_since_) return 0.0;
+    if (known_in_[index] < bounded_since_) return std::nullopt;
     then[i] = positions_[index];
     change = std::max(change, change_ - change_then_[index]);
   }
   for (const int node : nodes) mark_seen(static_cast<std::size_t>(node));
-  const double distance = (p - at(then, closest_point(then, p))).norm();
-  return (1.0 - kRounding) * distance - (1.0 + kRounding) * std::sqrt(3.0) * change - kSlack;
+  return (1.0 + kRounding) * std::sqrt(3.0) * change + kSlack;
+}
+
+// Whether a triangle is farther from a point, by what is known without computing a node.
+bool DeformedSurface::is_beyond(double distance, int triangle, const Vector3& p) noexcept {
+  constexpr double kRounding = 1e-9;
+  TriangleCorners then;
+  const std::optional<double> moved = known(triangle, then);
+  if (!moved) return false;
+  const double limit = (distance + *moved) / (1.0 - kRounding);
+  const double limit2 = limit * limit;
+  return least_distance2(then, p) > limit2 ||
+         (p - at(then, closest_point(then, p))).squaredNorm() > limit2;
+}
+
+// Whether a triangle has no part in a box, by what is known without computing a node.
+bool DeformedSurface::is_outside(const Eigen::AlignedBox3d& box, int triangle) noexcept {
+  TriangleCorners then;
+  const std::optional<double> moved = known(triangle, then);
+  if (!moved) return false;
+  Eigen::AlignedBox3d bounds(then[0]);
+  bounds.extend(then[1]).extend(then[2]);
+  const Vector3 margin = Vector3::Constant(*moved);
+  return !box.intersects({bounds.min() - margin, bounds.max() + margin});
 }
 
 TriangleCorners DeformedSurface::corners(int triangle) noexcept {
@@ -108,12 +130,29 @@ void DeformedSurface::visit_neighbours(int triangle, const Visit& visit) noexcep
   }
 }
 
+// Triangles around `near`, and those in a box. False: there are more of these. The tree knows the
+// rest shape: the box is moved to where it would be there.
+template <typename Visit>
+bool DeformedSurface::visit_about(Eigen::AlignedBox3d box, const SurfaceHit& near,
+                                  const Visit& visit) noexcept {
+  visit(near.triangle);
+  visit_neighbours(near.triangle, visit);
+  const Vector3 u =
+      interpolate(near.point, [&](int i) -> Vector3 { return node(i) - rest_.node(i); });
+  const Vector3 margin = Vector3::Constant(0.25 * u.norm());
+  std::array<int, kMaxCandidates> candidates;
+  const int count =
+      rest_.tree().overlapping({box.min() - u - margin, box.max() - u + margin}, candidates);
+  for (int i = 0; i < count; ++i) visit(candidates[static_cast<std::size_t>(i)]);
+  return count < static_cast<int>(kMaxCandidates);
+}
+
 SurfaceHit DeformedSurface::descend(SurfaceHit best, const Vector3& p, TriangleSet among) noexcept {
   for (int move = 0; move < kMaxSlides; ++move) {
     const int here = best.triangle;
     visit_neighbours(here, [&](int neighbour) {
       if (!has(among, neighbour)) return;
-      if (least_distance(neighbour, p) >= best.signed_distance) return;
+      if (is_beyond(best.signed_distance, neighbour, p)) return;
       const SurfaceHit hit = hit_on(neighbour, p);
       if (hit.signed_distance < best.signed_distance) best = hit;
     });
@@ -186,10 +225,10 @@ std::optional<SurfaceHit> DeformedSurface::first_crossing(const Vector3& from, c
                                                           TriangleSet among) noexcept {
   std::optional<SurfaceHit> found;
   double earliest = 2.0;
-  const double length = (to - from).norm();
+  Eigen::AlignedBox3d way(from);
+  way.extend(to);
   const auto consider = [&](int candidate) {
-    if (!has(among, candidate)) return;
-    if (least_distance(candidate, to) > length) return;
+    if (!has(among, candidate) || is_outside(way, candidate)) return;
     const TriangleCorners deformed = corners(candidate);
     std::optional<Crossing> here = crossing(deformed, from, to, among.empty() ? 0.0 : kSeam);
     if (!here || here->fraction >= earliest) return;
@@ -198,18 +237,19 @@ std::optional<SurfaceHit> DeformedSurface::first_crossing(const Vector3& from, c
     const SurfacePoint point{rest_.topology().corners(candidate), here->weights};
     found = SurfaceHit{candidate, point, at(deformed, here->weights), 0.0};
   };
-  consider(near.triangle);
-  visit_neighbours(near.triangle, consider);
-  // The tree knows the rest shape: the way is moved to where it would be there.
-  const Vector3 u =
-      interpolate(near.point, [&](int i) -> Vector3 { return node(i) - rest_.node(i); });
-  Eigen::AlignedBox3d way(from - u);
-  way.extend(to - u);
-  const Vector3 margin = Vector3::Constant(0.25 * u.norm());
-  std::array<int, kMaxCandidates> candidates{};
-  const int count = rest_.tree().overlapping({way.min() - margin, way.max() + margin}, candidates);
-  for (int i = 0; i < count; ++i) consider(candidates[static_cast<std::size_t>(i)]);
+  visit_about(way, near, consider);
   return found;
+}
+
+double DeformedSurface::distance_up_to(double limit, const Vector3& p,
+                                       const SurfaceHit& near) noexcept {
+  double nearest = limit;
+  const auto consider = [&](int triangle) {
+    if (is_beyond(nearest, triangle, p)) return;
+    nearest = std::min(nearest, hit_on(triangle, p).signed_distance);
+  };
+  const Vector3 reach = Vector3::Constant(limit);
+  return visit_about({p - reach, p + reach}, near, consider) ? nearest : 0.0;
 }
 
 }  // namespace irdm

@@ -64,6 +64,10 @@ class DeformedSurface {
   std::optional<SurfaceHit> first_crossing(const Vector3& from, const Vector3& to,
                                            const SurfaceHit& near, TriangleSet among = {}) noexcept;
 
+  /// Distance of p, which has no sign, as far as `limit` [m]: from the triangles around `near` and
+  /// those about p. 0: too many are there.
+  double distance_up_to(double limit, const Vector3& p, const SurfaceHit& near) noexcept;
+
   /// The point nearest to p that is reached from a triangle by going to whichever neighbour among
   /// these is nearer, until none is. Its distance has no sign.
   SurfaceHit closest_from(int triangle, const Vector3& p, TriangleSet among) noexcept;
@@ -89,13 +93,17 @@ class DeformedSurface {
 
  private:
   TriangleCorners corners(int triangle) noexcept;
-  double least_distance(int triangle, const Vector3& p) noexcept;
+  std::optional<double> known(int triangle, TriangleCorners& then) noexcept;
+  bool is_beyond(double distance, int triangle, const Vector3& p) noexcept;
+  bool is_outside(const Eigen::AlignedBox3d& box, int triangle) noexcept;
   void mark_seen(std::size_t node) noexcept;
   SurfaceHit hit_on(int triangle, const Vector3& p) noexcept;
   SurfaceHit descend(SurfaceHit best, const Vector3& p, TriangleSet among = {}) noexcept;
   Vector3 pseudonormal(const SurfaceHit& hit) noexcept;
   template <typename Visit>
   void visit_neighbours(int triangle, const Visit& visit) noexcept;
+  template <typename Visit>
+  bool visit_about(Eigen::AlignedBox3d box, const SurfaceHit& near, const Visit& visit) noexcept;
 
   const RestSurface& rest_;
   Eigen::AlignedBox3d rest_box_;

@@ -142,8 +142,8 @@ SurfaceLocation RestSurface::on(int triangle, const Vector3& p) const noexcept {
   return {triangle, {topology_.corners(triangle), weights}, at(here, weights)};
 }
 
-SurfaceLocation RestSurface::closest(const Vector3& p) const noexcept {
-  return on(tree_.closest_triangle(p), p);
+SurfaceLocation RestSurface::closest(const Vector3& p, int guess) const noexcept {
+  return on(tree_.closest_triangle(p, guess), p);
 }
 
 SurfaceLocation RestSurface::walk(int triangle, const Vector3& p) const noexcept {

@@ -47,8 +47,8 @@ class RestSurface {
   const Vector3& node(int i) const noexcept { return positions_[static_cast<std::size_t>(i)]; }
   TriangleCorners corners(int triangle) const noexcept;
 
-  /// The point nearest to p.
-  SurfaceLocation closest(const Vector3& p) const noexcept;
+  /// The point nearest to p.  @param guess as of SurfaceTree::closest_triangle()
+  SurfaceLocation closest(const Vector3& p, int guess = 0) const noexcept;
   /// The point nearest to p that is reached from a triangle by going to whichever neighbour is
   /// nearer until none is: across edges and round corners, but not through the object.
   SurfaceLocation walk(int triangle, const Vector3& p) const noexcept;

@@ -57,6 +57,12 @@ Barycentric closest_point(const TriangleCorners& triangle, const Vector3& p) noe
   return best;
 }
 
+double least_distance2(const TriangleCorners& triangle, const Vector3& p) noexcept {
+  const auto low = triangle[0].array().min(triangle[1].array()).min(triangle[2].array());
+  const auto high = triangle[0].array().max(triangle[1].array()).max(triangle[2].array());
+  return (low - p.array()).max(p.array() - high).max(0.0).square().sum();
+}
+
 std::optional<Crossing> crossing(const TriangleCorners& triangle, const Vector3& from,
                                  const Vector3& to, double slack) noexcept {
   const Vector3 normal = area_normal(triangle);
@@ -152,16 +158,24 @@ void SurfaceTree::build(int begin, int end) {
   build(middle, end);
 }
 
-int SurfaceTree::closest_triangle(const Vector3& p) const noexcept {
+int SurfaceTree::closest_triangle(const Vector3& p, int guess) const noexcept {
+  const auto distance2_from = [&](int triangle) {
+    const auto& corners = triangles_[static_cast<std::size_t>(triangle)];
+    return (at(corners, closest_point(corners, p)) - p).squaredNorm();
+  };
   std::array<int, kMaxDepth + 1> stack{};
   int depth = 0;
   stack[static_cast<std::size_t>(depth++)] = 0;
-  int best = 0;
-  double best_distance2 = std::numeric_limits<double>::infinity();
+  int best = guess;
+  double best_distance2 = distance2_from(guess);
+  // So that rounding hides no triangle that is as near, whatever the guess.
+  const auto farther = [&](double box_distance2) {
+    return box_distance2 > (1.0 + kRounding) * best_distance2;
+  };
   while (depth > 0) {
     const int index = stack[static_cast<std::size_t>(--depth)];
     const Node& node = nodes_[static_cast<std::size_t>(index)];
-    if (node.box.squaredExteriorDistance(p) > best_distance2) continue;
+    if (farther(node.box.squaredExteriorDistance(p))) continue;
     if (node.count == 0) {
       int near = index + 1;
       int far = node.first;
@@ -175,8 +189,8 @@ int SurfaceTree::closest_triangle(const Vector3& p) const noexcept {
     }
     for (int i = node.first; i < node.first + node.count; ++i) {
       const int t = order_[static_cast<std::size_t>(i)];
-      const auto& corners = triangles_[static_cast<std::size_t>(t)];
-      const double distance2 = (at(corners, closest_point(corners, p)) - p).squaredNorm();
+      if (farther(least_distance2(triangles_[static_cast<std::size_t>(t)], p))) continue;
+      const double distance2 = distance2_from(t);
       if (distance2 < best_distance2 || (distance2 == best_distance2 && t < best)) {
         best_distance2 = distance2;
         best = t;

@@ -19,6 +19,9 @@ using Barycentric = std::array<double, 3>;
 /// edges.
 Barycentric closest_point(const TriangleCorners& triangle, const Vector3& p) noexcept;
 
+/// What the square of p's distance from a triangle is not below, by its bounding box [m^2].
+double least_distance2(const TriangleCorners& triangle, const Vector3& p) noexcept;
+
 /// The point with these weights.
 Vector3 at(const TriangleCorners& triangle, const Barycentric& weights) noexcept;
 
@@ -41,7 +44,8 @@ class SurfaceTree {
   explicit SurfaceTree(const ModelMesh& mesh);
 
   /// The triangle of the rest surface nearest to p (B); ties go to the lowest number.
-  int closest_triangle(const Vector3& p) const noexcept;
+  /// @param guess the search is short when this triangle is near; what is found is the same
+  int closest_triangle(const Vector3& p, int guess = 0) const noexcept;
 
   /// Triangles whose bounding box at rest overlaps a box, as many as `found` has room for; returns
   /// how many.

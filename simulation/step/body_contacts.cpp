@@ -17,8 +17,13 @@ constexpr double kNearItself = 0.1;
 constexpr double kLeastReach = 2e-3;
 constexpr double kReachFactor = 2.0;
 constexpr double kReachFading = 0.99;
+// A displacement by contacts at rest is at most about this share of its bound.
+constexpr double kBoundShare = 0.25;
 // Part of the samples' spacing by which their way begins inside their own object.
 constexpr double kDepth = 0.5;
+// How far beyond a way distances are seen, by that depth, and what of them is relied on.
+constexpr double kSightDepths = 2.0;
+constexpr double kReliable = 1.0 - 1e-9;
 // Surfaces touch where their outward normals point at each other: cosine of their angle at most.
 constexpr double kFacing = -0.3;
 // An edge whose face is turned to the other's by a smaller angle than this lies flat: the samples
@@ -123,13 +128,31 @@ bool BodyContacts::near() const noexcept {
   return (body_.motion.position - there).norm() <= reach + moved;
 }
 
-// Whether a point is farther than that from scenery: the distance changes by no more than the point
-// moves, so that it need not be computed anew in each step.
+// Whether a point is farther than that from the other at rest: the distance changes by no more than
+// the point moves, so that it need not be computed anew in each step.
 bool BodyContacts::beyond(const Vector3& x, double reach, Sample& state) const noexcept {
-  if (!scenery_->moves() && state.distance - (x - state.looked_at).norm() > reach) return true;
-  state.looked_at = x;
-  state.distance = closest(scenery_->now, x).signed_distance;
+  Vector3 place = x;
+  if (other_body_ != nullptr) {
+    place = other_body_->motion.to_body(x);
+    if (other_box_.squaredExteriorDistance(place) > reach * reach) return true;
+  }
+  if (!driven()) {
+    const double moved = (place - state.looked_at).norm();
+    if (state.distance - moved > reach) return true;
+    if (state.distance > 0.0 && state.distance + moved <= reach) return false;
+  }
+  state.looked_at = place;
+  state.distance = look(place, state);
   return state.distance > reach;
+}
+
+// Distance from the other at rest [m]; inside an object 0.
+double BodyContacts::look(const Vector3& place, Sample& state) const noexcept {
+  if (other_body_ == nullptr) return closest(scenery_->now, place).signed_distance;
+  const SurfaceLocation nearest = other_body_->rest.closest(place, state.nearest);
+  state.nearest = nearest.triangle;
+  const Vector3 way = place - nearest.position;
+  return way.dot(other_body_->sampling.normal(nearest)) > 0.0 ? way.norm() : 0.0;
 }
 
 // Where a point that moves with the body was at the start of the step; beside scenery, carried
@@ -137,6 +160,13 @@ bool BodyContacts::beyond(const Vector3& x, double reach, Sample& state) const n
 Vector3 BodyContacts::started(const Vector3& place) const noexcept {
   const Vector3 x = at_start(body_.motion, place);
   return scenery_ != nullptr ? scenery_->carried(x) : x;
+}
+
+// How far surfaces may be displaced where none was looked at [m].
+double BodyContacts::unseen() noexcept {
+  double bound = body_.surface.bound();
+  if (other_body_ != nullptr) bound = std::max(bound, other_body_->surface.bound());
+  return std::isfinite(bound) ? kBoundShare * bound : 0.0;
 }
 
 Vector3 BodyContacts::displaced_place(const ContactSampling::Sample& sample) noexcept {
@@ -193,22 +223,68 @@ std::optional<Vector3> BodyContacts::normal_at(int sample, const Vector3& outwar
   return there.normal(at, -outward, depth_);
 }
 
-bool BodyContacts::begin_on_scenery(int sample, const Vector3& from, const Vector3& to,
-                                    const Vector3& direction, const Vector3& x,
-                                    const Vector3& start, Sample& state) noexcept {
-  const std::optional<SceneryHit> entry = first_crossing(scenery_->now, from, to);
-  if (!entry || entry->normal.dot(direction) > kFacing ||
+BodyContacts::Way BodyContacts::way_of(int sample, const Vector3& place) const noexcept {
+  const FreeMotion& motion = body_.motion;
+  Way way{.start = started(place),
+          .end = motion.to_world(place),
+          .outward = motion.orientation *
+                     body_.sampling.samples()[static_cast<std::size_t>(sample)].normal,
+          .from = {},
+          .to = {}};
+  if (other_body_ != nullptr) {
+    const FreeMotion& there = other_body_->motion;
+    way.start = there.start.orientation.conjugate() * (way.start - there.start.position);
+    way.end = there.to_body(way.end);
+    way.outward = there.orientation.conjugate() * way.outward;
+  }
+  way.from = way.start - depth_ * way.outward;
+  way.to = way.end + kNearBody * way.outward;
+  return way;
+}
+
+// Whether nothing of the other can have come into the way of a sample since it was seen.
+bool BodyContacts::is_clear(int sample, const Sighting& seen) noexcept {
+  if (!(seen.distance > 0.0)) return false;
+  double change = body_.surface.change_since(seen.own);
+  if (other_body_ != nullptr) change += other_body_->surface.change_since(seen.other);
+  const Way way = way_of(sample, seen.place);
+  const double moved = (way.middle() - seen.middle).norm() + std::sqrt(3.0) * change;
+  if (!(kReliable * seen.distance - moved > 0.5 * way.length())) return false;
+  body_.surface.keep();
+  if (other_body_ != nullptr) other_body_->surface.keep();
+  displaced_ = std::max(displaced_, seen.displaced);
+  return true;
+}
+
+void BodyContacts::note(const Way& way, const Vector3& place, double distance, double displaced,
+                        Sample& state) const noexcept {
+  state.seen = {distance,
+                place,
+                way.middle(),
+                body_.surface.mark(),
+                other_body_ != nullptr ? other_body_->surface.mark() : DeformedSurface::Mark{},
+                displaced,
+                state.clear == step_};
+}
+
+bool BodyContacts::begin_on_scenery(int sample, const Vector3& place, const Way& way,
+                                    Sample& state) noexcept {
+  const SceneryHit hit = closest(scenery_->now, way.end);
+  const std::optional<SceneryHit> entry = first_crossing(scenery_->now, way.from, way.to);
+  if (!entry || entry->normal.dot(way.outward) > kFacing ||
       flush(sample, body_.motion.orientation.conjugate() * entry->normal)) {
-    if (closest(scenery_->now, x).signed_distance > 0.0) state.mark_outside(step_);
+    if (hit.signed_distance > 0.0) state.mark_outside(step_);
+    if (!driven()) {
+      note(way, place, closest(scenery_->now, way.middle()).signed_distance, displaced_, state);
+    }
     return false;
   }
-  const SceneryHit hit = closest(scenery_->now, x);
-  const bool same_side = hit.normal.dot(direction) <= kFacing;
+  const bool same_side = hit.normal.dot(way.outward) <= kFacing;
   state.normal = same_side ? hit.normal : entry->normal;
-  state.anchor_W = same_side
-                       ? hit.position
-                       : Vector3(x - (x - entry->position).dot(entry->normal) * entry->normal);
-  state.inset = inset_of((state.anchor_W - start).dot(state.normal), state);
+  state.anchor_W =
+      same_side ? hit.position
+                : Vector3(way.end - (way.end - entry->position).dot(entry->normal) * entry->normal);
+  state.inset = inset_of((state.anchor_W - way.start).dot(state.normal), state);
   return true;
 }
 
@@ -216,19 +292,11 @@ bool BodyContacts::begin_on_scenery(int sample, const Vector3& from, const Vecto
 bool BodyContacts::begin(int number, const Vector3& place, Sample& state) noexcept {
   const ContactSampling::Sample& sample =
       body_.sampling.samples()[static_cast<std::size_t>(number)];
-  const FreeMotion& motion = body_.motion;
-  const Vector3 x = motion.to_world(place);
-  const Vector3 outward = motion.orientation * sample.normal;
-  const Vector3 start = started(place);
-  if (other_body_ == nullptr) {
-    return begin_on_scenery(number, start - depth_ * outward, x + kNearBody * outward, outward, x,
-                            start, state);
-  }
-  const FreeMotion& there = other_body_->motion;
-  const Vector3 y = there.to_body(x);
-  const Vector3 direction = there.orientation.conjugate() * outward;
-  const Vector3 y_start = there.start.orientation.conjugate() * (start - there.start.position);
-  const Quaternion to_own = motion.orientation.conjugate() * there.orientation;
+  const Way way = way_of(number, place);
+  state.seen.distance = 0.0;
+  if (other_body_ == nullptr) return begin_on_scenery(number, place, way, state);
+  const Vector3& direction = way.outward;
+  const Quaternion to_own = body_.motion.orientation.conjugate() * other_body_->motion.orientation;
   SurfaceLocation nearest;
   std::optional<SurfaceHit> hit;
   if (self_) {
@@ -237,19 +305,25 @@ bool BodyContacts::begin(int number, const Vector3& place, Sample& state) noexce
                at(body_.rest.corners(found.nearest.triangle), found.nearest.point.weights)};
     hit = found.entry;
   } else {
-    nearest = other_body_->rest.closest(y);
+    nearest = other_body_->rest.closest(way.end, state.nearest);
+    state.nearest = nearest.triangle;
   }
+  const SurfaceHit near{nearest.triangle, nearest.point, nearest.position, 0.0};
   if (flush(number, to_own * other_body_->sampling.normal(nearest))) {
     hit.reset();
   } else if (!self_) {
-    const SurfaceHit near{nearest.triangle, nearest.point, nearest.position, 0.0};
-    hit = other_body_->surface.first_crossing(y_start - depth_ * direction,
-                                              y + kNearBody * direction, near);
+    hit = other_body_->surface.first_crossing(way.from, way.to, near);
   }
   if (!hit) {
-    const Vector3 there_now = nearest.position + other_displacement(nearest);
+    const Vector3 u = other_displacement(nearest);
+    const Vector3 there_now = nearest.position + u;
     const Vector3 normal = other_body_->sampling.normal(nearest);
-    if ((y - there_now).dot(normal) > 0.0) state.mark_outside(step_);
+    if ((way.end - there_now).dot(normal) > 0.0) state.mark_outside(step_);
+    if (!self_ && (way.middle() - there_now).norm() > 0.5 * way.length()) {
+      const double limit = 0.5 * way.length() + kSightDepths * depth_;
+      note(way, place, other_body_->surface.distance_up_to(limit, way.middle(), near),
+           std::max(u.norm(), (place - sample.place.position).norm()), state);
+    }
     return false;
   }
   state.anchor = {hit->triangle, hit->point,
@@ -258,8 +332,8 @@ bool BodyContacts::begin(int number, const Vector3& place, Sample& state) noexce
   if (!normal || normal->dot(direction) > kFacing || flush(number, to_own * *normal)) return false;
   state.normal = *normal;
   const Vector3 there_now = state.anchor.position + other_displacement(state.anchor);
-  state.offset = sideways(y - there_now, state.normal);
-  state.inset = inset_of((there_now - y_start).dot(state.normal), state);
+  state.offset = sideways(way.end - there_now, state.normal);
+  state.inset = inset_of((there_now - way.start).dot(state.normal), state);
   return true;
 }
 
@@ -326,8 +400,7 @@ int BodyContacts::find() noexcept {
   if (!(self_ ? near_itself() : near()) && !any_pressed_) return 0;
   candidates_.clear();
   const FreeMotion& motion = body_.motion;
-  const Eigen::AlignedBox3d box = other_box_;
-  const double margin = kLeastReach + kReachFactor * displaced_;
+  const double margin = kLeastReach + kReachFactor * std::max(displaced_, unseen());
   const std::span<const ContactSampling::Sample> shapes = body_.sampling.samples();
   const Quaternion normal_to_own =
       other_body_ == nullptr
@@ -345,23 +418,13 @@ int BodyContacts::find() noexcept {
     if (!pressed) {
       const Vector3 x = motion.to_world(shape.place.position);
       const double way = (x - started(shape.place.position)).norm();
-      if (self_) {
-        if (self_->is_far(i)) {
-          state.mark_outside(step_);
-          continue;
-        }
-      } else if (other_body_ == nullptr) {
-        if (beyond(x, margin + way, state)) {
-          state.mark_outside(step_);
-          continue;
-        }
-      } else {
-        const Vector3 y = other_body_->motion.to_body(x);
-        const double reach = margin + way;
-        if (box.squaredExteriorDistance(y) > reach * reach) {
-          state.mark_outside(step_);
-          continue;
-        }
+      if (self_ ? self_->is_far(i) : beyond(x, margin + way, state)) {
+        state.mark_outside(step_);
+        continue;
+      }
+      if (is_clear(i, state.seen)) {
+        if (state.seen.outside) state.mark_outside(step_);
+        continue;
       }
     }
     const Vector3 place = displaced_place(shape);

@@ -87,6 +87,25 @@ class BodyContacts {
   double initial_depth() noexcept;
 
  private:
+  /// A sample's way in the step, B of the other or W: it is looked for from somewhat inside its own
+  /// object to a little beyond its end.
+  struct Way {
+    Vector3 start, end;  ///< [m]
+    Vector3 outward;     ///< of the sample, unit
+    Vector3 from, to;    ///< [m]
+    Vector3 middle() const noexcept { return 0.5 * (from + to); }
+    double length() const noexcept { return (to - from).norm(); }
+  };
+  /// How far from the other the middle of a way was: as long as all have moved by less, nothing has
+  /// crossed the way.
+  struct Sighting {
+    double distance = 0.0;             ///< [m]; 0: not known
+    Vector3 place = Vector3::Zero();   ///< of the sample, displaced [m], B of the object
+    Vector3 middle = Vector3::Zero();  ///< of its way [m]
+    DeformedSurface::Mark own, other;
+    double displaced = 0.0;  ///< how far surfaces were seen away from rest there [m]
+    bool outside = false;
+  };
   struct Sample {
     PersistentContact contact;
     SurfaceLocation anchor;              ///< on the other, at rest
@@ -99,10 +118,13 @@ class BodyContacts {
     double inset = 0.0;
     /// The last step in which it was outside or among the contacts; 0: none.
     std::uint64_t clear = 0;
-    std::uint64_t pressed = 0;            ///< the last step in which a force acted on it; 0: none
-    Vector3 looked_at = Vector3::Zero();  ///< whose distance from scenery was computed last [m], W
-    double distance = 0.0;                ///< that [m]
-    Vector3 force = Vector3::Zero();      ///< of the last step [N], B of the object
+    std::uint64_t pressed = 0;  ///< the last step in which a force acted on it; 0: none
+    /// Whose distance from the other at rest was computed last [m], B of the other or W.
+    Vector3 looked_at = Vector3::Zero();
+    double distance = 0.0;            ///< that [m]; of the inside of an object 0
+    int nearest = 0;                  ///< triangle of the other that was nearest to it
+    Vector3 force = Vector3::Zero();  ///< of the last step [N], B of the object
+    Sighting seen;
 
     /// It was seen outside in this step: what comes from there has no inset.
     void mark_outside(std::uint64_t step) noexcept {
@@ -112,14 +134,18 @@ class BodyContacts {
   };
 
   bool near_itself() noexcept;
+  double unseen() noexcept;
   bool beyond(const Vector3& x, double reach, Sample& state) const noexcept;
+  double look(const Vector3& place, Sample& state) const noexcept;
   Vector3 started(const Vector3& place) const noexcept;
   Vector3 displaced_place(const ContactSampling::Sample& sample) noexcept;
   Vector3 other_displacement(const SurfaceLocation& at) noexcept;
+  Way way_of(int sample, const Vector3& place) const noexcept;
+  bool is_clear(int sample, const Sighting& seen) noexcept;
+  void note(const Way& way, const Vector3& place, double distance, double displaced,
+            Sample& state) const noexcept;
   bool begin(int sample, const Vector3& place, Sample& state) noexcept;
-  bool begin_on_scenery(int sample, const Vector3& from, const Vector3& to,
-                        const Vector3& direction, const Vector3& x, const Vector3& start,
-                        Sample& state) noexcept;
+  bool begin_on_scenery(int sample, const Vector3& place, const Way& way, Sample& state) noexcept;
   std::optional<Vector3> normal_at(int sample, const Vector3& outward,
                                    const SurfaceLocation& at) const noexcept;
   bool flush(int sample, const Vector3& normal) const noexcept;

@@ -104,6 +104,7 @@ TEST_CASE("a path enters a triangle from its outer side only") {
 TEST_CASE("surface tree finds the triangle that a search through all finds") {
   const Model model = test::synthetic_cube(5, 1, 1);
   const SurfaceTree tree(model.mesh);
+  const auto count = static_cast<int>(model.mesh.triangles.rows());
   std::mt19937 random(2);
   for (int i = 0; i < 500; ++i) {
     const Vector3 p = random_point(random, 0.15);
@@ -114,8 +115,12 @@ TEST_CASE("surface tree finds the triangle that a search through all finds") {
                                     model.mesh.rest_position(model.mesh.triangles(t, 2))};
       return (at(corners, closest_point(corners, p)) - p).norm();
     };
-    for (int t = 0; t < model.mesh.triangles.rows(); ++t) nearest = std::min(nearest, distance(t));
-    REQUIRE(distance(tree.closest_triangle(p)) == Approx(nearest).margin(1e-15));
+    for (int t = 0; t < count; ++t) nearest = std::min(nearest, distance(t));
+    const int found = tree.closest_triangle(p);
+    REQUIRE(distance(found) == Approx(nearest).margin(1e-15));
+    for (const int guess : {i % count, count - 1, found}) {
+      REQUIRE(tree.closest_triangle(p, guess) == found);
+    }
   }
 }
 
@@ -153,7 +158,11 @@ TEST_CASE("deformed surface follows displacements much larger than its triangles
     const Vector3 p = scale.cwiseProduct(x) + shift + random_point(random, 0.01);
     const Vector3 d = (p - shift).cwiseAbs() - 0.06 * scale;
     const double expected = d.cwiseMax(0.0).norm() + std::min(d.maxCoeff(), 0.0);
-    if (std::abs(surface.closest(p).signed_distance - expected) > 1e-12) ++wrong;
+    const SurfaceHit hit = surface.closest(p);
+    if (std::abs(hit.signed_distance - expected) > 1e-12) ++wrong;
+    const double limit = 0.5 * std::abs(expected) + 0.25 * std::abs(p.x());
+    const double distance = std::min(std::abs(expected), limit);
+    if (std::abs(surface.distance_up_to(limit, p, hit) - distance) > 1e-12) ++wrong;
   }
   CHECK(wrong == 0);
 }

@@ -133,6 +133,12 @@ class BodyContacts {
     }
   };
 
+  /// Surfaces touch where their outward normals point at each other: cosine of their angle at most.
+  static constexpr double kFacing = -0.3;
+
+  static Vector3 sideways(const Vector3& v, const Vector3& normal) noexcept {
+    return v - v.dot(normal) * normal;
+  }
   bool near_itself() noexcept;
   double unseen() noexcept;
   bool beyond(const Vector3& x, double reach, Sample& state) const noexcept;

@@ -104,6 +104,26 @@ FOOT = (-0.008, 0.01, -0.008)  # from the rod's axis to where its mesh begins, a
 BOWL = (smooth([(0.0, 0.09 + FOOT[0], *FOOT[1:], 0), (1.0, 0.09 + FOOT[0], *FOOT[1:], 0)])[:-1]
         + circle(1.0, FOOT, 0.09, 0.25, 2, 0))
 
+RING = 0.04  # m, of the torus: radius of the tube's circle, of the tube
+TUBE = 0.02
+DEPTH = 0.013  # how far inside the tube a pinching tip is led
+SAG = 0.009  # of the ring's other side, when one hand holds it
+
+
+def pinch_of_ring(side, outer, way):
+    """Of one finger of the hand on a side (+1 right, -1 left): way is a list of (time, x, y, gap), the middle of the tube
+    between both fingers and how far each tip is outside the tube."""
+    finger = side if outer else -side
+    return smooth([(time, x + finger * (TUBE + gap), y, 0.0, 0) for time, x, y, gap in way])
+
+
+RIGHT = [(0.0, RING, 0.025, 0.012), (0.5, RING, 0.025, 0.012), (1.2, RING, 0.025, -DEPTH), (1.5, RING, 0.025, -DEPTH),
+         (2.5, RING, 0.125, -DEPTH), (3.5, RING - 0.1, 0.125, -DEPTH), (5.7, RING - 0.1, 0.125, -DEPTH),
+         (6.4, RING - 0.1, 0.125, 0.012), (7.4, RING - 0.1, 0.222, 0.012), (10.0, RING - 0.1, 0.222, 0.012)]
+LEFT = [(0.0, -RING - 0.1, 0.222, 0.012), (3.5, -RING - 0.1, 0.222, 0.012), (4.5, -RING - 0.1, 0.125 - SAG, 0.012),
+        (5.2, -RING - 0.1, 0.125 - SAG, -DEPTH), (7.0, -RING - 0.1, 0.125 - SAG, -DEPTH),
+        (8.0, -RING - 0.2, 0.125 - SAG, -DEPTH), (10.0, -RING - 0.2, 0.125 - SAG, -DEPTH)]
+
 SCRIPTS = {
     "tap": ("From 3 cm above a face at y = 6 cm to 8 mm below it and back, at once.", smooth(TAP)),
     "pinch": ("From 2 cm off a face at x = 6 cm to 1.2 cm inside it, 5 cm up, down again, and off.", smooth(PINCH)),
@@ -115,6 +135,12 @@ SCRIPTS = {
     "squeeze": ("From 3 cm off a ball of 5 cm to 1.6 cm inside it, 5 cm up, down again, and off.", smooth(SQUEEZE)),
     "spatula": ("Waits for 1.5 s, 15 cm along -x, 8 cm up, stays for 2 s, down and back.", smooth(SPATULA)),
     "bowl": ("Waits for 1 s, then two circles of 9 cm.", BOWL),
+    "torus-right-outer": ("Pinches a ring's tube from outside at x = 4 cm, lifts it, carries it 10 cm along -x, lets go (5.7 s).",
+                          pinch_of_ring(1, True, RIGHT)),
+    "torus-right-inner": ("The same from inside.", pinch_of_ring(1, False, RIGHT)),
+    "torus-left-outer": ("Pinches the ring's tube from outside at x = -14 cm (5.2 s), carries 10 cm along -x (8 s).",
+                         pinch_of_ring(-1, True, LEFT)),
+    "torus-left-inner": ("The same from inside.", pinch_of_ring(-1, False, LEFT)),
     "swing": ("To 4 mm above a face at y = 6 cm, takes hold (0.7 s), swings 3 cm at 1.5 Hz (1 s), lets go (5.2 s).", SWING),
 }
 

@@ -204,3 +204,89 @@ TEST_CASE("gallery, bowl: the rod stirs the cube, which stays inside", "[slow]")
   CHECK(played.body_force(end, 0, -1).y() == Approx(weight).epsilon(0.02));
   CHECK(-played.force(end).y() == Approx(9.81 * played.mass(1)).epsilon(0.02));
 }
+
+namespace {
+
+// A hand of two styluses in a step.
+struct Pinch {
+  double least = 0.0;     ///< of both forces [N]
+  Vector3 sum{0, 0, 0};   ///< on the object [N], W
+  double steepest = 0.0;  ///< largest share of a force along the surface in that across it
+  Vector3 held{0, 0, 0};  ///< middle of both points that are held [m], W
+  Vector3 tips{0, 0, 0};  ///< of both tips
+};
+
+// @param ring radius of the circle in the middle of the torus' tube, round y [m]
+Pinch pinch_of_torus(Played& played, const Model& torus, std::size_t k, int first, double ring) {
+  Pinch pinch;
+  pinch.least = std::min(played.force(k, first).norm(), played.force(k, first + 1).norm());
+  for (int s = first; s < first + 2; ++s) {
+    const Vector3 rest = played.contact_at_rest(k, s, torus);
+    const Vector3 middle = ring * Vector3(rest.x(), 0, rest.z()).normalized();
+    const Vector3 normal = played.orientation(k) * (rest - middle).normalized();
+    const Vector3 force = -played.force(k, s);
+    const Vector3 across = force.dot(normal) * normal;
+    pinch.steepest = std::max(pinch.steepest, (force - across).norm() / across.norm());
+    pinch.sum += force;
+    pinch.held += 0.5 * (played.position(k) + played.orientation(k) * rest);
+    pinch.tips += 0.5 * played.tip(k, s);
+  }
+  return pinch;
+}
+
+}  // namespace
+
+TEST_CASE("gallery, torus: two hands pass it by friction alone, and it is never free", "[slow]") {
+  Played played("torus");
+  const double weight = 9.81 * played.mass();
+  const Model model = played.model();
+  const double friction = played.scene().objects[0].friction.static_;
+  const auto pinch = [&](std::size_t k, int first) {
+    return pinch_of_torus(played, model, k, first, 0.04);
+  };
+  // At rest in the air nothing but the fingers is there to carry it.
+  struct Carried {
+    int first;
+    double begin, end;
+  };
+  for (const Carried& carried : {Carried{0, 3.9, 4.4}, Carried{2, 9.0, 10.0}}) {
+    double off = 0.0;
+    double aside = 0.0;
+    double steepest = 0.0;
+    for (std::size_t k = played.row(carried.begin); k < played.row(carried.end); ++k) {
+      const Pinch hand = pinch(k, carried.first);
+      off = std::max(off, std::abs(hand.sum.y() - weight) / weight);
+      aside = std::max(aside, Vector3(hand.sum.x(), 0, hand.sum.z()).norm() / weight);
+      steepest = std::max(steepest, hand.steepest);
+      CHECK(played.force(k, 2 - carried.first).isZero(0.0));
+      CHECK(played.force(k, 3 - carried.first).isZero(0.0));
+    }
+    INFO("weight off by " << off << ", aside " << aside << ", along the surface " << steepest);
+    CHECK(off < 0.01);
+    CHECK(aside < 0.01);
+    CHECK(steepest < friction);
+  }
+  // Force passes from one hand to the other.
+  const std::size_t both = played.row(5.5);
+  CHECK(pinch(both, 0).least > 0.5);
+  CHECK(pinch(both, 2).least > 0.5);
+  double least = 1e3;  // of the hand that holds it better
+  double unbalanced = 0.0;
+  for (std::size_t k = played.row(1.2); k < played.rows(); ++k) {
+    least = std::min(least, std::max(pinch(k, 0).least, pinch(k, 2).least));
+    unbalanced = std::max(unbalanced, played.unbalanced(k).norm());
+  }
+  INFO("held by " << least << " N at least, forces off by " << unbalanced << " N");
+  CHECK(least > 0.5);
+  CHECK(unbalanced < 1e-9);
+  // It is where the left hand is, and has gone the way of its tips.
+  const std::size_t end = played.rows() - 1;
+  const std::size_t taken = played.row(6.95);
+  const Pinch at_end = pinch(end, 2);
+  INFO("held " << at_end.held.transpose() << " m, tips " << at_end.tips.transpose() << " m");
+  CHECK((at_end.held - at_end.tips).norm() < 2e-3);
+  const Vector3 way = played.position(end) - played.position(taken);
+  CHECK((way - (at_end.tips - pinch(taken, 2).tips)).norm() < 2e-3);
+  CHECK(way.x() < -0.09);
+  CHECK((played.position(end) - played.position(played.row(9.0))).norm() < 2e-4);
+}

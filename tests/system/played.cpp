@@ -108,11 +108,17 @@ void Played::read_body_contacts() {
 
 NodeInside Played::deepest_node() const {
   const std::filesystem::path run = stage_.path("run.h5");
-  const std::string rate = std::to_string(0.1 / dt_);
-  const FinishedProgram made = run_to_end(
-      {IRDM_REPLAY, stage_.path("trace.h5").string(), "--rate", rate, "--output", run.string()});
+  const FinishedProgram made =
+      run_to_end({IRDM_REPLAY, stage_.path("trace.h5").string(), "--output", run.string()});
   if (made.status != 0) throw std::runtime_error("no run file: " + made.err);
   return deepest_inside(run, config_);
+}
+
+void check_penetration(const Played& played) {
+  const NodeInside deepest = played.deepest_node();
+  INFO("node " << deepest.node << " of " << deepest.object << " " << deepest.depth << " m inside "
+               << deepest.other << " at " << deepest.time << " s");
+  CHECK(deepest.depth < 5e-4);
 }
 
 }  // namespace irdm::test

@@ -62,8 +62,7 @@ class Played {
   /// Where the stylus touches its surface at rest in step k [m], B.
   Vector3 contact_at_rest(std::size_t k, int stylus, const Model& model);
   double peak_force(int stylus = 0);
-  /// The deepest surface node of an object inside another one, scenery or floor, of all steps or
-  /// one in ten (see deepest_inside()).
+  /// The deepest surface node of an object inside another one, scenery or floor, of all steps.
   NodeInside deepest_node() const;
 
  private:
@@ -85,5 +84,8 @@ class Played {
   std::map<std::string, std::vector<double>> vectors_;
   std::map<int, std::vector<std::int32_t>> contact_nodes_;
 };
+
+/// No surface node is ever more than 0.5 mm inside something else.
+void check_penetration(const Played& played);
 
 }  // namespace irdm::test

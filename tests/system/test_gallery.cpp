@@ -60,6 +60,7 @@ TEST_CASE("gallery, two cubes: the stiff one gives the larger and shorter blow")
 
 TEST_CASE("gallery, pinch: friction lifts the cube as far as the pinched points go up") {
   Played played("pinch");
+  check_penetration(played);
   const std::size_t below = played.row(1.55);
   const std::size_t above = played.row(3.5);
   // Of the points that the tips hold; between tip and point is the coupling spring.
@@ -121,6 +122,7 @@ TEST_CASE("gallery, slide: the contact slips along the top, with kinetic frictio
 TEST_CASE(
     "gallery, rest: the floor carries the cube that has dropped on it, and pushed it slides") {
   Played played("rest");
+  check_penetration(played);
   const double weight = 9.81 * played.mass();
   double mean = 0.0;
   const std::size_t begin = played.row(2.0);

@@ -11,6 +11,7 @@ using namespace irdm::test;
 
 TEST_CASE(
     "gallery, stack: at rest each cube carries what is above it; pushed over, all three lie") {
+  // How deep edges of its cubes sink: docs/results.md.
   Played played("stack");
   const double weight = 9.81 * played.mass();
   const std::size_t rest = played.row(2.9);
@@ -32,6 +33,7 @@ TEST_CASE(
 }
 
 TEST_CASE("gallery, tray: led against all four walls, the cube stays inside", "[slow]") {
+  // Its walls end half-way up the cube: how deep their edges press into it, docs/results.md says.
   Played played("tray");
   const double inner = 0.13 - 0.06;  // m, of the centre, if the cube were rigid
   double farthest = 0.0;
@@ -63,6 +65,7 @@ TEST_CASE("gallery, tray: led against all four walls, the cube stays inside", "[
 
 TEST_CASE("gallery, peg: both posts resist alike, until the cube has come between them", "[slow]") {
   Played played("peg");
+  check_penetration(played);
   const double weight = 9.81 * played.mass();
   const std::size_t pushed = played.row(3.0);
   const Vector3 front = played.body_force(pushed, 0, -2);
@@ -95,6 +98,7 @@ TEST_CASE("gallery, peg: both posts resist alike, until the cube has come betwee
 TEST_CASE("gallery, squeeze: friction alone lifts the ball, inside the cone, and carries it",
           "[slow]") {
   Played played("squeeze");
+  check_penetration(played);
   const double weight = 9.81 * played.mass();
   const Model ball = played.model();
   const double friction = played.scene().objects[0].friction.static_;
@@ -132,6 +136,7 @@ TEST_CASE("gallery, squeeze: friction alone lifts the ball, inside the cone, and
 
 TEST_CASE("gallery, five fingers: they press alike, and friction carries the ball", "[slow]") {
   Played played("five-fingers");
+  check_penetration(played);
   const double weight = 9.81 * played.mass();
   double unbalanced = 0.0;
   double carried_off = 0.0;
@@ -164,6 +169,7 @@ TEST_CASE("gallery, five fingers: they press alike, and friction carries the bal
 TEST_CASE("gallery, spatula: it takes the slab's weight from the rails and gives it back",
           "[slow]") {
   Played played("spatula");
+  check_penetration(played);
   const double weight = 9.81 * played.mass(0);
   const double tool = 9.81 * played.mass(1);
   const std::size_t lifted = played.row(7.5);
@@ -184,6 +190,7 @@ TEST_CASE("gallery, spatula: it takes the slab's weight from the rails and gives
 }
 
 TEST_CASE("gallery, bowl: the rod stirs the cube, which stays inside", "[slow]") {
+  // How deep edges press into each other: docs/results.md.
   Played played("bowl");
   const std::string cube = "/object/cube/body_position";
   double way = 0.0;
@@ -238,6 +245,7 @@ Pinch pinch_of_torus(Played& played, const Model& torus, std::size_t k, int firs
 
 TEST_CASE("gallery, torus: two hands pass it by friction alone, and it is never free", "[slow]") {
   Played played("torus");
+  check_penetration(played);
   const double weight = 9.81 * played.mass();
   const Model model = played.model();
   const double friction = played.scene().objects[0].friction.static_;

@@ -196,7 +196,7 @@ TEST_CASE("bodies: a fast one does not pass through another, nor through scenery
 // Nothing but the fingers moves. The face that bulges by more than 6 mm was at first farther from
 // the other than samples at rest are looked at.
 TEST_CASE("bodies: one that fingers make bulge comes to touch what is beside it") {
-  constexpr double kHalfEdge = 0.06;
+  constexpr double kFace = 0.06;  // from the centre [m]
   constexpr double kGap = 0.004;
   const bool soft = GENERATE(false, true);
   SimulationConfig config;
@@ -205,11 +205,11 @@ TEST_CASE("bodies: one that fingers make bulge comes to touch what is beside it"
   config.objects[0].tether = {1000.0, 10.0};
   config.objects[0].damping = {20.0, 20.0};
   if (soft) {
-    config.objects[1].position.z() = 2.0 * kHalfEdge + kGap;
+    config.objects[1].position.z() = 2.0 * kFace + kGap;
   } else {
     config.scenery.resize(1);
     config.scenery[0].shape = BoxShape{Vector3(0.2, 0.2, 0.02)};
-    config.scenery[0].position.z() = kHalfEdge + kGap + 0.01;
+    config.scenery[0].position.z() = kFace + kGap + 0.01;
   }
   config.styluses.assign(2, {0.015, 2000.0, 0.0});
   Simulation simulation(config);
@@ -217,7 +217,7 @@ TEST_CASE("bodies: one that fingers make bulge comes to touch what is beside it"
   double impulse = 0.0;
   constexpr int kSteps = 400;
   for (int k = 0; k < kSteps; ++k) {
-    const double x = kHalfEdge + 0.002 - 0.016 * k / kSteps;
+    const double x = kFace + 0.002 - 0.016 * k / kSteps;
     simulation.step(std::vector<StylusCommand>{{true, 0, Vector3(x, 0, 0), std::nullopt},
                                                {true, 0, Vector3(-x, 0, 0), std::nullopt}},
                     *record);
@@ -236,7 +236,7 @@ TEST_CASE("bodies: one that fingers make bulge comes to touch what is beside it"
     const Vector3 x =
         simulation.object(0).state().position +
         simulation.object(0).state().orientation * (mesh.rest_position(i) + u.row(i).transpose());
-    deepest = std::max(deepest, x.z() - kHalfEdge - kGap);
+    deepest = std::max(deepest, x.z() - kFace - kGap);
   }
   CHECK(deepest < 0.0005);
 }

@@ -23,7 +23,9 @@ class KeyStage : public Stage {
 
  private:
   void write_key(const std::string& name, char digit) const {
-    write(name, std::string(64, digit) + "\n");
+    std::string line(64, digit);
+    line.push_back('\n');
+    write(name, line);
     fs::permissions(path(name), fs::perms::owner_read | fs::perms::owner_write);
   }
 };

@@ -58,7 +58,7 @@ if [ $all = yes ]; then
   build_ahead tsan
   build_ahead ci tsan
   run_tests asan --label-exclude 'slow|exhaustive' --parallel 2
-  IRDM_FUZZ_SEED=1 IRDM_FUZZ_AT_ONCE=$((2 * $(nproc))) scripts/fuzz.sh 30
+  IRDM_FUZZ_SEED=1 IRDM_FUZZ_AT_ONCE=$((2 * $(nproc))) scripts/fuzz.sh 15
   finish tsan
   run_tests tsan --label-exclude 'slow|exhaustive' --parallel 2
   finish ci

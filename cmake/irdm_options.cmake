@@ -48,9 +48,12 @@ function(irdm_precompile name)
   endif()
 endfunction()
 
-# irdm_add_library(NAME SOURCES... ) makes one static library target for a folder.
+# irdm_add_library(NAME SOURCES... ) makes one static library target for a folder. The Python module and the C library
+# are made of them; none of their functions is replaced from outside.
 function(irdm_add_library name)
   add_library(${name} STATIC ${ARGN})
+  set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  target_compile_options(${name} PRIVATE -fno-semantic-interposition)
   target_link_libraries(${name} PUBLIC irdm_options)
   irdm_precompile(${name} <Eigen/Dense> <algorithm> <functional> <memory> <string> <vector>)
 endfunction()

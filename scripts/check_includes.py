@@ -21,6 +21,8 @@ RULES = {
     "precompute": {"common"},
     "replay": {"common", "simulation", "scene", "trace", "viewer", "precompute"},
     "device_bridge": {"common"},
+    "c_interface": {"common", "simulation", "scene"},
+    "python": {"common", "simulation", "scene"},
 }
 PURE = {"simulation"}
 IMPURE = re.compile(

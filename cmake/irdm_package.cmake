@@ -1,5 +1,5 @@
 # What a package has beside programs and libraries: man pages, completion, systemd units; and the Debian packages
-# themselves, `cpack -G DEB` in the build folder: irdm and, for programs that embed it, irdm-dev.
+# themselves, `cpack -G DEB` in the build folder: irdm; for programs that embed it, irdm-dev; and python3-irdm.
 set(files ${PROJECT_SOURCE_DIR}/cmake/package)
 
 install(PROGRAMS scripts/irdm-play DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime)
@@ -12,7 +12,10 @@ foreach(program ${programs})  # bash looks for a file of the program's name
 endforeach()
 
 # All that is packaged, without tests and benchmarks.
-add_custom_target(irdm_packaged DEPENDS irdm-bridge irdm-precompute irdm-replay irdm-server irdm_scene irdm_trace)
+add_custom_target(irdm_packaged DEPENDS irdm-bridge irdm-precompute irdm-replay irdm-server irdm_c irdm_scene irdm_trace)
+if(TARGET irdm_python)
+  add_dependencies(irdm_packaged irdm_python)
+endif()
 
 find_program(IRDM_HELP2MAN help2man)
 if(IRDM_HELP2MAN AND NOT IRDM_SANITIZE)
@@ -45,6 +48,9 @@ set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "haptic rendering of soft, free-floating o
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_COMPONENTS_ALL runtime development)
+if(TARGET irdm_python)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+endif()
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
@@ -58,13 +64,21 @@ set(CPACK_DEBIAN_RUNTIME_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_DEPENDS tetgen)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_RECOMMENDS "gmsh, python3-h5py, python3-matplotlib")
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SUGGESTS "bash-completion, chromium, ffmpeg")
-set(CPACK_DEBIAN_RUNTIME_PACKAGE_CONTROL_EXTRA ${files}/postinst ${files}/prerm ${files}/postrm)
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_CONTROL_EXTRA ${files}/postinst ${files}/prerm ${files}/postrm ${files}/triggers)
 
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
 "Static libraries and headers of irdm's force step, scenes and traces, for
-programs that embed them by find_package(irdm).")
+programs that embed them by find_package(irdm), and the C interface.")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME irdm-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-  "libboost-dev, libeigen3-dev, libhdf5-dev, libspdlog-dev, libssl-dev, libtomlplusplus-dev")
+  "irdm (= ${PROJECT_VERSION}), libboost-dev, libeigen3-dev, libhdf5-dev, libspdlog-dev, libssl-dev, libtomlplusplus-dev")
+
+set(CPACK_COMPONENT_PYTHON_DESCRIPTION
+"Simulations, models, recordings and contact forces of irdm as numpy arrays.")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-irdm)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "irdm (= ${PROJECT_VERSION}), python3 (>= 3.11), python3 (<< 3.12), python3-numpy")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS python3-h5py)
 include(CPack)

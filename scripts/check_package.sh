@@ -23,8 +23,8 @@ fail() { echo "check_package: error: $1" >&2; exit 1; }
 
 [ "$(id -u)" -eq 0 ] || fail "mounts and chroot need root"
 command -v debootstrap >/dev/null || fail "there is no debootstrap; apt-get install debootstrap"
-packages=("$folder"/irdm_*.deb "$folder"/irdm-dev_*.deb)
-[ ${#packages[@]} -eq 2 ] && [ -f "${packages[0]}" ] && [ -f "${packages[1]}" ] ||
+packages=("$folder"/irdm_*.deb "$folder"/irdm-dev_*.deb "$folder"/python3-irdm_*.deb)
+[ ${#packages[@]} -eq 3 ] && [ -f "${packages[0]}" ] && [ -f "${packages[1]}" ] && [ -f "${packages[2]}" ] ||
   fail "there are no packages in $folder; make them with scripts/package.sh"
 
 clean=/var/tmp/irdm-debian-12
@@ -70,17 +70,17 @@ state() {
 say "installing what the packages depend on"
 quietly inside apt-get update -q
 for package in "${packages[@]}"; do
-  depends=$(dpkg-deb -f "$package" Depends)
+  depends=$(dpkg-deb -f "$package" Depends | sed 's/irdm (= [^)]*), //')
   echo "  $(basename "$package"): $depends"
   quietly inside apt-get satisfy -y -q --no-install-recommends "$depends"
 done
-quietly inside apt-get install -y -q --no-install-recommends g++ cmake make man-db
+quietly inside apt-get install -y -q --no-install-recommends g++ cmake make man-db pkg-config
 state >"$work/before"
 
 say "installing the packages"
 cp "${packages[@]}" "$root/tmp/"
-quietly inside sh -c 'dpkg -i /tmp/irdm*.deb'
-inside sh -c 'dpkg -L irdm irdm-dev | grep -c .' | sed 's/$/ files and folders/; s/^/  /'
+quietly inside sh -c 'dpkg -i /tmp/*.deb'
+inside sh -c 'dpkg -L irdm irdm-dev python3-irdm | grep -c .' | sed 's/$/ files and folders/; s/^/  /'
 for program in irdm-precompute irdm-server irdm-bridge irdm-replay irdm-play; do
   echo "  $(as_nobody $program --version)"
   inside test -f "/usr/share/man/man1/$program.1.gz" || fail "$program has no man page"
@@ -96,9 +96,14 @@ quietly as_nobody cmake -S /usr/share/irdm/examples/embed -B /tmp/embed
 quietly as_nobody cmake --build /tmp/embed
 as_nobody /tmp/embed/embed /tmp/play/models/paper-cube.h5 | tail -1 | sed 's/^/  /'
 
+say "a step from Python, and the C example"
+as_nobody python3 -c 'import irdm; print(irdm.Simulation({"object": [{"model": "/tmp/play/models/paper-cube.h5"}]}).step().time)' |
+  sed 's/^/  /' || fail "Python failed"
+quietly as_nobody sh -c 'cc /usr/share/irdm/examples/c/press.c -o /tmp/press $(pkg-config --cflags --libs irdm)'
+
 say "purging the packages"
 rm -rf "$root"/tmp/*
-quietly inside apt-get purge -y -q irdm irdm-dev
+quietly inside apt-get purge -y -q irdm irdm-dev python3-irdm
 state >"$work/after"
 if ! diff "$work/before" "$work/after" >"$work/diff"; then
   cat "$work/diff" >&2

@@ -1,0 +1,318 @@
+#include <pybind11/stl.h>
+
+#include <atomic>
+#include <stdexcept>
+
+#include "common/error.hpp"
+#include "python/core/model.hpp"
+#include "python/core/module.hpp"
+#include "scene/scene_run.hpp"
+#include "simulation/step/step_rows.hpp"
+
+namespace py = pybind11;
+
+namespace irdm::python {
+namespace {
+
+// What a caller gives for one or many steps; rows of all styluses, step after step.
+using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
+using Buttons = py::array_t<std::uint32_t, py::array::c_style | py::array::forcecast>;
+using Flags = py::array_t<bool, py::array::c_style | py::array::forcecast>;
+
+// Commands of `count` steps, checked.
+class Commands {
+ public:
+  Commands(const std::optional<Numbers>& tips, const std::optional<Buttons>& buttons,
+           const std::optional<Numbers>& orientations, const std::optional<Flags>& present,
+           std::size_t steps, std::size_t styluses)
+      : steps_(steps), styluses_(styluses) {
+    const std::size_t rows = steps * styluses;
+    commands_.resize(rows);
+    if (!tips) {
+      if (buttons || orientations || present) {
+        throw py::value_error("tips are missing: give them, or nothing else either");
+      }
+      return;
+    }
+    const double* tip = numbers(*tips, "tips", 3);
+    const double* turn = orientations ? numbers(*orientations, "orientations", 4) : nullptr;
+    const std::uint32_t* pressed = buttons ? numbers(*buttons, "buttons", 1) : nullptr;
+    const bool* there = present ? numbers(*present, "present", 1) : nullptr;
+    for (std::size_t r = 0; r < rows; ++r) {
+      StylusCommand& command = commands_[r];
+      command.present = there == nullptr || there[r];
+      command.tip = Vector3(tip[3 * r], tip[3 * r + 1], tip[3 * r + 2]);
+      if (turn != nullptr) {
+        const double* q = turn + 4 * r;
+        command.orientation = Quaternion(q[0], q[1], q[2], q[3]);
+      }
+      if (pressed != nullptr) command.buttons = pressed[r];
+      const char* const fault = fault_of(command);
+      if (fault == nullptr) continue;
+      throw py::value_error("step " + std::to_string(r / styluses) + ", stylus " +
+                            std::to_string(r % styluses) + ": " + fault);
+    }
+  }
+
+  std::span<const StylusCommand> of(std::size_t step) const {
+    return {commands_.data() + step * styluses_, styluses_};
+  }
+
+ private:
+  template <typename Number>
+  const Number* numbers(const py::array_t<Number, py::array::c_style | py::array::forcecast>& array,
+                        const char* name, std::size_t width) const {
+    if (static_cast<std::size_t>(array.size()) == steps_ * styluses_ * width) return array.data();
+    throw py::value_error(std::string(name) + " has " + std::to_string(array.size()) +
+                          " numbers, not " + std::to_string(steps_ * styluses_ * width) + ": " +
+                          std::to_string(width) + " for each of " + std::to_string(styluses_) +
+                          " styluses a step");
+  }
+
+  std::size_t steps_;
+  std::size_t styluses_;
+  std::vector<StylusCommand> commands_;
+};
+
+// Rows of one or several steps, copied from the run.
+struct Rows {
+  std::vector<double> time;
+  std::vector<StylusRow> styluses;
+  std::vector<ObjectRow> objects;
+  std::vector<ContactForce> contacts;
+  std::vector<std::int64_t> first{0};  ///< contact of each step, and the end
+
+  void take(const SceneRun& run) {
+    const StepRecord& record = run.record();
+    time.push_back(record.time);
+    for (int s = 0; s < record.stylus_count; ++s) {
+      styluses.push_back(row_of(record.stylus[static_cast<std::size_t>(s)]));
+    }
+    for (int i = 0; i < record.object_count; ++i) {
+      objects.push_back(
+          row_of(static_cast<const ObjectStep&>(record.object[static_cast<std::size_t>(i)])));
+    }
+    const std::span<const ContactForce> now = run.contacts();
+    contacts.insert(contacts.end(), now.begin(), now.end());
+    first.push_back(static_cast<std::int64_t>(contacts.size()));
+  }
+};
+
+template <typename Row>
+py::array rows(const std::vector<Row>& of) {
+  return py::array_t<Row>(static_cast<py::ssize_t>(of.size()), of.data());
+}
+
+template <typename Row>
+py::array rows(const std::vector<Row>& of, std::size_t steps) {
+  const auto count = static_cast<py::ssize_t>(steps);
+  const auto width = steps == 0 ? py::ssize_t{0} : static_cast<py::ssize_t>(of.size()) / count;
+  return py::array_t<Row>({count, width}, of.data());
+}
+
+struct Step {
+  std::uint64_t number = 0;
+  double time = 0.0;
+  py::array styluses, objects, contacts;
+};
+
+struct Steps {
+  py::array time, styluses, objects, contacts, first;
+};
+
+class PythonSimulation {
+ public:
+  PythonSimulation(const std::string& text, const std::string& file)
+      : run_(file.empty() ? TomlTable::parse_text(text, "scene") : TomlTable::parse_file(file)),
+        surfaces_(static_cast<std::size_t>(run_.simulation().object_count())) {}
+
+  Step step(const std::optional<Numbers>& tips, const std::optional<Buttons>& buttons,
+            const std::optional<Numbers>& orientations, const std::optional<Flags>& present) {
+    const Use use(*this);
+    const Commands commands(tips, buttons, orientations, present, 1, styluses());
+    rows_ = Rows{};
+    {
+      const py::gil_scoped_release released;
+      run_.step(commands.of(0));
+    }
+    rows_.take(run_);
+    return {run_.record().force_step, run_.record().time, rows(rows_.styluses), rows(rows_.objects),
+            rows(rows_.contacts)};
+  }
+
+  Steps step_many(const Numbers& tips, const std::optional<Buttons>& buttons,
+                  const std::optional<Numbers>& orientations, const std::optional<Flags>& present) {
+    const Use use(*this);
+    if (tips.ndim() < 1) throw py::value_error("tips must have the shape (steps, styluses, 3)");
+    const auto steps = static_cast<std::size_t>(tips.shape(0));
+    const Commands commands(tips, buttons, orientations, present, steps, styluses());
+    Rows all;
+    {
+      const py::gil_scoped_release released;
+      for (std::size_t k = 0; k < steps; ++k) {
+        run_.step(commands.of(k));
+        all.take(run_);
+      }
+    }
+    return {rows(all.time), rows(all.styluses, steps), rows(all.objects, steps), rows(all.contacts),
+            rows(all.first)};
+  }
+
+  void reset() {
+    const Use use(*this);
+    run_.reset();
+  }
+
+  py::array surface(const py::object& self, int i) {
+    const Use use(*this);
+    Points& x = surfaces_[object(i)];
+    {
+      const py::gil_scoped_release released;
+      run_.surface(i, x);
+    }
+    return view<double>({x.rows(), 3}, x.data(), self);
+  }
+
+  PythonModel model(int i) const {
+    object(i);
+    return PythonModel(run_.model(i));
+  }
+
+  const SceneRun& run() const { return run_; }
+
+ private:
+  // One thread at a time, also while the interpreter is not held.
+  class Use {
+   public:
+    explicit Use(PythonSimulation& of) : used_(of.used_) {
+      if (used_.test_and_set()) {
+        throw std::runtime_error("the simulation is used by another thread: give each its own");
+      }
+    }
+    Use(const Use&) = delete;
+    Use& operator=(const Use&) = delete;
+    ~Use() { used_.clear(); }
+
+   private:
+    std::atomic_flag& used_;
+  };
+
+  std::size_t styluses() const { return static_cast<std::size_t>(run_.stylus_count()); }
+  std::size_t object(int i) const {
+    if (i >= 0 && i < run_.simulation().object_count()) return static_cast<std::size_t>(i);
+    throw py::index_error("object is " + std::to_string(i) + "; use 0 to " +
+                          std::to_string(run_.simulation().object_count() - 1));
+  }
+
+  SceneRun run_;
+  std::vector<Points> surfaces_;
+  Rows rows_;
+  std::atomic_flag used_ = ATOMIC_FLAG_INIT;
+};
+
+template <typename Named>
+std::vector<std::string> names(const std::vector<Named>& of) {
+  std::vector<std::string> names;
+  for (const Named& one : of) names.push_back(one.name);
+  return names;
+}
+
+void bind_rows(py::module_& module) {
+  PYBIND11_NUMPY_DTYPE(StylusRow, present, contact, object, tool, tip, proxy, force, torque);
+  PYBIND11_NUMPY_DTYPE(ObjectRow, asleep, solved, position, orientation, velocity, angular_velocity,
+                       residual);
+  PYBIND11_NUMPY_DTYPE(ContactForce, object, kind, other, place, state, slipping, position, normal,
+                       force, slip, area);
+  module.attr("stylus_dtype") = py::dtype::of<StylusRow>();
+  module.attr("object_dtype") = py::dtype::of<ObjectRow>();
+  module.attr("contact_dtype") = py::dtype::of<ContactForce>();
+}
+
+}  // namespace
+
+void bind_simulation(py::module_& module) {
+  bind_rows(module);
+  module.attr("GRAB") = kGrabButton;
+  module.attr("RESET") = kResetButton;
+  module.attr("STYLUS") = static_cast<int>(ContactKind::kStylus);
+  module.attr("FLOOR") = static_cast<int>(ContactKind::kFloor);
+  module.attr("OBJECT") = static_cast<int>(ContactKind::kObject);
+  module.attr("SCENERY") = static_cast<int>(ContactKind::kScenery);
+  module.attr("COUPLING") = static_cast<int>(ContactKind::kCoupling);
+  py::class_<Step>(module, "Step", "What happened in one step. Arrays are copies of this step's.")
+      .def_readonly("number", &Step::number, "k, from 0.")
+      .def_readonly("time", &Step::time, "At its end, (k + 1) dt [s].")
+      .def_readonly("styluses", &Step::styluses, R"((s) of irdm.stylus_dtype, all in W:
+
+present, contact (0 free, 1 touching, 2 held), object (-1: none), tool (-1: none), tip [m], proxy [m], force on the stylus
+[N], torque on it about the tip [N m].)")
+      .def_readonly("objects", &Step::objects,
+                    R"((objects) of irdm.object_dtype, at the end of the step:
+
+asleep, solved (0: the contact problem had no finite solution and no force acted), position of the centre of mass [m] W,
+orientation w x y z B to W, velocity [m/s] W, angular_velocity [rad/s] W, residual of the contact problem [m].)")
+      .def_readonly("contacts", &Step::contacts,
+                    R"((contacts) of irdm.contact_dtype: every force on every object.
+
+object; kind (irdm.STYLUS, FLOOR, OBJECT, SCENERY, COUPLING: a stylus that leads it as its tool); other (number of stylus,
+object, scenery); place (patch, or node on the floor, or -1); state, slipping; in W position [m], normal towards the object,
+force on it [N], slip in the step [m]; area [m^2]. What is not known is nan. A contact of two objects is there for each.
+The sum of an object's forces and its weight is the change of its momentum over dt, where it has no damping and no tether.)");
+  py::class_<Steps>(module, "Steps",
+                    "What happened in several steps. Arrays as in Step, with the step first.")
+      .def_readonly("time", &Steps::time, "(steps) [s]")
+      .def_readonly("styluses", &Steps::styluses, "(steps, s) of irdm.stylus_dtype.")
+      .def_readonly("objects", &Steps::objects, "(steps, objects) of irdm.object_dtype.")
+      .def_readonly("contacts", &Steps::contacts, "Of all steps, of irdm.contact_dtype.")
+      .def_readonly(
+          "first_contact", &Steps::first,
+          "(steps + 1): contacts[first_contact[k]:first_contact[k + 1]] are those of the k-th.");
+  using Self = PythonSimulation;
+  py::class_<Self>(module, "SimulationCore")
+      .def(py::init<const std::string&, const std::string&>(), py::arg("text"), py::arg("file"))
+      .def("step", &Self::step, py::arg("tips") = py::none(), py::arg("buttons") = py::none(),
+           py::arg("orientations") = py::none(), py::arg("present") = py::none(), R"(One step of dt.
+
+tips: (s, 3) at the end of the step [m], W; None: nobody is there. buttons: (s), irdm.GRAB | irdm.RESET. orientations: (s, 4)
+w x y z in W, of styluses that lead a tool. present: (s) of bool, who is there; None: all. Returns a Step. Raises ValueError for
+wrong sizes, numbers that are not finite or beyond 1e4 m, orientations whose length is not 1.)")
+      .def("step_many", &Self::step_many, py::arg("tips"), py::arg("buttons") = py::none(),
+           py::arg("orientations") = py::none(), py::arg("present") = py::none(),
+           R"(Several steps, with the interpreter free meanwhile.
+
+tips: (steps, s, 3); buttons, orientations, present: (steps, s, ...); as of step(). Nothing is done where one of them is
+wrong. Returns Steps. Raises as step().)")
+      .def("reset", &Self::reset,
+           "Puts everything back to the start before the next step; its number goes on.")
+      .def(
+          "surface",
+          [](const py::object& self, int i) { return self.cast<Self&>().surface(self, i); },
+          py::arg("object") = 0,
+          R"(Where the surface nodes of an object are after the last step, (n, 3) [m], W.
+
+Read-only and not copied: the next call for this object writes it anew. Raises IndexError.)")
+      .def("model", &Self::model, py::arg("object") = 0,
+           "The Model of an object. Raises IndexError.")
+      .def_property_readonly(
+          "dt", [](const Self& self) { return self.run().simulation().dt(); }, "[s]")
+      .def_property_readonly(
+          "next_step", [](const Self& self) { return self.run().simulation().next_step(); },
+          "Number of the coming step.")
+      .def_property_readonly(
+          "stylus_count", [](const Self& self) { return self.run().stylus_count(); }, "s")
+      .def_property_readonly(
+          "gravity",
+          [](const Self& self) {
+            const Vector3& g = self.run().simulation().settings().gravity;
+            return py::array_t<double>(3, g.data());
+          },
+          "(3) [m/s^2], W.")
+      .def_property_readonly(
+          "object_names", [](const Self& self) { return names(self.run().scene().objects); },
+          "By number.")
+      .def_property_readonly(
+          "scenery_names", [](const Self& self) { return names(self.run().scene().scenery); },
+          "By number.");
+}
+
+}  // namespace irdm::python

@@ -1,0 +1,45 @@
+#!/usr/bin/env bash
+# interfaces.sh TREE CC MODEL PYTHON: the C and C# examples and the Python package, from the installed files, press the same
+# cube; what the stylus gave it is the momentum that it has, and all three say the same.
+set -euo pipefail
+tree=$1 cc=$2 model=$3 python=$4
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cp "$model" "$work/cube.h5"
+cat >"$work/scene.toml" <<'EOF'
+[[object]]
+model = "cube.h5"
+[[stylus]]
+radius = 0.02
+coupling_stiffness = 500
+EOF
+export LD_LIBRARY_PATH=$tree/lib PKG_CONFIG_PATH=$tree/lib/pkgconfig
+
+read -ra flags < <(pkg-config --cflags --libs irdm)
+"$cc" -std=c99 -Wall -Wextra -Wpedantic -Werror "$tree/share/irdm/examples/c/press.c" -o "$work/press" "${flags[@]}"
+"$work/press" "$work/scene.toml" | tee "$work/c.txt"
+# No other symbol leaves the library.
+others=$(nm -D --defined-only "$tree/lib/libirdm.so.1" | awk '{ print $3 }' | grep -v '^irdm_' || true)
+[ -z "$others" ] || { echo "libirdm.so has the symbols $others" >&2; exit 1; }
+! "$work/press" "$work/nowhere.toml" 2>"$work/error" && grep -q '^press: error: .*nowhere.toml' "$work/error"
+
+mcs -warnaserror -out:"$work/Press.exe" "$tree/share/irdm/examples/csharp/Press.cs"
+mono "$work/Press.exe" "$work/scene.toml" | tee "$work/csharp.txt"
+diff <(sed 's/  *[0-9]* contacts$//' "$work/c.txt") "$work/csharp.txt"
+
+cd "$work"
+env -u LD_LIBRARY_PATH PYTHONPATH="$tree/lib/python3/dist-packages" PYTHONDONTWRITEBYTECODE=1 "$python" - <<'EOF'
+import irdm
+
+assert all(line.verdict != "FAIL" for line in irdm.check("cube.h5"))
+mass = irdm.Model.open("cube.h5").mass
+simulation = irdm.Simulation("scene.toml")
+impulse = 0.0
+for k in range(400):
+    step = simulation.step([[0.0, 0.075 - min(0.0001 * k, 0.02), 0.0]])
+    impulse -= step.styluses["force"][0, 1] * simulation.dt
+velocity = step.objects["velocity"][0, 1]
+said = open("csharp.txt").read().splitlines()[-1]
+assert said == f"impulse {impulse:.9f} N s, velocity {velocity:.9f} m/s", (said, impulse, velocity)
+assert impulse < -1e-3 and abs(impulse - mass * velocity) < 1e-12
+EOF

@@ -1,0 +1,213 @@
+import sys
+import threading
+import unittest
+
+import numpy
+from support import block, cube, scene
+
+import irdm
+
+
+def tips(steps):
+    """Two fingers that press the cube from its sides and rub it: (steps, 2, 3) [m]."""
+    k = numpy.arange(steps)
+    depth = 0.004 * numpy.minimum(1, k / 150)
+    z = 0.01 * numpy.sin(0.02 * k)
+    one = numpy.stack([0.062 - depth, numpy.full(steps, 0.06), z], axis=-1)
+    return numpy.stack([one, one * [-1, 1, 1]], axis=1)
+
+
+class SimulationTest(unittest.TestCase):
+    def test_forces_change_momentum(self):
+        """Line by line: the forces on each object and its weight are the change of its momentum."""
+        simulation = irdm.Simulation(scene())
+        mass = numpy.array([cube().mass, block().mass])
+        before = numpy.zeros((2, 3))
+        kinds = set()
+        for tip in tips(400):
+            step = simulation.step(tip)
+            force = numpy.zeros((2, 3))
+            numpy.add.at(force, step.contacts["object"], step.contacts["force"])
+            weight = mass[:, None] * simulation.gravity
+            change = mass[:, None] * (step.objects["velocity"] - before) / simulation.dt
+            self.assertLess(abs(change - force - weight).max(), 1e-9)
+            before = step.objects["velocity"]
+            kinds.update(step.contacts["kind"].tolist())
+            by_styluses = step.contacts[step.contacts["kind"] == irdm.STYLUS]
+            for s in range(2):
+                on_it = -by_styluses["force"][by_styluses["other"] == s].sum(axis=0)
+                numpy.testing.assert_allclose(on_it, step.styluses["force"][s], atol=1e-12)
+        self.assertEqual(kinds, {irdm.STYLUS, irdm.OBJECT, irdm.SCENERY})
+        self.assertAlmostEqual(step.time, 400 * simulation.dt, places=12)
+
+    def test_many_steps_are_single_steps(self):
+        way = tips(300)
+        buttons = numpy.zeros((300, 2), dtype=numpy.uint32)
+        buttons[150:, 0] = irdm.GRAB
+        present = numpy.ones((300, 2), dtype=bool)
+        present[:30, 1] = False
+        many = irdm.Simulation(scene()).step_many(way, buttons, present=present)
+        simulation = irdm.Simulation(scene())
+        for k in range(300):
+            step = simulation.step(way[k], buttons[k], present=present[k])
+            self.assertEqual(step.styluses.tobytes(), many.styluses[k].tobytes())
+            self.assertEqual(step.objects.tobytes(), many.objects[k].tobytes())
+            some = many.contacts[many.first_contact[k] : many.first_contact[k + 1]]
+            self.assertEqual(step.contacts.tobytes(), some.tobytes())
+        self.assertEqual(many.styluses["contact"][-1].tolist(), [2, 1])
+        self.assertEqual(many.styluses["present"][10].tolist(), [1, 0])
+
+    def test_threads_side_by_side(self):
+        way = tips(300)
+        expected = irdm.Simulation(scene()).step_many(way)
+        results = [None] * 4
+
+        def run(i):
+            results[i] = irdm.Simulation(scene()).step_many(way)
+
+        threads = [threading.Thread(target=run, args=(i,)) for i in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        for result in results:
+            self.assertEqual(result.objects.tobytes(), expected.objects.tobytes())
+            self.assertEqual(result.contacts.tobytes(), expected.contacts.tobytes())
+
+    def test_one_thread_at_a_time(self):
+        simulation = irdm.Simulation(scene())
+        refused = threading.Event()
+        ended = threading.Event()
+
+        def run():
+            while not refused.is_set() and not ended.is_set():
+                try:
+                    simulation.step_many(tips(50))
+                except RuntimeError as error:
+                    self.assertIn("another thread", str(error))
+                    refused.set()
+
+        threads = [threading.Thread(target=run) for _ in range(2)]
+        for thread in threads:
+            thread.start()
+        met = refused.wait(60)
+        ended.set()
+        for thread in threads:
+            thread.join()
+        self.assertTrue(met)
+        simulation.step()
+
+    def test_surface(self):
+        simulation = irdm.Simulation(scene())
+        at_rest = simulation.surface(0)
+        numpy.testing.assert_allclose(at_rest, cube().nodes + [0, 0.061, 0], atol=1e-15)
+        self.assertFalse(at_rest.flags.writeable)
+        simulation.step_many(tips(200))
+        pressed = simulation.surface(0)
+        # Not copied: the same memory, written anew.
+        self.assertEqual(pressed.ctypes.data, at_rest.ctypes.data)
+        self.assertGreater(abs(pressed - cube().nodes - [0, 0.061, 0]).max(), 0.002)
+        del simulation
+        self.assertTrue(numpy.isfinite(pressed).all())  # its memory lives on
+        # A body that does not deform: only its pose moves it.
+        simulation = irdm.Simulation(scene())
+        step = simulation.step_many(tips(100))
+        w, x, y, z = step.objects["orientation"][-1, 1]
+        turn = numpy.array([
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ])
+        expected = step.objects["position"][-1, 1] + block().nodes @ turn.T
+        numpy.testing.assert_allclose(simulation.surface(1), expected, atol=1e-12)
+
+    def test_reset(self):
+        simulation = irdm.Simulation(scene())
+        first = simulation.step_many(tips(100))
+        simulation.reset()
+        again = simulation.step_many(tips(100))
+        self.assertEqual(first.objects.tobytes(), again.objects.tobytes())
+        self.assertEqual(simulation.next_step, 200)
+
+    def test_tool(self):
+        table = scene()
+        table["stylus"] = [{"tool": {"object": "block"}}]
+        simulation = irdm.Simulation(table)
+        # The corner of its mesh, which follows the tip.
+        place, still = [-0.02, 0.123, -0.03], [1.0, 0.0, 0.0, 0.0]
+        before = numpy.zeros(3)
+        for k in range(200):
+            step = simulation.step([[place[0], place[1] - 5e-5 * k, place[2]]], orientations=[still])
+            of_block = step.contacts[step.contacts["object"] == 1]
+            change = block().mass * (step.objects["velocity"][1] - before) / simulation.dt
+            missing = change - of_block["force"].sum(axis=0) - block().mass * simulation.gravity
+            self.assertLess(abs(missing).max(), 1e-9)
+            before = step.objects["velocity"][1]
+        self.assertIn(irdm.COUPLING, of_block["kind"].tolist())
+        self.assertIn(irdm.OBJECT, of_block["kind"].tolist())
+
+    def test_wrong_use(self):
+        simulation = irdm.Simulation(scene())
+        twin = irdm.Simulation(scene())
+        good = tips(1)[0]
+        wrong = [
+            ((good[:1],), {}, "6"),
+            ((numpy.full((2, 3), numpy.nan),), {}, "stylus 0"),
+            (([[0, 1, 0], [0, 1e5, 0]],), {}, "stylus 1"),
+            ((good,), {"orientations": numpy.zeros((2, 4))}, "orientation"),
+            ((good,), {"buttons": [1]}, "buttons"),
+            ((), {"buttons": [1, 1]}, "tips"),
+        ]
+        for arguments, named, text in wrong:
+            with self.subTest(text), self.assertRaisesRegex(ValueError, text):
+                simulation.step(*arguments, **named)
+        for odd in ("tips", [["a", "b", "c"]], object()):
+            with self.assertRaises((TypeError, ValueError)):
+                simulation.step(odd)
+        with self.assertRaisesRegex(ValueError, "step 1, stylus 0"):
+            simulation.step_many([[[0, 1, 0], [0, 1, 0]], [[numpy.inf, 1, 0], [0, 1, 0]]])
+        for index in (-1, 2):
+            with self.assertRaises(IndexError):
+                simulation.surface(index)
+            with self.assertRaises(IndexError):
+                simulation.model(index)
+        # Nothing of that was a step.
+        self.assertEqual(simulation.step(good).objects.tobytes(), twin.step(good).objects.tobytes())
+
+    def test_wrong_scenes(self):
+        for table, text in (
+            ({}, "object is missing"),
+            ({"object": [{"model": "nowhere.h5"}]}, "nowhere.h5"),
+            (scene(colour="red"), "colour"),
+            (scene(world={"gravity": [0, float("nan"), 0]}), "gravity"),
+            ({"object": {1, 2}}, "set"),
+            ({3: 4}, "key 3"),
+        ):
+            with self.subTest(text), self.assertRaisesRegex(irdm.Error, text):
+                irdm.Simulation(table)
+        with self.assertRaisesRegex(irdm.Error, "nowhere.toml"):
+            irdm.Simulation("nowhere.toml")
+
+    def test_made_often(self):
+        """Nothing keeps what is given back."""
+        kept = sys.getrefcount(cube())
+        for _ in range(50):
+            simulation = irdm.Simulation(scene())
+            surface = simulation.surface(0)
+            del simulation, surface
+        self.assertEqual(sys.getrefcount(cube()), kept)
+
+
+class TomlTest(unittest.TestCase):
+    def test_text(self):
+        import pathlib
+        import tomllib
+
+        table = {"a": 1, "b": True, "c": -2.5e-3, "d": "x \"y\" \\ \n µ", "e": [1, 2], "f": {"g h": [{"i": 1}]},
+                 "j": numpy.float32(0.5), "k": numpy.arange(3), "l": pathlib.Path("x/y"), "m": float("inf")}
+        read = tomllib.loads(irdm.to_toml(table))
+        self.assertEqual(read, {**table, "k": [0, 1, 2], "l": "x/y", "j": 0.5})
+
+
+if __name__ == "__main__":
+    unittest.main()

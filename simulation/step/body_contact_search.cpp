@@ -20,6 +20,12 @@ constexpr double kReliable = 1.0 - 1e-9;
 // An edge whose face is turned to the other's by a smaller angle than this lies flat: the samples
 // of the face touch. Cosine, 3 degrees.
 constexpr double kFlush = 0.9986;
+// How deep an edge that lies flat may be before it touches as well [m]: the samples of the face
+// leave it free up to their spacing, on a body that bends or comes to rest askew.
+constexpr double kFlatInset = 2e-4;
+// What comes down by more than this in a step [m] the face's samples stop, some of them at the same
+// nodes: with the edges besides the sweeps find no solution.
+constexpr double kFastestFlat = 2e-3;
 // An edge leads on a face whose normal is as near as this to its own ones. Cosine, 20 degrees.
 constexpr double kLeads = 0.94;
 // How deep a sample that was outside can be at the start of a step, where it is displaced as at the
@@ -102,15 +108,19 @@ Vector3 BodyContacts::other_displacement(const SurfaceLocation& at) noexcept {
   return u;
 }
 
-// Whether a face beside an edge sample lies on the other's; never on one that is round, where the
-// samples of the face are away from the edge. @param normal of the other, B of the object
-bool BodyContacts::flush(int sample, const Vector3& normal) const noexcept {
-  if (sample < body_.sampling.first_edge()) return false;
-  if (scenery_ != nullptr && is_round(scenery_->now.shape)) return false;
-  const std::span<const Vector3> faces =
-      body_.sampling.faces(body_.sampling.samples()[static_cast<std::size_t>(sample)]);
-  return std::any_of(faces.begin(), faces.end(),
-                     [&](const Vector3& face) { return -face.dot(normal) > kFlush; });
+// How deep an edge sample may be without touching because a face beside it lies on the other's [m].
+// It grows continuously from 3 degrees on, so that the force of an edge that turns flat goes over
+// to the samples of the face, and back. 0 on one that is round, where these are away from the edge.
+// @param normal of the other, B of the object
+double BodyContacts::flat_inset(int sample, const Vector3& normal) const noexcept {
+  if (sample < body_.sampling.first_edge()) return 0.0;
+  if (scenery_ != nullptr && is_round(scenery_->now.shape)) return 0.0;
+  double flattest = kFlush;
+  for (const Vector3& face :
+       body_.sampling.faces(body_.sampling.samples()[static_cast<std::size_t>(sample)])) {
+    flattest = std::max(flattest, -face.dot(normal));
+  }
+  return kFlatInset * (flattest - kFlush) / (1.0 - kFlush);
 }
 
 // Outward of the other where the sample touches it. An edge that meets a face takes the face's
@@ -183,9 +193,12 @@ bool BodyContacts::begin_on_scenery(int sample, const Vector3& place, const Way&
                                     Sample& state) noexcept {
   const SceneryHit hit = closest(scenery_->now, way.end);
   const std::optional<SceneryHit> entry = first_crossing(scenery_->now, way.from, way.to);
-  if (!entry || entry->normal.dot(way.outward) > kFacing ||
-      flush(sample, body_.motion.orientation.conjugate() * entry->normal)) {
-    if (hit.signed_distance > 0.0) state.mark_outside(step_);
+  const bool facing = entry && entry->normal.dot(way.outward) <= kFacing;
+  state.flat_inset =
+      facing ? flat_inset(sample, body_.motion.orientation.conjugate() * entry->normal) : 0.0;
+  const double above = hit.signed_distance + state.flat_inset;
+  if (!facing || (state.flat_inset > 0.0 && above > kNearBody)) {
+    if (above > 0.0) state.mark_outside(step_);
     if (!driven()) {
       note(way, place, closest(scenery_->now, way.middle()).signed_distance, displaced_, state);
     }
@@ -196,7 +209,7 @@ bool BodyContacts::begin_on_scenery(int sample, const Vector3& place, const Way&
   state.anchor_W =
       same_side ? hit.position
                 : Vector3(way.end - (way.end - entry->position).dot(entry->normal) * entry->normal);
-  state.inset = inset_of((state.anchor_W - way.start).dot(state.normal), state);
+  state.inset = inset_of((state.anchor_W - way.start).dot(state.normal) - state.flat_inset, state);
   return true;
 }
 
@@ -221,17 +234,19 @@ bool BodyContacts::begin(int number, const Vector3& place, Sample& state) noexce
     state.nearest = nearest.triangle;
   }
   const SurfaceHit near{nearest.triangle, nearest.point, nearest.position, 0.0};
-  if (flush(number, to_own * other_body_->sampling.normal(nearest))) {
+  const Vector3 face = other_body_->sampling.normal(nearest);
+  state.flat_inset = flat_inset(number, to_own * face);
+  const Vector3 u = other_displacement(nearest);
+  const Vector3 nearest_now = nearest.position + u;
+  const double above = (way.end - nearest_now).dot(face) + state.flat_inset;
+  if (state.flat_inset > 0.0 && above > kNearBody) {
     hit.reset();
   } else if (!self_) {
     hit = other_body_->surface.first_crossing(way.from, way.to, near);
   }
   if (!hit) {
-    const Vector3 u = other_displacement(nearest);
-    const Vector3 there_now = nearest.position + u;
-    const Vector3 normal = other_body_->sampling.normal(nearest);
-    if ((way.end - there_now).dot(normal) > 0.0) state.mark_outside(step_);
-    if (!self_ && (way.middle() - there_now).norm() > 0.5 * way.length()) {
+    if (above > 0.0) state.mark_outside(step_);
+    if (!self_ && (way.middle() - nearest_now).norm() > 0.5 * way.length()) {
       const double limit = 0.5 * way.length() + kSightDepths * depth_;
       note(way, place, other_body_->surface.distance_up_to(limit, way.middle(), near),
            std::max(u.norm(), (place - sample.place.position).norm()), state);
@@ -241,11 +256,15 @@ bool BodyContacts::begin(int number, const Vector3& place, Sample& state) noexce
   state.anchor = {hit->triangle, hit->point,
                   at(other_body_->rest.corners(hit->triangle), hit->point.weights)};
   const std::optional<Vector3> normal = normal_at(number, direction, state.anchor);
-  if (!normal || normal->dot(direction) > kFacing || flush(number, to_own * *normal)) return false;
+  if (!normal || normal->dot(direction) > kFacing) return false;
   state.normal = *normal;
+  state.flat_inset = flat_inset(number, to_own * state.normal);
   const Vector3 there_now = state.anchor.position + other_displacement(state.anchor);
+  const double depth = (there_now - way.start).dot(state.normal) - state.flat_inset;
+  const double down = (way.start - way.end).dot(state.normal);
+  if (state.flat_inset > 0.0 && depth < 0.0 && down > kFastestFlat) return false;
   state.offset = sideways(way.end - there_now, state.normal);
-  state.inset = inset_of((there_now - way.start).dot(state.normal), state);
+  state.inset = inset_of(depth, state);
   return true;
 }
 

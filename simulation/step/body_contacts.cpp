@@ -95,17 +95,18 @@ void BodyContacts::describe(int sample, const Vector3& place, Contact& contact) 
   contact.sample = sample;
   contact.place = {{shape.row, 0, 0}, {1.0, 0.0, 0.0}, 1};
   contact.arm = place;
+  const double inset = state.inset + state.flat_inset;
   const Vector3 x = body_.motion.to_world(place);
   if (other_body_ == nullptr) {
     contact.other_place.count = 0;
     contact.normal = state.normal;
-    contact.gap = state.anchor_W - state.inset * state.normal - x;
+    contact.gap = state.anchor_W - inset * state.normal - x;
     return;
   }
   contact.other_place = {other_body_->sampling.sites(state.anchor.triangle),
                          state.anchor.point.weights, 3};
   contact.other_arm = state.anchor.position + other_displacement(state.anchor) + state.offset -
-                      state.inset * state.normal;
+                      inset * state.normal;
   contact.normal = other_body_->motion.orientation * state.normal;
   contact.gap = other_body_->motion.to_world(contact.other_arm) - x;
 }
@@ -138,9 +139,10 @@ int BodyContacts::find() noexcept {
       state.anchor_W = scenery_->carried(state.anchor_W);
       state.normal = scenery_->turn * state.normal;
     }
-    if (state.contact.any() && flush(i, normal_to_own * state.normal)) state.contact.end();
     const bool pressed = state.contact.any();
-    if (!pressed) {
+    if (pressed) {
+      state.flat_inset = flat_inset(i, normal_to_own * state.normal);
+    } else {
       const Vector3 x = motion.to_world(shape.place.position);
       const double way = (x - started(shape.place.position)).norm();
       if (self_ ? self_->is_far(i) : beyond(x, margin + way, state)) {

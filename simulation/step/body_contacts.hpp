@@ -116,6 +116,7 @@ class BodyContacts {
     /// began (pushed out at once it would get twice that depth a step as its speed), less what it
     /// yields, so that it comes to its anchor.
     double inset = 0.0;
+    double flat_inset = 0.0;  ///< what flat_inset() adds to it [m]
     /// The last step in which it was outside or among the contacts; 0: none.
     std::uint64_t clear = 0;
     std::uint64_t pressed = 0;  ///< the last step in which a force acted on it; 0: none
@@ -154,7 +155,7 @@ class BodyContacts {
   bool begin_on_scenery(int sample, const Vector3& place, const Way& way, Sample& state) noexcept;
   std::optional<Vector3> normal_at(int sample, const Vector3& outward,
                                    const SurfaceLocation& at) const noexcept;
-  bool flush(int sample, const Vector3& normal) const noexcept;
+  double flat_inset(int sample, const Vector3& normal) const noexcept;
   double inset_of(double depth, const Sample& state) const noexcept;
   void keep_anchor(const Sample& before, const Vector3& place, Sample& state) noexcept;
   void describe(int sample, const Vector3& place, Contact& contact) noexcept;

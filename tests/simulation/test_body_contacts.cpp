@@ -26,22 +26,6 @@ SimulationConfig colliding(const FemCube& cube, double speed) {
   return config;
 }
 
-struct Momentum {
-  Vector3 linear = Vector3::Zero();   ///< [kg m/s]
-  Vector3 angular = Vector3::Zero();  ///< about the origin [kg m^2/s]
-};
-
-Momentum momentum(const Simulation& simulation) {
-  Momentum sum;
-  for (int i = 0; i < simulation.object_count(); ++i) {
-    const RigidState& state = simulation.object(i).state();
-    const Vector3 linear = simulation.object(i).model().body.mass * state.velocity;
-    sum.linear += linear;
-    sum.angular += state.position.cross(linear) + state.angular_momentum;
-  }
-  return sum;
-}
-
 }  // namespace
 
 TEST_CASE("bodies: three cubes at rest carry the weight above each, and do not drift", "[slow]") {

@@ -43,4 +43,21 @@ inline Vector3 force_between(const StepRecord& record, int object, int other) {
   return sum;
 }
 
+/// Of a whole world.
+struct Momentum {
+  Vector3 linear = Vector3::Zero();   ///< [kg m/s]
+  Vector3 angular = Vector3::Zero();  ///< about the origin [kg m^2/s]
+};
+
+inline Momentum momentum(const Simulation& simulation) {
+  Momentum sum;
+  for (int i = 0; i < simulation.object_count(); ++i) {
+    const RigidState& state = simulation.object(i).state();
+    const Vector3 linear = simulation.object(i).model().body.mass * state.velocity;
+    sum.linear += linear;
+    sum.angular += state.position.cross(linear) + state.angular_momentum;
+  }
+  return sum;
+}
+
 }  // namespace irdm::test

@@ -199,9 +199,9 @@ Outcome play(const World& world) {
   return outcome;
 }
 
-// @param exempt worlds in which a contact may gain energy, or a step have no solution: a sample
-// that comes into another body from beside an edge is pushed out again, which does work, and bodies
-// that wedge one another in may leave more to solve than the sweeps can
+// @param exempt worlds in which a contact may gain energy, as processors round differently and a
+// world goes another way then: a sample that comes into another body from beside an edge is pushed
+// out again, which does work
 void check_worlds(unsigned count, unsigned exempt) {
   double worst = 0.0;
   unsigned gaining = 0;
@@ -236,7 +236,7 @@ void check_worlds(unsigned count, unsigned exempt) {
   }
   CHECK(10 * touched > 8 * count);
   CHECK(gaining <= exempt);
-  CHECK(without_solution <= exempt / 4);
+  CHECK(without_solution == 0);
   std::cout << count << " random worlds: at most " << 100 * worst
             << " % energy too much, residual at most " << residual << " m, " << unsolved
             << " steps without a solution; more than 1 % in " << gaining << " worlds\n";
@@ -249,5 +249,5 @@ TEST_CASE("random worlds: finite, in balance, and no energy from nowhere", "[slo
 }
 
 TEST_CASE("random worlds: the same for two hundred", "[exhaustive]") {
-  check_worlds(200, 6);
+  check_worlds(200, 2);
 }

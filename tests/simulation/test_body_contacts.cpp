@@ -323,7 +323,7 @@ TEST_CASE("bodies: those that begin inside one another are refused, by name and 
 // Where the edge passes the middle of a post, the post's normal is that of the face beside it.
 TEST_CASE("body contacts: edges of a cube that is pushed between two posts do not sink into them") {
   constexpr double kPostRadius = 0.03;
-  constexpr double kAside = 0.085;
+  constexpr double kPostAside = 0.085;
   SimulationConfig config;
   config.objects.resize(1);
   config.objects[0].model = fem_cube({.cells = 4, .poisson_ratio = 0.45});
@@ -333,7 +333,7 @@ TEST_CASE("body contacts: edges of a cube that is pushed between two posts do no
   config.scenery.resize(2);
   for (SceneryConfig& post : config.scenery) {
     post.shape = CapsuleShape{kPostRadius, 0.2};
-    post.position = Vector3(0, 0, &post == config.scenery.data() ? kAside : -kAside);
+    post.position = Vector3(0, 0, &post == config.scenery.data() ? kPostAside : -kPostAside);
     post.friction = {0.1, 0.1};
   }
   Simulation simulation(config);
@@ -350,7 +350,7 @@ TEST_CASE("body contacts: edges of a cube that is pushed between two posts do no
       const Vector3 node = cube.state().position +
                            cube.state().orientation *
                                (cube.model().mesh.rest_position(i) + Vector3(u.row(i).transpose()));
-      for (const double z : {kAside, -kAside}) {
+      for (const double z : {kPostAside, -kPostAside}) {
         deepest = std::max(deepest, kPostRadius - std::hypot(node.x(), node.z() - z));
       }
       past = past || node.x() < -0.01;

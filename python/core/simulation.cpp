@@ -1,6 +1,7 @@
 #include <pybind11/stl.h>
 
 #include <atomic>
+#include <cstring>
 #include <stdexcept>
 
 #include "common/error.hpp"
@@ -98,16 +99,24 @@ struct Rows {
   }
 };
 
+// Copied as bytes: numpy copies structures field by field.
+template <typename Row>
+py::array rows(const std::vector<Row>& of, std::vector<py::ssize_t> shape) {
+  py::array_t<Row> array(std::move(shape));
+  if (!of.empty()) std::memcpy(array.mutable_data(), of.data(), of.size() * sizeof(Row));
+  return array;
+}
+
 template <typename Row>
 py::array rows(const std::vector<Row>& of) {
-  return py::array_t<Row>(static_cast<py::ssize_t>(of.size()), of.data());
+  return rows(of, std::vector<py::ssize_t>{static_cast<py::ssize_t>(of.size())});
 }
 
 template <typename Row>
 py::array rows(const std::vector<Row>& of, std::size_t steps) {
   const auto count = static_cast<py::ssize_t>(steps);
   const auto width = steps == 0 ? py::ssize_t{0} : static_cast<py::ssize_t>(of.size()) / count;
-  return py::array_t<Row>({count, width}, of.data());
+  return rows(of, std::vector<py::ssize_t>{count, width});
 }
 
 struct Step {

@@ -127,7 +127,7 @@ IRDM_API irdm_status irdm_simulation_step(irdm_simulation* simulation, const ird
 /* Everything is put back to the start before the next step. */
 IRDM_API irdm_status irdm_simulation_reset(irdm_simulation* simulation);
 
-/* Of the last step. objects: irdm_simulation_object_count() of them */
+/* Of the last step; before the first one wrong use. objects: irdm_simulation_object_count() of them */
 IRDM_API irdm_status irdm_simulation_objects(const irdm_simulation* simulation, irdm_object* objects, size_t capacity);
 /* All forces on all objects in the last step. A contact of two objects is there for each. The sum of an object's forces
  * and its weight is the change of its momentum over dt, where it has no damping and no tether.

@@ -5,7 +5,6 @@
 #include <exception>
 #include <limits>
 #include <memory>
-#include <new>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -19,8 +18,8 @@ static_assert(sizeof(irdm_stylus) == sizeof(irdm::StylusRow));
 static_assert(offsetof(irdm_stylus, torque) == offsetof(irdm::StylusRow, torque));
 static_assert(sizeof(irdm_object) == sizeof(irdm::ObjectRow));
 static_assert(offsetof(irdm_object, residual) == offsetof(irdm::ObjectRow, residual));
-static_assert(sizeof(irdm_contact) == sizeof(irdm::ContactForce));
-static_assert(offsetof(irdm_contact, area) == offsetof(irdm::ContactForce, area));
+static_assert(sizeof(irdm_contact) == sizeof(irdm::ContactRow));
+static_assert(offsetof(irdm_contact, area) == offsetof(irdm::ContactRow, area));
 static_assert(IRDM_COUPLING == static_cast<int>(irdm::ContactKind::kCoupling));
 static_assert(IRDM_GRAB == irdm::kGrabButton && IRDM_RESET == irdm::kResetButton);
 
@@ -67,7 +66,8 @@ bool is_object(const irdm_simulation* simulation, std::int32_t object) noexcept 
 
 irdm::StylusCommand command_of(const irdm_command& command) noexcept {
   irdm::StylusCommand out;
-  out.present = command.present != 0;
+  if (command.present == 0) return out;
+  out.present = true;
   out.buttons = command.buttons;
   out.tip = irdm::Vector3(command.tip[0], command.tip[1], command.tip[2]);
   const double* q = command.orientation;
@@ -160,7 +160,7 @@ irdm_status irdm_simulation_objects(const irdm_simulation* simulation, irdm_obje
   if (capacity < count) return IRDM_TOO_SMALL;
   if (simulation->run.simulation().next_step() == 0) return IRDM_BAD_ARGUMENT;
   for (std::size_t i = 0; i < count; ++i) {
-    copy_row(irdm::row_of(static_cast<const irdm::ObjectStep&>(record.object[i])), objects[i]);
+    copy_row(irdm::row_of(record.object[i]), objects[i]);
   }
   return IRDM_OK;
 }

@@ -20,12 +20,12 @@ SceneRun::SceneRun(const TomlTable& file)
     : scene_(read_scene(file)),
       config_(simulation_config(scene_, false)),
       simulation_(std::make_unique<Simulation>(config_)),
-      list_(config_),
+      rows_(config_),
       record_(std::make_unique<StepRecord>()) {}
 
 const StepRecord& SceneRun::step(std::span<const StylusCommand> commands) noexcept {
   simulation_->step(commands, *record_);
-  contacts_ = list_.of(*simulation_, *record_);
+  contacts_ = rows_.of(*simulation_, *record_);
   return *record_;
 }
 

@@ -7,8 +7,8 @@
 
 #include "common/config/toml_reader.hpp"
 #include "scene/scene.hpp"
-#include "simulation/step/contact_list.hpp"
 #include "simulation/step/simulation.hpp"
+#include "simulation/step/step_rows.hpp"
 
 namespace irdm {
 
@@ -32,7 +32,7 @@ class SceneRun {
 
   /// Of the last step; as in StepRecord. Valid until the next one.
   const StepRecord& record() const noexcept { return *record_; }
-  std::span<const ContactForce> contacts() const noexcept { return contacts_; }
+  std::span<const ContactRow> contacts() const noexcept { return contacts_; }
 
   /// Where the surface nodes of object i are at the end of the last step, (n, 3) [m], W. Uses
   /// OpenMP; not real-time safe.
@@ -49,9 +49,9 @@ class SceneRun {
   SceneConfig scene_;
   SimulationConfig config_;
   std::unique_ptr<Simulation> simulation_;
-  ContactList list_;
+  ContactRows rows_;
   std::unique_ptr<StepRecord> record_;
-  std::span<const ContactForce> contacts_;
+  std::span<const ContactRow> contacts_;
 };
 
 }  // namespace irdm

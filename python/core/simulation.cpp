@@ -41,7 +41,8 @@ class Commands {
     const bool* there = present ? numbers(*present, "present", 1) : nullptr;
     for (std::size_t r = 0; r < rows; ++r) {
       StylusCommand& command = commands_[r];
-      command.present = there == nullptr || there[r];
+      if (there != nullptr && !there[r]) continue;
+      command.present = true;
       command.tip = Vector3(tip[3 * r], tip[3 * r + 1], tip[3 * r + 2]);
       if (turn != nullptr) {
         const double* q = turn + 4 * r;
@@ -80,7 +81,7 @@ struct Rows {
   std::vector<double> time;
   std::vector<StylusRow> styluses;
   std::vector<ObjectRow> objects;
-  std::vector<ContactForce> contacts;
+  std::vector<ContactRow> contacts;
   std::vector<std::int64_t> first{0};  ///< contact of each step, and the end
 
   void take(const SceneRun& run) {
@@ -90,10 +91,9 @@ struct Rows {
       styluses.push_back(row_of(record.stylus[static_cast<std::size_t>(s)]));
     }
     for (int i = 0; i < record.object_count; ++i) {
-      objects.push_back(
-          row_of(static_cast<const ObjectStep&>(record.object[static_cast<std::size_t>(i)])));
+      objects.push_back(row_of(record.object[static_cast<std::size_t>(i)]));
     }
-    const std::span<const ContactForce> now = run.contacts();
+    const std::span<const ContactRow> now = run.contacts();
     contacts.insert(contacts.end(), now.begin(), now.end());
     first.push_back(static_cast<std::int64_t>(contacts.size()));
   }
@@ -230,11 +230,11 @@ void bind_rows(py::module_& module) {
   PYBIND11_NUMPY_DTYPE(StylusRow, present, contact, object, tool, tip, proxy, force, torque);
   PYBIND11_NUMPY_DTYPE(ObjectRow, asleep, solved, position, orientation, velocity, angular_velocity,
                        residual);
-  PYBIND11_NUMPY_DTYPE(ContactForce, object, kind, other, place, state, slipping, position, normal,
+  PYBIND11_NUMPY_DTYPE(ContactRow, object, kind, other, place, state, slipping, position, normal,
                        force, slip, area);
   module.attr("stylus_dtype") = py::dtype::of<StylusRow>();
   module.attr("object_dtype") = py::dtype::of<ObjectRow>();
-  module.attr("contact_dtype") = py::dtype::of<ContactForce>();
+  module.attr("contact_dtype") = py::dtype::of<ContactRow>();
 }
 
 }  // namespace

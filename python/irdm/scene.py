@@ -11,6 +11,8 @@ from irdm import _core
 
 def _value(value, where):
     if isinstance(value, _core.Model):
+        if not value.path:
+            raise _core.Error(f"{where}: is a model without a file; use one that was opened or computed")
         value = value.path
     if isinstance(value, (bool, numpy.bool_)):
         return "true" if value else "false"

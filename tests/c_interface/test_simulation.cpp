@@ -62,7 +62,8 @@ TEST_CASE("C interface: what it steps is what the simulation steps, to the bit")
     const auto commands = CScene::commands(k);
     std::array<StylusCommand, 2> same;
     for (std::size_t s = 0; s < 2; ++s) {
-      same[s].present = commands[s].present != 0;
+      if (commands[s].present == 0) continue;
+      same[s].present = true;
       same[s].buttons = commands[s].buttons;
       same[s].tip = Vector3(commands[s].tip[0], commands[s].tip[1], commands[s].tip[2]);
     }

@@ -46,6 +46,7 @@ class SimulationTest(unittest.TestCase):
         buttons[150:, 0] = irdm.GRAB
         present = numpy.ones((300, 2), dtype=bool)
         present[:30, 1] = False
+        way[:30, 1] = numpy.nan  # of nobody
         many = irdm.Simulation(scene()).step_many(way, buttons, present=present)
         simulation = irdm.Simulation(scene())
         for k in range(300):
@@ -181,6 +182,7 @@ class SimulationTest(unittest.TestCase):
             (scene(colour="red"), "colour"),
             (scene(world={"gravity": [0, float("nan"), 0]}), "gravity"),
             ({"object": {1, 2}}, "set"),
+            ({"object": [{"model": irdm.Simulation(scene()).model(0)}]}, "without a file"),
             ({3: 4}, "key 3"),
         ):
             with self.subTest(text), self.assertRaisesRegex(irdm.Error, text):

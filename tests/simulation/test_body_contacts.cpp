@@ -109,8 +109,7 @@ TEST_CASE("bodies: momentum and angular momentum of a world stay in each step to
     for (int k = 0; k < 300; ++k) {
       step_alone(simulation, *record);
       const Momentum after = momentum(simulation);
-      off = std::max(
-          {off, (after.linear - before.linear).norm(), (after.angular - before.angular).norm()});
+      off = std::max(off, change(before, after));
       before = after;
       largest = std::max(largest, force_between(*record, 0, 1).norm());
       touched += !record->body_contact.empty() ? 1 : 0;

@@ -115,8 +115,7 @@ TEST_CASE("body contacts: momentum stays in a collision in which an edge turns f
   for (int k = 0; k < 250; ++k) {
     step_alone(simulation, *record);
     const Momentum after = momentum(simulation);
-    off = std::max(
-        {off, (after.linear - before.linear).norm(), (after.angular - before.angular).norm()});
+    off = std::max(off, change(before, after));
     before = after;
     if (record->body_contacts().empty()) continue;
     ++(tilt_of(simulation.object(1)) > kFlatBelow ? steep : flat);

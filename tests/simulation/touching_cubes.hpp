@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <memory>
 
 #include "simulation/step/simulation.hpp"
@@ -58,6 +59,11 @@ inline Momentum momentum(const Simulation& simulation) {
     sum.angular += state.position.cross(linear) + state.angular_momentum;
   }
   return sum;
+}
+
+/// The larger of both changes [kg m/s], [kg m^2/s].
+inline double change(const Momentum& from, const Momentum& to) {
+  return std::max((to.linear - from.linear).norm(), (to.angular - from.angular).norm());
 }
 
 }  // namespace irdm::test

@@ -106,9 +106,8 @@ Eigen::VectorXd patch_force(const TetMesh& mesh) {
 
 class FreeBody {
  public:
-  explicit FreeBody(const TetMesh& mesh)
-      : stiffness_(assemble_stiffness(mesh, lame_parameters(kMaterial))) {
-    const Eigen::VectorXd mass = lumped_mass(mesh, kMaterial.density);
+  explicit FreeBody(const TetMesh& mesh) : stiffness_(assemble_stiffness(mesh, kMaterial)) {
+    const Eigen::VectorXd mass = lumped_mass(mesh, kMaterial);
     mass_ = mass.replicate(1, 3).transpose().reshaped();
     rigid_ = rigid_motions(mesh.nodes, mass);
     SparseMatrix shifted = stiffness_;

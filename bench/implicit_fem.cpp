@@ -44,10 +44,10 @@ class ImplicitFem {
     for (int i = 0; i < mesh.node_count(); ++i) {
       node_of_[static_cast<std::size_t>(i)] = mesh.position(i).y() > 1e-9 ? free++ : -1;
     }
-    const Eigen::VectorXd mass = lumped_mass(mesh, kMaterial.density);
+    const Eigen::VectorXd mass = lumped_mass(mesh, kMaterial);
     mass_.resize(3 * free);
     std::vector<Eigen::Triplet<double>> entries;
-    const SparseMatrix all = assemble_stiffness(mesh, lame_parameters(kMaterial));
+    const SparseMatrix all = assemble_stiffness(mesh, kMaterial);
     for (int column = 0; column < all.outerSize(); ++column) {
       for (SparseMatrix::InnerIterator entry(all, column); entry; ++entry) {
         const int i = unknown(static_cast<int>(entry.row()));

@@ -42,8 +42,7 @@ double most_memory() {
 }
 
 ElasticModes by_spectra(const TetMesh& mesh, const Eigen::VectorXd& mass, int count) {
-  const ElasticStatics statics(assemble_stiffness(mesh, lame_parameters(kMaterial)), mesh.nodes,
-                               mass, {});
+  const ElasticStatics statics(assemble_stiffness(mesh, kMaterial), mesh.nodes, mass, {});
   return lowest_modes(statics, count);
 }
 
@@ -65,7 +64,7 @@ int main(int argc, char** argv) {
   const Ranks ranks;
   const SingleThreadedBlas single;
   const TetMesh mesh = tetrahedralise(box_surface(Vector3::Constant(0.12), {cells, cells, cells}));
-  const Eigen::VectorXd mass = lumped_mass(mesh, kMaterial.density);
+  const Eigen::VectorXd mass = lumped_mass(mesh, kMaterial);
   const double before = most_memory();
   const double start = seconds();
   const double worked = processor_seconds();

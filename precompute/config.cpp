@@ -173,18 +173,68 @@ BoxRegion read_box_region(TomlTable table) {
   return box;
 }
 
+BallRegion read_ball_region(TomlTable table) {
+  BallRegion ball{vector(table, "centre", lab::kMeshPlace), table.number("radius", lab::kLength)};
+  table.finish();
+  return ball;
+}
+
+constexpr const char* kShapes =
+    "half_space = { point = [..], normal = [..] }, box = { min = [..], max = [..] }, "
+    "ball = { centre = [..], radius = .. } or group = \"name\"";
+
+int count_shapes(const TomlTable& table) {
+  return table.has("half_space") + table.has("box") + table.has("ball") + table.has("group");
+}
+
+// One of them is there.
+Region read_shape(TomlTable& table) {
+  if (table.has("half_space")) return read_half_space(table.table("half_space"));
+  if (table.has("box")) return read_box_region(table.table("box"));
+  if (table.has("ball")) return read_ball_region(table.table("ball"));
+  return GroupRegion{table.text("group")};
+}
+
 Region read_region(TomlTable table) {
-  if (table.has("half_space") + table.has("box") + table.has("group") != 1) {
-    table.fail("", "has not exactly one of half_space, box and group",
-               "give half_space = { point = [..], normal = [..] }, "
-               "box = { min = [..], max = [..] } or group = \"name\"");
+  if (count_shapes(table) != 1) {
+    table.fail("", "has not exactly one of half_space, box, ball and group",
+               std::string("give ") + kShapes);
   }
-  Region region;
-  if (table.has("half_space")) region = read_half_space(table.table("half_space"));
-  if (table.has("box")) region = read_box_region(table.table("box"));
-  if (table.has("group")) region = GroupRegion{table.text("group")};
+  const Region region = read_shape(table);
   table.finish();
   return region;
+}
+
+MaterialRegion read_material_region(TomlTable& table, bool rigid) {
+  const bool file = table.has("elements");
+  if (count_shapes(table) + file != 1) {
+    table.fail("", "has not exactly one of half_space, box, ball, group and elements",
+               std::string("give ") + kShapes + ", or elements = \"values.csv\"");
+  }
+  if (file) return {table.path("elements"), {}};
+  MaterialRegion region{read_shape(table), {}};
+  for (const auto& [key, value, range] : material_keys(region.values)) {
+    if (!table.has(key)) continue;
+    if (rigid && key != std::string("density")) {
+      table.fail(key, "is for soft bodies", "leave it out, or leave material.rigid out");
+    }
+    *value = table.number(key, range);
+  }
+  const MaterialValues& given = region.values;
+  if (!given.youngs_modulus && !given.poisson_ratio && !given.density) {
+    table.fail("", "changes nothing",
+               "give one of youngs_modulus, poisson_ratio and density, or leave the table out");
+  }
+  return region;
+}
+
+std::vector<MaterialRegion> read_material_regions(TomlTable& root, bool rigid) {
+  std::vector<MaterialRegion> regions;
+  for (TomlTable& table : root.tables("region")) {
+    regions.push_back(read_material_region(table, rigid));
+    table.finish();
+  }
+  return regions;
 }
 
 std::optional<Region> read_clamped(TomlTable& root, Support support) {
@@ -198,6 +248,7 @@ std::optional<Region> read_clamped(TomlTable& root, Support support) {
 
 void read_soft_body(TomlTable& root, PrecomputeConfig& config) {
   config.material = read_material(root.table("material", true));
+  config.regions = read_material_regions(root, false);
   config.response = read_response(root.table("response"));
   config.modes = read_modes(root.table("modes"));
   config.support = read_clamped(root, config.response.support);
@@ -219,6 +270,7 @@ void read_rigid_body(TomlTable& root, PrecomputeConfig& config) {
   config.rigid = material.boolean("rigid", true);
   config.material.density = material.number("density", lab::kDensity);
   material.finish();
+  config.regions = read_material_regions(root, true);
   TomlTable response = root.table("response");
   refuse_keys_of_soft_bodies(response, {"steps", "method", "storage", "precision"});
   config.response.dt = response.number("dt", lab::kStepTime, config.response.dt);

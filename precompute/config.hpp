@@ -9,6 +9,7 @@
 #include "common/model/model_file.hpp"
 #include "precompute/dynamics/rigid_extraction.hpp"
 #include "precompute/dynamics/soft_body.hpp"
+#include "precompute/mesh/material_regions.hpp"
 #include "precompute/mesh/mesh_config.hpp"
 #include "precompute/mesh/region.hpp"
 
@@ -36,8 +37,9 @@ TimeSteppingConfig read_time_stepping(TomlTable table, double dt);
 /// Number of steps in each of the T response intervals.
 std::vector<int> step_schedule(const TimeSteppingConfig& config, double dt, int intervals);
 
-/// 1e-4 of Young's modulus times the area that a node has, (volume / nodes)^(2/3): strains of 1e-4
-/// next to the node, so that R is the linear response to about that share.
+/// 1e-4 of Young's modulus (of the softest element) times the area that a node has, (volume /
+/// nodes)^(2/3): strains of 1e-4 next to the node, so that R is the linear response to about that
+/// share.
 double default_force(const SoftBody& body, double youngs_modulus);
 
 /// Who finds the lowest modes.
@@ -89,13 +91,19 @@ struct PrecomputeConfig {
   /// required; rayleigh_alpha [1/s] >= 0 and rayleigh_beta [s] >= 0 are 8.0 and 2e-4 unless given.
   /// With `rigid = true` it has density alone.
   Material material;
+  /// [[region]]: parts of the body of another material, of a rigid body by density alone; of those
+  /// that overlap the later one counts. Each has one of `half_space`, `box`, `ball`, `group` and
+  /// `elements = "values.csv"`, and but for `elements` one or more of [material]'s youngs_modulus,
+  /// poisson_ratio and density.
+  std::vector<MaterialRegion> regions;
   /// The body does not deform: there is no R, and no keys that say how to obtain it.
   bool rigid = false;
   ResponseConfig response;
   ModesConfig modes;  ///< used by method = "modal"
   /// Which nodes are clamped, with `response.support = "fixed"`; none: the body floats or is rigid.
   /// [support] has one of `half_space = { point = [..], normal = [..] }`, `box = { min = [..], max
-  /// = [..] }` and `group = "name"`, in m and the coordinates of the input mesh (times its unit).
+  /// = [..] }`, `ball = { centre = [..], radius = .. }` and `group = "name"`, in m and the
+  /// coordinates of the input mesh (times its unit).
   std::optional<Region> support;
   TimeSteppingConfig time_stepping;  ///< used by method = "time-stepping"
   int threads = 0;                   ///< of the command line; 0: all cores

@@ -3,6 +3,7 @@
 #include <omp.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <iostream>
 #include <numbers>
@@ -51,10 +52,9 @@ TetMesh mesh_of(const PrecomputeConfig& config) {
 }
 
 // Modes and R rest on point masses at the nodes; what does not deform has the mass of the solid.
-MassProperties body_of(const TetMesh& mesh, const Eigen::VectorXd& node_mass,
-                       const PrecomputeConfig& config) {
-  return config.rigid ? solid_mass_properties(mesh, config.material.density)
-                      : nodal_mass_properties(mesh.nodes, node_mass);
+MassProperties body_of(const TetMesh& mesh, const Model& model, bool rigid) {
+  return rigid ? solid_mass_properties(mesh, model.material)
+               : nodal_mass_properties(mesh.nodes, model.mesh.node_mass);
 }
 
 // All of a rigid body's model, and of others all but the response; the nodes move into the body
@@ -62,8 +62,11 @@ MassProperties body_of(const TetMesh& mesh, const Eigen::VectorXd& node_mass,
 Model describe(const TetMesh& mesh, const std::string& name, const PrecomputeConfig& config) {
   Model model;
   Surface surface = extract_surface(mesh, name);
-  model.mesh.node_mass = lumped_mass(mesh, config.material.density);
-  const MassProperties body = body_of(mesh, model.mesh.node_mass, config);
+  model.material = config.material;
+  model.material.elements =
+      element_materials(mesh, config.material, config.regions, config.rigid, config.name);
+  model.mesh.node_mass = lumped_mass(mesh, model.material);
+  const MassProperties body = body_of(mesh, model, config.rigid);
   model.mesh.com_offset = body.centre_of_mass;
   model.mesh.nodes = mesh.nodes.rowwise() - body.centre_of_mass.transpose();
   model.mesh.tets = mesh.tets;
@@ -71,7 +74,6 @@ Model describe(const TetMesh& mesh, const std::string& name, const PrecomputeCon
   model.mesh.triangles = std::move(surface.triangles);
   const bool clamped = config.support.has_value();
   model.body = {body.mass, body.inertia, clamped ? Support::kFixed : config.response.support};
-  model.material = config.material;
   model.dt = config.response.dt;
   model.steps = config.response.steps;
   if (config.rigid) model.response = RigidResponse{};
@@ -223,8 +225,7 @@ void write_model(const Model& model, const std::filesystem::path& output,
   writer.commit();
 }
 
-Summary describe_work(const PrecomputeConfig& config, const TetMesh& mesh, const Model& model,
-                      std::size_t clamped) {
+Summary describe_work(const TetMesh& mesh, const Model& model, std::size_t clamped) {
   Summary summary;
   summary.free_nodes = model.mesh.surface_node_count();
   summary.triangles = static_cast<int>(model.mesh.triangles.rows());
@@ -233,15 +234,33 @@ Summary describe_work(const PrecomputeConfig& config, const TetMesh& mesh, const
   summary.tetrahedra = mesh.tet_count();
   summary.order = mesh.order();
   summary.mesh = report_mesh(mesh);
+  summary.regions = report_regions(mesh, model.material);
   summary.mass = model.body.mass;
-  summary.inertia_excess = inertia_excess(
-      model.body.inertia, solid_mass_properties(mesh, config.material.density).inertia);
+  summary.inertia_excess =
+      inertia_excess(model.body.inertia, solid_mass_properties(mesh, model.material).inertia);
   summary.blas_kernel = blas_kernel();
   return summary;
 }
 
-void warn_about(const PrecomputeConfig& config, const Summary& summary) {
-  if (config.mesh.order == 1 && config.material.poisson_ratio > kLockingPoissonRatio) {
+double largest_poisson_ratio(const Material& material) {
+  const std::vector<double>& own = material.elements.poisson_ratio;
+  return own.empty() ? material.poisson_ratio : std::ranges::max(own);
+}
+
+void warn_about_regions(const PrecomputeConfig& config, const TetMesh& mesh,
+                        const Summary& summary) {
+  if (config.rigid) return;
+  int number = 0;
+  for (const MaterialRegion& region : config.regions) {
+    if (const auto hint = step_hint(mesh, region, ++number)) warn(*hint);
+  }
+  for (const RegionReport& region : summary.regions) {
+    if (const auto hint = coarseness_hint(region)) warn(*hint);
+  }
+}
+
+void warn_about(const PrecomputeConfig& config, const Model& model, const Summary& summary) {
+  if (config.mesh.order == 1 && largest_poisson_ratio(model.material) > kLockingPoissonRatio) {
     warn(
         "poisson_ratio above 0.45: linear tetrahedra lock, the body comes out too stiff; use "
         "mesh.order = 2 with half the cells an edge");
@@ -276,7 +295,7 @@ Summary precompute_model(const PrecomputeConfig& config, const std::filesystem::
                std::to_string(mesh.tet_count()) + " tetrahedra, " +
                std::to_string(model.mesh.surface_node_count()) + " surface nodes");
 
-  Summary summary = describe_work(config, mesh, model, clamped.size());
+  Summary summary = describe_work(mesh, model, clamped.size());
   const int threads = config.threads > 0 ? config.threads : omp_get_num_procs();
   const auto by_columns = [&](const ColumnSource& source) {
     const ColumnsDone done =
@@ -312,7 +331,8 @@ Summary precompute_model(const PrecomputeConfig& config, const std::filesystem::
   if (ranks.rank() > 0) return summary;
   summary.file_bytes = std::filesystem::file_size(output);
   summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  warn_about(config, summary);
+  warn_about(config, model, summary);
+  warn_about_regions(config, mesh, summary);
   return summary;
 }
 

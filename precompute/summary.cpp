@@ -41,6 +41,12 @@ std::string reduction_rows(const ModeReduction& reduction) {
          row("error of shape under a fingertip", significant(100.0 * reduction.shape_error, "%"));
 }
 
+std::string region_rows(const std::vector<RegionReport>& regions) {
+  std::string rows;
+  for (const RegionReport& region : regions) rows += row(name_of(region), format_region(region));
+  return rows;
+}
+
 }  // namespace
 
 std::string format_summary(const Summary& s) {
@@ -54,7 +60,7 @@ std::string format_summary(const Summary& s) {
          row("tetrahedral elements", std::to_string(s.tetrahedra)) +
          row("order of the elements", std::to_string(s.order)) +
          row("quality, worst and median (0..1)", quality(s.mesh)) +
-         row("bounding box", format_extent(s.mesh.extent)) +
+         row("bounding box", format_extent(s.mesh.extent)) + region_rows(s.regions) +
          row("mass", significant(s.mass, "kg")) +
          row("degrees of freedom (3n)", std::to_string(s.degrees_of_freedom())) +
          (s.modes == 0

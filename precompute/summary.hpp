@@ -3,8 +3,10 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/model/model.hpp"
+#include "precompute/mesh/material_regions.hpp"
 #include "precompute/mesh/mesh_check.hpp"
 
 namespace irdm::precompute {
@@ -18,9 +20,10 @@ struct Summary {
   int tetrahedra = 0;
   int order = 1;  ///< of the tetrahedra
   MeshReport mesh;
-  double mass = 0.0;     ///< of the body [kg]
-  int modes = 0;         ///< 0: R was obtained without modes
-  double seconds = 0.0;  ///< of the whole run
+  std::vector<RegionReport> regions{};  ///< none: one material
+  double mass = 0.0;                    ///< of the body [kg]
+  int modes = 0;                        ///< 0: R was obtained without modes
+  double seconds = 0.0;                 ///< of the whole run
   std::uint64_t file_bytes = 0;
   double lowest_frequency = 0.0;           ///< of the elastic modes [Hz]
   std::optional<double> decay_left;        ///< see decay_left(), 0..; unknown of a slice

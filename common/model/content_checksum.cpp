@@ -73,6 +73,10 @@ std::string content_checksum(const hdf5::File& file) {
     if (rigid && std::string(name) != "density") continue;
     add_numbers(sha, file, "/material", name, 1);
   }
+  add_dataset<double>(sha, file, kElementYoungsModulus);
+  add_dataset<double>(sha, file, kElementPoissonRatio);
+  add_dataset<double>(sha, file, kElementDensity);
+  add_dataset<std::int32_t>(sha, file, kElementRegion);
   add_numbers(sha, file, "/response", "dt", 1);
   add_numbers(sha, file, "/response", "steps", 1);
   if (rigid) add_text(sha, file, "/response", kResponseKindAttribute);

@@ -68,13 +68,27 @@ struct BodyProperties {
   Support support = Support::kFloating;
 };
 
-/// Linear isotropic elasticity with Rayleigh damping C = alpha M + beta K.
+/// What each tetrahedron of a body is made of, where that is not the same everywhere. E elements.
+struct ElementMaterials {
+  std::vector<double> youngs_modulus{};  ///< (E) [Pa], > 0; none: the body is rigid
+  std::vector<double> poisson_ratio{};   ///< (E), in (-1, 0.5); none: the body is rigid
+  std::vector<double> density{};         ///< (E) [kg/m^3], > 0
+  /// (E) number of the last [[region]] that the element lies in, from 1; 0: in none.
+  std::vector<std::int32_t> region{};
+
+  bool empty() const { return region.empty(); }
+};
+
+/// Linear isotropic elasticity with Rayleigh damping C = alpha M + beta K, alpha and beta the same
+/// everywhere.
 struct Material {
   double youngs_modulus = 0.0;  ///< E [Pa], > 0
   double poisson_ratio = 0.0;   ///< nu, in (-1, 0.5)
   double density = 0.0;         ///< rho [kg/m^3], > 0
   double rayleigh_alpha = 0.0;  ///< [1/s], >= 0
   double rayleigh_beta = 0.0;   ///< [s], >= 0
+  /// Empty: E, nu and rho are those above everywhere. Else they are those of what is in no region.
+  ElementMaterials elements{};
 };
 
 /// How well a part of the modes stands for all of them, found when they were computed. The errors

@@ -134,9 +134,40 @@ FaultText inertia_fault(const Model& model) {
   return {};
 }
 
+FaultText element_materials_fault(const Model& model) {
+  const ElementMaterials& elements = model.material.elements;
+  if (elements.empty()) return {};
+  const struct {
+    const char* name;
+    const std::vector<double>& values;
+    const Range& range;
+    bool there;
+  } all[] = {
+      {kElementYoungsModulus, elements.youngs_modulus, lab::kYoungsModulus, !is_rigid(model)},
+      {kElementPoissonRatio, elements.poisson_ratio, lab::kPoissonRatio, !is_rigid(model)},
+      {kElementDensity, elements.density, lab::kDensity, true},
+  };
+  const auto count = static_cast<std::size_t>(model.mesh.tets.rows());
+  for (const auto& [name, values, range, there] : all) {
+    if (values.size() != (there ? count : 0)) {
+      return std::string(name) + " has not one number for each of /mesh/tets";
+    }
+    for (const double value : values) {
+      if (auto fault = out_of(range, (std::string("a number of ") + name).c_str(), value)) {
+        return fault;
+      }
+    }
+  }
+  if (elements.region.size() != count || std::ranges::min(elements.region) < 0) {
+    return std::string(kElementRegion) + " has not one number from 0 for each of /mesh/tets";
+  }
+  return {};
+}
+
 FaultText material_fault(const Model& model) {
   const Material& material = model.material;
   if (auto fault = out_of(lab::kDensity, "/material density", material.density)) return fault;
+  if (auto fault = element_materials_fault(model)) return fault;
   if (is_rigid(model)) return {};
   const struct {
     const char* name;

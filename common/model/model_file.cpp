@@ -24,6 +24,9 @@ struct Unit {
 constexpr Unit kDatasetUnits[] = {
     {"/mesh/nodes", "m"},
     {"/mesh/node_mass", "kg"},
+    {kElementYoungsModulus, "Pa"},
+    {kElementPoissonRatio, "1"},
+    {kElementDensity, "kg/m^3"},
     {"/response/modal/angular_frequency", "rad/s"},
     {"/response/modal/decay_rate", "1/s"},
     {"/response/modal/shapes", "kg^-1/2"},
@@ -161,11 +164,23 @@ class ModelReader {
     if (!file_.exists("/material")) damaged("has no /material");
     Material& material = model_.material;
     material.density = file_.read_double_attribute("/material", "density");
+    read_elements(rigid);
     if (rigid) return;
     material.youngs_modulus = file_.read_double_attribute("/material", "youngs_modulus");
     material.poisson_ratio = file_.read_double_attribute("/material", "poisson_ratio");
     material.rayleigh_alpha = file_.read_double_attribute("/material", "rayleigh_alpha");
     material.rayleigh_beta = file_.read_double_attribute("/material", "rayleigh_beta");
+  }
+
+  void read_elements(bool rigid) {
+    if (!file_.exists(kElementRegion)) return;
+    ElementMaterials& elements = model_.material.elements;
+    const hdf5::Shape shape{static_cast<hsize_t>(model_.mesh.tets.rows())};
+    elements.region = file_.read<std::int32_t>(kElementRegion, shape);
+    elements.density = file_.read<double>(kElementDensity, shape);
+    if (rigid) return;
+    elements.youngs_modulus = file_.read<double>(kElementYoungsModulus, shape);
+    elements.poisson_ratio = file_.read<double>(kElementPoissonRatio, shape);
   }
 
   void read_modal() {

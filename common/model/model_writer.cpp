@@ -46,6 +46,17 @@ void write_elasticity(hdf5::File& file, const Material& material) {
   file.write_attribute("/material", "rayleigh_beta", material.rayleigh_beta);
 }
 
+void write_elements(hdf5::File& file, const ElementMaterials& elements) {
+  if (elements.empty()) return;
+  const auto write = [&](const char* dataset, const std::vector<double>& values) {
+    if (!values.empty()) file.write<double>(dataset, {values.size()}, values.data());
+  };
+  write(kElementYoungsModulus, elements.youngs_modulus);
+  write(kElementPoissonRatio, elements.poisson_ratio);
+  write(kElementDensity, elements.density);
+  file.write<std::int32_t>(kElementRegion, {elements.region.size()}, elements.region.data());
+}
+
 }  // namespace
 
 bool holds_rigid_body(const hdf5::File& file) {
@@ -84,6 +95,7 @@ void write_description(hdf5::File& file, const Model& model) {
   file.create_group("/material");
   file.write_attribute("/material", "density", model.material.density);
   if (!is_rigid(model)) write_elasticity(file, model.material);
+  write_elements(file, model.material.elements);
 
   file.create_group("/response");
   file.write_attribute("/response", "dt", model.dt);

@@ -20,6 +20,10 @@ inline constexpr const char* kModalCentrifugal = "/response/modal/centrifugal";
 
 /// What gravity does to a fixed body, one part an axis of B. Optional.
 inline constexpr const char* kDenseGravity = "/response/dense/gravity";
+inline constexpr const char* kElementYoungsModulus = "/material/elements/youngs_modulus";
+inline constexpr const char* kElementPoissonRatio = "/material/elements/poisson_ratio";
+inline constexpr const char* kElementDensity = "/material/elements/density";
+inline constexpr const char* kElementRegion = "/material/elements/region";
 inline constexpr const char* kModalGravity = "/response/modal/gravity";
 inline constexpr const char* kModalGravityRest = "/response/modal/gravity_rest";
 

@@ -180,7 +180,7 @@ Report check_model(const std::filesystem::path& path, const CheckOptions& option
     const Model model = read_description(hdf5::File::open(path));
     loop.dt = model.dt;
     rigid = is_rigid(model);
-    return Report{};
+    return region_lines(model);
   });
   if (failed_lines(report).find("description") != std::string::npos) return report;
   if (rigid) {

@@ -8,6 +8,7 @@
 #include "common/model/model_writer.hpp"
 #include "precompute/check/static_reference.hpp"
 #include "precompute/check/wave_speed.hpp"
+#include "precompute/mesh/material_regions.hpp"
 #include "precompute/modal/residual_compliance.hpp"
 
 namespace irdm::precompute {
@@ -141,6 +142,17 @@ Line modes_line(const ModalResponse& response, const Material& material) {
                decay.maxCoeff(), off > 1e-6 ? ", not those of the material" : "")};
 }
 
+Report region_lines(const Model& model) {
+  const TetMesh mesh{model.mesh.nodes, model.mesh.tets, {}};
+  Report lines;
+  for (const RegionReport& region : report_regions(mesh, model.material)) {
+    const bool coarse = coarseness_hint(region).has_value();
+    lines.push_back(
+        {name_of(region), coarse ? Verdict::kWarn : Verdict::kOk, format_region(region)});
+  }
+  return lines;
+}
+
 Line residual_line(const ModalResponse& response) {
   const ResidualCompliance& residual = response.residual;
   const ModeReduction& reduction = residual.reduction;
@@ -237,6 +249,9 @@ double wave_interval(const Model& model) {
 }
 
 Line wave_line(const Model& model, const StoredResponse& R, double dt, int steps) {
+  if (!model.material.elements.empty()) {
+    return {"wave speed", Verdict::kNone, "the body has several materials"};
+  }
   const WaveSpeeds theory = theoretical_speeds(model.material);
   const int b = wave_source(model);
   const double reach = model.mesh.rest_position(b / 3).norm();

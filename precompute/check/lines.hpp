@@ -19,6 +19,8 @@ Line chunk_checksum_line(const hdf5::File& file);
 Line modes_line(const ModalResponse& response, const Material& material);
 /// Of modes that are left out: whether what they add can give no energy, and the stated errors.
 Line residual_line(const ModalResponse& response);
+/// What each region is made of, and whether it has elements enough; none of a body of one material.
+Report region_lines(const Model& model);
 Line reciprocity_line(const Reciprocity& reciprocity);
 /// Static compliance and momentum of some columns against finite elements assembled again.
 Report static_lines(const Model& model, const StoredResponse& R);

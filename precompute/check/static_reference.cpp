@@ -16,7 +16,7 @@ StaticReference::StaticReference(const Model& model)
   TetMesh mesh;
   mesh.nodes = model.mesh.nodes;
   mesh.tets = model.mesh.tets;
-  SparseMatrix stiffness = assemble_stiffness(mesh, lame_parameters(model.material));
+  SparseMatrix stiffness = assemble_stiffness(mesh, model.material);
   hold_determinately(stiffness, mesh.nodes);
   try {
     solver_->factorise(stiffness);

@@ -32,10 +32,13 @@ Line step_line(const Model& model) {
   const double error = std::max(step_error(model, nearest, 1.0), step_error(model, farthest, 1.0));
   const double factor = std::min(stiffness_for_error(model, nearest, kNoticeable),
                                  stiffness_for_error(model, farthest, kNoticeable));
+  const bool several = !model.material.elements.empty();
   return {"step", error < kNoticeable ? Verdict::kOk : Verdict::kWarn,
           text("a node that is pushed and held is felt within %.2g %% of what short steps give; "
-               "10 %% from a Young's modulus of %.2g N/m^2 on",
-               100.0 * error, factor * model.material.youngs_modulus)};
+               "10 %% from %s %.2g %s on",
+               100.0 * error, several ? "Young's moduli" : "a Young's modulus of",
+               several ? factor : factor * model.material.youngs_modulus,
+               several ? "times these" : "N/m^2")};
 }
 
 namespace {

@@ -9,25 +9,27 @@
 namespace irdm::precompute {
 SoftBody::SoftBody(const TetMesh& mesh, const Material& material, Elasticity elasticity)
     : elasticity_(elasticity),
-      material_(material),
-      lame_(lame_parameters(material)),
-      mass_(lumped_mass(mesh, material.density)) {
+      rayleigh_alpha_(material.rayleigh_alpha),
+      rayleigh_beta_(material.rayleigh_beta),
+      mass_(lumped_mass(mesh, material)) {
   rest_ =
       mesh.nodes.rowwise() - nodal_mass_properties(mesh.nodes, mass_).centre_of_mass.transpose();
   tets_ = mesh.tets;
-  for (Eigen::Index e = 0; e < tets_.rows(); ++e) add_element(mesh, e);
+  for (Eigen::Index e = 0; e < tets_.rows(); ++e) {
+    add_element(mesh, e, lame_parameters(material, e));
+  }
 }
 
-void SoftBody::add_element(const TetMesh& mesh, Eigen::Index element) {
+void SoftBody::add_element(const TetMesh& mesh, Eigen::Index element, const Lame& lame) {
   tet4::Corners corners;
   for (int i = 0; i < 4; ++i) corners.row(i) = rest_.row(tets_(element, i));
   const tet4::Geometry geometry = tet4::geometry(corners);
   if (mesh.order() == 1) {
-    points_.push_back({element, geometry.volume, geometry.gradient});
+    points_.push_back({element, lame, geometry.volume, geometry.gradient});
     return;
   }
   for (const tet10::Barycentric& b : tet10::quadrature_points()) {
-    points_.push_back({element, 0.25 * geometry.volume, tet10::gradients(geometry, b)});
+    points_.push_back({element, lame, 0.25 * geometry.volume, tet10::gradients(geometry, b)});
   }
 }
 
@@ -58,30 +60,32 @@ void SoftBody::add_force(const Point& point, const Matrix3& P, Eigen::VectorXd& 
 }
 
 void SoftBody::add_mass_damping(const BodyState& state, Eigen::VectorXd& force) const {
-  if (material_.rayleigh_alpha == 0.0) return;
+  if (rayleigh_alpha_ == 0.0) return;
   const Eigen::VectorXd elastic = state.v - rigid_velocity(state.u, state.v);
   for (Eigen::Index i = 0; i < mass_.size(); ++i) {
-    force.segment<3>(3 * i) -= material_.rayleigh_alpha * mass_(i) * elastic.segment<3>(3 * i);
+    force.segment<3>(3 * i) -= rayleigh_alpha_ * mass_(i) * elastic.segment<3>(3 * i);
   }
 }
 
-Matrix3 SoftBody::stress(const Matrix3& du_dX, const Matrix3& dv_dX) const {
-  const double beta = material_.rayleigh_beta;
+Matrix3 SoftBody::stress(const Point& point, const BodyState& state) const {
+  const Matrix3 du_dX = gradient(point, state.u);
+  const Matrix3 dv_dX = gradient(point, state.v);
+  const double beta = rayleigh_beta_;
   switch (elasticity_) {
     case Elasticity::kLinear:
-      return lame_stress(du_dX + beta * dv_dX, lame_);
+      return lame_stress(du_dX + beta * dv_dX, point.lame);
     case Elasticity::kCorotational:
-      return corotational::stress(du_dX, dv_dX, lame_, beta);
+      return corotational::stress(du_dX, dv_dX, point.lame, beta);
     case Elasticity::kNeoHookean:
       break;
   }
-  return neo_hookean::stress(du_dX, dv_dX, lame_, beta);
+  return neo_hookean::stress(du_dX, dv_dX, point.lame, beta);
 }
 
 Eigen::VectorXd SoftBody::internal_force(const BodyState& state) const {
   Eigen::VectorXd force = Eigen::VectorXd::Zero(state.u.size());
   for (const Point& point : points_) {
-    add_force(point, stress(gradient(point, state.u), gradient(point, state.v)), force);
+    add_force(point, stress(point, state), force);
   }
   add_mass_damping(state, force);
   return force;
@@ -107,11 +111,11 @@ Eigen::VectorXd SoftBody::mean_force(const StepStart& start, const Eigen::Vector
     const Point& point = points_[p];
     const Matrix3 before = gradient(point, start.u);
     const Matrix3 after = gradient(point, end);
-    const double beta = material_.rayleigh_beta;
     add_force(point,
               elasticity_ == Elasticity::kCorotational
-                  ? corotational::mean_stress(before, start.strains[p], after, h, lame_, beta)
-                  : neo_hookean::mean_stress(before, after, h, lame_, beta),
+                  ? corotational::mean_stress(before, start.strains[p], after, h, point.lame,
+                                              rayleigh_beta_)
+                  : neo_hookean::mean_stress(before, after, h, point.lame, rayleigh_beta_),
               force);
   }
   add_mass_damping(middle, force);
@@ -123,13 +127,13 @@ double SoftBody::elastic_energy(const Eigen::VectorXd& u) const {
   for (const Point& point : points_) {
     const Matrix3 du_dX = gradient(point, u);
     if (elasticity_ == Elasticity::kNeoHookean) {
-      sum += point.volume * neo_hookean::energy_density(du_dX, lame_);
+      sum += point.volume * neo_hookean::energy_density(du_dX, point.lame);
       continue;
     }
     const Matrix3 strain = elasticity_ == Elasticity::kLinear
                                ? Matrix3(0.5 * (du_dX + du_dX.transpose()))
                                : corotational::strain(du_dX);
-    sum += point.volume * corotational::energy_density(strain, lame_);
+    sum += point.volume * corotational::energy_density(strain, point.lame);
   }
   return sum;
 }
@@ -170,7 +174,7 @@ Eigen::SparseMatrix<double> SoftBody::stiffness(const Eigen::VectorXd& u) const 
       }
     };
     if (elasticity_ == Elasticity::kNeoHookean) {
-      const neo_hookean::Tangent tangent(gradient(point, u), lame_);
+      const neo_hookean::Tangent tangent(gradient(point, u), point.lame);
       add_blocks([&](const Vector3& gi, const Vector3& gj) { return tangent.block(gi, gj); });
       continue;
     }
@@ -182,8 +186,8 @@ Eigen::SparseMatrix<double> SoftBody::stiffness(const Eigen::VectorXd& u) const 
     // the gradient u_j g_j^T.
     add_blocks([&](const Vector3& gi, const Vector3& gj) -> Matrix3 {
       const Matrix3 dyad = (R * gi) * (R * gj).transpose();
-      return lame_.lambda * dyad + lame_.mu * dyad.transpose() +
-             lame_.mu * dyad.trace() * Matrix3::Identity();
+      return point.lame.lambda * dyad + point.lame.mu * dyad.transpose() +
+             point.lame.mu * dyad.trace() * Matrix3::Identity();
     });
   }
   Eigen::SparseMatrix<double> matrix(u.size(), u.size());

@@ -56,8 +56,8 @@ class SoftBody {
   const Points& rest() const { return rest_; }           ///< X (N, 3) [m]
   const Eigen::VectorXd& mass() const { return mass_; }  ///< (N) [kg]
   Elasticity elasticity() const { return elasticity_; }
-  double rayleigh_alpha() const { return material_.rayleigh_alpha; }
-  double rayleigh_beta() const { return material_.rayleigh_beta; }
+  double rayleigh_alpha() const { return rayleigh_alpha_; }
+  double rayleigh_beta() const { return rayleigh_beta_; }
   /// Volume of the rest shape [m^3].
   double volume() const;
 
@@ -88,18 +88,19 @@ class SoftBody {
   /// the element's nodes strain it.
   struct Point {
     Eigen::Index element;
+    Lame lame;
     double volume;                                                  ///< [m^3]
     Eigen::Matrix<double, Eigen::Dynamic, 3, 0, 10, 3> gradient{};  ///< of shape functions [1/m]
   };
-  void add_element(const TetMesh& mesh, Eigen::Index element);
+  void add_element(const TetMesh& mesh, Eigen::Index element, const Lame& lame);
   Matrix3 gradient(const Point& point, const Eigen::VectorXd& field) const;
-  Matrix3 stress(const Matrix3& du_dX, const Matrix3& dv_dX) const;
+  Matrix3 stress(const Point& point, const BodyState& state) const;
   void add_force(const Point& point, const Matrix3& P, Eigen::VectorXd& force) const;
   void add_mass_damping(const BodyState& state, Eigen::VectorXd& force) const;
 
   Elasticity elasticity_;
-  Material material_;
-  Lame lame_;
+  double rayleigh_alpha_;
+  double rayleigh_beta_;
   Points rest_;
   Eigen::VectorXd mass_;
   RowMatrix<int> tets_;

@@ -1,11 +1,18 @@
 #include "precompute/dynamics/stepped_columns.hpp"
 
+#include <algorithm>
 #include <numeric>
 
 namespace irdm::precompute {
 namespace {
 
 constexpr int kLinearColumnsAtOnce = 16;
+
+// Of the elements [Pa].
+double softest_modulus(const Material& material) {
+  const std::vector<double>& own = material.elements.youngs_modulus;
+  return own.empty() ? material.youngs_modulus : *std::ranges::min_element(own);
+}
 
 }  // namespace
 
@@ -17,7 +24,7 @@ SteppedColumns::SteppedColumns(const TetMesh& mesh, const Material& material,
       surface_nodes_(std::move(surface_nodes)),
       dt_(dt),
       schedule_(step_schedule(config, dt, intervals)),
-      force_(config.force > 0.0 ? config.force : default_force(body_, material.youngs_modulus)),
+      force_(config.force > 0.0 ? config.force : default_force(body_, softest_modulus(material))),
       precision_(precision),
       block_size_(1) {
   if (config.model == Elasticity::kLinear) {

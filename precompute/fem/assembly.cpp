@@ -8,10 +8,11 @@
 namespace irdm::precompute {
 namespace {
 
-Eigen::MatrixXd element_stiffness(const TetMesh& mesh, int e, const Lame& lame) {
+Eigen::MatrixXd element_stiffness(const TetMesh& mesh, int e, const Material& material) {
   tet4::Corners corners;
   for (int i = 0; i < 4; ++i) corners.row(i) = mesh.nodes.row(mesh.tets(e, i));
   const tet4::Geometry geometry = tet4::geometry(corners);
+  const Lame lame = lame_parameters(material, e);
   if (mesh.order() == 1) return tet4::stiffness(geometry, lame);
   return tet10::stiffness(geometry, lame);
 }
@@ -24,12 +25,12 @@ Eigen::VectorXd mass_shares(int order) {
 
 }  // namespace
 
-SparseMatrix assemble_stiffness(const TetMesh& mesh, const Lame& lame) {
+SparseMatrix assemble_stiffness(const TetMesh& mesh, const Material& material) {
   std::vector<Eigen::Triplet<double>> entries;
   const Eigen::Index size = 3 * mesh.tets.cols();
   entries.reserve(static_cast<std::size_t>(mesh.tet_count() * size * size));
   for (int e = 0; e < mesh.tet_count(); ++e) {
-    const Eigen::MatrixXd k = element_stiffness(mesh, e, lame);
+    const Eigen::MatrixXd k = element_stiffness(mesh, e, material);
     for (int row = 0; row < size; ++row) {
       for (int column = 0; column < size; ++column) {
         entries.emplace_back(3 * mesh.tets(e, row / 3) + row % 3,
@@ -43,14 +44,14 @@ SparseMatrix assemble_stiffness(const TetMesh& mesh, const Lame& lame) {
   return stiffness;
 }
 
-RowSparseMatrix assemble_stiffness_rows(const TetMesh& mesh, const Lame& lame, int first,
+RowSparseMatrix assemble_stiffness_rows(const TetMesh& mesh, const Material& material, int first,
                                         int last) {
   std::vector<Eigen::Triplet<double>> entries;
   const auto wanted = [&](int node) { return node >= first && node < last; };
   for (int e = 0; e < mesh.tet_count(); ++e) {
     const auto nodes = mesh.tets.row(e);
     if (std::none_of(nodes.begin(), nodes.end(), wanted)) continue;
-    const Eigen::MatrixXd k = element_stiffness(mesh, e, lame);
+    const Eigen::MatrixXd k = element_stiffness(mesh, e, material);
     for (int row = 0; row < k.rows(); ++row) {
       if (!wanted(nodes(row / 3))) continue;
       for (int column = 0; column < k.cols(); ++column) {
@@ -64,11 +65,11 @@ RowSparseMatrix assemble_stiffness_rows(const TetMesh& mesh, const Lame& lame, i
   return rows;
 }
 
-Eigen::VectorXd lumped_mass(const TetMesh& mesh, double density) {
+Eigen::VectorXd lumped_mass(const TetMesh& mesh, const Material& material) {
   Eigen::VectorXd mass = Eigen::VectorXd::Zero(mesh.node_count());
   const Eigen::VectorXd shares = mass_shares(mesh.order());
   for (int e = 0; e < mesh.tet_count(); ++e) {
-    const double element_mass = density * signed_volume(mesh, e);
+    const double element_mass = density_of(material, e) * signed_volume(mesh, e);
     for (int i = 0; i < shares.size(); ++i) mass(mesh.tets(e, i)) += shares(i) * element_mass;
   }
   return mass;

@@ -14,19 +14,21 @@ using SparseMatrix = Eigen::SparseMatrix<double>;
 using RowSparseMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
 /// Stiffness of the whole mesh [N/m], (3N, 3N), index 3 node + axis; both triangles are stored.
-SparseMatrix assemble_stiffness(const TetMesh& mesh, const Lame& lame);
+/// Each element has its own material, where there are several.
+SparseMatrix assemble_stiffness(const TetMesh& mesh, const Material& material);
 
 /// The rows of nodes first..last-1 of it alone, (3 (last - first), 3N): for one of several
 /// processes that share the matrix. Nothing is computed of elements without such a node.
-RowSparseMatrix assemble_stiffness_rows(const TetMesh& mesh, const Lame& lame, int first, int last);
+RowSparseMatrix assemble_stiffness_rows(const TetMesh& mesh, const Material& material, int first,
+                                        int last);
 
 /// Lumped mass [kg], (N), all > 0. Every linear tetrahedron gives a quarter of its mass to each
 /// corner, every quadratic one 1/36 to each corner and 4/27 to each mid-side node: the diagonal of
 /// the consistent mass matrix, scaled to the mass of the element (Hinton, Rock and Zienkiewicz, A
 /// note on mass lumping, Earthquake Eng. Struct. Dyn. 4, 1976). Row sums would give the corners
 /// -1/20. Total mass and centre of mass are those of the solid.
-/// @param density [kg/m^3]
-Eigen::VectorXd lumped_mass(const TetMesh& mesh, double density);
+/// @param material of which the densities count
+Eigen::VectorXd lumped_mass(const TetMesh& mesh, const Material& material);
 
 /// Nodal loads of a body that turns: shape (3N, 6), one column a product of SpinProducts. With
 /// q = spin_products(w) the columns add up to m_i (|w|^2 X_i - w (w . X_i)) on node i, the

@@ -1,5 +1,7 @@
 #include "precompute/fem/mass_properties.hpp"
 
+#include "precompute/fem/material.hpp"
+
 namespace irdm::precompute {
 namespace {
 
@@ -19,11 +21,11 @@ MassProperties about_centre(const Moments& m, const Vector3& reference) {
 
 }  // namespace
 
-MassProperties solid_mass_properties(const TetMesh& mesh, double density) {
+MassProperties solid_mass_properties(const TetMesh& mesh, const Material& material) {
   const Vector3 reference = mesh.nodes.colwise().mean().transpose();
   Moments sum;
   for (int e = 0; e < mesh.tet_count(); ++e) {
-    const double m = density * signed_volume(mesh, e);
+    const double m = density_of(material, e) * signed_volume(mesh, e);
     Vector3 corner_sum = Vector3::Zero();
     Matrix3 corner_products = Matrix3::Zero();
     for (int i = 0; i < 4; ++i) {

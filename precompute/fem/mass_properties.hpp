@@ -11,8 +11,8 @@ struct MassProperties {
 };
 
 /// Of the body that the tetrahedra fill: the integrals are exact.
-/// @param density [kg/m^3]
-MassProperties solid_mass_properties(const TetMesh& mesh, double density);
+/// @param material of which the densities count
+MassProperties solid_mass_properties(const TetMesh& mesh, const Material& material);
 
 /// Of point masses at the nodes. With lumped_mass(), mass and centre of mass are those of the
 /// solid; the inertia is larger, because lumping moves mass away from the middle of every element,

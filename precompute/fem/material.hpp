@@ -13,11 +13,29 @@ struct Lame {
   double mu;      ///< shear modulus [Pa]
 };
 
-/// E > 0 and -1 < nu < 0.5.
-inline Lame lame_parameters(const Material& material) {
-  const double e = material.youngs_modulus;
-  const double nu = material.poisson_ratio;
+/// @param e Young's modulus [Pa], > 0
+/// @param nu Poisson's ratio, in (-1, 0.5)
+inline Lame lame_parameters(double e, double nu) {
   return {e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), e / (2.0 * (1.0 + nu))};
+}
+
+/// Of the body where it has no values of its elements.
+inline Lame lame_parameters(const Material& material) {
+  return lame_parameters(material.youngs_modulus, material.poisson_ratio);
+}
+
+/// Of a tetrahedron of a body that deforms.
+inline Lame lame_parameters(const Material& material, Eigen::Index element) {
+  const ElementMaterials& own = material.elements;
+  if (own.empty()) return lame_parameters(material);
+  const auto e = static_cast<std::size_t>(element);
+  return lame_parameters(own.youngs_modulus[e], own.poisson_ratio[e]);
+}
+
+/// Of a tetrahedron [kg/m^3].
+inline double density_of(const Material& material, Eigen::Index element) {
+  const ElementMaterials& own = material.elements;
+  return own.empty() ? material.density : own.density[static_cast<std::size_t>(element)];
 }
 
 /// Stress [Pa] = lambda tr(strain) Id + 2 mu strain.

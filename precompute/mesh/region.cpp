@@ -2,6 +2,9 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
+#include <set>
+#include <span>
 
 #include "common/error.hpp"
 
@@ -23,14 +26,17 @@ bool contains(const BoxRegion& box, const Vector3& x, double tolerance) {
          ((box.highest - x).array() >= -tolerance).all();
 }
 
-template <typename Shape>
-std::vector<int> nodes_inside(const TetMesh& mesh, const Shape& shape) {
-  const double tolerance = kRounding * size_of(mesh);
-  std::vector<int> nodes;
-  for (int i = 0; i < mesh.node_count(); ++i) {
-    if (contains(shape, mesh.position(i), tolerance)) nodes.push_back(i);
-  }
-  return nodes;
+bool contains(const BallRegion& ball, const Vector3& x, double tolerance) {
+  return (x - ball.centre).norm() <= ball.radius + tolerance;
+}
+
+// A group has no inside of its own.
+bool contains(const GroupRegion&, const Vector3&, double) {
+  return false;
+}
+
+bool contains(const Region& region, const Vector3& x, double tolerance) {
+  return std::visit([&](const auto& shape) { return contains(shape, x, tolerance); }, region);
 }
 
 constexpr std::size_t kMostGroups = 40;  // in a message
@@ -45,8 +51,8 @@ std::string group_list(const TetMesh& mesh) {
   return list;
 }
 
-std::vector<int> nodes_of_group(const TetMesh& mesh, const std::string& group,
-                                const std::string& name) {
+const MeshGroup& find_group(const TetMesh& mesh, const std::string& group,
+                            const std::string& name) {
   const auto found = mesh.groups.find(group);
   if (found == mesh.groups.end()) {
     throw Error(name, "the mesh has no group " + in_quotes(group),
@@ -54,12 +60,36 @@ std::vector<int> nodes_of_group(const TetMesh& mesh, const std::string& group,
                     ? "only Gmsh and Medit files have groups: use a box or a half-space"
                     : "it has " + group_list(mesh));
   }
+  return found->second;
+}
+
+std::vector<int> nodes_of_group(const MeshGroup& group) {
   std::vector<int> nodes;
-  for (const auto& element : found->second)
-    nodes.insert(nodes.end(), element.begin(), element.end());
+  for (const auto& element : group) nodes.insert(nodes.end(), element.begin(), element.end());
   std::sort(nodes.begin(), nodes.end());
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   return nodes;
+}
+
+std::array<int, 4> sorted_corners(std::span<const int> nodes) {
+  std::array<int, 4> corners{};
+  std::copy_n(nodes.begin(), 4, corners.begin());
+  std::ranges::sort(corners);
+  return corners;
+}
+
+// Its points, edges and faces are passed over.
+std::vector<int> elements_of_group(const TetMesh& mesh, const MeshGroup& group) {
+  const auto width = static_cast<std::size_t>(mesh.tets.cols());
+  std::set<std::array<int, 4>> named;
+  for (const std::vector<int>& nodes : group) {
+    if (nodes.size() == width) named.insert(sorted_corners(nodes));
+  }
+  std::vector<int> elements;
+  for (int e = 0; e < mesh.tet_count(); ++e) {
+    if (named.contains(sorted_corners({mesh.tets.row(e).data(), width}))) elements.push_back(e);
+  }
+  return elements;
 }
 
 // Whether all nodes lie on one line: the spread across their main direction vanishes.
@@ -76,10 +106,44 @@ bool collinear(const TetMesh& mesh, const std::vector<int>& nodes) {
 
 std::vector<int> nodes_in(const TetMesh& mesh, const Region& region, const std::string& name) {
   if (const auto* group = std::get_if<GroupRegion>(&region)) {
-    return nodes_of_group(mesh, group->group, name);
+    return nodes_of_group(find_group(mesh, group->group, name));
   }
-  if (const auto* half = std::get_if<HalfSpace>(&region)) return nodes_inside(mesh, *half);
-  return nodes_inside(mesh, std::get<BoxRegion>(region));
+  const double tolerance = kRounding * size_of(mesh);
+  std::vector<int> nodes;
+  for (int i = 0; i < mesh.node_count(); ++i) {
+    if (contains(region, mesh.position(i), tolerance)) nodes.push_back(i);
+  }
+  return nodes;
+}
+
+std::vector<int> elements_in(const TetMesh& mesh, const Region& region, const std::string& name) {
+  if (const auto* group = std::get_if<GroupRegion>(&region)) {
+    return elements_of_group(mesh, find_group(mesh, group->group, name));
+  }
+  const double tolerance = kRounding * size_of(mesh);
+  std::vector<int> elements;
+  for (int e = 0; e < mesh.tet_count(); ++e) {
+    Vector3 centroid = Vector3::Zero();
+    for (int i = 0; i < 4; ++i) centroid += 0.25 * mesh.position(mesh.tets(e, i));
+    if (contains(region, centroid, tolerance)) elements.push_back(e);
+  }
+  return elements;
+}
+
+int count_cut_elements(const TetMesh& mesh, const Region& region) {
+  const double tolerance = kRounding * size_of(mesh);
+  int count = 0;
+  for (int e = 0; e < mesh.tet_count(); ++e) {
+    bool inside = false;
+    bool outside = false;
+    for (int i = 0; i < 4; ++i) {
+      const Vector3 x = mesh.position(mesh.tets(e, i));
+      inside = inside || contains(region, x, -tolerance);
+      outside = outside || !contains(region, x, tolerance);
+    }
+    if (inside && outside) ++count;
+  }
+  return count;
 }
 
 void check_clamped(const TetMesh& mesh, const std::vector<int>& clamped,

@@ -21,17 +21,32 @@ struct BoxRegion {
   Vector3 highest = Vector3::Zero();  ///< [m]
 };
 
-/// The nodes of a group of the mesh.
+/// A ball, its surface included.
+struct BallRegion {
+  Vector3 centre = Vector3::Zero();  ///< [m]
+  double radius = 0.0;               ///< [m], > 0
+};
+
+/// A group of the mesh.
 struct GroupRegion {
   std::string group;
 };
 
-/// A choice of nodes, in the coordinates of the input mesh.
-using Region = std::variant<HalfSpace, BoxRegion, GroupRegion>;
+/// A part of the mesh, in its coordinates.
+using Region = std::variant<HalfSpace, BoxRegion, BallRegion, GroupRegion>;
 
 /// The nodes in a region, increasing. Faces and planes are thick by 1e-9 of the mesh's size, for
 /// rounding. Throws Error (about `name`) for a group that the mesh does not have.
 std::vector<int> nodes_in(const TetMesh& mesh, const Region& region, const std::string& name);
+
+/// The tetrahedra of a region, increasing: those whose centroid lies in it, so that its volume
+/// comes out right on average; of a group those that it names. Throws Error (about `name`) for a
+/// group that the mesh does not have.
+std::vector<int> elements_in(const TetMesh& mesh, const Region& region, const std::string& name);
+
+/// How many tetrahedra have corners on both sides of the region's boundary; none where it is a
+/// group.
+int count_cut_elements(const TetMesh& mesh, const Region& region);
 
 /// Throws Error (about `name`) unless clamping the nodes leaves the body no rigid motion, but
 /// something to move at the surface.

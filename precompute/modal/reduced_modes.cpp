@@ -18,6 +18,24 @@ namespace {
 
 constexpr int kFirstTry = 64;
 
+// Of the fastest shear wave in an element at the surface [m/s]: the residual is of surface nodes
+// near each other.
+double surface_shear_speed(const Model& model) {
+  std::vector<bool> at_surface(static_cast<std::size_t>(model.mesh.nodes.rows()), false);
+  for (const int node : model.mesh.surface_nodes) at_surface[static_cast<std::size_t>(node)] = true;
+  double square = 0.0;
+  for (Eigen::Index e = 0; e < model.mesh.tets.rows(); ++e) {
+    const auto nodes = model.mesh.tets.row(e);
+    const bool there = std::any_of(nodes.begin(), nodes.end(), [&](int node) {
+      return at_surface[static_cast<std::size_t>(node)];
+    });
+    if (!there) continue;
+    square =
+        std::max(square, lame_parameters(model.material, e).mu / density_of(model.material, e));
+  }
+  return std::sqrt(square);
+}
+
 double hertz(double angular_frequency) {
   return angular_frequency / (2.0 * std::numbers::pi);
 }
@@ -83,8 +101,7 @@ class Choice {
 
   // What modes from here on add reaches about half a shear wave far.
   bool dies_away(double cut_off) const {
-    const double speed = std::sqrt(lame_parameters(model_.material).mu / model_.material.density);
-    return std::numbers::pi * speed / cut_off <= residual_radius_;
+    return std::numbers::pi * surface_shear_speed(model_) / cut_off <= residual_radius_;
   }
 
   // And one more.
@@ -133,8 +150,7 @@ ModalResponse compute_reduced_modes(const TetMesh& mesh, const std::vector<int>&
       single;  // the factors' bits, and so the modes', do not depend on threads
   const bool any_thread_solves = shared.statics == nullptr;
   const ElasticStatics statics(
-      assemble_stiffness(mesh, lame_parameters(model.material)), model.mesh.nodes,
-      model.mesh.node_mass, clamped,
+      assemble_stiffness(mesh, model.material), model.mesh.nodes, model.mesh.node_mass, clamped,
       any_thread_solves ? make_sparse_solver() : std::move(shared.statics));
   const FingertipReference reference(statics, model, config.contact_radius, clamped);
   const double radius = residual_radius(model.mesh, config.contact_radius);

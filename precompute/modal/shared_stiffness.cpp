@@ -12,11 +12,19 @@ namespace {
 // Of the square of a shear wave's frequency that is twice as long as the body.
 constexpr double kShiftShare = 1e-3;
 
-// Far below the lowest omega^2, but for the thinnest bodies; there it costs steps, no accuracy.
-double shift_of(const Points& nodes, const Material& material) {
+// Far below the lowest omega^2, but for the thinnest bodies; there it costs steps, no accuracy. Of
+// several materials those that give the lowest shear wave speed.
+double shift_of(const TetMesh& mesh, const Material& material) {
+  const Points& nodes = mesh.nodes;
   const double extent = (nodes.colwise().maxCoeff() - nodes.colwise().minCoeff()).maxCoeff();
   const double wave_number = std::numbers::pi / extent;
-  return kShiftShare * lame_parameters(material).mu / material.density * wave_number * wave_number;
+  double softest = lame_parameters(material, 0).mu;
+  double heaviest = density_of(material, 0);
+  for (int e = 1; e < mesh.tet_count(); ++e) {
+    softest = std::min(softest, lame_parameters(material, e).mu);
+    heaviest = std::max(heaviest, density_of(material, e));
+  }
+  return kShiftShare * softest / heaviest * wave_number * wave_number;
 }
 
 // The mesh with its nodes in another order; no groups.
@@ -53,17 +61,17 @@ SharedStiffness::SharedStiffness(const TetMesh& mesh, const Material& material,
       order_(bisection_order(mesh.nodes)),
       clamped_(clamped),
       root_mass_(root_of(mass)),
-      shift_(clamped.empty() ? shift_of(mesh.nodes, material) : 0.0) {
+      shift_(clamped.empty() ? shift_of(mesh, material) : 0.0) {
   const TetMesh ordered = renumbered(mesh, order_);
   const Eigen::VectorXd ordered_mass = mass(order_);
-  make_matrix(own_rows(ordered, lame_parameters(material), root_of(ordered_mass)));
+  make_matrix(own_rows(ordered, material, root_of(ordered_mass)));
   make_rigid(ordered, ordered_mass);
 }
 
-RowSparseMatrix SharedStiffness::own_rows(const TetMesh& ordered, const Lame& lame,
+RowSparseMatrix SharedStiffness::own_rows(const TetMesh& ordered, const Material& material,
                                           const Eigen::VectorXd& root) {
   const Share own(order_.size(), ranks_.rank(), ranks_.size());
-  RowSparseMatrix rows = assemble_stiffness_rows(ordered, lame, own.first, own.last);
+  RowSparseMatrix rows = assemble_stiffness_rows(ordered, material, own.first, own.last);
   const auto fixed = [this](Eigen::Index dof) {
     const int node = order_[static_cast<std::size_t>(dof / 3)];
     return std::binary_search(clamped_.begin(), clamped_.end(), node);

@@ -33,7 +33,8 @@ class SharedStiffness {
   Eigen::VectorXd displacement(Vec vector) const;
 
  private:
-  RowSparseMatrix own_rows(const TetMesh& ordered, const Lame& lame, const Eigen::VectorXd& root);
+  RowSparseMatrix own_rows(const TetMesh& ordered, const Material& material,
+                           const Eigen::VectorXd& root);
   void make_matrix(const RowSparseMatrix& rows);
   void make_rigid(const TetMesh& ordered, const Eigen::VectorXd& mass);
 

@@ -18,7 +18,7 @@ void check_model(const Model& model, const std::string& name) {
                 "give a floating object, or leave --reference out");
   }
   const Eigen::VectorXd mass =
-      precompute::lumped_mass({model.mesh.nodes, model.mesh.tets, {}}, model.material.density);
+      precompute::lumped_mass({model.mesh.nodes, model.mesh.tets, {}}, model.material);
   if ((mass - model.mesh.node_mass).cwiseAbs().maxCoeff() <= 1e-9 * mass.maxCoeff()) return;
   throw Error(name, "has masses that its tetrahedra and density do not give",
               "precompute it again");

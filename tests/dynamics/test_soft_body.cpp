@@ -2,6 +2,7 @@
 
 #include "precompute/dynamics/soft_body.hpp"
 #include "precompute/fem/assembly.hpp"
+#include "precompute/mesh/material_regions.hpp"
 #include "precompute/mesh/tet_mesh.hpp"
 #include "tests/precompute/meshes.hpp"
 
@@ -47,11 +48,42 @@ TEST_CASE("linear forces are those of the assembled stiffness") {
   const BodyState state = some_state(b);
   const SparseMatrix k = b.stiffness(state.u);
   const TetMesh linear = test::box_mesh(Vector3(0.12, 0.08, 0.10), {3, 2, 2});
-  const SparseMatrix assembled = assemble_stiffness(order == 1 ? linear : quadratic_mesh(linear),
-                                                    lame_parameters({2000.0, 0.3, 110.0, 0, 0}));
+  const SparseMatrix assembled =
+      assemble_stiffness(order == 1 ? linear : quadratic_mesh(linear), {2000.0, 0.3, 110.0, 0, 0});
   CHECK((k - assembled).norm() < 1e-12 * assembled.norm());
   const Eigen::VectorXd expected = -(k * (state.u + 0.1 * state.v));
   CHECK((b.internal_force(state) - expected).norm() < 1e-12 * expected.norm());
+}
+
+TEST_CASE("at rest a body of two materials has the assembled stiffness of both") {
+  const auto elasticity =
+      GENERATE(Elasticity::kLinear, Elasticity::kCorotational, Elasticity::kNeoHookean);
+  TetMesh mesh = test::box_mesh(Vector3(0.12, 0.08, 0.10), {3, 2, 2});
+  if (GENERATE(false, true)) mesh = quadratic_mesh(mesh);
+  Material material{2000.0, 0.3, 110.0, 0, 0};
+  material.elements =
+      element_materials(mesh, material,
+                        {{Region(HalfSpace{Vector3(0.06, 0, 0), Vector3::UnitX()}),
+                          {.youngs_modulus = 50000.0, .poisson_ratio = 0.1, .density = 300.0}}},
+                        false, "box");
+  const SoftBody b(mesh, material, elasticity);
+  const SparseMatrix assembled = assemble_stiffness(mesh, material);
+  const Material uniform{2000.0, 0.3, 110.0, 0, 0};
+  CHECK((assembled - assemble_stiffness(mesh, uniform)).norm() > 0.5 * assembled.norm());
+  CHECK((b.stiffness(b.at_rest().u) - assembled).norm() < 1e-12 * assembled.norm());
+  CHECK(b.mass() == lumped_mass(mesh, material));
+  // The energy and the force of a large displacement are each other's, too.
+  BodyState state = some_state(b);
+  const Eigen::VectorXd force = b.internal_force(state);
+  const double step = 1e-7;
+  for (const Eigen::Index dof : {0, 20, 41}) {
+    Eigen::VectorXd more = state.u;
+    Eigen::VectorXd less = state.u;
+    more(dof) += step;
+    less(dof) -= step;
+    const double slope = (b.elastic_energy(more) - b.elastic_energy(less)) / (2.0 * step);
+    CHECK(force(dof) == Approx(-slope).epsilon(1e-5).margin(1e-6 * force.norm()));
+  }
 }
 
 TEST_CASE("elastic force of large strains is the gradient of the energy") {

@@ -2,6 +2,7 @@
 #include <numeric>
 
 #include "precompute/dynamics/stepped_columns.hpp"
+#include "precompute/mesh/material_regions.hpp"
 #include "precompute/mesh/surface.hpp"
 #include "precompute/modal/dense_columns.hpp"
 #include "precompute/modal/elastic_modes.hpp"
@@ -22,9 +23,8 @@ struct Cube {
   std::vector<int> surface = extract_surface(mesh, "cube").nodes;
 
   DenseColumns<double> modal() const {
-    const Eigen::VectorXd mass = lumped_mass(mesh, kMaterial.density);
-    const ElasticModes modes =
-        elastic_modes(assemble_stiffness(mesh, lame_parameters(kMaterial)), mesh.nodes, mass);
+    const Eigen::VectorXd mass = lumped_mass(mesh, kMaterial);
+    const ElasticModes modes = elastic_modes(assemble_stiffness(mesh, kMaterial), mesh.nodes, mass);
     return {modal_response(modes, surface, kMaterial), kDt, kIntervals};
   }
   SteppedColumns stepped(const TimeSteppingConfig& config) const {
@@ -68,6 +68,32 @@ TEST_CASE("linear time stepping comes to the modal closed form with the square o
   CHECK(errors[2] < 1e-3);
   CHECK(errors[0] / errors[1] == Approx(4.0).epsilon(0.15));
   CHECK(errors[1] / errors[2] == Approx(4.0).epsilon(0.1));
+}
+
+TEST_CASE("time stepping of a body with a stiff ball comes to its modal closed form", "[slow]") {
+  const Cube cube;
+  Material material = kMaterial;
+  material.elements =
+      element_materials(cube.mesh, material,
+                        {{Region(BallRegion{Vector3(0.06, 0.06, 0.08), 0.045}),
+                          {.youngs_modulus = 30000.0, .poisson_ratio = 0.4, .density = 200.0}}},
+                        false, "cube");
+  REQUIRE(report_regions(cube.mesh, material).size() == 2);
+  const ElasticModes modes = elastic_modes(assemble_stiffness(cube.mesh, material), cube.mesh.nodes,
+                                           lumped_mass(cube.mesh, material));
+  DenseColumns<double> modal(modal_response(modes, cube.surface, material), kDt, kIntervals);
+  std::vector<double> errors;
+  for (const int steps : {40, 80}) {
+    const SteppedColumns stepped(cube.mesh, material, equal_steps(Elasticity::kLinear, steps),
+                                 cube.surface, kDt, kIntervals);
+    errors.push_back(difference(stepped.column(76), modal.column(76)));
+  }
+  CAPTURE(errors);
+  CHECK(errors[1] < 1e-3);
+  CHECK(errors[0] / errors[1] == Approx(4.0).epsilon(0.15));
+  const SteppedColumns corotational(cube.mesh, material, equal_steps(Elasticity::kCorotational, 80),
+                                    cube.surface, kDt, kIntervals);
+  CHECK(difference(corotational.column(76), modal.column(76)) < 1e-3);
 }
 
 TEST_CASE("corotational columns come to the linear ones as the force goes to zero") {

@@ -12,8 +12,8 @@ using namespace precompute;
 
 Discrete::Discrete(TetMesh m, const Material& material)
     : mesh(std::move(m)),
-      stiffness(assemble_stiffness(mesh, lame_parameters(material))),
-      mass(lumped_mass(mesh, material.density)),
+      stiffness(assemble_stiffness(mesh, material)),
+      mass(lumped_mass(mesh, material)),
       mass3(mass.replicate(1, 3).transpose().reshaped()),
       rigid(rigid_motions(mesh.nodes, mass)) {}
 

@@ -351,7 +351,7 @@ TEST_CASE("configuration refuses each bad support") {
   const auto refused = [&](const std::string& text, const std::string& message) {
     check_refused(fixed + text + "\n", message);
   };
-  refused("[support]", "exactly one of half_space, box and group");
+  refused("[support]", "exactly one of half_space, box, ball and group");
   refused("[support]\ngroup = \"a\"\nbox = { min = [0, 0, 0], max = [1, 1, 1] }", "exactly one");
   refused("[support]\nhalf_space = { point = [0, 0, 0], normal = [0, 0, 0] }", "normal is zero");
   refused("[support]\nhalf_space = { point = [0, 0, 0] }", "normal is missing");

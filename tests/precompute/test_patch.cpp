@@ -41,7 +41,7 @@ Eigen::VectorXd linear_field(const TetMesh& mesh, const Matrix3& gradient) {
 
 TEST_CASE("patch test: a linear displacement needs no forces inside an irregular mesh") {
   const TetMesh mesh = irregular_mesh();
-  const SparseMatrix stiffness = assemble_stiffness(mesh, lame_parameters(kPatchMaterial));
+  const SparseMatrix stiffness = assemble_stiffness(mesh, kPatchMaterial);
   const Eigen::VectorXd force = stiffness * linear_field(mesh, some_gradient());
   const auto n = static_cast<Eigen::Index>(extract_surface(mesh, "box").nodes.size());
   REQUIRE(mesh.node_count() >= n + 10);
@@ -90,8 +90,8 @@ TEST_CASE("element forces are the stress times the faces, element stiffness is s
 
 TEST_CASE("rigid motions cost no elastic energy and are mass-normalised") {
   const TetMesh mesh = irregular_mesh();
-  const SparseMatrix stiffness = assemble_stiffness(mesh, lame_parameters(kPatchMaterial));
-  const Eigen::VectorXd mass = lumped_mass(mesh, kPatchMaterial.density);
+  const SparseMatrix stiffness = assemble_stiffness(mesh, kPatchMaterial);
+  const Eigen::VectorXd mass = lumped_mass(mesh, kPatchMaterial);
   const Eigen::MatrixXd motions = rigid_motions(mesh.nodes, mass);
   const double scale = Eigen::VectorXd(stiffness.diagonal()).maxCoeff() * motions.norm();
   CHECK((stiffness * motions).norm() < 1e-13 * scale);

@@ -163,7 +163,7 @@ TEST_CASE("patch test: a linear displacement gives Hooke's stress and no forces 
   QuadraticField field;
   field.linear = some_matrix(1);
   const Eigen::VectorXd u = field.nodal(mesh);
-  const Eigen::VectorXd force = assemble_stiffness(mesh, lame) * u;
+  const Eigen::VectorXd force = assemble_stiffness(mesh, kMaterial) * u;
   REQUIRE(inner_nodes(mesh).size() > 50);
   CHECK(largest_inner_force(mesh, force) < 1e-12 * force.cwiseAbs().maxCoeff());
   const Matrix3 expected = lame_stress(field.linear, lame);
@@ -183,7 +183,7 @@ TEST_CASE("patch test: a linear displacement gives Hooke's stress and no forces 
 TEST_CASE("any quadratic displacement is reproduced with its exact elastic energy") {
   const TetMesh mesh = irregular_quadratic_mesh();
   const Lame lame = lame_parameters(kMaterial);
-  const SparseMatrix stiffness = assemble_stiffness(mesh, lame);
+  const SparseMatrix stiffness = assemble_stiffness(mesh, kMaterial);
   for (int seed = 1; seed <= 3; ++seed) {
     const QuadraticField field{some_matrix(seed),
                                {some_matrix(seed + 10), some_matrix(seed + 20), some_matrix(seed)}};
@@ -194,7 +194,7 @@ TEST_CASE("any quadratic displacement is reproduced with its exact elastic energ
 
 TEST_CASE("pure bending is exact: energy E I / 2 per length, no forces inside") {
   const TetMesh mesh = irregular_quadratic_mesh();
-  const SparseMatrix stiffness = assemble_stiffness(mesh, lame_parameters(kMaterial));
+  const SparseMatrix stiffness = assemble_stiffness(mesh, kMaterial);
   const Eigen::VectorXd u = bending(kMaterial.poisson_ratio).nodal(mesh);
   const Eigen::VectorXd force = stiffness * u;
   CHECK(largest_inner_force(mesh, force) < 1e-11 * force.cwiseAbs().maxCoeff());
@@ -206,9 +206,9 @@ TEST_CASE("pure bending is exact: energy E I / 2 per length, no forces inside") 
 TEST_CASE(
     "lumped masses of quadratic tetrahedra are positive, mass and centre those of the solid") {
   const TetMesh mesh = irregular_quadratic_mesh();
-  const Eigen::VectorXd mass = lumped_mass(mesh, 110.0);
+  const Eigen::VectorXd mass = lumped_mass(mesh, {.density = 110.0});
   CHECK(mass.minCoeff() > 0.0);
-  const MassProperties solid = solid_mass_properties(mesh, 110.0);
+  const MassProperties solid = solid_mass_properties(mesh, {.density = 110.0});
   const MassProperties nodal = nodal_mass_properties(mesh.nodes, mass);
   CHECK(solid.mass == Approx(110.0 * kSize.prod()).epsilon(1e-13));
   CHECK(nodal.mass == Approx(solid.mass).epsilon(1e-13));

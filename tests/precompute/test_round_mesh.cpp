@@ -25,7 +25,7 @@ MassProperties round_properties(const std::variant<SphereConfig, CapsuleConfig>&
   CHECK(mesh.order() == order);
   for (int e = 0; e < mesh.tet_count(); ++e) CHECK(signed_volume(mesh, e) > 0.0);
   CHECK(report_mesh(mesh).worst_quality > 0.1);
-  return solid_mass_properties(mesh, kRoundDensity);
+  return solid_mass_properties(mesh, {.density = kRoundDensity});
 }
 
 // Of a cylinder along y with half spheres at its ends.

@@ -114,7 +114,7 @@ std::vector<Constraint> constraints(const FemContactBody& lower, const FemContac
 // Displacement of the points per force on them, W, on directions alternating x, y, z: (3m, 3m).
 Eigen::MatrixXd compliance(const FemContactBody& body, const std::vector<Point>& points) {
   const TetMesh mesh{body.mesh.nodes, body.mesh.tets, {}};
-  const ElasticStatics statics(assemble_stiffness(mesh, lame_parameters(body.material)), mesh.nodes,
+  const ElasticStatics statics(assemble_stiffness(mesh, body.material), mesh.nodes,
                                body.mesh.node_mass, {});
   Eigen::MatrixXd load =
       Eigen::MatrixXd::Zero(3 * mesh.nodes.rows(), 3 * static_cast<Eigen::Index>(points.size()));
@@ -210,7 +210,7 @@ FemContactBody fine_cube(int cells, int order, const Material& material) {
   const Surface surface = extract_surface(mesh, "cube");
   FemContactBody body;
   body.material = material;
-  body.mesh.node_mass = lumped_mass(mesh, material.density);
+  body.mesh.node_mass = lumped_mass(mesh, material);
   body.mesh.com_offset = nodal_mass_properties(mesh.nodes, body.mesh.node_mass).centre_of_mass;
   mesh.nodes.rowwise() -= body.mesh.com_offset.transpose();
   body.mesh.nodes = mesh.nodes;

@@ -17,7 +17,7 @@ StaticCube::StaticCube(int cells, double poisson_ratio, int order) {
   TetMesh mesh = tetrahedralise(box_surface(Vector3::Constant(0.12), {cells, cells, cells}));
   if (order == 2) mesh = quadratic_mesh(mesh);
   Surface surface = extract_surface(mesh, "cube");
-  mesh_.node_mass = lumped_mass(mesh, material.density);
+  mesh_.node_mass = lumped_mass(mesh, material);
   const MassProperties body = nodal_mass_properties(mesh.nodes, mesh_.node_mass);
   mesh.nodes.rowwise() -= body.centre_of_mass.transpose();
   mesh_.nodes = mesh.nodes;
@@ -27,7 +27,7 @@ StaticCube::StaticCube(int cells, double poisson_ratio, int order) {
   rigid_ = rigid_motions(mesh_.nodes, mesh_.node_mass);
   // Loads that are in balance need no support; a soft one at three nodes makes the matrix regular
   // and takes up nothing.
-  SparseMatrix K = assemble_stiffness(mesh, lame_parameters(material));
+  SparseMatrix K = assemble_stiffness(mesh, material);
   for (const int node : {0, 1, static_cast<int>(mesh_.nodes.rows()) / 2}) {
     for (int axis = 0; axis < 3; ++axis) K.coeffRef(3 * node + axis, 3 * node + axis) += 1.0;
   }

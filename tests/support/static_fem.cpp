@@ -41,8 +41,7 @@ Sparse bordered(const Sparse& A, const Eigen::MatrixXd& C) {
 }  // namespace
 
 Sparse stiffness_of(const Model& model) {
-  return precompute::assemble_stiffness({model.mesh.nodes, model.mesh.tets, {}},
-                                        precompute::lame_parameters(model.material));
+  return precompute::assemble_stiffness({model.mesh.nodes, model.mesh.tets, {}}, model.material);
 }
 
 // The multipliers are the rigid acceleration that takes up what is left of the load.

@@ -176,10 +176,18 @@ Line reciprocity_line(const Reciprocity& reciprocity) {
                share, reciprocity.column_of_largest(), reciprocity.sample_size())};
 }
 
+namespace {
+
+// Of a fixed body.
+Line no_static_line() {
+  return {"static compliance", Verdict::kNone, "the file does not say which nodes are clamped"};
+}
+
+}  // namespace
+
 Report static_lines(const Model& model, const StoredResponse& R) {
   if (model.body.support == Support::kFixed) {
-    return {{"momentum", Verdict::kNone, "a fixed body may have it"},
-            {"static compliance", Verdict::kNone, "the file does not say which nodes are clamped"}};
+    return {{"momentum", Verdict::kNone, "a fixed body may have it"}, no_static_line()};
   }
   const StaticReference reference(model);
   const std::vector<int> sample = fixed_sample(model.degrees_of_freedom(), kStaticColumns);
@@ -211,6 +219,7 @@ std::vector<int> complete_nodes(const Model& model, int node) {
 }  // namespace
 
 Line static_line_of_some_modes(const Model& model, const StoredResponse& R) {
+  if (model.body.support == Support::kFixed) return no_static_line();
   const StaticReference reference(model);
   const std::vector<int> sample = fixed_sample(model.degrees_of_freedom(), kStaticColumns);
   double worst = 0.0;

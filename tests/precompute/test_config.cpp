@@ -84,6 +84,24 @@ TEST_CASE("the liver is an organ of hand size, sound, and held by a part of its 
   CHECK(clamped.size() > 30);
 }
 
+TEST_CASE("the tissue with an inclusion has a ball of tetrahedra under its top") {
+  const auto config = load_config(IRDM_SOURCE_DIR "/configs/models/tissue-inclusion.toml");
+  const auto& path = std::get<std::filesystem::path>(config.mesh.source);
+  const TetMesh linear = read_mesh_file(path);
+  check_mesh(linear, path.string());
+  const TetMesh mesh = quadratic_mesh(linear);
+  CHECK(mesh.node_count() < 2200);
+  CHECK(report_mesh(mesh).worst_quality > 0.2);
+  Material material = config.material;
+  material.elements = element_materials(mesh, material, config.regions, false, "tissue");
+  const std::vector<RegionReport> regions = report_regions(mesh, material);
+  REQUIRE(regions.size() == 2);
+  // A ball of 1 cm of straight edges.
+  CHECK(regions[1].volume == Approx(4.19e-6).epsilon(0.2));
+  CHECK(regions[1].volume + regions[0].volume == Approx(0.09 * 0.09 * 0.04).epsilon(1e-9));
+  CHECK(regions[1].inner_nodes > 20);
+}
+
 TEST_CASE("configuration has defaults for damping and response") {
   const PrecomputeConfig config = read(kMesh + kMaterialTable);
   CHECK(config.mesh.order == 1);

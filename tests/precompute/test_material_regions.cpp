@@ -6,6 +6,7 @@
 
 #include "common/hdf5/file.hpp"
 #include "common/model/content_checksum.hpp"
+#include "common/model/model_check.hpp"
 #include "common/model/model_file.hpp"
 #include "common/response/stored_response.hpp"
 #include "precompute/check/check_model.hpp"
@@ -280,6 +281,24 @@ TEST_CASE("a stiff ball under the surface is felt above it, and not far from it"
   CHECK(far > 0.995);
 }
 
+TEST_CASE("a model file with wrong values of its elements is refused") {
+  const Made made;
+  made.make(box_config(kStiffBall, "cells = [3, 3, 2] }"), "ball");
+  Model model = made.model("ball");
+  CHECK_FALSE(description_fault(model).has_value());
+  const auto fault = [&](const auto& change) {
+    Model changed = model;
+    change(changed.material.elements);
+    return description_fault(changed).value_or("");
+  };
+  CHECK_THAT(fault([](auto& e) { e.youngs_modulus[3] = -1.0; }), Contains("youngs_modulus"));
+  CHECK_THAT(fault([](auto& e) { e.poisson_ratio[3] = 0.5; }), Contains("poisson_ratio"));
+  CHECK_THAT(fault([](auto& e) { e.density[0] = std::nan(""); }), Contains("density"));
+  CHECK_THAT(fault([](auto& e) { e.density.pop_back(); }), Contains("one number for each"));
+  CHECK_THAT(fault([](auto& e) { e.youngs_modulus.clear(); }), Contains("one number for each"));
+  CHECK_THAT(fault([](auto& e) { e.region.back() = -1; }), Contains("region"));
+}
+
 TEST_CASE("check shows the regions of a model and solves it anew with them", "[slow]") {
   const Made made;
   made.make(box_config(kStiffBall), "ball");
@@ -295,6 +314,13 @@ TEST_CASE("check shows the regions of a model and solves it anew with them", "[s
     if (line.name == "static compliance") CHECK(line.verdict == Verdict::kOk);
     if (line.name == "region 1") CHECK(line.verdict == Verdict::kWarn);  // 1.6 cells wide
   }
+}
+
+TEST_CASE("check passes some modes of a fixed body with regions", "[slow]") {
+  const Made made;
+  made.make(box_config(kFixed + kStiffBall + "[modes]\ncount = 30\n"), "few");
+  std::ostringstream out;
+  CHECK(failed_lines(check_model(made.file("few"), {}, {out, false})).empty());
 }
 
 TEST_CASE("few modes of a body of two materials are the lowest of all", "[slow]") {

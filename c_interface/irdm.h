@@ -21,7 +21,7 @@ extern "C" {
 
 /* Grows when something is added, and IRDM_API_MAJOR when something that was there changes. */
 #define IRDM_API_MAJOR 1
-#define IRDM_API_MINOR 0
+#define IRDM_API_MINOR 1
 
 #if defined(__GNUC__)
 #define IRDM_API __attribute__((visibility("default")))
@@ -142,6 +142,54 @@ IRDM_API irdm_status irdm_simulation_surface(irdm_simulation* simulation, int32_
  * capacity: triangles; count: as above */
 IRDM_API irdm_status irdm_simulation_triangles(const irdm_simulation* simulation, int32_t object, int32_t* triangles,
                                                size_t capacity, size_t* count);
+
+/* A program as a stylus of a running irdm-server, by the network protocol (docs/protocol.md).
+ *
+ * In real time a thread of the library runs 1000 ticks a second with a bridge's link rules, contact prediction and safety
+ * filter (docs/safety.md): after a lost server the force is zero within 50 ms, and the server is looked for again. In
+ * lockstep, irdm_stylus_step() is a step of the server, whose force comes back unfiltered.
+ *
+ * Threads: irdm_stylus_set() by one thread, all else of a client by one thread, which may be another one.
+ * irdm_stylus_set() and irdm_stylus_get() neither allocate, lock nor block; the others may.
+ */
+typedef struct irdm_stylus_client irdm_stylus_client;
+
+/* What comes back. In real time as the safety filter shows it, in the frame of the tips set; in lockstep in the world. */
+typedef struct irdm_feedback {
+  int32_t ready;       /* linked, armed, and poses are set */
+  int32_t contact;     /* 0 free, 1 touching, 2 held */
+  double force[3];     /* on the stylus [N]; zero where it is older than 50 ms */
+  double torque[3];    /* on the stylus about its tip [N m] */
+  double latency;      /* age of the tip that the force answers [s]; NaN: no force yet */
+  uint64_t ticks;      /* so far; in lockstep: steps */
+  uint64_t late_ticks; /* that were left out, as the thread was late by more than a period */
+  uint64_t sessions;   /* with a server, so far */
+} irdm_feedback;
+
+/* Connects, within the time of the option `timeout`. *client is NULL where it fails.
+ * address: "HOST:PORT"
+ * options: TOML; NULL: none. Keys of [bridge] (docs/configuration.md) but server, link and black_box, and
+ *   tip = [x, y, z]: where the stylus is until a pose is set; required, but not in lockstep
+ *   stylus: number in the scene; without it the first that is free
+ *   lockstep = true, with a server that runs with --lockstep
+ *   workspace, a table as of a [[device]]; not in lockstep
+ *   stale_after = 0.05: a pose counts for so long [s]; then the stylus stays, is not ready, and has no force
+ *   timeout = 5.0 [s]
+ * message: as of irdm_simulation_open() */
+IRDM_API irdm_status irdm_stylus_connect(const char* address, const char* options, irdm_stylus_client** client,
+                                         char* message, size_t message_size);
+/* Lets the force fade and says goodbye, in up to half a second. NULL: does nothing. */
+IRDM_API void irdm_stylus_close(irdm_stylus_client* client);
+/* Real time: where the stylus is from now on. Wrong use, which changes nothing: `present` is 0; a tip that is not finite or
+ * not within 2 m of the origin of its frame; an orientation that is not of length 1; in lockstep. */
+IRDM_API irdm_status irdm_stylus_set(irdm_stylus_client* client, const irdm_command* command);
+/* The newest. */
+IRDM_API irdm_status irdm_stylus_get(irdm_stylus_client* client, irdm_feedback* feedback);
+/* Lockstep: the server's next step, at whose end the stylus is there. Tips are within 1000 m. Waits for the server.
+ * IRDM_FAILED: the run is over. feedback may be NULL */
+IRDM_API irdm_status irdm_stylus_step(irdm_stylus_client* client, const irdm_command* command, irdm_feedback* feedback);
+/* What it is at, and why there is no force, ended by a zero, cut where size bytes are too few. */
+IRDM_API irdm_status irdm_stylus_state(irdm_stylus_client* client, char* text, size_t size);
 
 #ifdef __cplusplus
 }

@@ -10,6 +10,10 @@
 #include "device_bridge/device_registry.hpp"
 
 namespace irdm {
+std::vector<std::string> device_types() {
+  return {"virtual", "openhaptics", "forcedimension"};
+}
+
 namespace {
 
 HandParameters read_hand(TomlTable table) {
@@ -55,25 +59,6 @@ MotorParameters read_motors(TomlTable table) {
   if (table.has("watchdog")) motors.watchdog = table.number("watchdog", between(0.001, 10.0));
   table.finish();
   return motors;
-}
-
-Workspace read_workspace(TomlTable table) {
-  constexpr double kFarthest = 100.0;
-  const Range factor = between(0.01, 100.0);
-  Workspace workspace;
-  workspace.position =
-      Vector3(table.numbers("position", 3, between(-kFarthest, kFarthest), {0.0, 0.0, 0.0}).data());
-  const auto wxyz = table.numbers("rotation", 4, between(-kFarthest, kFarthest), {1, 0, 0, 0});
-  const Quaternion rotation(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
-  if (rotation.norm() < 1e-6) {
-    table.fail("rotation", "has no length",
-               "give a quaternion w, x, y, z, for instance [1, 0, 0, 0]");
-  }
-  workspace.rotation = rotation.normalized();
-  workspace.scale = table.number("scale", factor, workspace.scale);
-  workspace.force_scale = table.number("force_scale", factor, workspace.force_scale);
-  table.finish();
-  return workspace;
 }
 
 ButtonMap read_buttons(TomlTable table) {
@@ -144,26 +129,8 @@ SimulatedLink read_link(TomlTable table) {
 void read_bridge(TomlTable table, const std::string& file, BridgeConfig& config) {
   const std::string server = table.text("server", "");
   if (!server.empty()) config.server = parse_server_address(server, file + ": bridge.server");
-  config.rate = table.number("rate", between(100.0, 4000.0), config.rate);
-  config.max_force = table.number(
-      "max_force", {.lowest = 0.0, .highest = 40.0, .lowest_included = false}, config.max_force);
-  config.continuous_force =
-      table.number("continuous_force", {.lowest = 0.0, .highest = 40.0, .lowest_included = false},
-                   config.continuous_force);
-  config.max_torque = table.number("max_torque", between(0.0, 10.0), config.max_torque);
-  config.continuous_torque =
-      table.number("continuous_torque", {.lowest = 0.0, .highest = 10.0, .lowest_included = false},
-                   config.continuous_torque);
-  config.max_torque_rate =
-      table.number("max_torque_rate", between(1.0, 1000.0), config.max_torque_rate);
-  config.predict = table.choice("mode", {"predict", "hold"}, "predict") == "predict";
+  read_servo_keys(table, config);
   if (table.has("link")) config.link = read_link(table.table("link"));
-  config.udp = table.choice("stream", {"tcp", "udp"}, "tcp") == "udp";
-  config.connect_timeout =
-      table.number("connect_timeout", between(0.01, 0.1), config.connect_timeout);
-  if (table.has("key_file")) config.key_file = table.path("key_file");
-  config.realtime =
-      scheduling_from_word(table.choice("realtime", {"require", "prefer", "ignore"}, "prefer"));
   config.black_box = read_black_box(table);
   table.finish();
 }
@@ -180,6 +147,45 @@ void check_names(const std::vector<DeviceConfig>& devices, const std::string& fi
 }
 
 }  // namespace
+
+void read_servo_keys(TomlTable& table, BridgeConfig& config) {
+  const Range force{.lowest = 0.0, .highest = 40.0, .lowest_included = false};
+  config.rate = table.number("rate", between(100.0, 4000.0), config.rate);
+  config.max_force = table.number("max_force", force, config.max_force);
+  config.continuous_force = table.number("continuous_force", force, config.continuous_force);
+  config.max_torque = table.number("max_torque", between(0.0, 10.0), config.max_torque);
+  config.continuous_torque =
+      table.number("continuous_torque", {.lowest = 0.0, .highest = 10.0, .lowest_included = false},
+                   config.continuous_torque);
+  config.max_torque_rate =
+      table.number("max_torque_rate", between(1.0, 1000.0), config.max_torque_rate);
+  config.predict = table.choice("mode", {"predict", "hold"}, "predict") == "predict";
+  config.udp = table.choice("stream", {"tcp", "udp"}, "tcp") == "udp";
+  config.connect_timeout =
+      table.number("connect_timeout", between(0.01, 0.1), config.connect_timeout);
+  if (table.has("key_file")) config.key_file = table.path("key_file");
+  config.realtime =
+      scheduling_from_word(table.choice("realtime", {"require", "prefer", "ignore"}, "prefer"));
+}
+
+Workspace read_workspace(TomlTable table) {
+  constexpr double kFarthest = 100.0;
+  const Range factor = between(0.01, 100.0);
+  Workspace workspace;
+  workspace.position =
+      Vector3(table.numbers("position", 3, between(-kFarthest, kFarthest), {0.0, 0.0, 0.0}).data());
+  const auto wxyz = table.numbers("rotation", 4, between(-kFarthest, kFarthest), {1, 0, 0, 0});
+  const Quaternion rotation(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
+  if (rotation.norm() < 1e-6) {
+    table.fail("rotation", "has no length",
+               "give a quaternion w, x, y, z, for instance [1, 0, 0, 0]");
+  }
+  workspace.rotation = rotation.normalized();
+  workspace.scale = table.number("scale", factor, workspace.scale);
+  workspace.force_scale = table.number("force_scale", factor, workspace.force_scale);
+  table.finish();
+  return workspace;
+}
 
 ServerAddress parse_server_address(const std::string& text, const std::string& where) {
   const std::string remedy = "give HOST:PORT with a port from 1 to 65535";

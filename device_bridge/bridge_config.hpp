@@ -50,6 +50,9 @@ struct DeviceConfig {
   // buttons.grab, buttons.clutch, buttons.reset: bits 0 to 31, no two the same; -1: none
 };
 
+/// The types that make_device() knows.
+std::vector<std::string> device_types();
+
 /// What a bridge's TOML file says.
 struct BridgeConfig {
   std::optional<ServerAddress> server;  ///< key `bridge.server`, "HOST:PORT"; no default
@@ -94,6 +97,11 @@ struct BridgeOverrides {
 /// @param name of the file, for messages
 BridgeConfig read_bridge_config(TomlTable root, const std::string& name,
                                 const BridgeOverrides& overrides = {});
+/// Reads the keys of [bridge] that say how a servo loop runs and connects: all but `server`, `link`
+/// and those of the black box. Throws Error.
+void read_servo_keys(TomlTable& table, BridgeConfig& config);
+/// Reads a table `workspace`. Throws Error.
+Workspace read_workspace(TomlTable table);
 BridgeConfig load_bridge_config(const std::filesystem::path& path,
                                 const BridgeOverrides& overrides = {});
 

@@ -51,10 +51,4 @@ std::unique_ptr<HapticDevice> make_device(const DeviceConfig& config) {
               "use virtual, openhaptics or forcedimension");
 }
 
-std::vector<std::string> device_types() {
-  std::vector<std::string> types;
-  for (const Entry& entry : kEntries) types.emplace_back(entry.type);
-  return types;
-}
-
 }  // namespace irdm

@@ -26,10 +26,8 @@ class DeviceWatch {
 };
 
 /// The device that a configuration asks for. Throws Error when there is no such type, or this build
-/// has no support for it. A new device is a new file and one line in the source of this function.
+/// has no support for it. A new device is a new file, one line in the source of this function and
+/// one in device_types().
 std::unique_ptr<HapticDevice> make_device(const DeviceConfig& config);
-
-/// The types that make_device() knows.
-std::vector<std::string> device_types();
 
 }  // namespace irdm

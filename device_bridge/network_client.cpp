@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <exception>
+#include <mutex>
 #include <optional>
 #include <thread>
 #include <utility>
@@ -28,6 +29,11 @@ class NetworkClient::Impl {
   void start();
   void stop(bool finished);
 
+  ClientProgress progress() const {
+    const std::lock_guard lock(mutex_);
+    return progress_;
+  }
+
   ClientReport report_;
 
  private:
@@ -38,9 +44,11 @@ class NetworkClient::Impl {
   void connect();
   void greet(tcp::socket socket);
   std::unique_ptr<wire::Stream> make_stream(tcp::socket socket);
+  void linked(const LinkState& link);
   void ended(const SessionEnd& end);
   void rest(int milliseconds, const std::string& what, const std::string& reason);
   void give_up(const std::string& why);
+  spdlog::logger& log() const noexcept { return log_of(settings_.log); }
 
   ServoLink& link_;
   const ClientSettings settings_;
@@ -59,6 +67,8 @@ class NetworkClient::Impl {
   std::int64_t deadline_ns_ = 0;  ///< of the attempt to connect, or of the rest after it
   bool complained_ = false;       ///< about this run of failed attempts
   bool stopping_ = false;         ///< told to, or gave up
+  mutable std::mutex mutex_;
+  ClientProgress progress_;
   std::thread thread_;
 };
 
@@ -117,7 +127,7 @@ void NetworkClient::Impl::run() noexcept {
       io_.run();
       return;
     } catch (const std::exception& error) {
-      spdlog::error("network: {}", error.what());
+      log().error("network: {}", error.what());
     }
   }
 }
@@ -171,12 +181,19 @@ void NetworkClient::Impl::connect() {
 void NetworkClient::Impl::greet(tcp::socket socket) {
   session_ = std::make_unique<ServerSession>(
       std::make_shared<wire::Connection>(make_stream(std::move(socket)), settings_.tap),
-      ServerSession::Shared{link_, settings_, server_, report_, patience_});
+      ServerSession::Shared{link_, settings_, server_, report_, patience_,
+                            [this](const LinkState& link) { linked(link); }});
   session_->start([this](const SessionEnd& end) { ended(end); });
 }
 
 std::unique_ptr<wire::Stream> NetworkClient::Impl::make_stream(tcp::socket socket) {
   return tls_ ? tls_->make_stream(std::move(socket)) : wire::make_plain_stream(std::move(socket));
+}
+
+void NetworkClient::Impl::linked(const LinkState& link) {
+  const std::lock_guard lock(mutex_);
+  progress_.link = link;
+  if (link.linked) progress_.trouble.clear();
 }
 
 void NetworkClient::Impl::ended(const SessionEnd& end) {
@@ -198,13 +215,22 @@ void NetworkClient::Impl::ended(const SessionEnd& end) {
 /// @param milliseconds from the begin of the last attempt to the next
 void NetworkClient::Impl::rest(int milliseconds, const std::string& what,
                                const std::string& reason) {
-  if (!complained_) spdlog::warn("server {}: {}: {}; trying again", server_, what, reason);
+  if (!complained_) log().warn("server {}: {}: {}; trying again", server_, what, reason);
   complained_ = true;
+  {
+    const std::lock_guard lock(mutex_);
+    progress_.trouble = what + ": " + reason;
+  }
   deadline_ns_ = began_ns_ + milliseconds * kNanosecondsPerMillisecond;
 }
 
 void NetworkClient::Impl::give_up(const std::string& why) {
   report_.failure = why;
+  {
+    const std::lock_guard lock(mutex_);
+    progress_.trouble = why;
+    progress_.gave_up = true;
+  }
   stopping_ = true;
   gave_up_.signal();
 }
@@ -220,6 +246,9 @@ void NetworkClient::stop(bool finished) {
 }
 const ClientReport& NetworkClient::report() const noexcept {
   return impl_->report_;
+}
+ClientProgress NetworkClient::progress() const {
+  return impl_->progress();
 }
 
 }  // namespace irdm

@@ -14,6 +14,10 @@
 #include "device_bridge/bridge_config.hpp"
 #include "device_bridge/servo_link.hpp"
 
+namespace spdlog {
+class logger;
+}
+
 namespace irdm {
 
 /// What a bridge's network thread has done, over all sessions.
@@ -57,6 +61,16 @@ struct ClientSettings {
   /// The server's, for TLS; nothing: no TLS, and the server has to be on this machine.
   std::optional<wire::SecretKey> key = {};
   wire::FrameTap* tap = nullptr;  ///< listens in, in the network thread; null: nobody
+  /// Of the server, where its first free ones are not to be taken whichever they are.
+  std::optional<int> first_stylus = {};
+  std::shared_ptr<spdlog::logger> log = nullptr;  ///< null: the program's
+};
+
+/// What a client is at now.
+struct ClientProgress {
+  LinkState link = {};       ///< as of the newest session
+  std::string trouble = {};  ///< why the last attempt or session ended; empty: it goes on
+  bool gave_up = false;      ///< and there will be no other one
 };
 
 /// Connects to the server, and again whenever the connection is lost, and relays samples and
@@ -78,6 +92,8 @@ class NetworkClient {
   void stop(bool finished = false);
   /// After stop().
   const ClientReport& report() const noexcept;
+  /// Any thread.
+  ClientProgress progress() const;
 
  private:
   class Impl;

@@ -28,6 +28,7 @@ struct LinkState {
   bool lockstep = false;       ///< of the newest session
   bool predict = false;        ///< in the newest session the contact is solved here
   double dt = 0.0;             ///< force step of the newest session [s]
+  int first_stylus = 0;        ///< the server's number of our first one
 };
 
 /// Hand-over between servo thread and network thread. Neither ever waits for the other.

@@ -187,6 +187,7 @@ void ServoThread::write_down(std::size_t i, std::int64_t now_ns) noexcept {
   settings_.log->put({.time_ns = now_ns,
                       .stylus = static_cast<int>(i),
                       .late_ns = late_ns_,
+                      .missed = report_.missed,
                       .linked = state.linked,
                       .server_ended = state.server_ended,
                       .session = state.sessions,

@@ -24,7 +24,7 @@ struct ServoSettings {
   RealTimeScheduling scheduling = RealTimeScheduling::kIgnore;
   double duration = 0.0;  ///< of a session's time, after which the thread ends [s]; infinity: never
   std::optional<SimulatedLink> link = {};  ///< in lockstep; none: no delay, and forces are held
-  TickLog* log = nullptr;                  ///< is told of every tick in real time; null: nobody is
+  TickListener* log = nullptr;             ///< is told of every tick in real time; null: nobody is
 };
 
 enum class ServoEnd {

@@ -21,8 +21,8 @@ RULES = {
     "precompute": {"common"},
     "replay": {"common", "simulation", "scene", "trace", "viewer", "precompute"},
     "device_bridge": {"common"},
-    "c_interface": {"common", "simulation", "scene"},
-    "python": {"common", "simulation", "scene"},
+    "c_interface": {"common", "simulation", "scene", "device_bridge"},
+    "python": {"common", "simulation", "scene", "device_bridge"},
 }
 PURE = {"simulation"}
 IMPURE = re.compile(

@@ -16,6 +16,7 @@ struct TickRow {
   std::int64_t time_ns = 0;  ///< when the tick began, monotonic_ns()
   int stylus = 0;            ///< of the bridge, from 0
   std::int64_t late_ns = 0;  ///< by how much it began too late
+  std::uint64_t missed = 0;  ///< ticks that were left out so far
   // Link
   bool linked = false;
   bool server_ended = false;  ///< the last session ended with the server's goodbye
@@ -38,13 +39,22 @@ struct TickRow {
   Vector3 torque = Vector3::Zero();  ///< the same [N m], D
 };
 
+/// Is told of every tick of the servo loop.
+class TickListener {
+ public:
+  virtual ~TickListener() = default;
+  /// Servo thread; real-time safe.
+  virtual void put(const TickRow& row) noexcept = 0;
+};
+
 /// Every tick of every stylus. Faults are a device that fails or is lost, a latched fault of the
 /// safety filter, and a connection that is lost while a force is felt.
-class TickLog final : public RowLog<TickRow> {
+class TickLog final : public RowLog<TickRow>, public TickListener {
  public:
   static constexpr std::size_t kCapacity = 4096;  ///< 1 s of four styluses at 1 kHz
 
   TickLog() : RowLog(kCapacity) {}
+  void put(const TickRow& row) noexcept override { RowLog::put(row); }
   void write(hdf5::File& file, std::int64_t origin_ns) const override;
 
  private:

@@ -12,12 +12,18 @@ namespace irdm {
 
 using Endpoint = wire::DatagramSocket::Endpoint;
 
+spdlog::logger& log_of(const std::shared_ptr<spdlog::logger>& log) noexcept {
+  return log ? *log : *spdlog::default_logger_raw();
+}
+
 ServerDatagrams::ServerDatagrams(std::shared_ptr<wire::Connection> connection,
                                  const wire::Datagrams& offer, const std::string& server,
-                                 ClientReport& report, std::int64_t now_ns)
+                                 ClientReport& report, std::int64_t now_ns,
+                                 std::shared_ptr<spdlog::logger> log)
     : connection_(std::move(connection)),
       server_(server),
       report_(report),
+      log_(std::move(log)),
       deadline_ns_(now_ns + kPatienceNs) {
   try {
     open(offer);
@@ -56,7 +62,7 @@ void ServerDatagrams::take(std::span<const std::uint8_t> datagram, const Endpoin
   if (!asking_ || !connection_->by_datagrams()) return;
   asking_ = false;
   ++report_.datagram_sessions;
-  spdlog::info("server {}: the stream goes by UDP", server_);
+  log_of(log_).info("server {}: the stream goes by UDP", server_);
 }
 
 void ServerDatagrams::check_time(std::int64_t now_ns) {
@@ -69,7 +75,7 @@ void ServerDatagrams::give_up(const std::string& why) {
   asking_ = false;
   close();
   connection_->use_no_datagrams();
-  spdlog::warn("server {}: no datagrams: {}; the stream goes by TCP", server_, why);
+  log_of(log_).warn("server {}: no datagrams: {}; the stream goes by TCP", server_, why);
 }
 
 void ServerDatagrams::close() noexcept {
@@ -132,7 +138,7 @@ void ServerSession::receive(const wire::Frame& frame) {
     refused(*refuse);
   } else if (std::holds_alternative<wire::Goodbye>(frame.message)) {
     link_state_.server_ended = end_.server_ended = linked;
-    spdlog::info("server {}: goodbye", shared_.server);
+    log().info("server {}: goodbye", shared_.server);
     leave();
   } else if (const auto* force = std::get_if<wire::ForceMessage>(&frame.message)) {
     if (!linked) unexpected("a force before Welcome");
@@ -164,6 +170,12 @@ void ServerSession::welcomed(const wire::Welcome& welcome) {
                    "with --lockstep, or remove the table";
     return leave();
   }
+  const std::optional<int>& wanted = shared_.settings.first_stylus;
+  if (wanted && welcome.first_stylus != *wanted) {
+    end_.refused = true;
+    return connection_->close("the server gives stylus " + std::to_string(welcome.first_stylus) +
+                              ", not " + std::to_string(*wanted));
+  }
   state_ = State::kLinked;
   end_.welcomed = true;
   end_.lockstep = welcome.lockstep;
@@ -182,7 +194,8 @@ void ServerSession::welcomed(const wire::Welcome& welcome) {
                  .lockstep = welcome.lockstep,
                  .predict = shared_.settings.predict &&
                             (welcome.capabilities & wire::kCapabilityContactModel) != 0,
-                 .dt = welcome.dt};
+                 .dt = welcome.dt,
+                 .first_stylus = welcome.first_stylus};
   for (ServoLink::Stylus& stylus : shared_.link.styluses) {
     intakes_.emplace_back(welcome.lockstep);
     warned_of_oscillation_.push_back(false);
@@ -190,13 +203,13 @@ void ServerSession::welcomed(const wire::Welcome& welcome) {
     stylus.sample.receive();  // what was taken before the session is no part of it
     stylus.applied.receive();
   }
-  spdlog::info("server {}: session {}, dt {} s{}", shared_.server, welcome.session, welcome.dt,
-               welcome.lockstep      ? ", lockstep"
-               : link_state_.predict ? ", contact solved here"
-                                     : ", forces held");
+  log().info("server {}: session {}, dt {} s{}", shared_.server, welcome.session, welcome.dt,
+             welcome.lockstep      ? ", lockstep"
+             : link_state_.predict ? ", contact solved here"
+                                   : ", forces held");
   if (shared_.settings.udp && !datagrams && !welcome.lockstep) {
-    spdlog::warn("server {}: it has no datagrams (server.udp); the stream goes by TCP",
-                 shared_.server);
+    log().warn("server {}: it has no datagrams (server.udp); the stream goes by TCP",
+               shared_.server);
   }
   publish();
 }
@@ -210,8 +223,10 @@ void ServerSession::refused(const wire::Refuse& refuse) {
     end_.failure =
         shared_.server + ": " + mismatch.what() + "; install matching versions of both programs";
   } else {
-    end_.failure =
-        shared_.server + ": the server refuses: " + refuse.text + "; change the bridge's devices";
+    end_.failure = shared_.server + ": the server refuses: " + refuse.text +
+                   (refuse.reason == wire::RefuseReason::kLockstep
+                        ? "; connect in lockstep, a bridge with virtual devices only"
+                        : "; change the bridge's devices");
   }
   leave();
 }
@@ -230,8 +245,8 @@ void ServerSession::take(const wire::ContactModelMessage& message) {
   const ContactModelFault fault = check(message.model, {.dt = link_state_.dt});
   if (fault != ContactModelFault::kNone) {
     if (shared_.report.models_refused++ == 0) {
-      spdlog::error("server {}: step {}: invalid contact model ({}), not used", shared_.server,
-                    message.model.step, word(fault));
+      log().error("server {}: step {}: invalid contact model ({}), not used", shared_.server,
+                  message.model.step, word(fault));
     }
     return;
   }
@@ -259,7 +274,7 @@ void ServerSession::take(const wire::Status& status) {
 
 void ServerSession::take(const wire::Datagrams& offer) {
   datagrams_ = std::make_unique<ServerDatagrams>(connection_, offer, shared_.server, shared_.report,
-                                                 monotonic_ns());
+                                                 monotonic_ns(), shared_.settings.log);
 }
 
 // In lockstep a sample is what the server waits for: all else comes first.
@@ -303,7 +318,7 @@ void ServerSession::tell_of_arming(std::int64_t now_ns) {
   if (link_state_.lockstep || !shared_.patience.lost(now_ns, all)) return;
   for (std::size_t i = 0; i < styluses.size(); ++i) {
     if (good(styluses[i])) continue;
-    spdlog::warn(
+    log().warn(
         "stylus {}: {}: {:.0f} % of the last ticks were answered in time, {:.0f} % are needed; "
         "irdm-bridge check-link says more",
         i, styluses[i].armed ? "its force comes and goes" : "no force yet",
@@ -318,7 +333,7 @@ void ServerSession::warn_force_reduced() {
                         const char* hint) {
     if (share > kMuchLess || warned[i]) return;
     warned[i] = true;
-    spdlog::warn("stylus {}: {}, force scaled to {:.0f} %{}", i, why, 100.0 * share, hint);
+    log().warn("stylus {}: {}, force scaled to {:.0f} %{}", i, why, 100.0 * share, hint);
   };
   for (std::size_t i = 0; i < shared_.link.styluses.size(); ++i) {
     const ServoLink::Stylus& stylus = shared_.link.styluses[i];
@@ -375,7 +390,7 @@ void ServerSession::violated(const ProtocolError& error) {
   }
   ++shared_.report.protocol_errors;
   connection_->tell_violation(error);
-  spdlog::error("server {}: {}; connection closed", shared_.server, error.what());
+  log().error("server {}: {}; connection closed", shared_.server, error.what());
   connection_->send(wire::Goodbye{wire::GoodbyeReason::kProtocolError});
   leave();
 }
@@ -416,6 +431,7 @@ void ServerSession::publish() {
     shared_.link.styluses[i].input.put(intakes_[i].input());
   }
   shared_.link.state.put(link_state_);
+  if (shared_.changed) shared_.changed(link_state_);
   shared_.link.news.signal();
 }
 

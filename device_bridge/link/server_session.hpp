@@ -15,6 +15,9 @@
 
 namespace irdm {
 
+/// This one, or where it is null the program's.
+spdlog::logger& log_of(const std::shared_ptr<spdlog::logger>& log) noexcept;
+
 /// The bridge's end of a session's datagrams: asks the server's port until a datagram comes back,
 /// and gives it up when none does for a while; the stream goes by TCP then. Network thread only.
 class ServerDatagrams {
@@ -26,7 +29,8 @@ class ServerDatagrams {
   /// @param connection whose Welcome has come  @param server for messages; outlives this
   /// @param report counts what is dropped; outlives this
   ServerDatagrams(std::shared_ptr<wire::Connection> connection, const wire::Datagrams& offer,
-                  const std::string& server, ClientReport& report, std::int64_t now_ns);
+                  const std::string& server, ClientReport& report, std::int64_t now_ns,
+                  std::shared_ptr<spdlog::logger> log = nullptr);
   ServerDatagrams(const ServerDatagrams&) = delete;
   ServerDatagrams& operator=(const ServerDatagrams&) = delete;
   ~ServerDatagrams() { close(); }
@@ -44,6 +48,7 @@ class ServerDatagrams {
   std::shared_ptr<wire::Connection> connection_;
   const std::string& server_;
   ClientReport& report_;
+  std::shared_ptr<spdlog::logger> log_;
   std::int64_t deadline_ns_;
   bool asking_ = true;
   std::shared_ptr<wire::DatagramSocket> socket_;
@@ -72,6 +77,8 @@ class ServerSession {
     const std::string& server;  ///< for messages
     ClientReport& report;
     ArmingPatience& patience;
+    /// Called when a session begins or ends; empty: nobody is.
+    std::function<void(const LinkState&)> changed = {};
   };
 
   ServerSession(std::shared_ptr<wire::Connection> connection, const Shared& shared);
@@ -108,6 +115,7 @@ class ServerSession {
   void publish();
   void deadline_in(int milliseconds);
   std::uint16_t slot(std::size_t stylus) const noexcept;
+  spdlog::logger& log() const noexcept { return log_of(shared_.settings.log); }
 
   std::shared_ptr<wire::Connection> connection_;
   Shared shared_;

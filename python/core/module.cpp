@@ -12,4 +12,5 @@ PYBIND11_MODULE(_core, module) {
       "do.";
   irdm::python::bind_model(module);
   irdm::python::bind_simulation(module);
+  irdm::python::bind_stylus(module);
 }

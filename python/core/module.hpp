@@ -11,6 +11,7 @@ namespace irdm::python {
 
 void bind_model(pybind11::module_& module);
 void bind_simulation(pybind11::module_& module);
+void bind_stylus(pybind11::module_& module);
 
 /// A view of numbers that `owner` keeps alive, which cannot be written to.
 template <typename Number>

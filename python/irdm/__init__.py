@@ -28,10 +28,11 @@ from irdm._core import (
 )
 from irdm.commands import CheckLine, check, precompute
 from irdm.scene import Simulation, to_toml
+from irdm.stylus import Stylus
 from irdm.trace import Trace
 
 __all__ = [
     "COUPLING", "FLOOR", "GRAB", "OBJECT", "RESET", "SCENERY", "STYLUS",
-    "CheckLine", "Error", "Model", "Simulation", "Step", "Steps", "Trace", "__version__",
+    "CheckLine", "Error", "Model", "Simulation", "Step", "Steps", "Stylus", "Trace", "__version__",
     "check", "contact_dtype", "object_dtype", "precompute", "stylus_dtype", "to_toml",
 ]

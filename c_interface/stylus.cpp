@@ -1,0 +1,111 @@
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string>
+
+#include "c_interface/irdm.h"
+#include "device_bridge/stylus_client.hpp"
+
+struct irdm_stylus_client {
+  explicit irdm_stylus_client(const irdm::StylusSettings& settings) : client(settings) {}
+
+  irdm::StylusClient client;
+};
+
+namespace {
+
+void write_text(const char* text, char* to, std::size_t size) {
+  if (to != nullptr && size > 0) std::snprintf(to, size, "%s", text);
+}
+
+// False where nobody is there, or where the client does not take it.
+bool read_pose(const irdm::StylusClient& client, const irdm_command& command,
+               irdm::StylusPose& pose) noexcept {
+  pose.buttons = command.buttons;
+  pose.tip = irdm::Vector3(command.tip[0], command.tip[1], command.tip[2]);
+  const double* q = command.orientation;
+  const bool turned = std::any_of(q, q + 4, [](double number) { return number != 0.0; });
+  if (turned) pose.orientation = irdm::Quaternion(q[0], q[1], q[2], q[3]);
+  return command.present != 0 && client.fault_of(pose) == nullptr;
+}
+
+void write_feedback(const irdm::StylusFeedback& from, irdm_feedback& to) noexcept {
+  to.ready = from.ready ? 1 : 0;
+  to.contact = static_cast<std::int32_t>(from.contact);
+  std::copy_n(from.force.data(), 3, to.force);
+  std::copy_n(from.torque.data(), 3, to.torque);
+  to.latency = from.latency;
+  to.ticks = from.ticks;
+  to.late_ticks = from.late_ticks;
+  to.sessions = from.sessions;
+}
+
+}  // namespace
+
+irdm_status irdm_stylus_connect(const char* address, const char* options,
+                                irdm_stylus_client** client, char* message,
+                                std::size_t message_size) {
+  write_text("", message, message_size);
+  if (client != nullptr) *client = nullptr;
+  if (address == nullptr || client == nullptr) {
+    write_text("a pointer is null", message, message_size);
+    return IRDM_BAD_ARGUMENT;
+  }
+  try {
+    *client = new irdm_stylus_client(irdm::read_stylus_settings(
+        address, irdm::TomlTable::parse_text(options == nullptr ? "" : options, "options")));
+    return IRDM_OK;
+  } catch (const std::exception& error) {
+    write_text(error.what(), message, message_size);
+  } catch (...) {
+    write_text("unknown error", message, message_size);
+  }
+  return IRDM_FAILED;
+}
+
+void irdm_stylus_close(irdm_stylus_client* client) {
+  delete client;
+}
+
+irdm_status irdm_stylus_set(irdm_stylus_client* client, const irdm_command* command) {
+  if (client == nullptr || command == nullptr || client->client.lockstep()) {
+    return IRDM_BAD_ARGUMENT;
+  }
+  irdm::StylusPose pose;
+  if (!read_pose(client->client, *command, pose)) return IRDM_BAD_ARGUMENT;
+  client->client.set(pose);
+  return IRDM_OK;
+}
+
+irdm_status irdm_stylus_get(irdm_stylus_client* client, irdm_feedback* feedback) {
+  if (client == nullptr || feedback == nullptr) return IRDM_BAD_ARGUMENT;
+  write_feedback(client->client.get(), *feedback);
+  return IRDM_OK;
+}
+
+irdm_status irdm_stylus_step(irdm_stylus_client* client, const irdm_command* command,
+                             irdm_feedback* feedback) {
+  if (client == nullptr || command == nullptr || !client->client.lockstep()) {
+    return IRDM_BAD_ARGUMENT;
+  }
+  irdm::StylusPose pose;
+  if (!read_pose(client->client, *command, pose)) return IRDM_BAD_ARGUMENT;
+  try {
+    const irdm::StylusFeedback got = client->client.step(pose);
+    if (feedback != nullptr) write_feedback(got, *feedback);
+    return IRDM_OK;
+  } catch (...) {
+    return IRDM_FAILED;
+  }
+}
+
+irdm_status irdm_stylus_state(irdm_stylus_client* client, char* text, std::size_t size) {
+  if (client == nullptr || text == nullptr || size == 0) return IRDM_BAD_ARGUMENT;
+  try {
+    write_text(client->client.state().c_str(), text, size);
+    return IRDM_OK;
+  } catch (...) {
+    return IRDM_FAILED;
+  }
+}

@@ -32,4 +32,5 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/irdm-config-version.cmake
 install(FILES ${PROJECT_BINARY_DIR}/irdm-config.cmake ${PROJECT_BINARY_DIR}/irdm-config-version.cmake
   DESTINATION ${package} COMPONENT development)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/doc/irdm-dev RENAME copyright COMPONENT development)
+install(DIRECTORY examples/python DESTINATION ${data}/examples COMPONENT python)
 install(DIRECTORY examples/embed examples/c examples/csharp DESTINATION ${data}/examples COMPONENT development)

@@ -6,7 +6,7 @@
     step = simulation.step([[0.0, 0.06, 0.0]])
     step.styluses["force"]      # on the stylus [N], world frame
 
-SI units. Frames and equations: docs/theory.md; the package: docs/python.md.
+SI units. Frames and equations: docs/theory.md; the package: docs/embedding.md. Tasks: irdm.environment.
 """
 
 from irdm._core import (
@@ -27,12 +27,13 @@ from irdm._core import (
     stylus_dtype,
 )
 from irdm.commands import CheckLine, check, precompute
+from irdm.episodes import Episodes
 from irdm.scene import Simulation, to_toml
 from irdm.stylus import Stylus
 from irdm.trace import Trace
 
 __all__ = [
     "COUPLING", "FLOOR", "GRAB", "OBJECT", "RESET", "SCENERY", "STYLUS",
-    "CheckLine", "Error", "Model", "Simulation", "Step", "Steps", "Stylus", "Trace", "__version__",
+    "CheckLine", "Episodes", "Error", "Model", "Simulation", "Step", "Steps", "Stylus", "Trace", "__version__",
     "check", "contact_dtype", "object_dtype", "precompute", "stylus_dtype", "to_toml",
 ]

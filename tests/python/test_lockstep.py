@@ -72,6 +72,25 @@ class LockstepTest(unittest.TestCase):
             self.assertIn("[[", trace.scene.replace("= [{", "[["))
             self.assertEqual(trace.dt, 0.002)
 
+    def test_an_episode_of_the_run(self):
+        import h5py
+
+        path = os.path.join(folder.name, "run.h5")
+        with irdm.Trace.open(self.trace) as trace, irdm.Episodes(path, "two fingers") as episodes:
+            episodes.add_trace(trace)
+            with self.assertRaisesRegex(irdm.Error, "rewards are needed"):
+                episodes.add_trace(trace, [0.0])
+            force, tip = trace["stylus/0/applied_force"], trace["stylus/0/tip"]
+            present = trace["stylus/0/present"]
+            place = trace["object/cube/body_position"]
+        with h5py.File(path) as file:
+            demo = file["data/demo_0"]
+            self.assertEqual(demo.attrs["num_samples"], len(force) - 1)
+            numpy.testing.assert_array_equal(demo["obs/forces"][:, 0], force[:-1])
+            numpy.testing.assert_array_equal(demo["next_obs/object_cube_body_position"], place[1:])
+            numpy.testing.assert_array_equal(demo["actions"][:, :3], numpy.where(present[1:, None], tip[1:], 0))
+            self.assertEqual(demo["actions"].shape, (len(force) - 1, 10))
+
     def test_wrong_files(self):
         with self.assertRaisesRegex(irdm.Error, "nowhere.h5"):
             irdm.Trace.open("nowhere.h5")

@@ -23,6 +23,28 @@ others=$(nm -D --defined-only "$tree/lib/libirdm.so.1" | awk '{ print $3 }' | gr
 [ -z "$others" ] || { echo "libirdm.so has the symbols $others" >&2; exit 1; }
 ! "$work/press" "$work/nowhere.toml" 2>"$work/error" && grep -q '^press: error: .*nowhere.toml' "$work/error"
 
+# The same as a stylus of a server: in lockstep the same forces; in real time it ends well.
+"$cc" -std=c99 -Wall -Wextra -Wpedantic -Werror "$tree/share/irdm/examples/c/stylus.c" -o "$work/stylus" "${flags[@]}"
+serve() {
+  exec {server}< <(cd "$work" && exec "$tree/bin/irdm-server" scene.toml --port 0 --no-viewer "$@")
+  server_pid=$!
+  while read -r -u "$server" line; do
+    [[ $line != "listening on "* ]] || { address=${line##* }; return; }
+  done
+  echo "irdm-server did not begin" >&2
+  exit 1
+}
+serve --lockstep
+"$work/stylus" "$address" lockstep | tee "$work/lockstep.txt"
+wait "$server_pid"
+diff <(awk '/ s /{ print $3 }' "$work/c.txt") <(awk '{ print $2 }' "$work/lockstep.txt")
+serve
+"$work/stylus" "$address" | tee "$work/real_time.txt"
+kill "$server_pid"
+wait "$server_pid"
+[ "$(wc -l <"$work/real_time.txt")" = 8 ]
+! "$work/stylus" "${address%:*}:1" 2>"$work/error" && grep -q '^stylus: error: .*:1: ' "$work/error"
+
 mcs -warnaserror -out:"$work/Press.exe" "$tree/share/irdm/examples/csharp/Press.cs"
 mono "$work/Press.exe" "$work/scene.toml" | tee "$work/csharp.txt"
 diff <(sed 's/  *[0-9]* contacts$//' "$work/c.txt") "$work/csharp.txt"

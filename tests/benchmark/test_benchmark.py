@@ -1,0 +1,115 @@
+import json
+import subprocess
+import sys
+import unittest
+from pathlib import Path
+
+import numpy
+
+BENCHMARK = Path(__file__).resolve().parents[2] / "benchmark"
+sys.path.insert(0, str(BENCHMARK))
+
+import run  # noqa: E402
+
+try:
+    import references
+    from contact import Body, sphere
+    from fem import Grid
+except ModuleNotFoundError:
+    references = None
+
+
+@unittest.skipUnless(references, "python3-scipy is missing")
+class TruthTest(unittest.TestCase):
+    def test_hertz_ball_in_a_half_space(self):
+        """What is above Hertz' force falls as the block grows: 0.6 % in one 300 times as wide as the contact."""
+        fine, size, radius, depth = 8e-5, 0.5, 0.05, 5e-5
+        grid = Grid([references.meshes.graded(fine, 0.002, size),
+                     size - references.meshes.graded(fine, 0.0013, size)[::-1]])
+        bottom, top = grid.on(1, 0.0), grid.on(1, size)
+        touching = top[(grid.nodes[top, 0] < 0.003) & (grid.nodes[top, 0] > 0)]
+        fixed = numpy.unique(numpy.r_[2 * grid.on(0, 0.0), 2 * bottom, 2 * bottom + 1])
+        body = Body(grid, references.SOFT, fixed, touching, None)
+        force = -body.advance(sphere(numpy.array([0.0, size + radius - depth]), radius))[:, 1].sum()
+        modulus = references.SOFT["youngs_modulus"] / (1 - references.SOFT["poisson_ratio"] ** 2)
+        hertz = 4 / 3 * modulus * numpy.sqrt(radius) * depth**1.5
+        self.assertAlmostEqual(force / hertz, 1.0, delta=0.008)
+
+    def test_hertz_impact(self):
+        """A slow impact of two balls has Hertz' peak and duration; impulse is change of momentum."""
+        speed, step = 0.005, 5e-4
+        grid = references.ball_grid(5e-4)
+        touching = references.near_top(grid, 1.0, 0.018)
+        body = Body(grid, references.SOFT, 2 * grid.on(0, 0.0), touching, step, numpy.array([0.0, speed]))
+
+        def below(points):
+            return references.BALL_RADIUS - points[:, 1], numpy.array([0.0, -1.0]) + 0 * points
+        force = numpy.array([-body.advance(below)[:, 1].sum() for _ in range(400)])
+        mass = body.mass[1::2][:, 1::2].sum()
+        modulus = references.SOFT["youngs_modulus"] / (1 - references.SOFT["poisson_ratio"] ** 2) / 2
+        radius = references.BALL_RADIUS / 2
+        depth = (15 * mass / 2 * (2 * speed) ** 2 / (16 * modulus * radius**0.5)) ** 0.4
+        self.assertAlmostEqual(force.max() / (4 / 3 * modulus * radius**0.5 * depth**1.5), 1.0, delta=0.03)
+        self.assertAlmostEqual((force > 0).sum() * step / (2.943 * depth / (2 * speed)), 1.0, delta=0.03)
+        left = (body.mass @ body.v[0])[1::2].sum()
+        self.assertAlmostEqual(force.sum() * step, mass * speed - left, delta=1e-9)
+
+    def test_stored_references(self):
+        """Coarser cells and steps give the references within what they say, and those say below 1 %."""
+        for case, compute, (fine, step) in references.cases():
+            with self.subTest(case["name"]):
+                stored = json.loads((BENCHMARK / "references" / f"{case['name']}.json").read_text())
+                same = json.loads((BENCHMARK / "cases" / f"{case['name']}.json").read_text())
+                self.assertEqual(same, json.loads(json.dumps(case)))
+                changes = [change for one in stored["largest_change_by_peak_with"].values() for change in one.values()]
+                self.assertLess(max(changes), 0.01)
+                if case["name"] in ("press", "two-spheres"):
+                    truth = numpy.array(stored["force"])[:, 1]
+                    force = compute(case, 2 * fine, 2 * step)[0]
+                    said = sum(one["force"] for one in stored["largest_change_by_peak_with"].values())
+                    self.assertLess(abs(force - truth).max() / truth.max(), 1.2 * said)
+
+
+class TableTest(unittest.TestCase):
+    def test_irdm_is_as_the_table_says(self):
+        for name in ("push", "two-spheres"):
+            with self.subTest(name):
+                _, found = run.run("irdm", name)
+                said = json.loads((BENCHMARK / "results" / "irdm.json").read_text())["cases"][name]
+                for key in ("error_max_N", "error_rms_N", "jnd", "surface_mm"):
+                    self.assertLess(found[key], 1.2 * said[key], key)
+                    self.assertGreater(found[key], 0.8 * said[key], key)
+
+    def test_page_has_the_results(self):
+        self.assertIn(run.table(), (BENCHMARK / "README.md").read_text())
+
+    def test_data_are_small(self):
+        data = [path for folder in ("cases", "references", "results") for path in (BENCHMARK / folder).iterdir()]
+        self.assertLess(sum(path.stat().st_size for path in data), 2e6)
+
+    def test_truth_scores_zero(self):
+        for name in run.case_names():
+            scene, reference = run.scene_of(name)
+            rest = numpy.array(scene["bodies"][0]["nodes"])[scene["watched"]]
+            there = (rest + numpy.array(reference["displacements"])).tolist()
+            found = {"force": reference["force"], "dt": reference["dt"], "positions": there, "step_us": [1, 1],
+                     "settings": ""}
+            row = run.score(scene, reference, found)
+            self.assertEqual([row[key] for key in ("error_max_N", "jnd", "surface_mm")], [0, 0, 0])
+            self.assertLess(row["penetration_mm"], 0.01)
+            found["force"] = (1.1 * numpy.array(reference["force"])).tolist()
+            row = run.score(scene, reference, found)
+            self.assertAlmostEqual(row["error_max_N"], 0.1 * row["peak_N"], delta=0.01)
+            self.assertLessEqual(row["jnd"], 1.0)
+
+    def test_wrong_names(self):
+        for arguments, text in ((["--engine", "nobody"], "--engine nobody: is unknown; use one of: irdm"),
+                                (["--engine", "irdm", "--case", "fly"], "--case fly: is unknown; use one of: press")):
+            done = subprocess.run([sys.executable, str(BENCHMARK / "run.py"), *arguments], capture_output=True, text=True)
+            self.assertEqual(done.returncode, 1)
+            self.assertEqual(len(done.stderr.strip().splitlines()), 1)
+            self.assertIn(text, done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

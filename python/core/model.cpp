@@ -107,6 +107,22 @@ py::dict material(const PythonModel& self) {
   return material;
 }
 
+py::dict element_materials(const PythonModel& self) {
+  const ElementMaterials& of = self.model().material.elements;
+  py::dict materials;
+  if (of.empty()) return materials;
+  const auto array = [](const auto& values) {
+    using Value = typename std::decay_t<decltype(values)>::value_type;
+    return py::array_t<Value>(static_cast<py::ssize_t>(values.size()), values.data());
+  };
+  materials["region"] = array(of.region);
+  materials["density"] = array(of.density);
+  if (is_rigid(self.model())) return materials;
+  materials["youngs_modulus"] = array(of.youngs_modulus);
+  materials["poisson_ratio"] = array(of.poisson_ratio);
+  return materials;
+}
+
 std::string description(const PythonModel& self) {
   const Model& model = self.model();
   return "<irdm.Model of " + std::to_string(model.mesh.surface_node_count()) +
@@ -168,7 +184,12 @@ Raises irdm.Error.)")
       .def_property_readonly(
           "material", &material,
           "dict: density [kg/m^3], and of a soft body youngs_modulus [Pa], poisson_ratio, "
-          "rayleigh_alpha [1/s], rayleigh_beta [s].")
+          "rayleigh_alpha [1/s], rayleigh_beta [s]. With regions: of what is in none.")
+      .def_property_readonly(
+          "element_materials", &element_materials,
+          "Of a body with [[region]]s: dict of arrays (E): region (from 1, the last one that the "
+          "tetrahedron lies in; 0: none), density, and of a soft body youngs_modulus, "
+          "poisson_ratio. Otherwise empty.")
       .def_property_readonly("nodes",
                              of_model([](const Model& m) { return copy(surface_nodes(m.mesh)); }),
                              "Surface nodes at rest, (n, 3) [m], B.")

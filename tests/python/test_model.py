@@ -2,7 +2,7 @@ import os
 import unittest
 
 import numpy
-from support import block, cube, folder
+from support import block, cube, cube_config, folder
 
 import irdm
 
@@ -46,6 +46,24 @@ class ModelTest(unittest.TestCase):
         zero = model.zero_lag()
         numpy.testing.assert_allclose(zero[7, :, 20, :], block_of_r[0], atol=1e-9 * abs(zero).max())
         numpy.testing.assert_allclose(zero, zero.transpose(2, 3, 0, 1), atol=1e-12 * abs(zero).max())
+
+    def test_regions(self):
+        """A stiff layer: whose tetrahedra they are, and the mass and centre of mass of what they weigh."""
+        layer = {"box": {"min": [0, 0.08, 0], "max": [0.12, 0.12, 0.12]}, "youngs_modulus": 2e4, "density": 300.0}
+        model = irdm.precompute(cube_config(region=[layer]), f"{folder.name}/layers.h5")
+        materials = model.element_materials
+        corners = model.volume_nodes[model.tetrahedra[:, :4]]
+        inside = corners[:, :, 1].mean(axis=1) > corners[:, :, 1].max() - 0.04
+        numpy.testing.assert_array_equal(materials["region"], inside)
+        numpy.testing.assert_array_equal(materials["youngs_modulus"], numpy.where(inside, 2e4, 5e3))
+        numpy.testing.assert_array_equal(materials["poisson_ratio"], 0.4)
+        numpy.testing.assert_array_equal(materials["density"], numpy.where(inside, 300, 110))
+        # Tetrahedra that the layer's boundary cuts are whole in it or not.
+        mass = abs(numpy.linalg.det(corners[:, 1:] - corners[:, :1])) / 6 * materials["density"]
+        self.assertAlmostEqual(model.mass, mass.sum(), places=12)
+        numpy.testing.assert_allclose(mass @ corners.mean(axis=1), 0, atol=1e-12)
+        self.assertGreater(model.mass, 1.3 * cube().mass)
+        self.assertEqual(cube().element_materials, {})
 
     def test_rigid(self):
         model = block()

@@ -2,13 +2,10 @@
 #include <array>
 #include <cstddef>
 #include <cstring>
-#include <exception>
 #include <limits>
-#include <memory>
-#include <string>
-#include <string_view>
 #include <type_traits>
 
+#include "c_interface/caller.hpp"
 #include "c_interface/irdm.h"
 #include "scene/scene_run.hpp"
 #include "simulation/step/step_rows.hpp"
@@ -33,33 +30,6 @@ struct irdm_simulation {
 
 namespace {
 
-void write_message(std::string_view text, char* message, std::size_t size) {
-  if (message == nullptr || size == 0) return;
-  const std::size_t length = std::min(size - 1, text.size());
-  std::memcpy(message, text.data(), length);
-  message[length] = '\0';
-}
-
-template <typename Read>
-irdm_status open_scene(const char* what, irdm_simulation** simulation, char* message,
-                       std::size_t size, const Read& read) noexcept {
-  write_message("", message, size);
-  if (simulation != nullptr) *simulation = nullptr;
-  if (what == nullptr || simulation == nullptr) {
-    write_message("a pointer is null", message, size);
-    return IRDM_BAD_ARGUMENT;
-  }
-  try {
-    *simulation = new irdm_simulation(read());
-    return IRDM_OK;
-  } catch (const std::exception& error) {
-    write_message(error.what(), message, size);
-  } catch (...) {
-    write_message("unknown error", message, size);
-  }
-  return IRDM_FAILED;
-}
-
 bool is_object(const irdm_simulation* simulation, std::int32_t object) noexcept {
   return object >= 0 && object < simulation->run.simulation().object_count();
 }
@@ -69,10 +39,8 @@ irdm::StylusCommand command_of(const irdm_command& command) noexcept {
   if (command.present == 0) return out;
   out.present = true;
   out.buttons = command.buttons;
-  out.tip = irdm::Vector3(command.tip[0], command.tip[1], command.tip[2]);
-  const double* q = command.orientation;
-  const bool turned = std::any_of(q, q + 4, [](double number) { return number != 0.0; });
-  if (turned) out.orientation = irdm::Quaternion(q[0], q[1], q[2], q[3]);
+  out.tip = irdm::tip_of(command);
+  out.orientation = irdm::orientation_of(command);
   return out;
 }
 
@@ -95,14 +63,14 @@ const char* irdm_version(void) {
 
 irdm_status irdm_simulation_open(const char* scene_file, irdm_simulation** simulation,
                                  char* message, std::size_t message_size) {
-  return open_scene(scene_file, simulation, message, message_size,
-                    [&] { return irdm::TomlTable::parse_file(scene_file); });
+  return irdm::open_handle(scene_file, simulation, message, message_size,
+                           [&] { return irdm::TomlTable::parse_file(scene_file); });
 }
 
 irdm_status irdm_simulation_parse(const char* scene_text, irdm_simulation** simulation,
                                   char* message, std::size_t message_size) {
-  return open_scene(scene_text, simulation, message, message_size,
-                    [&] { return irdm::TomlTable::parse_text(scene_text, "scene"); });
+  return irdm::open_handle(scene_text, simulation, message, message_size,
+                           [&] { return irdm::TomlTable::parse_text(scene_text, "scene"); });
 }
 
 void irdm_simulation_close(irdm_simulation* simulation) {

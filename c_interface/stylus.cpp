@@ -1,9 +1,6 @@
 #include <algorithm>
-#include <cstdio>
-#include <exception>
-#include <new>
-#include <string>
 
+#include "c_interface/caller.hpp"
 #include "c_interface/irdm.h"
 #include "device_bridge/stylus_client.hpp"
 
@@ -15,18 +12,12 @@ struct irdm_stylus_client {
 
 namespace {
 
-void write_text(const char* text, char* to, std::size_t size) {
-  if (to != nullptr && size > 0) std::snprintf(to, size, "%s", text);
-}
-
 // False where nobody is there, or where the client does not take it.
 bool read_pose(const irdm::StylusClient& client, const irdm_command& command,
                irdm::StylusPose& pose) noexcept {
   pose.buttons = command.buttons;
-  pose.tip = irdm::Vector3(command.tip[0], command.tip[1], command.tip[2]);
-  const double* q = command.orientation;
-  const bool turned = std::any_of(q, q + 4, [](double number) { return number != 0.0; });
-  if (turned) pose.orientation = irdm::Quaternion(q[0], q[1], q[2], q[3]);
+  pose.tip = irdm::tip_of(command);
+  pose.orientation = irdm::orientation_of(command);
   return command.present != 0 && client.fault_of(pose) == nullptr;
 }
 
@@ -46,22 +37,10 @@ void write_feedback(const irdm::StylusFeedback& from, irdm_feedback& to) noexcep
 irdm_status irdm_stylus_connect(const char* address, const char* options,
                                 irdm_stylus_client** client, char* message,
                                 std::size_t message_size) {
-  write_text("", message, message_size);
-  if (client != nullptr) *client = nullptr;
-  if (address == nullptr || client == nullptr) {
-    write_text("a pointer is null", message, message_size);
-    return IRDM_BAD_ARGUMENT;
-  }
-  try {
-    *client = new irdm_stylus_client(irdm::read_stylus_settings(
-        address, irdm::TomlTable::parse_text(options == nullptr ? "" : options, "options")));
-    return IRDM_OK;
-  } catch (const std::exception& error) {
-    write_text(error.what(), message, message_size);
-  } catch (...) {
-    write_text("unknown error", message, message_size);
-  }
-  return IRDM_FAILED;
+  return irdm::open_handle(address, client, message, message_size, [&] {
+    return irdm::read_stylus_settings(
+        address, irdm::TomlTable::parse_text(options == nullptr ? "" : options, "options"));
+  });
 }
 
 void irdm_stylus_close(irdm_stylus_client* client) {
@@ -103,7 +82,7 @@ irdm_status irdm_stylus_step(irdm_stylus_client* client, const irdm_command* com
 irdm_status irdm_stylus_state(irdm_stylus_client* client, char* text, std::size_t size) {
   if (client == nullptr || text == nullptr || size == 0) return IRDM_BAD_ARGUMENT;
   try {
-    write_text(client->client.state().c_str(), text, size);
+    irdm::write_text(client->client.state(), text, size);
     return IRDM_OK;
   } catch (...) {
     return IRDM_FAILED;

@@ -6,13 +6,13 @@
 #include <algorithm>
 #include <chrono>
 #include <exception>
-#include <mutex>
 #include <optional>
 #include <thread>
 #include <utility>
 
 #include "common/error.hpp"
 #include "common/realtime/clock.hpp"
+#include "common/realtime/triple_buffer.hpp"
 #include "common/wire/tls.hpp"
 #include "device_bridge/link/server_session.hpp"
 
@@ -29,9 +29,9 @@ class NetworkClient::Impl {
   void start();
   void stop(bool finished);
 
-  ClientProgress progress() const {
-    const std::lock_guard lock(mutex_);
-    return progress_;
+  const ClientProgress& progress() noexcept {
+    newest_.receive();
+    return newest_.front();
   }
 
   ClientReport report_;
@@ -67,8 +67,8 @@ class NetworkClient::Impl {
   std::int64_t deadline_ns_ = 0;  ///< of the attempt to connect, or of the rest after it
   bool complained_ = false;       ///< about this run of failed attempts
   bool stopping_ = false;         ///< told to, or gave up
-  mutable std::mutex mutex_;
-  ClientProgress progress_;
+  ClientProgress progress_;       ///< the network thread's
+  TripleBuffer<ClientProgress> newest_;
   std::thread thread_;
 };
 
@@ -191,9 +191,9 @@ std::unique_ptr<wire::Stream> NetworkClient::Impl::make_stream(tcp::socket socke
 }
 
 void NetworkClient::Impl::linked(const LinkState& link) {
-  const std::lock_guard lock(mutex_);
   progress_.link = link;
   if (link.linked) progress_.trouble.clear();
+  newest_.put(progress_);
 }
 
 void NetworkClient::Impl::ended(const SessionEnd& end) {
@@ -217,20 +217,16 @@ void NetworkClient::Impl::rest(int milliseconds, const std::string& what,
                                const std::string& reason) {
   if (!complained_) log().warn("server {}: {}: {}; trying again", server_, what, reason);
   complained_ = true;
-  {
-    const std::lock_guard lock(mutex_);
-    progress_.trouble = what + ": " + reason;
-  }
+  progress_.trouble = what + ": " + reason;
+  newest_.put(progress_);
   deadline_ns_ = began_ns_ + milliseconds * kNanosecondsPerMillisecond;
 }
 
 void NetworkClient::Impl::give_up(const std::string& why) {
   report_.failure = why;
-  {
-    const std::lock_guard lock(mutex_);
-    progress_.trouble = why;
-    progress_.gave_up = true;
-  }
+  progress_.trouble = why;
+  progress_.gave_up = true;
+  newest_.put(progress_);
   stopping_ = true;
   gave_up_.signal();
 }
@@ -247,7 +243,7 @@ void NetworkClient::stop(bool finished) {
 const ClientReport& NetworkClient::report() const noexcept {
   return impl_->report_;
 }
-ClientProgress NetworkClient::progress() const {
+const ClientProgress& NetworkClient::progress() noexcept {
   return impl_->progress();
 }
 

@@ -92,8 +92,8 @@ class NetworkClient {
   void stop(bool finished = false);
   /// After stop().
   const ClientReport& report() const noexcept;
-  /// Any thread.
-  ClientProgress progress() const;
+  /// The newest; one thread, always the same. Valid until it is called again.
+  const ClientProgress& progress() noexcept;
 
  private:
   class Impl;

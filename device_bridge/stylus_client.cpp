@@ -149,7 +149,7 @@ void StylusClient::await_session(const Meanwhile& meanwhile) {
   constexpr int kLookMs = 5;
   const std::int64_t deadline_ns = monotonic_ns() + nanoseconds(settings_.timeout);
   for (;;) {
-    const ClientProgress progress = client_.progress();
+    const ClientProgress& progress = client_.progress();
     if (progress.gave_up) throw as_error(progress.trouble);
     if (progress.link.sessions > 0) {
       if (progress.link.lockstep == settings_.lockstep) return;
@@ -249,7 +249,7 @@ void StylusClient::await_force(const Meanwhile& meanwhile) {
 }
 
 std::string StylusClient::state() {
-  const ClientProgress progress = client_.progress();
+  const ClientProgress& progress = client_.progress();
   const StylusFeedback now = get();
   if (settings_.lockstep) return over_ || progress.gave_up ? "the run is over" : "ready: lockstep";
   if (progress.gave_up) return progress.trouble;

@@ -106,8 +106,8 @@ class StylusClient {
   std::string state();
 
   bool lockstep() const noexcept { return settings_.lockstep; }
-  double dt() const { return client_.progress().link.dt; }  ///< force step of the server [s]
-  int number() const { return client_.progress().link.first_stylus; }  ///< in the scene
+  double dt() noexcept { return client_.progress().link.dt; }  ///< force step of the server [s]
+  int number() noexcept { return client_.progress().link.first_stylus; }  ///< in the scene
 
  private:
   struct Feedback final : TickListener {

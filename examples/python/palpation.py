@@ -8,13 +8,10 @@ The model is computed from configs/models/tissue-inclusion.toml if it is not the
 import pathlib
 import sys
 
-import matplotlib
 import numpy
+from matplotlib import pyplot
 
 import irdm
-
-matplotlib.use("Agg")
-from matplotlib import pyplot  # noqa: E402
 
 INCLUSION, RADIUS = numpy.array([0.015, 0.010]), 0.010  # of the configuration, in the plane of the top [m]
 DEPTH, PRESS = 0.004, 100  # how deep to press [m], in so many steps
@@ -28,8 +25,8 @@ else:
     model = irdm.precompute(configs / "tissue-inclusion.toml", model_file, progress=print)
 
 top = model.nodes[:, 2].max()  # the centre of mass is the origin [m]
-scene = {"object": [{"model": model}], "stylus": [{"radius": 0.012, "coupling_stiffness": 2000}]}
-simulation = irdm.Simulation(scene)
+stylus = {"radius": 0.012, "coupling_stiffness": 2000}
+simulation = irdm.Simulation({"object": [{"model": model}], "stylus": [stylus]})
 
 
 def press(x, y):
@@ -50,8 +47,7 @@ print(f"stiffest place: x {1e3 * found[0]:.0f} mm, y {1e3 * found[1]:.0f} mm, {f
 print(f"inclusion:      x {1e3 * INCLUSION[0]:.0f} mm, y {1e3 * INCLUSION[1]:.0f} mm; elsewhere {numpy.median(force):.2f} N")
 
 figure, (left, right) = pyplot.subplots(1, 2, figsize=(10, 4.2), layout="constrained")
-mesh = left.pcolormesh(1e3 * places, 1e3 * places, force)
-figure.colorbar(mesh, ax=left, label=f"force at {1e3 * DEPTH:.0f} mm [N]")
+figure.colorbar(left.pcolormesh(1e3 * places, 1e3 * places, force), ax=left, label=f"force at {1e3 * DEPTH:.0f} mm [N]")
 left.add_patch(pyplot.Circle(1e3 * INCLUSION, 1e3 * RADIUS, fill=False, color="white", label="inclusion"))
 left.plot(*(1e3 * found), "x", color="red", label="stiffest place")
 left.set(xlabel="x [mm]", ylabel="y [mm]", aspect="equal", title="Palpation map")

@@ -82,10 +82,11 @@ class PythonStylus {
     if (client_) return *client_;
     throw std::runtime_error("the stylus is closed");
   }
-  StylusFeedback get() const {
+  StylusClient& idle_client() const {
     if (stepping_) throw std::runtime_error("another thread is in step()");
-    return client().get();
+    return client();
   }
+  StylusFeedback get() const { return idle_client().get(); }
   std::string state() const { return client_ && !stepping_ ? client_->state() : closed_or_busy(); }
 
  private:
@@ -156,10 +157,10 @@ meanwhile. Raises ValueError, and irdm.Error when the run is over; Ctrl-C ends t
           "sessions", [](const Self& self) { return self.get().sessions; },
           "With a server, so far.")
       .def_property_readonly(
-          "dt", [](const Self& self) { return self.client().dt(); },
+          "dt", [](const Self& self) { return self.idle_client().dt(); },
           "Force step of the server [s].")
       .def_property_readonly(
-          "number", [](const Self& self) { return self.client().number(); }, "In the scene.")
+          "number", [](const Self& self) { return self.idle_client().number(); }, "In the scene.")
       .def_property_readonly("lockstep", [](const Self& self) { return self.client().lockstep(); });
 }
 

@@ -2,13 +2,14 @@
 
 import json
 import os
+from contextlib import AbstractContextManager
 
 import numpy
 
 from irdm import _core
 
 
-class Episodes:
+class Episodes(AbstractContextManager):
     """A file of episodes that grows: `data/demo_0`, `data/demo_1`, ... Needs h5py. Use it with `with`, or close() it.
 
     Each has `obs/NAME`, `next_obs/NAME`, `actions`, `rewards`, `dones`, a row a transition, and the attribute
@@ -31,9 +32,6 @@ class Episodes:
 
     def close(self):
         self._file.close()
-
-    def __enter__(self):
-        return self
 
     def __exit__(self, *_):
         self.close()

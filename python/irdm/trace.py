@@ -1,11 +1,12 @@
 """Recorded runs."""
 
 import os
+from contextlib import AbstractContextManager
 
 from irdm import _core
 
 
-class Trace:
+class Trace(AbstractContextManager):
     """A trace file (docs/files.md), opened for reading. Needs h5py. Use it with `with`, or close() it.
 
     dt [s], steps and scene (text) describe it; arrays are read when they are asked for, and end at the last valid step.
@@ -34,9 +35,6 @@ class Trace:
 
     def close(self):
         self._file.close()
-
-    def __enter__(self):
-        return self
 
     def __exit__(self, *_):
         self.close()

@@ -69,6 +69,7 @@ typedef struct irdm_object {
   double velocity[3];         /* [m/s] */
   double angular_velocity[3]; /* [rad/s] */
   double residual;            /* of the contact problem [m] */
+  double energy;              /* kinetic, elastic, of gravity and tether [J]; NaN of a dense response */
 } irdm_object;
 
 /* What exerts a contact force. */
@@ -126,6 +127,13 @@ IRDM_API irdm_status irdm_simulation_step(irdm_simulation* simulation, const ird
                                           size_t command_count, irdm_stylus* styluses);
 /* Everything is put back to the start before the next step. */
 IRDM_API irdm_status irdm_simulation_reset(irdm_simulation* simulation);
+/* The state as bytes: loaded, the next steps are the same to the bit. For this version of irdm on this kind of machine.
+ * capacity: bytes; count: of the state, also where there is too little room; state may be NULL with capacity 0 */
+IRDM_API irdm_status irdm_simulation_save(const irdm_simulation* simulation, void* state, size_t capacity,
+                                          size_t* count);
+/* IRDM_FAILED, and all is left as it is: the state is of other models or of another version, or damaged. */
+IRDM_API irdm_status irdm_simulation_load(irdm_simulation* simulation, const void* state, size_t size, char* message,
+                                          size_t message_size);
 
 /* Of the last step; before the first one wrong use. objects: irdm_simulation_object_count() of them */
 IRDM_API irdm_status irdm_simulation_objects(const irdm_simulation* simulation, irdm_object* objects, size_t capacity);

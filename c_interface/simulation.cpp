@@ -14,7 +14,7 @@
 static_assert(sizeof(irdm_stylus) == sizeof(irdm::StylusRow));
 static_assert(offsetof(irdm_stylus, torque) == offsetof(irdm::StylusRow, torque));
 static_assert(sizeof(irdm_object) == sizeof(irdm::ObjectRow));
-static_assert(offsetof(irdm_object, residual) == offsetof(irdm::ObjectRow, residual));
+static_assert(offsetof(irdm_object, energy) == offsetof(irdm::ObjectRow, energy));
 static_assert(sizeof(irdm_contact) == sizeof(irdm::ContactRow));
 static_assert(offsetof(irdm_contact, area) == offsetof(irdm::ContactRow, area));
 static_assert(IRDM_COUPLING == static_cast<int>(irdm::ContactKind::kCoupling));
@@ -120,16 +120,41 @@ irdm_status irdm_simulation_reset(irdm_simulation* simulation) {
   return IRDM_OK;
 }
 
+irdm_status irdm_simulation_save(const irdm_simulation* simulation, void* state,
+                                 std::size_t capacity, std::size_t* count) {
+  if (simulation == nullptr || count == nullptr) return IRDM_BAD_ARGUMENT;
+  if (state == nullptr && capacity > 0) return IRDM_BAD_ARGUMENT;
+  try {
+    const std::vector<std::byte> saved = simulation->run.save_state();
+    *count = saved.size();
+    if (capacity < saved.size()) return IRDM_TOO_SMALL;
+    std::memcpy(state, saved.data(), saved.size());
+    return IRDM_OK;
+  } catch (...) {
+    return IRDM_FAILED;
+  }
+}
+
+irdm_status irdm_simulation_load(irdm_simulation* simulation, const void* state, std::size_t size,
+                                 char* message, std::size_t message_size) {
+  irdm::write_text("", message, message_size);
+  if (simulation == nullptr || state == nullptr) return IRDM_BAD_ARGUMENT;
+  try {
+    simulation->run.load_state({static_cast<const std::byte*>(state), size});
+    return IRDM_OK;
+  } catch (const std::exception& error) {
+    irdm::write_text(error.what(), message, message_size);
+  }
+  return IRDM_FAILED;
+}
+
 irdm_status irdm_simulation_objects(const irdm_simulation* simulation, irdm_object* objects,
                                     std::size_t capacity) {
   if (simulation == nullptr || objects == nullptr) return IRDM_BAD_ARGUMENT;
-  const irdm::StepRecord& record = simulation->run.record();
-  const auto count = static_cast<std::size_t>(simulation->run.simulation().object_count());
-  if (capacity < count) return IRDM_TOO_SMALL;
+  const std::span<const irdm::ObjectRow> rows = simulation->run.objects();
+  if (capacity < rows.size()) return IRDM_TOO_SMALL;
   if (simulation->run.simulation().next_step() == 0) return IRDM_BAD_ARGUMENT;
-  for (std::size_t i = 0; i < count; ++i) {
-    copy_row(irdm::row_of(record.object[i]), objects[i]);
-  }
+  for (std::size_t i = 0; i < rows.size(); ++i) copy_row(rows[i], objects[i]);
   return IRDM_OK;
 }
 

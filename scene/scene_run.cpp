@@ -2,9 +2,51 @@
 
 #include <cmath>
 
+#include "common/checksum.hpp"
 #include "common/config/range.hpp"
+#include "common/error.hpp"
+#include "simulation/state/state_archive.hpp"
 
 namespace irdm {
+namespace {
+
+std::string checksum_of(std::span<const std::byte> bytes) {
+  Sha256 sha;
+  sha.update(bytes.data(), bytes.size());
+  return sha.hexadecimal();
+}
+
+// Of what the bytes of a state mean.
+std::string identity_of(const SimulationConfig& config) {
+  Sha256 sha;
+  const auto add = [&](const auto& number) { sha.update(&number, sizeof number); };
+  const auto add_all = [&](const auto& numbers) {
+    sha.update(numbers.data(), static_cast<std::size_t>(numbers.size()) * sizeof *numbers.data());
+  };
+  add_all(std::string_view("irdm state " IRDM_VERSION));
+  for (const SimulationObject& object : config.objects) {
+    const Model& model = *object.model;
+    add_all(model.mesh.nodes);
+    add_all(model.mesh.triangles);
+    add(model.body.mass);
+    add_all(model.body.inertia);
+    const Material& material = model.material;
+    for (const double number : {material.youngs_modulus, material.poisson_ratio, material.density,
+                                material.rayleigh_alpha, material.rayleigh_beta, model.dt}) {
+      add(number);
+    }
+    add_all(material.elements.youngs_modulus);
+    add_all(material.elements.poisson_ratio);
+    add(model.steps);
+    add(model.response.index());
+    if (const auto* modal = std::get_if<ModalResponse>(&model.response)) {
+      add_all(modal->angular_frequency);
+    }
+  }
+  return sha.hexadecimal();
+}
+
+}  // namespace
 
 const char* fault_of(const StylusCommand& command) noexcept {
   constexpr double kNormTolerance = 1e-6;
@@ -21,12 +63,73 @@ SceneRun::SceneRun(const TomlTable& file)
       config_(simulation_config(scene_, false)),
       simulation_(std::make_unique<Simulation>(config_)),
       rows_(config_),
-      record_(std::make_unique<StepRecord>()) {}
+      record_(std::make_unique<StepRecord>()),
+      objects_(config_.objects.size()),
+      identity_(identity_of(config_)) {}
 
 const StepRecord& SceneRun::step(std::span<const StylusCommand> commands) noexcept {
   simulation_->step(commands, *record_);
-  contacts_ = rows_.of(*simulation_, *record_);
+  describe();
   return *record_;
+}
+
+void SceneRun::describe() noexcept {
+  contacts_ = rows_.of(*simulation_, *record_);
+  for (std::size_t i = 0; i < objects_.size(); ++i) {
+    objects_[i] = row_of(record_->object[i], simulation_->object(static_cast<int>(i)).energy());
+  }
+}
+
+void SceneRun::archive(StateArchive& state) const {
+  simulation_->archive(state);
+  state.value(static_cast<StepHead&>(*record_));
+  state.numbers(record_->object.data(), static_cast<std::size_t>(record_->object_count));
+  state.numbers(record_->stylus.data(), static_cast<std::size_t>(record_->stylus_count));
+  const std::size_t contacts = state.size(record_->body_contact.size(), kMaxBodyContacts);
+  record_->body_contact.resize(contacts);
+  state.numbers(record_->body_contact.data(), contacts);
+  state.end();
+}
+
+// Identity, checksum of the rest, the rest.
+std::vector<std::byte> SceneRun::save_state() const {
+  StateArchive archived;
+  archive(archived);
+  const std::vector<std::byte> body = archived.take();
+  std::vector<std::byte> state;
+  for (const std::string& text : {identity_, checksum_of(body)}) {
+    const auto* bytes = reinterpret_cast<const std::byte*>(text.data());
+    state.insert(state.end(), bytes, bytes + text.size());
+  }
+  state.insert(state.end(), body.begin(), body.end());
+  return state;
+}
+
+void SceneRun::load_state(std::span<const std::byte> state) {
+  const std::string_view text(reinterpret_cast<const char*>(state.data()), state.size());
+  if (!text.starts_with(identity_)) {
+    throw Error("state", "is not one of these models with irdm " IRDM_VERSION,
+                "load it where it was saved");
+  }
+  const std::size_t head = 2 * identity_.size();
+  if (text.size() < head ||
+      text.substr(identity_.size(), identity_.size()) != checksum_of(state.subspan(head))) {
+    throw Error("state", "is damaged", "save it anew, and keep all of its bytes");
+  }
+  const std::vector<std::byte> before = save_state();
+  try {
+    StateArchive archived(state.subspan(head));
+    archive(archived);
+  } catch (const Error&) {
+    StateArchive back(std::span<const std::byte>(before).subspan(head));
+    archive(back);
+    throw;
+  }
+  if (simulation_->next_step() > 0) {
+    describe();
+  } else {
+    contacts_ = {};
+  }
 }
 
 void SceneRun::surface(int i, Points& x) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <span>
 #include <string>
@@ -33,6 +34,16 @@ class SceneRun {
   /// Of the last step; as in StepRecord. Valid until the next one.
   const StepRecord& record() const noexcept { return *record_; }
   std::span<const ContactRow> contacts() const noexcept { return contacts_; }
+  std::span<const ObjectRow> objects() const noexcept { return objects_; }
+
+  /// The state, of some kilobytes an object; with a dense response all forces that it has not
+  /// forgotten, besides. For this version of irdm on this kind of machine.
+  std::vector<std::byte> save_state() const;
+  /// The simulation goes on from a state as the one that it was saved from, to the bit, the last
+  /// step's record included. Throws Error, and leaves all as it is, where the state is of another
+  /// scene or version, or damaged. Models, styluses, objects and scenery have to be the same; their
+  /// other keys are not looked at.
+  void load_state(std::span<const std::byte> state);
 
   /// Where the surface nodes of object i are at the end of the last step, (n, 3) [m], W. Uses
   /// OpenMP; not real-time safe.
@@ -46,12 +57,17 @@ class SceneRun {
   int stylus_count() const noexcept { return static_cast<int>(scene_.styluses.size()); }
 
  private:
+  void archive(StateArchive& state) const;
+  void describe() noexcept;
+
   SceneConfig scene_;
   SimulationConfig config_;
   std::unique_ptr<Simulation> simulation_;
   ContactRows rows_;
   std::unique_ptr<StepRecord> record_;
   std::span<const ContactRow> contacts_;
+  std::vector<ObjectRow> objects_;
+  std::string identity_;  ///< of models and program, in a state
 };
 
 }  // namespace irdm

@@ -35,6 +35,7 @@ public struct Body
     public double w, x, y, z;
     public Vector velocity, angularVelocity;
     public double residual;
+    public double energy;
 }
 
 public static class Irdm

@@ -90,9 +90,7 @@ struct Rows {
     for (int s = 0; s < record.stylus_count; ++s) {
       styluses.push_back(row_of(record.stylus[static_cast<std::size_t>(s)]));
     }
-    for (int i = 0; i < record.object_count; ++i) {
-      objects.push_back(row_of(record.object[static_cast<std::size_t>(i)]));
-    }
+    objects.insert(objects.end(), run.objects().begin(), run.objects().end());
     const std::span<const ContactRow> now = run.contacts();
     contacts.insert(contacts.end(), now.begin(), now.end());
     first.push_back(static_cast<std::int64_t>(contacts.size()));
@@ -172,6 +170,18 @@ class PythonSimulation {
     run_.reset();
   }
 
+  py::bytes save_state() {
+    const Use use(*this);
+    const std::vector<std::byte> state = run_.save_state();
+    return {reinterpret_cast<const char*>(state.data()), state.size()};
+  }
+
+  void load_state(const py::bytes& state) {
+    const Use use(*this);
+    const std::string_view bytes = state;
+    run_.load_state({reinterpret_cast<const std::byte*>(bytes.data()), bytes.size()});
+  }
+
   py::array surface(const py::object& self, int i) {
     const Use use(*this);
     Points& x = surfaces_[object(i)];
@@ -229,7 +239,7 @@ std::vector<std::string> names(const std::vector<Named>& of) {
 void bind_rows(py::module_& module) {
   PYBIND11_NUMPY_DTYPE(StylusRow, present, contact, object, tool, tip, proxy, force, torque);
   PYBIND11_NUMPY_DTYPE(ObjectRow, asleep, solved, position, orientation, velocity, angular_velocity,
-                       residual);
+                       residual, energy);
   PYBIND11_NUMPY_DTYPE(ContactRow, object, kind, other, place, state, slipping, position, normal,
                        force, slip, area);
   module.attr("stylus_dtype") = py::dtype::of<StylusRow>();
@@ -259,7 +269,8 @@ present, contact (0 free, 1 touching, 2 held), object (-1: none), tool (-1: none
                     R"((objects) of irdm.object_dtype, at the end of the step:
 
 asleep, solved (0: the contact problem had no finite solution and no force acted), position of the centre of mass [m] W,
-orientation w x y z B to W, velocity [m/s] W, angular_velocity [rad/s] W, residual of the contact problem [m].)")
+orientation w x y z B to W, velocity [m/s] W, angular_velocity [rad/s] W, residual of the contact problem [m], energy: kinetic, elastic, of gravity (0 at the
+origin) and tether [J]; nan of a dense or compressed response.)")
       .def_readonly("contacts", &Step::contacts,
                     R"((contacts) of irdm.contact_dtype: every force on every object.
 
@@ -293,6 +304,15 @@ tips: (steps, s, 3); buttons, orientations, present: (steps, s, ...); as of step
 wrong. Returns Steps. Raises as step().)")
       .def("reset", &Self::reset,
            "Puts everything back to the start before the next step; its number goes on.")
+      .def("save_state", &Self::save_state,
+           R"(The state as bytes, settings and the last step included.
+
+For this version of irdm on this kind of machine. A Simulation that loads it goes on as this one, to the bit.)")
+      .def("load_state", &Self::load_state, py::arg("state"),
+           R"(Goes on from a state of save_state().
+
+The scene has to have the same models, styluses and scenery; positions and velocities at the start may differ, and are gone
+back to by reset(). Raises irdm.Error, and leaves all as it is, where the state is of another scene or version, or damaged.)")
       .def(
           "surface",
           [](const py::object& self, int i) { return self.cast<Self&>().surface(self, i); },

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include "simulation/state/state_archive.hpp"
 
 namespace irdm {
 namespace {
@@ -43,6 +44,21 @@ void DeformedSurface::begin_step(const ResponseEngine& engine, double change) no
   if (change_ < kLargestChange) return;
   bounded_since_ = state_;
   change_ = 0.0;
+}
+
+void DeformedSurface::archive(StateArchive& state, const ResponseEngine& engine) {
+  if (state.reading()) engine_ = &engine;
+  for (std::uint64_t* number : {&state_, &step_, &bounded_since_, &bound_known_in_}) {
+    state.value(*number);
+  }
+  state.value(queried_);
+  state.value(change_);
+  state.value(bound_);
+  state.values(known_in_);
+  state.values(change_then_);
+  state.values(seen_in_);
+  state.values(positions_);
+  state.list(seen_);
 }
 
 void DeformedSurface::mark_seen(std::size_t node) noexcept {

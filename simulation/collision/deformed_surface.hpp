@@ -12,6 +12,8 @@
 
 namespace irdm {
 
+class StateArchive;
+
 /// The point of the deformed surface nearest to a query point.
 struct SurfaceHit {
   int triangle = 0;
@@ -90,6 +92,9 @@ class DeformedSurface {
 
   /// Outward unit normal of a deformed triangle.
   Vector3 normal(int triangle) noexcept;
+
+  /// State, in or out (StateArchive).
+  void archive(StateArchive& state, const ResponseEngine& engine);
 
  private:
   TriangleCorners corners(int triangle) noexcept;

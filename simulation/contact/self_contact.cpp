@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include "simulation/state/state_archive.hpp"
 
 namespace irdm {
 namespace {
@@ -119,6 +120,10 @@ void SelfSearch::reset() noexcept {
   for (int s = 0; s < reach_.sample_count(); ++s) {
     seen_[static_cast<std::size_t>(s)] = {reach_.nearest(s), false, reach_.place(s), 0.0, {}};
   }
+}
+
+void SelfSearch::archive(StateArchive& state) {
+  state.values(seen_);
 }
 
 bool SelfSearch::begin_step() noexcept {

@@ -10,6 +10,8 @@
 
 namespace irdm {
 
+class StateArchive;
+
 /// Which parts of a body's surface can come to touch each other: each sample has the triangles that
 /// it sees at rest through the outside, in front of both, that face it, are no farther than the
 /// radius of the body, and have no node of the sample. A convex body has none. Of two faces one
@@ -67,6 +69,8 @@ class SelfSearch {
   SelfSearch(const SelfReach& reach, DeformedSurface& surface, double ahead);
 
   void reset() noexcept;
+  /// State, in or out (StateArchive).
+  void archive(StateArchive& state);
   /// A step begins. False: the body is bent too little for any part to meet another.
   bool begin_step() noexcept;
   /// Whether a sample is certainly farther away in this step from what it can meet.

@@ -5,6 +5,7 @@
 
 #include "common/response/compressed_response.hpp"
 #include "simulation/engine/kernels.hpp"
+#include "simulation/state/state_archive.hpp"
 
 namespace irdm {
 namespace {
@@ -182,6 +183,11 @@ void CompressedEngine::displacement(Points& u, double /*tolerance*/) const {
   for (int node = 0; node < nodes; ++node) {
     u.row(node) = (fir(node, 0) + tail(node, tail_.coordinate())).transpose();
   }
+}
+
+void CompressedEngine::archive(StateArchive& state) {
+  history_.archive(state);
+  tail_.archive(state);
 }
 
 void CompressedEngine::reset() noexcept {

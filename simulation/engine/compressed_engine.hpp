@@ -31,6 +31,7 @@ class CompressedEngine final : public ResponseEngine {
   using ResponseEngine::displacement;
   void displacement(Points& u, double tolerance) const override;
   void reset() noexcept override;
+  void archive(StateArchive& state) override;
 
  private:
   /// What the last m steps of forces do to a node: shift 0 at the end of the last step, n at that

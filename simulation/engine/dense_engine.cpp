@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "simulation/engine/patch_response.hpp"
+#include "simulation/state/state_archive.hpp"
 
 namespace irdm {
 namespace {
@@ -133,6 +134,13 @@ void DenseEngine<Scalar>::reset() noexcept {
   past_.clear();
   spin_.reset();
   gravity_.reset();
+}
+
+template <typename Scalar>
+void DenseEngine<Scalar>::archive(StateArchive& state) {
+  past_.archive(state);
+  spin_.archive(state);
+  gravity_.archive(state);
 }
 
 template class DenseEngine<float>;

@@ -39,6 +39,7 @@ class DenseEngine final : public ResponseEngine,
   using ResponseEngine::displacement;
   void displacement(Points& u, double tolerance) const override;
   void reset() noexcept override;
+  void archive(StateArchive& state) override;
 
  private:
   /// The answer of a to b `step` steps after the one in which b acted.

@@ -1,6 +1,7 @@
 #include "simulation/engine/dense_load.hpp"
 
 #include <array>
+#include "simulation/state/state_archive.hpp"
 
 namespace irdm {
 
@@ -63,6 +64,14 @@ void DenseGravity<Number>::reset() noexcept {
   changes_.reset();
   last_ = coming_;
   begun_ = false;
+}
+
+template <typename Number>
+void DenseGravity<Number>::archive(StateArchive& state) {
+  changes_.archive(state);
+  state.value(last_);
+  state.value(coming_);
+  state.value(begun_);
 }
 
 template class DenseGravity<float>;

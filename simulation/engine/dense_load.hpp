@@ -5,6 +5,7 @@
 
 #include "common/response/modal_response.hpp"
 #include "simulation/engine/prediction_cache.hpp"
+#include "simulation/state/state_archive.hpp"
 
 namespace irdm {
 
@@ -43,6 +44,11 @@ class DenseLoad {
   }
   void advance() noexcept;
   void reset() noexcept;
+  /// State, in or out (StateArchive).
+  void archive(StateArchive& state) {
+    past_.archive(state);
+    state.value(coming_);
+  }
 
  private:
   static_assert(kCount % 3 == 0);
@@ -85,6 +91,8 @@ class DenseGravity final {
   void add_all(Points& u) const;
   void advance() noexcept;
   void reset() noexcept;
+  /// State, in or out (StateArchive).
+  void archive(StateArchive& state);
 
  private:
   void add_sag(int node, Vector3& u) const noexcept;

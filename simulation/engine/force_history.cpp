@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "simulation/engine/kernels.hpp"
+#include "simulation/state/state_archive.hpp"
 
 namespace irdm {
 
@@ -75,6 +76,29 @@ bool ForceHistory::add_delayed_force(std::span<const NodalForce> forces, int age
 void ForceHistory::clear() noexcept {
   for (const int node : active_) first_[static_cast<std::size_t>(node)] = -1;
   active_.clear();
+}
+
+// Of each active node the forces of all ages since it became so, the newest first.
+void ForceHistory::archive(StateArchive& state) {
+  state.same(static_cast<std::uint64_t>(steps_));
+  if (state.reading()) {
+    clear();
+    head_ = 0;
+  }
+  state.value(clock_);
+  state.list(active_);
+  for (const int node : active_) {
+    const auto index = static_cast<std::size_t>(node);
+    state.value(first_[index]);
+    state.value(last_[index]);
+    const auto count =
+        static_cast<std::size_t>(std::min<std::int64_t>(clock_ - first_[index] + 1, steps_));
+    for (int axis = 0; axis < 3; ++axis) {
+      double* const forces = slot(node, axis);
+      state.numbers(forces + head_, count);
+      if (state.reading()) std::copy_n(forces, count, forces + steps_);
+    }
+  }
 }
 
 ForceHistory::Series ForceHistory::series(int node, int axis) const noexcept {

@@ -24,6 +24,8 @@ class ForceHistory {
   /// where that is before the first step or no longer kept.
   bool add_delayed_force(std::span<const NodalForce> forces, int age) noexcept;
   void clear() noexcept;
+  /// State, in or out (StateArchive).
+  void archive(StateArchive& state);
 
   /// Nodes with a force within the last T steps.
   std::span<const int> active() const noexcept { return active_; }

@@ -7,6 +7,7 @@
 
 #include "common/response/modal_response.hpp"
 #include "simulation/engine/kernels.hpp"
+#include "simulation/state/state_archive.hpp"
 
 namespace irdm {
 namespace {
@@ -370,6 +371,35 @@ void ModalEngine<Scalar>::reset() noexcept {
   change_state();
   begun_ = false;
   settle();
+}
+
+// Responses that were looked ahead of are found anew.
+template <typename Scalar>
+void ModalEngine<Scalar>::archive(StateArchive& state) {
+  if (state.reading()) change_state();
+  for (auto* values : {&coordinate_, &velocity_, &free_coordinate_, &free_velocity_, &modal_force_,
+                       &inertial_load_}) {
+    state.values(*values);
+  }
+  for (bool* flag : {&loaded_, &was_loaded_, &forced_, &begun_}) state.value(*flag);
+  residual_.archive(state);
+  gravity_.archive(state);
+  if (state.reading()) only_ = nullptr;
+}
+
+// Modes are mass-normalised: 1/2 sum (v^2 + omega^2 q^2); gravity holds each with g_i.
+template <typename Scalar>
+double ModalEngine<Scalar>::energy() const noexcept {
+  const auto& omega = std::get_if<ModalResponse>(&model_->response)->angular_frequency;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < modes_; ++i) {
+    const double stretch = omega(static_cast<Eigen::Index>(i)) * coordinate_[i];
+    sum += 0.5 * (velocity_[i] * velocity_[i] + stretch * stretch);
+  }
+  if (gravity_.acts()) {
+    for (std::size_t i = 0; i < modes_; ++i) sum -= gravity_.force()[i] * coordinate_[i];
+  }
+  return sum + residual_.energy();
 }
 
 template class ModalEngine<float>;

@@ -64,6 +64,8 @@ class ModalEngine final : public ResponseEngine,
   void displacements(std::span<const SurfaceRequest> requests) const override;
   const void* shared_surface() const noexcept override { return shapes_; }
   void reset() noexcept override;
+  void archive(StateArchive& state) override;
+  double energy() const noexcept override;
 
  private:
   void set_transitions(double damping) noexcept;

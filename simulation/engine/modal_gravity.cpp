@@ -1,4 +1,5 @@
 #include "simulation/engine/modal_gravity.hpp"
+#include "simulation/state/state_archive.hpp"
 
 namespace irdm {
 
@@ -23,6 +24,12 @@ void ModalGravity::settle(AlignedNumbers& coordinate) const noexcept {
     const double omega = response_.angular_frequency(static_cast<Eigen::Index>(i));
     coordinate[i] = force_[i] / (omega * omega);
   }
+}
+
+void ModalGravity::archive(StateArchive& state) {
+  state.values(force_);
+  state.value(last_);
+  state.value(coming_);
 }
 
 void ModalGravity::add_rest(Points& u) const noexcept {

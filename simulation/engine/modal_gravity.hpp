@@ -6,6 +6,8 @@
 
 namespace irdm {
 
+class StateArchive;
+
 /// What gravity does to the modes of a fixed body: a force on each that stays, and what modes that
 /// are left out add without delay. Real-time safe after construction; one thread.
 class ModalGravity {
@@ -35,6 +37,8 @@ class ModalGravity {
   double rest_bound() const noexcept { return largest_rest_.dot(coming_.cwiseAbs()); }
   /// Adds the displacement of all nodes at the end of the last step, (n, 3) [m].
   void add_rest(Points& u) const noexcept;
+  /// State, in or out (StateArchive).
+  void archive(StateArchive& state);
 
  private:
   const ModalResponse& response_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "simulation/engine/pinned_columns.hpp"
+#include "simulation/state/state_archive.hpp"
 
 namespace irdm {
 
@@ -61,6 +62,13 @@ template <typename Columns>
 void CachedConvolution<Columns>::clear_cache() noexcept {
   stepped_.clear();
   horizon_cache_.clear();
+}
+
+template <typename Columns>
+void CachedConvolution<Columns>::archive(StateArchive& state) {
+  history_.archive(state);
+  stepped_.archive(state);
+  if (state.reading()) horizon_cache_.clear();
 }
 
 template class CachedConvolution<ResidentColumns<float>>;
@@ -249,6 +257,27 @@ void PredictionCache<Columns>::clear() noexcept {
   }
   count_ = 0;
   turn_ = 0;
+}
+
+template <typename Columns>
+void PredictionCache<Columns>::archive(StateArchive& state) {
+  if (state.reading()) clear();
+  count_ = static_cast<int>(state.size(static_cast<std::size_t>(count_), cached_.size()));
+  for (int i = 0; i < count_; ++i) {
+    Cached& cached = cached_[static_cast<std::size_t>(i)];
+    if (state.reading()) cached.begin = 0;
+    state.value(cached.node);
+    cached.length = static_cast<int>(state.size(static_cast<std::size_t>(cached.length), kRoom));
+    state.value(cached.begun);
+    state.value(cached.first);
+    state.value(cached.last);
+    for (auto& coming : cached.coming) {
+      state.numbers(coming.data() + cached.begin, static_cast<std::size_t>(cached.length));
+    }
+    place_[static_cast<std::size_t>(cached.node)] = i;
+  }
+  state.value(turn_);
+  state.value(step_);
 }
 
 template class PredictionCache<ResidentColumns<float>>;

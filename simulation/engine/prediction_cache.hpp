@@ -35,6 +35,8 @@ class PredictionCache {
   void add_delayed_force(std::span<const NodalForce> forces, int age) noexcept;
   /// Keeps nothing any more.
   void clear() noexcept;
+  /// State, in or out (StateArchive): sums differ in rounding by when they were begun.
+  void archive(StateArchive& state);
 
  private:
   using Number = typename Columns::Value;
@@ -109,6 +111,8 @@ class CachedConvolution {
   const ForceHistory& history() const noexcept { return history_; }
   /// Columns became whole of a node with a past: what was kept lacks it.
   void clear_cache() noexcept;
+  /// State, in or out (StateArchive).
+  void archive(StateArchive& state);
 
  private:
   Columns& columns_;

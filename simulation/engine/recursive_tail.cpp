@@ -5,6 +5,7 @@
 
 #include "common/response/compressed_response.hpp"
 #include "simulation/engine/kernels.hpp"
+#include "simulation/state/state_archive.hpp"
 
 namespace irdm {
 namespace {
@@ -119,6 +120,11 @@ void RecursiveTail::continue_path(const double* held) noexcept {
   // What began to act after the last step is not in the ring: it is held.
   const bool begun = path_clock_ - delay_ >= clock_;
   step(path_real_, path_imaginary_, begun ? held : waiting(path_clock_), path_.data());
+}
+
+void RecursiveTail::archive(StateArchive& state) {
+  for (auto* values : {&real_, &imaginary_, &coordinate_, &coming_, &ring_}) state.values(*values);
+  state.value(clock_);
 }
 
 void RecursiveTail::reset() noexcept {

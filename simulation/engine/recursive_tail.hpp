@@ -30,6 +30,8 @@ class RecursiveTail {
   /// @param age 0 .. kMaxHorizon - 1
   void add_delayed_force(std::span<const NodalForce> forces, int age) noexcept;
   void reset() noexcept;
+  /// State, in or out (StateArchive).
+  void archive(StateArchive& state);
 
   /// Coordinates at the ends of the next steps one after the other, the first of them coming():
   /// @param held shape forces that act in all of them, (r)

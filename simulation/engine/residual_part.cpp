@@ -1,4 +1,5 @@
 #include "simulation/engine/residual_part.hpp"
+#include "simulation/state/state_archive.hpp"
 
 namespace irdm {
 ResidualPart::ResidualPart(const ResidualCompliance& compliance, int surface_nodes)
@@ -97,6 +98,26 @@ void ResidualPart::hold_more(std::span<const NodalForce> forces) noexcept {
 void ResidualPart::hold(std::span<const NodalForce> forces) noexcept {
   release();
   hold_more(forces);
+}
+
+double ResidualPart::energy() const noexcept {
+  double sum = 0.0;
+  for (const int node : loaded_) {
+    for (int k = compliance_.begin_of(node); k < compliance_.end_of(node); ++k) {
+      const Vector3& there = force_[index(neighbour(k))];
+      sum += 0.5 * force_[index(node)].dot(compliance_.block(k).cast<double>() * there);
+    }
+  }
+  return sum;
+}
+
+void ResidualPart::archive(StateArchive& state) {
+  if (state.reading()) release();
+  state.list(loaded_);
+  for (const int node : loaded_) {
+    state.value(force_[index(node)]);
+    is_loaded_[index(node)] = 1;
+  }
 }
 
 void ResidualPart::add_displacement(Points& u) const noexcept {

@@ -33,6 +33,10 @@ class ResidualPart {
   void release() noexcept;
   /// Adds what these forces do to the nodes' displacements, (n, 3) [m].
   void add_displacement(Points& u) const noexcept;
+  /// Elastic energy of them, 1/2 f^T G f [J].
+  double energy() const noexcept;
+  /// State, in or out (StateArchive).
+  void archive(StateArchive& state);
 
  private:
   int neighbour(int place) const noexcept { return compliance_.nodes[index(place)]; }

@@ -19,6 +19,7 @@ struct NodalForce {
 };
 
 class ResponseEngine;
+class StateArchive;
 
 /// The displacements of one engine's nodes are wanted.
 struct SurfaceRequest {
@@ -169,6 +170,13 @@ class ResponseEngine {
 
   /// Forgets all forces: at rest under gravity as it is.
   virtual void reset() noexcept = 0;
+
+  /// State, in or out, but for settings. Throws Error where it depends on what is in memory
+  /// (ColumnStreaming). Not real-time safe.
+  virtual void archive(StateArchive& state) = 0;
+  /// Elastic and kinetic energy of the deformation at the end of the last step, with the potential
+  /// of gravity on a fixed body [J], where the response says so; otherwise NaN. Real-time safe.
+  virtual double energy() const noexcept { return std::numeric_limits<double>::quiet_NaN(); }
 };
 
 /// Makes an engine on a model that holds the response it needs. Throws Error when it does not.

@@ -25,6 +25,8 @@ class RigidEngine final : public ResponseEngine {
   using ResponseEngine::displacement;
   void displacement(Points& u, double tolerance) const override;
   void reset() noexcept override {}
+  void archive(StateArchive& /*state*/) override {}
+  double energy() const noexcept override { return 0.0; }
 
  private:
   int surface_nodes_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "common/error.hpp"
 #include "simulation/engine/force_history.hpp"
 #include "simulation/engine/kernels.hpp"
 #include "simulation/engine/patch_response.hpp"
@@ -236,6 +237,12 @@ void StreamedEngine<Scalar>::reset() noexcept {
   past_.clear();
   spin_.reset();
   gravity_.reset();
+}
+
+template <typename Scalar>
+void StreamedEngine<Scalar>::archive(StateArchive& /*state*/) {
+  throw Error("state", "of an object whose response is read from its file as it is needed",
+              "leave out memory_budget");
 }
 
 template class StreamedEngine<float>;

@@ -53,6 +53,7 @@ class StreamedEngine final : public ResponseEngine,
   using ResponseEngine::displacement;
   void displacement(Points& u, double tolerance) const override;
   void reset() noexcept override;
+  void archive(StateArchive& state) override;
 
  private:
   /// Part of what forces on degree of freedom b do by the static answer, for all nodes alike.

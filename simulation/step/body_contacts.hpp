@@ -13,6 +13,7 @@
 #include "simulation/contact/contact_sampling.hpp"
 #include "simulation/contact/patch_compliance.hpp"
 #include "simulation/contact/self_contact.hpp"
+#include "simulation/state/state_archive.hpp"
 #include "simulation/step/step_record.hpp"
 
 namespace irdm {
@@ -58,6 +59,15 @@ class BodyContacts {
   BodyContacts(int object, const ContactBody& body, const SelfReach& reach, double dt);
 
   void reset() noexcept;
+  /// State, in or out (StateArchive).
+  void archive(StateArchive& state) {
+    if (self_) self_->archive(state);
+    state.values(samples_);
+    for (double* length : {&closed_, &displaced_}) state.value(*length);
+    for (std::uint64_t* step : {&step_, &clear_}) state.value(*step);
+    state.value(any_pressed_);
+    if (state.reading()) count_ = 0;
+  }
 
   /// Chooses this step's contacts: samples that would be inside the other by the end of it, and
   /// those that were pressed on it; at most kMost, those that were pressed and then the deepest

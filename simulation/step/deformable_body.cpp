@@ -1,5 +1,6 @@
 #include "simulation/step/deformable_body.hpp"
 
+#include "simulation/state/state_archive.hpp"
 #include "simulation/step/settings.hpp"
 
 namespace irdm {
@@ -69,6 +70,23 @@ void DeformableBody::rest(ObjectRecord& record) noexcept {
   record.halfway = record.orientation = state_.orientation;
   record.position = state_.position;
   record.velocity = record.angular_velocity = record.spin = Vector3::Zero();
+}
+
+void DeformableBody::archive(StateArchive& state) {
+  state.value(inertial_loading_);
+  state.value(free_forces_);
+  state.value(state_);
+  state.value(motion_);
+  state.value(end_);
+  const double before = material_damping_;
+  state.value(material_damping_);
+  if (material_damping_ != before && capabilities_.damping != nullptr) {
+    capabilities_.damping->scale_damping(material_damping_);
+  }
+  engine_->archive(state);
+  if (!state.reading()) return;
+  past_.clear();
+  led_ = {};
 }
 
 Vector3 DeformableBody::coupling_torque() const noexcept {

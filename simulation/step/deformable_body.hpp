@@ -43,6 +43,10 @@ class DeformableBody {
   void insert_delayed_force(std::span<const NodalForce> nodal, const Vector3& force,
                             const Vector3& arm, int age) noexcept;
 
+  /// State, in or out (StateArchive). What it was led by, and forces of earlier steps that could
+  /// come late, are not in it.
+  void archive(StateArchive& state);
+
   const Model& model() const noexcept { return *object_.model; }
   ResponseEngine& engine() noexcept { return *engine_; }
   const EngineCapabilities& capabilities() const noexcept { return capabilities_; }

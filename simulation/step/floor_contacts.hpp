@@ -6,6 +6,7 @@
 #include "common/contact/persistent_contact.hpp"
 #include "common/motion/free_motion.hpp"
 #include "simulation/collision/deformed_surface.hpp"
+#include "simulation/state/state_archive.hpp"
 #include "simulation/step/simulation_config.hpp"
 #include "simulation/step/step_record.hpp"
 
@@ -33,6 +34,12 @@ class FloorContacts {
   /// After the solution: anchors slip, forces are kept for the next start.
   void update_contacts(const FreeMotion& motion, const ContactProblem& problem) noexcept;
   void reset() noexcept;
+  /// State, in or out (StateArchive).
+  void archive(StateArchive& state) {
+    state.values(anchors_);
+    state.value(displaced_);
+    if (state.reading()) count_ = posed_count_ = 0;
+  }
 
   /// What is left of a force [N], W, that acted a while ago: against what pressed an object on it
   /// the floor held.

@@ -8,6 +8,7 @@
 #include "common/error.hpp"
 #include "common/number_text.hpp"
 #include "common/realtime/no_denormals.hpp"
+#include "simulation/state/state_archive.hpp"
 
 namespace irdm {
 Simulation::Simulation(const SimulationConfig& config)
@@ -92,6 +93,27 @@ void Simulation::reset() noexcept {
   late_.count = 0;
   was_reset_ = true;
   reset_step_ = next_step_;
+}
+
+void Simulation::archive(StateArchive& state) {
+  state.same(objects_.size());
+  state.same(stylus_count_);
+  state.same(world_ ? 1 : 0);
+  state.same(sleep_ ? 1 : 0);
+  state.value(settings_);
+  state.value(settings_change_);
+  state.value(next_step_);
+  state.value(reset_step_);
+  state.value(was_reset_);
+  state.value(reset_down_);
+  state.value(late_);
+  for (const auto& object : objects_) object->archive(state);
+  if (world_) world_->archive(state);
+  if (sleep_) sleep_->archive(state);
+  for (const auto& tool : tools_) {
+    if (tool) tool->archive(state);
+  }
+  if (state.reading()) local_model_object_.fill(-1);
 }
 
 // A button that is down when its stylus appears has not gone down.

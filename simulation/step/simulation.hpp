@@ -39,6 +39,12 @@ class Simulation {
   /// so.
   void reset() noexcept;
 
+  /// State, in or out (StateArchive), between steps, settings included: the steps that follow are
+  /// the same to the bit. Forces of bridges on steps before it come too late then. Throws Error
+  /// where the state is of another scene, with the simulation then half of each, and where an
+  /// object's response is read from its file as it is needed. Not real-time safe.
+  void archive(StateArchive& state);
+
   /// For the bridge of stylus s, between steps: how its contact goes on after the last step.
   /// @param tip where the stylus was in the last step [m], W
   /// @param horizon steps to predict, 1 to kMaxHorizon

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 #include <utility>
+#include "simulation/state/state_archive.hpp"
 
 namespace irdm {
 namespace {
@@ -69,6 +70,17 @@ void Sleep::wake_all() noexcept {
     wake(i);
     body(i).rested = 0;
   }
+}
+
+void Sleep::archive(StateArchive& state) {
+  for (Body& body : bodies_) {
+    state.value(body.places);
+    state.value(body.rested);
+    state.value(body.group);
+    if (body.object->asleep()) state.value(body.held);
+  }
+  state.value(tips_);
+  state.value(asleep_);
 }
 
 // Whether a stylus may touch object i in this step, or exerts a force on it.

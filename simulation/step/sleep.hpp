@@ -42,6 +42,8 @@ class Sleep {
   /// Between steps.
   void wake(int object) noexcept;
   void wake_all() noexcept;
+  /// State, in or out (StateArchive); after that of the objects.
+  void archive(StateArchive& state);
 
  private:
   static constexpr std::size_t kProbes = 4;

@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "simulation/state/state_archive.hpp"
 #include "simulation/step/settings.hpp"
 
 namespace irdm {
@@ -39,6 +40,23 @@ void SoftObject::reset() noexcept {
   account_.begin(body_.energy());
   contacts_.reset();
   if (floor_) floor_->reset();
+  touched_.clear();
+  touched_as_ = {};
+}
+
+// The problem of the last step is not in it: only contact models look back at that.
+void SoftObject::archive(StateArchive& state) {
+  body_.archive(state);
+  surface_.archive(state, body_.engine());
+  state.value(change_);
+  state.value(friction_);
+  contacts_.archive(state);
+  if (floor_) floor_->archive(state);
+  state.value(account_);
+  state.value(asleep_);
+  state.value(limited_late_);
+  if (!state.reading()) return;
+  problem_.begin(0);
   touched_.clear();
   touched_as_ = {};
 }

@@ -73,6 +73,8 @@ class SoftObject {
   /// surface [m/N], B.
   Matrix3 compliance_at(int row, const PatchCompliance::Place& from) const noexcept;
   void reset() noexcept;
+  /// State, in or out (StateArchive); between steps.
+  void archive(StateArchive& state);
   /// From the next step on.
   void set(const Vector3& gravity, const ObjectSettings& settings) noexcept;
 
@@ -101,6 +103,11 @@ class SoftObject {
 
   /// Forces of bridges that EnergyAccount has let act in part or not at all, so far.
   std::uint64_t limited() const noexcept { return contacts_.limited() + limited_late_; }
+
+  /// Kinetic and elastic, with the potentials of gravity (0 at the origin; of a fixed body 0 where
+  /// it is not bent) and tether, at the end of the last step [J]. NaN where the engine does not
+  /// know its part (ResponseEngine::energy()). Real-time safe.
+  double energy() const noexcept { return body_.energy() + body_.engine().energy(); }
 
   const Model& model() const noexcept { return body_.model(); }
   const RigidState& state() const noexcept { return body_.state(); }

@@ -40,12 +40,12 @@ StylusRow row_of(const StylusRecord& stylus) noexcept {
           numbers(stylus.force),  numbers(stylus.torque)};
 }
 
-ObjectRow row_of(const ObjectStep& object) noexcept {
+ObjectRow row_of(const ObjectStep& object, double energy) noexcept {
   const Quaternion& q = object.orientation;
   return {object.asleep ? 1 : 0,    object.solved ? 1 : 0,
           numbers(object.position), {q.w(), q.x(), q.y(), q.z()},
           numbers(object.velocity), numbers(object.angular_velocity),
-          object.residual};
+          object.residual,          energy};
 }
 
 ContactRows::ContactRows(const SimulationConfig& config) : floor_(config.floor) {

@@ -34,10 +34,11 @@ struct ObjectRow {
   std::array<double, 3> velocity{};          ///< [m/s], W
   std::array<double, 3> angular_velocity{};  ///< [rad/s], W
   double residual = 0.0;                     ///< of the contact problem [m]
+  double energy = 0.0;                       ///< SoftObject::energy() [J]
 };
 
 StylusRow row_of(const StylusRecord& stylus) noexcept;
-ObjectRow row_of(const ObjectStep& object) noexcept;
+ObjectRow row_of(const ObjectStep& object, double energy) noexcept;
 
 /// What exerts a contact force on an object.
 enum class ContactKind : std::int32_t {

@@ -13,6 +13,7 @@
 #include "simulation/contact/pressure_mask.hpp"
 #include "simulation/contact/smoothed_surface.hpp"
 #include "simulation/engine/response_engine.hpp"
+#include "simulation/state/state_archive.hpp"
 #include "simulation/step/assembly_horizon.hpp"
 #include "simulation/step/god_object.hpp"
 #include "simulation/step/nodal_forces.hpp"
@@ -33,6 +34,21 @@ class StylusContacts {
                  DeformedSurface& surface);
 
   void reset() noexcept;
+  /// State, in or out (StateArchive).
+  void archive(StateArchive& state) {
+    for (Stylus& stylus : styluses_) {
+      state.value(stylus.proxy);
+      state.value(stylus.displacement);
+      state.value(stylus.last);
+      state.value(stylus.position);
+      for (Vector3* vector : {&stylus.way, &stylus.velocity, &stylus.shown}) state.value(*vector);
+      stylus.prediction = {};
+    }
+    state.value(steps_);
+    state.value(work_);
+    state.value(limited_);
+    if (state.reading()) count_ = 0;
+  }
 
   /// Decides which styluses are in contact in this step, and where.
   void find(std::span<const StylusCommand> commands, const FreeMotion& motion) noexcept;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/motion/free_motion.hpp"
+#include "simulation/state/state_archive.hpp"
 #include "simulation/step/simulation_config.hpp"
 #include "simulation/step/step_record.hpp"
 
@@ -25,6 +26,14 @@ class ToolLead {
 
   /// The home is where the tool is at the start, and nobody is there.
   void reset() noexcept;
+  /// State, in or out (StateArchive).
+  void archive(StateArchive& state) {
+    state.value(position_);
+    state.value(orientation_);
+    state.value(home_);
+    state.value(arrived_);
+    state.value(share_);
+  }
   /// The coming step.
   void begin(const StylusCommand& command) noexcept;
   /// Of that step. The coupling in it is this one's, which must outlive it.

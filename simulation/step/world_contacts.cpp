@@ -10,6 +10,7 @@
 
 #include "common/error.hpp"
 #include "common/number_text.hpp"
+#include "simulation/state/state_archive.hpp"
 
 namespace irdm {
 namespace {
@@ -196,6 +197,17 @@ void WorldContacts::reset() noexcept {
     if (scenery.moves()) scenery.go_on(0.0);
   }
   for (BodyContacts& pair : pairs_) pair.reset();
+}
+
+void WorldContacts::archive(StateArchive& state) {
+  state.value(steps_);
+  for (SceneryStep& scenery : scenery_) {
+    for (Vector3* place : {&scenery.now.position, &scenery.before}) state.value(*place);
+    for (Quaternion* turn : {&scenery.now.orientation, &scenery.turn}) state.value(*turn);
+  }
+  state.same(pairs_.size());
+  for (BodyContacts& pair : pairs_) pair.archive(state);
+  state.list(held_);
 }
 
 void WorldContacts::hold(const StepRecord& record) noexcept {

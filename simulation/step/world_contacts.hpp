@@ -25,6 +25,8 @@ class WorldContacts {
   /// False: nothing of the scene can touch anything else of it.
   bool any() const noexcept { return !pairs_.empty(); }
   void reset() noexcept;
+  /// State, in or out (StateArchive).
+  void archive(StateArchive& state);
   /// Before SoftObject::begin(): scenery goes where it is at the end of the step.
   void move_scenery() noexcept;
   /// After SoftObject::begin() of all objects: solves their problems and writes the records, up to

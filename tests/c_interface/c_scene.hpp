@@ -17,7 +17,8 @@ namespace irdm::test {
 /// two fingertips.
 class CScene {
  public:
-  CScene() {
+  /// @param cells of each body along an edge
+  explicit CScene(int cells = 3) : cells_(cells) {
     make("cube", false, 0.12);
     make("block", true, 0.06);
     const std::string folder = folder_.path().string();
@@ -55,7 +56,7 @@ class CScene {
   void make(const std::string& name, bool rigid, double size) {
     precompute::PrecomputeConfig config;
     config.name = name;
-    config.mesh.source = precompute::BoxConfig{Vector3::Constant(size), {3, 3, 3}};
+    config.mesh.source = precompute::BoxConfig{Vector3::Constant(size), {cells_, cells_, cells_}};
     config.rigid = rigid;
     config.material = {5000.0, 0.4, 110.0, 8.0, 2e-4};
     config.response.dt = 0.002;
@@ -64,6 +65,7 @@ class CScene {
     precompute::precompute_model(config, folder_.path() / (name + ".h5"), {ignored, false});
   }
 
+  int cells_;
   TemporaryFolder folder_;
   std::string text_;
 };
@@ -91,6 +93,14 @@ inline std::vector<irdm_contact> contacts_of(const irdm_simulation* simulation) 
   std::vector<irdm_contact> contacts(count);
   irdm_simulation_contacts(simulation, contacts.data(), count, &count);
   return contacts;
+}
+
+inline std::vector<char> state_of(const irdm_simulation* simulation) {
+  std::size_t count = 0;
+  irdm_simulation_save(simulation, nullptr, 0, &count);
+  std::vector<char> state(count);
+  irdm_simulation_save(simulation, state.data(), count, &count);
+  return state;
 }
 
 }  // namespace irdm::test

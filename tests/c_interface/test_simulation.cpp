@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <cstring>
 
 #include "scene/scene_run.hpp"
 #include "tests/c_interface/c_scene.hpp"
@@ -115,4 +116,40 @@ TEST_CASE("C interface: a step allocates nothing, and a reset begins anew") {
   REQUIRE(irdm_simulation_reset(open.handle) == IRDM_OK);
   CHECK(run() == first);
   CHECK(first.back() != 0.0);
+}
+
+TEST_CASE("C interface: a saved state goes on to the same bits, in another simulation as well") {
+  const CScene scene;
+  const OpenSimulation first(scene.text());
+  const OpenSimulation second(scene.text());
+  REQUIRE(first.status == IRDM_OK);
+  REQUIRE(second.status == IRDM_OK);
+  const auto step = [](irdm_simulation* simulation, int k) {
+    std::array<irdm_stylus, 2> styluses{};
+    const auto commands = CScene::commands(k);
+    irdm_simulation_step(simulation, commands.data(), 2, styluses.data());
+    std::vector<double> forces(styluses[0].force, styluses[0].force + 3);
+    for (const irdm_contact& contact : contacts_of(simulation)) {
+      forces.insert(forces.end(), contact.force, contact.force + 3);
+    }
+    return forces;
+  };
+  for (int k = 0; k < 160; ++k) step(first.handle, k);
+  const std::vector<char> state = state_of(first.handle);
+  const std::vector<irdm_contact> contacts = contacts_of(first.handle);
+  std::array<irdm_object, 2> objects{};
+  irdm_simulation_objects(first.handle, objects.data(), 2);
+  std::vector<std::vector<double>> expected;
+  for (int k = 160; k < 300; ++k) expected.push_back(step(first.handle, k));
+  CHECK(expected.back().size() > 9);
+  for (irdm_simulation* simulation : {second.handle, first.handle}) {
+    REQUIRE(irdm_simulation_load(simulation, state.data(), state.size(), nullptr, 0) == IRDM_OK);
+    std::array<irdm_object, 2> there{};
+    irdm_simulation_objects(simulation, there.data(), 2);
+    CHECK(std::memcmp(there.data(), objects.data(), sizeof there) == 0);
+    REQUIRE(contacts_of(simulation).size() == contacts.size());
+    for (int k = 160; k < 300; ++k) {
+      REQUIRE(step(simulation, k) == expected[static_cast<std::size_t>(k - 160)]);
+    }
+  }
 }

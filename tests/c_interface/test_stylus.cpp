@@ -1,10 +1,14 @@
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <csignal>
 #include <fstream>
 #include <limits>
 
 #include "tests/c_interface/c_scene.hpp"
 #include "tests/support/child_process.hpp"
 #include "tests/support/eventually.hpp"
+#include "tests/support/left_out.hpp"
+#include "tests/support/real_time_guard.hpp"
 
 using namespace irdm::test;
 
@@ -24,6 +28,37 @@ struct Connected {
   irdm_status status = IRDM_FAILED;
   std::string error;
 };
+
+// In real time, with the scene of CScene.
+struct RealTimeServer {
+  explicit RealTimeServer(const std::string& port = "0")
+      : file((folder.path() / "scene.toml").string()),
+        program({IRDM_SERVER, write(file, port, scene), "--no-viewer"}),
+        line(program.line_with("listening on ")),
+        address(line.substr(line.rfind(' ') + 1)) {}
+
+  static std::string write(const std::string& file, const std::string& port, const CScene& scene) {
+    std::ofstream(file) << "server.port = " << port << "\nserver.black_box = \"\"\n"
+                        << scene.text();
+    return file;
+  }
+
+  CScene scene;
+  TemporaryFolder folder;
+  std::string file;
+  ChildProcess program;
+  std::string line;
+  std::string address;
+};
+
+// Beside the cube, whose side is 6 cm from the middle.
+irdm_command beside(double x) {
+  irdm_command command{};
+  command.present = 1;
+  command.tip[0] = x;
+  command.tip[1] = 0.06;
+  return command;
+}
 
 irdm_command at(double y) {
   irdm_command command{};
@@ -62,14 +97,8 @@ TEST_CASE("C interface: a stylus client that is used wrongly says so") {
 }
 
 TEST_CASE("C interface: a program is a stylus of a server in real time") {
-  const CScene scene;
-  const TemporaryFolder folder;
-  const std::string file = (folder.path() / "scene.toml").string();
-  std::ofstream(file) << "server.port = 0\nserver.black_box = \"\"\n" << scene.text();
-  ChildProcess server({IRDM_SERVER, file, "--no-viewer"});
-  const std::string line = server.line_with("listening on ");
-  const std::string address = line.substr(line.rfind(' ') + 1);
-  const Connected stylus(address.c_str(), "tip = [0, 0.5, 0]\nstylus = 0");
+  const RealTimeServer server;
+  const Connected stylus(server.address.c_str(), "tip = [0, 0.5, 0]\nstylus = 0");
   INFO(stylus.error);
   REQUIRE(stylus.status == IRDM_OK);
   for (const double y : {std::numeric_limits<double>::quiet_NaN(), 2.1}) {
@@ -94,4 +123,84 @@ TEST_CASE("C interface: a program is a stylus of a server in real time") {
   std::array<char, 128> state{};
   CHECK(irdm_stylus_state(stylus.handle, state.data(), state.size()) == IRDM_OK);
   CHECK_THAT(std::string(state.data()), Catch::StartsWith("ready"));
+}
+
+// What a hand feels is judged by the ticks that showed it, whatever else the machine does.
+TEST_CASE("C interface: the force is gone 50 ms after the server, and comes back as a ramp") {
+  constexpr double kGone = 0.05;   // [s]
+  constexpr double kRamp = 500.0;  // ticks in which a force comes back
+  constexpr double kTick = 1e-3;   // [s]
+  constexpr double kMost = 3.3;    // max_force by default [N]
+  auto server = std::make_unique<RealTimeServer>();
+  const std::string port = server->address.substr(server->address.rfind(':') + 1);
+  const Connected stylus(server->address.c_str(), "tip = [0.2, 0.06, 0]\nmode = \"hold\"");
+  INFO(stylus.error);
+  REQUIRE(stylus.status == IRDM_OK);
+  irdm_feedback feedback{};
+  double x = 0.2;
+  const auto look = [&] {
+    const irdm_command command = beside(x = std::max(0.056, x - 5e-5));
+    irdm_stylus_set(stylus.handle, &command);
+    irdm_stylus_get(stylus.handle, &feedback);
+    return std::hypot(feedback.force[0], feedback.force[1], feedback.force[2]);
+  };
+  // No force is shown longer than that, and then none at all.
+  const auto fades = [&] {
+    int faded = 0;
+    const bool gone = eventually([&] {
+      const double force = look();
+      if (force == 0.0) return true;
+      CHECK(feedback.latency <= kGone + kTick);
+      ++faded;
+      return false;
+    });
+    CHECK(faded > 0);
+    return gone;
+  };
+  REQUIRE(eventually([&] { return look() > 0.3; }));
+  server->program.signal(SIGSTOP);
+  REQUIRE(fades());
+  std::uint64_t silent = feedback.ticks + feedback.late_ticks;
+  server->program.signal(SIGCONT);
+  REQUIRE(eventually([&] {
+    const double force = look();
+    const std::uint64_t tick = feedback.ticks + feedback.late_ticks;
+    if (force == 0.0) silent = tick;
+    CHECK(force <= kMost * static_cast<double>(tick - silent + 1) / kRamp);
+    return force > 0.3;
+  }));
+  server->program.signal(SIGKILL);
+  REQUIRE(fades());
+  server.reset();
+  server = std::make_unique<RealTimeServer>(port);
+  x = 0.2;  // a tip that is inside from the start touches nothing
+  REQUIRE(eventually([&] { return look() > 0.3; }));
+  CHECK(feedback.sessions == 2);
+}
+
+TEST_CASE("C interface: setting and getting neither allocates nor locks") {
+  const RealTimeServer server;
+  const Connected stylus(server.address.c_str(), "tip = [0.2, 0.06, 0]");
+  REQUIRE(stylus.status == IRDM_OK);
+  irdm_feedback feedback{};
+  irdm_command wrong = beside(0.2);
+  wrong.tip[2] = std::numeric_limits<double>::quiet_NaN();
+  std::string done;
+  std::string control;
+  std::array<char, 128> state{};
+  {
+    const RealTimeGuard guard;
+    for (int k = 0; k < 20'000; ++k) {
+      const irdm_command command = beside(0.2 - 1e-6 * k);
+      irdm_stylus_set(stylus.handle, &command);
+      irdm_stylus_set(stylus.handle, &wrong);
+      irdm_stylus_get(stylus.handle, &feedback);
+    }
+    done = guard.violations();
+    irdm_stylus_state(stylus.handle, state.data(), state.size());
+    control = guard.violations();
+  }
+  if (!AllocationGuard::active()) return leave_out(kNotCounted);
+  CHECK(done.empty());
+  CHECK_FALSE(control.empty());
 }

@@ -1,5 +1,8 @@
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
 #include <cstring>
+#include <fstream>
 #include <limits>
 #include <random>
 
@@ -34,6 +37,8 @@ TEST_CASE("C interface: null is wrong use, never a crash") {
   CHECK(irdm_simulation_find_object(nullptr, "cube") == -1);
   CHECK(irdm_simulation_step(nullptr, &command, 1, nullptr) == IRDM_BAD_ARGUMENT);
   CHECK(irdm_simulation_reset(nullptr) == IRDM_BAD_ARGUMENT);
+  CHECK(irdm_simulation_save(nullptr, nullptr, 0, &count) == IRDM_BAD_ARGUMENT);
+  CHECK(irdm_simulation_load(nullptr, &number, 8, nullptr, 0) == IRDM_BAD_ARGUMENT);
   CHECK(irdm_simulation_objects(nullptr, &object, 1) == IRDM_BAD_ARGUMENT);
   CHECK(irdm_simulation_contacts(nullptr, &contact, 1, &count) == IRDM_BAD_ARGUMENT);
   CHECK(irdm_simulation_surface(nullptr, 0, &number, 1, &count) == IRDM_BAD_ARGUMENT);
@@ -104,10 +109,64 @@ TEST_CASE("C interface: wrong commands and too little memory change nothing") {
   }
 }
 
+TEST_CASE("C interface: a state that is damaged or of other models changes nothing") {
+  const CScene scene;
+  const OpenSimulation open(scene.text());
+  REQUIRE(open.status == IRDM_OK);
+  const std::vector<char> state = state_of(open.handle);
+  std::size_t count = 0;
+  CHECK(irdm_simulation_save(open.handle, nullptr, 1, &count) == IRDM_BAD_ARGUMENT);
+  std::vector<char> little(state.size() - 1);
+  CHECK(irdm_simulation_save(open.handle, little.data(), little.size(), &count) == IRDM_TOO_SMALL);
+  CHECK(count == state.size());
+  std::array<char, 200> message{};
+  const auto load = [&](const std::vector<char>& bytes) {
+    return irdm_simulation_load(open.handle, bytes.data(), bytes.size(), message.data(),
+                                message.size());
+  };
+  CHECK(irdm_simulation_load(open.handle, nullptr, 8, nullptr, 0) == IRDM_BAD_ARGUMENT);
+  for (const std::size_t at : {std::size_t{3}, std::size_t{70}, state.size() / 2}) {
+    std::vector<char> damaged = state;
+    damaged[at] ^= 4;
+    CHECK(load(damaged) == IRDM_FAILED);
+    CHECK_THAT(std::string(message.data()),
+               Catch::Contains(at < 64 ? "these models" : "is damaged"));
+  }
+  CHECK(load({'i'}) == IRDM_FAILED);
+  const std::string table = "[[scenery]]";
+  const std::string fewer = scene.text().substr(0, scene.text().find(table));
+  const OpenSimulation alone(fewer);
+  REQUIRE(alone.status == IRDM_OK);
+  CHECK(load(state_of(alone.handle)) == IRDM_FAILED);
+  CHECK_THAT(std::string(message.data()), Catch::Contains("not one of this scene"));
+  CHECK((state_of(open.handle) == state));
+}
+
 TEST_CASE("C interface: opened and closed very often, nothing is left") {
   const CScene scene;
   for (int i = 0; i < 200; ++i) {
     const OpenSimulation open(scene.text());
     REQUIRE(open.status == IRDM_OK);
   }
+}
+
+TEST_CASE("C interface: thousands of simulations take no memory with them", "[exhaustive]") {
+  const CScene scene(1);
+  const auto resident = [] {
+    std::ifstream statm("/proc/self/statm");
+    long size = 0;
+    long pages = 0;
+    statm >> size >> pages;
+    return pages * sysconf(_SC_PAGESIZE);
+  };
+  long before = 0;
+  for (int i = 0; i < 5000; ++i) {
+    if (i == 500) before = resident();
+    const OpenSimulation open(scene.text());
+    REQUIRE(open.status == IRDM_OK);
+    if (i % 100 != 0) continue;
+    const std::vector<char> state = state_of(open.handle);
+    REQUIRE(irdm_simulation_load(open.handle, state.data(), state.size(), nullptr, 0) == IRDM_OK);
+  }
+  CHECK(resident() - before < 1'000'000);  // 220 bytes each
 }

@@ -79,6 +79,11 @@ void run_file(Input input);
 /// column of 0 bytes: all of the file as it is.
 void column_file(Input input);
 
+/// Calls of the C interface, one after the other: a byte, its remainder by 8: 0 a step, 1 one with
+/// a wrong number of commands, 2 contacts and objects, 3 a surface, 4 a state with another bit, 5 a
+/// text as a state, 6 as a scene, 7 a reset; then what it is called with.
+void c_calls(Input input);
+
 struct Harness {
   std::string_view name;
   void (*run)(Input input);
@@ -112,6 +117,7 @@ inline constexpr std::array kHarnesses = {
     Harness{"trace_file", trace_file},
     Harness{"run_file", run_file},
     Harness{"column_file", column_file},
+    Harness{"c_calls", c_calls},
 };
 
 }  // namespace irdm::fuzz

@@ -130,6 +130,38 @@ class SimulationTest(unittest.TestCase):
         self.assertEqual(first.objects.tobytes(), again.objects.tobytes())
         self.assertEqual(simulation.next_step, 200)
 
+    def test_saved_state(self):
+        first, second = irdm.Simulation(scene()), irdm.Simulation(scene())
+        first.step_many(tips(150))
+        state = first.save_state()
+        self.assertIsInstance(state, bytes)
+        expected = first.step_many(tips(300)[150:])
+        second.step_many(tips(40))
+        for simulation in (second, first):
+            simulation.load_state(state)
+            again = simulation.step_many(tips(300)[150:])
+            self.assertEqual(again.contacts.tobytes(), expected.contacts.tobytes())
+            self.assertEqual(again.objects.tobytes(), expected.objects.tobytes())
+        for wrong in (b"", state[:-1], state[:100] + b"?" + state[101:]):
+            with self.assertRaisesRegex(irdm.Error, "state: is"):
+                first.load_state(wrong)
+        self.assertEqual(first.next_step, 300)
+
+    def test_energy(self):
+        """What damping leaves of the fingers' work; a body in free fall keeps its energy."""
+        table = scene()
+        table["scenery"] = []
+        falling = irdm.Simulation(table)
+        energy = falling.step_many(numpy.zeros((200, 2, 3)), present=numpy.zeros((200, 2), bool)).objects["energy"]
+        numpy.testing.assert_allclose(energy[:40], numpy.broadcast_to(energy[0], (40, 2)), rtol=1e-9)
+        pressed = irdm.Simulation(scene())
+        steps = pressed.step_many(tips(400))
+        moved = numpy.diff(steps.styluses["tip"], axis=0, prepend=steps.styluses["tip"][:1])
+        work = -(steps.styluses["force"] * moved).sum()
+        total = steps.objects["energy"].sum(axis=1)
+        self.assertGreater(work, 0)
+        self.assertLess(total[-1], total[0] + work)
+
     def test_tool(self):
         table = scene()
         table["stylus"] = [{"tool": {"object": "block"}}]

@@ -130,14 +130,18 @@ class RealTimeTest(unittest.TestCase):
 
     def test_a_killed_program(self):
         """The server lets its stylus go, and serves the next one."""
-        with Server() as server:
-            code = ("import irdm, sys\ns = irdm.Stylus.connect(sys.argv[1], [0, 0.2, 0])\nprint('on', flush=True)\n"
+        with Server(styluses=2) as server, irdm.Stylus.connect(server.address, [0, 0.2, 0], stylus=0) as other:
+            code = ("import irdm, sys\ns = irdm.Stylus.connect(sys.argv[1], [0, 0.2, 0], stylus=1)\nprint('on', flush=True)\n"
                     "while True: s.set([0, 0.115, 0])\n")
+            self.press(other)
             with subprocess.Popen([sys.executable, "-c", code, server.address], stdout=subprocess.PIPE, text=True) as child:
                 self.assertEqual(child.stdout.readline(), "on\n")
                 child.send_signal(signal.SIGKILL)
-            with irdm.Stylus.connect(server.address, [0, 0.2, 0]) as stylus:
+            with irdm.Stylus.connect(server.address, [0, 0.2, 0], stylus=1) as stylus:
                 self.assertTrue(eventually(lambda: stylus.set([0, 0.2, 0]) or stylus.ready), stylus.state)
+                # The one beside it has not felt it.
+                self.assertTrue(eventually(lambda: other.set(PRESSED) or other.force[1] > 0.01), other.state)
+                self.assertEqual(other.sessions, 1)
 
     def test_stylus_numbers(self):
         with Server(styluses=2) as server:

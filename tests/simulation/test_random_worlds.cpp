@@ -10,6 +10,7 @@
 #include "tests/simulation/led_rod.hpp"
 #include "tests/simulation/pressed_cube.hpp"
 #include "tests/simulation/random_numbers.hpp"
+#include "tests/simulation/saved_state.hpp"
 
 using namespace irdm;
 using namespace irdm::test;
@@ -248,6 +249,21 @@ TEST_CASE("random worlds: finite, in balance, and no energy from nowhere", "[slo
   check_worlds(10, 0);
 }
 
-TEST_CASE("random worlds: the same for two hundred", "[exhaustive]") {
-  check_worlds(200, 2);
+TEST_CASE("random worlds: the same for a hundred", "[exhaustive]") {
+  check_worlds(100, 1);
+}
+
+TEST_CASE("random worlds: a state that was saved goes on to the same bits") {
+  for (unsigned seed = 0; seed < 6; ++seed) {
+    Random random(seed);
+    const World world = make_world(random);
+    const double dt = world.config.objects[0].model->dt;
+    INFO("seed " << seed << ": " << world.words);
+    const auto commands = [&](int k) {
+      std::vector<StylusCommand> all(world.config.styluses.size());
+      for (std::size_t s = 0; s < world.hands.size(); ++s) all[s] = world.hands[s].at(k * dt);
+      return all;
+    };
+    check_saved_state(world.config, 300 + 50 * static_cast<int>(seed), 200, commands);
+  }
 }

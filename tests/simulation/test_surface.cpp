@@ -35,6 +35,7 @@ class FakeEngine final : public ResponseEngine {
   void advance(std::span<const NodalForce>) noexcept override {}
   void displacement(Points&, double) const override {}
   void reset() noexcept override {}
+  void archive(StateArchive& /*state*/) override {}
   void move(const std::vector<Vector3>& by) {
     for (std::size_t i = 0; i < u_.size(); ++i) u_[i] += by[i];
   }

@@ -6,6 +6,9 @@ install(PROGRAMS scripts/irdm-play DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT
 install(FILES ${files}/irdm-server.service ${files}/irdm-bridge.service
   DESTINATION lib/systemd/system COMPONENT runtime)
 set(programs irdm-bridge irdm-play irdm-precompute irdm-replay irdm-server)
+if(TARGET irdm-ros-bridge)
+  list(APPEND programs irdm-ros-bridge)
+endif()
 foreach(program ${programs})  # bash looks for a file of the program's name
   install(FILES ${files}/irdm.bash-completion DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
     RENAME ${program} COMPONENT runtime)
@@ -13,9 +16,11 @@ endforeach()
 
 # All that is packaged, without tests and benchmarks.
 add_custom_target(irdm_packaged DEPENDS irdm-bridge irdm-precompute irdm-replay irdm-server irdm_c irdm_scene irdm_trace)
-if(TARGET irdm_python)
-  add_dependencies(irdm_packaged irdm_python)
-endif()
+foreach(optional irdm_python irdm-ros-bridge)
+  if(TARGET ${optional})
+    add_dependencies(irdm_packaged ${optional})
+  endif()
+endforeach()
 
 find_program(IRDM_HELP2MAN help2man)
 if(IRDM_HELP2MAN AND NOT IRDM_SANITIZE)

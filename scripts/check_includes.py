@@ -23,6 +23,7 @@ RULES = {
     "device_bridge": {"common"},
     "c_interface": {"common", "simulation", "scene", "device_bridge"},
     "python": {"common", "simulation", "scene", "device_bridge"},
+    "ros_bridge": {"common", "simulation", "viewer", "device_bridge"},
 }
 PURE = {"simulation"}
 IMPURE = re.compile(

@@ -81,7 +81,7 @@ say "installing the packages"
 cp "${packages[@]}" "$root/tmp/"
 quietly inside sh -c 'dpkg -i /tmp/*.deb'
 inside sh -c 'dpkg -L irdm irdm-dev python3-irdm | grep -c .' | sed 's/$/ files and folders/; s/^/  /'
-for program in irdm-precompute irdm-server irdm-bridge irdm-replay irdm-play; do
+for program in irdm-precompute irdm-server irdm-bridge irdm-replay irdm-ros-bridge irdm-play; do
   echo "  $(as_nobody $program --version)"
   inside test -f "/usr/share/man/man1/$program.1.gz" || fail "$program has no man page"
 done

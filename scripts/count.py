@@ -11,7 +11,7 @@ import subprocess
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-PRODUCT = ("common", "simulation", "scene", "trace", "viewer", "server", "precompute", "replay", "device_bridge")
+PRODUCT = ("common", "simulation", "scene", "trace", "viewer", "server", "precompute", "replay", "device_bridge", "ros_bridge")
 MOST_MEMBERS = 15
 MOST_METHODS = 12
 LONGEST_LINE = 120

@@ -5,5 +5,5 @@ cd "$(dirname "$0")/.."
 
 arguments=(-i)
 [ "${1:-}" = --check ] && arguments=(--dry-run --Werror)
-find bench c_interface common device_bridge examples precompute python replay scene server simulation tests trace viewer -name '*.cpp' -print0 -o -name '*.hpp' -print0 |
+find bench c_interface common device_bridge examples precompute python replay ros_bridge scene server simulation tests trace viewer -name '*.cpp' -print0 -o -name '*.hpp' -print0 |
   xargs -0 clang-format-14 "${arguments[@]}"

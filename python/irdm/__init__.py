@@ -28,6 +28,7 @@ from irdm._core import (
 )
 from irdm.commands import CheckLine, check, precompute
 from irdm.episodes import Episodes
+from irdm.lerobot import to_lerobot
 from irdm.scene import Simulation, to_toml
 from irdm.stylus import Stylus
 from irdm.trace import Trace
@@ -35,5 +36,5 @@ from irdm.trace import Trace
 __all__ = [
     "COUPLING", "FLOOR", "GRAB", "OBJECT", "RESET", "SCENERY", "STYLUS",
     "CheckLine", "Episodes", "Error", "Model", "Simulation", "Step", "Steps", "Stylus", "Trace", "__version__",
-    "check", "contact_dtype", "object_dtype", "precompute", "stylus_dtype", "to_toml",
+    "check", "contact_dtype", "object_dtype", "precompute", "stylus_dtype", "to_lerobot", "to_toml",
 ]

@@ -33,4 +33,4 @@ install(FILES ${PROJECT_BINARY_DIR}/irdm-config.cmake ${PROJECT_BINARY_DIR}/irdm
   DESTINATION ${package} COMPONENT development)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/doc/irdm-dev RENAME copyright COMPONENT development)
 install(DIRECTORY examples/python DESTINATION ${data}/examples COMPONENT python)
-install(DIRECTORY examples/embed examples/c examples/csharp DESTINATION ${data}/examples COMPONENT development)
+install(DIRECTORY examples/embed examples/c examples/csharp examples/engines DESTINATION ${data}/examples COMPONENT development)

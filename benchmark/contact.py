@@ -27,10 +27,11 @@ def complementarity(compliance, gap, active):
 class Body:
     """Free degrees of freedom of a Grid, its state, and what touches it.
 
-    touching: nodes that may touch. step [s] of the second order backward difference; None: statics.
+    touching: nodes that may touch. step [s] of the second order backward difference; None: statics. along: the axes of
+    forces on them, default all. gravity: acceleration (d) [m/s^2].
     """
 
-    def __init__(self, grid, material, fixed, touching, step, velocity=None):
+    def __init__(self, grid, material, fixed, touching, step, velocity=None, along=None, gravity=None):
         d = grid.dimension
         self.grid, self.step, self.d = grid, step, d
         self.stiffness, self.mass, self.volume = grid.assemble(material)
@@ -45,41 +46,61 @@ class Body:
         place = numpy.full(d * len(grid.nodes), -1)
         place[self.free] = numpy.arange(len(self.free))
         self.touching = touching
-        dofs = place[(d * touching[:, None] + numpy.arange(d))]  # -1: does not move
-        self.response = numpy.zeros((len(self.free), dofs.size))  # by force
-        for column, dof in enumerate(dofs.ravel()):
-            if dof >= 0:
-                unit = numpy.zeros(len(self.free))
-                unit[dof] = 1.0
-                self.response[:, column] = self.solve(unit)
-        self.compliance = numpy.where(dofs.ravel()[:, None] >= 0, self.response[dofs.ravel()], 0.0)
+        along = numpy.arange(d) if along is None else numpy.array(along)
+        dofs = place[(d * touching[:, None] + along)].ravel()  # -1: does not move
+        self.pushed = dofs
+        self.compliance = numpy.zeros((dofs.size, dofs.size))
+        moves = numpy.flatnonzero(dofs >= 0)
+        for some in numpy.array_split(moves, len(moves) // 50 + 1):
+            unit = numpy.zeros((len(self.free), len(some)))
+            unit[dofs[some], numpy.arange(len(some))] = 1.0
+            self.compliance[numpy.ix_(moves, some)] = self.solve(unit)[dofs[moves]]
         self.active = numpy.zeros(len(touching), dtype=bool)
         speed = numpy.zeros(d * len(grid.nodes)) if velocity is None else numpy.tile(velocity, len(grid.nodes))
+        self.weight = self.mass @ numpy.tile(numpy.zeros(d) if gravity is None else gravity, len(grid.nodes))
         self.u = [-k * (step or 0.0) * speed for k in range(2)]  # now, and a step before
         self.v = [speed, speed]
+
+    def predict(self):
+        """Displacements at the end of the coming step without contact."""
+        self.load = self.weight.copy()
+        if self.step is not None:
+            past, v_past = self._past()
+            self.load -= self.mass @ (1.5 / self.step * past + v_past) + self.damping * (self.stiffness @ past)
+        return self._moved(self.load[self.free])
+
+    def finish(self, force):
+        """Takes the step that was predicted, with the forces on the touching nodes [N]."""
+        load = self.load[self.free]
+        moves = self.pushed >= 0
+        load[self.pushed[moves]] += force.ravel()[moves]
+        u = self._moved(load)
+        if self.step is not None:
+            self.v = [1.5 / self.step * u + self._past()[0], self.v[0]]
+        self.u = [u, self.u[0]]
+
+    def _moved(self, load):
+        u = numpy.zeros(len(self.load))
+        u[self.free] = self.solve(load)
+        return u
+
+    def _past(self):
+        h = self.step
+        return (-4 * self.u[0] + self.u[1]) / (2 * h), (-4 * self.v[0] + self.v[1]) / (2 * h)
 
     def advance(self, gap):
         """One step. gap: of points (n, d) the distances outside of the rigid shape (n) and its outward normals (n, d),
         at the step's end. Returns the force on each touching node [N] (n, d)."""
-        load = numpy.zeros(len(self.u[0]))
-        if self.step is not None:
-            h = self.step
-            u_past = (-4 * self.u[0] + self.u[1]) / (2 * h)
-            v_past = (-4 * self.v[0] + self.v[1]) / (2 * h)
-            load = -(self.mass @ (1.5 / h * u_past + v_past)) - self.damping * (self.stiffness @ u_past)
-        u = numpy.zeros(len(load))
-        u[self.free] = self.solve(load[self.free])
+        u = self.predict()
         rest = self.grid.nodes[self.touching]
         shape = rest.shape
         without = rest + u.reshape(-1, self.d)[self.touching]
         with_force, force = without, numpy.zeros(shape)
         for _ in range(25):  # the normals follow the nodes
             distance, normal = gap(with_force)
-            m = len(rest)
-            along = numpy.zeros((shape[0] * self.d, m))
-            along[(self.d * numpy.arange(m)[:, None] + numpy.arange(self.d)).ravel(),
-                  numpy.repeat(numpy.arange(m), self.d)] = normal.ravel()
             first = distance - numpy.einsum("ia,ia->i", normal, with_force - without)
+            along = numpy.zeros((force.size, shape[0]))
+            along[numpy.arange(force.size), numpy.repeat(numpy.arange(shape[0]), self.d)] = normal.ravel()
             pressing, self.active = complementarity(along.T @ self.compliance @ along, first, self.active)
             force = pressing[:, None] * normal
             moved = without + (self.compliance @ force.ravel()).reshape(shape)
@@ -87,10 +108,7 @@ class Body:
             with_force = moved
             if change < 1e-11:
                 break
-        u[self.free] += self.response @ force.ravel()
-        if self.step is not None:
-            self.v = [1.5 / h * u + u_past, self.v[0]]
-        self.u = [u, self.u[0]]
+        self.finish(force)
         return force
 
 

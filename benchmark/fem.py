@@ -57,10 +57,14 @@ class Grid:
         return numpy.flatnonzero(abs(self.rest[:, axis] - value) < 1e-9)
 
     def assemble(self, material):
-        """Stiffness and consistent mass, and the volume of each node [N/m, kg, m^3]."""
+        """Stiffness and consistent mass, and the volume of each node [N/m, kg, m^3].
+
+        material["stiffer"]: (centre, radius, factor): a ball of so many times the modulus, by integration points.
+        """
         young, poisson = material["youngs_modulus"], material["poisson_ratio"]
         shear = young / (2 * (1 + poisson))
         bulk = young * poisson / ((1 + poisson) * (1 - 2 * poisson))  # Lame's first
+        inclusion = material.get("stiffer")
         d, count = self.dimension, self.cells.shape[1]
         x = self.nodes[self.cells]
         stiffness = numpy.zeros((len(self.cells), count * d, count * d))
@@ -75,8 +79,12 @@ class Grid:
             if d == 2:
                 radius = x[:, :, 0] @ shape
                 weight = weight * 2 * numpy.pi * radius
+            if inclusion:
+                centre, reach, factor = inclusion
+                inside = numpy.linalg.norm(numpy.einsum("cid,i->cd", x, shape) - centre, axis=1) < reach
             strain, elastic = self._strain(local, shape, radius), _elasticity(d, bulk, shear)
-            stiffness += numpy.einsum("c,csi,st,ctj->cij", weight, strain, elastic, strain, optimize=True)
+            firm = weight * numpy.where(inside, factor, 1.0) if inclusion else weight
+            stiffness += numpy.einsum("c,csi,st,ctj->cij", firm, strain, elastic, strain, optimize=True)
             mass += numpy.einsum("c,i,j->cij", weight, shape, shape)
             numpy.add.at(volume, self.cells, weight[:, None] * shape)
         dofs = (d * self.cells[:, :, None] + numpy.arange(d)).reshape(len(self.cells), -1)

@@ -39,6 +39,30 @@ def signed_volume(nodes, tets):
     return numpy.einsum("ij,ij->i", numpy.cross(b - a, c - a), d - a) / 6
 
 
+def stiffness(nodes, tets, material):
+    """Of linear tetrahedra, (e, 12, 12) [N/m]; the modulus may be of each."""
+    corners = nodes[tets]
+    inverse = numpy.linalg.inv(corners[:, 1:] - corners[:, :1])
+    gradient = numpy.concatenate([-inverse.sum(axis=2, keepdims=True), inverse], axis=2)
+    strain = numpy.zeros((len(tets), 6, 4, 3))
+    for a in range(3):
+        strain[:, a, :, a] = gradient[:, a]
+    for row, (a, b) in enumerate(((0, 1), (1, 2), (2, 0)), 3):
+        strain[:, row, :, a], strain[:, row, :, b] = gradient[:, b], gradient[:, a]
+    strain = strain.reshape(len(tets), 6, 12)
+    young, poisson = material["youngs_modulus"], material["poisson_ratio"]
+    elastic = numpy.diag([2.0] * 3 + [1.0] * 3) / (2 * (1 + poisson))
+    elastic[:3, :3] += poisson / ((1 + poisson) * (1 - 2 * poisson))
+    volume = young * abs(signed_volume(nodes, tets))
+    return numpy.einsum("e,esi,st,etj->eij", volume, strain, elastic, strain, optimize=True)
+
+
+def highest_frequency(nodes, tets, material, density):
+    """That of the stiffest tetrahedron with its own mass [rad/s]: none of the mesh is higher."""
+    mass = density * abs(signed_volume(nodes, tets)) / 4
+    return float(numpy.sqrt((numpy.linalg.eigvalsh(stiffness(nodes, tets, material))[:, -1] / mass).max()))
+
+
 def surface_of(tets):
     """Triangles (t, 3) that belong to one tetrahedron only, outward."""
     faces = numpy.concatenate([tets[:, order] for order in ([0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2])])

@@ -18,7 +18,13 @@ import numpy
 import meshes
 
 HERE = Path(__file__).resolve().parent
-ENGINES = {"irdm": [sys.executable, str(HERE / "irdm_engine.py")]}
+BUILT = HERE.parent / "out" / "benchmark"  # by engines/setup.sh
+ENGINES = {"irdm": [sys.executable, str(HERE / "irdm_engine.py")],
+           "irdm, rigid ball": [sys.executable, str(HERE / "irdm_engine.py"), "--ball"],
+           "bullet": [str(BUILT / "bullet")],
+           "jolt": ["node", str(BUILT / "jolt.mjs")],
+           "jolt, 10 substeps": ["node", str(BUILT / "jolt.mjs"), "--substeps", "10"],
+           "mujoco": ["node", str(BUILT / "mujoco.mjs")]}
 # As irdm-replay judges forces (docs/replay.md, "Comparing").
 JND = 0.10
 JND_TIME = 0.1  # s
@@ -57,8 +63,16 @@ def scene_of(name):
         nodes = nodes @ rotation(body.get("orientation", [1, 0, 0, 0])).T + body.get("position", [0, 0, 0])
         density = body["mass"] / volume.sum()  # the mesh has the body's mass, if not its volume
         node_mass = numpy.bincount(tets.ravel(), weights=numpy.repeat(density * volume / 4, 4))
+        young = numpy.full(len(tets), body["material"]["youngs_modulus"])
+        for region in body.get("regions", []):
+            ball = region["ball"]
+            inside = numpy.linalg.norm(nodes[tets].mean(axis=1) - ball["centre"], axis=1) <= ball["radius"]
+            young[inside] = region["youngs_modulus"]
         body.update(nodes=nodes.tolist(), tets=tets.tolist(), density=density, node_mass=node_mass.tolist(),
-                    triangles=meshes.surface_of(tets).tolist())
+                    triangles=meshes.surface_of(tets).tolist(),
+                    youngs_modulus=young.tolist(),
+                    highest_frequency=meshes.highest_frequency(
+                        nodes, tets, {**body["material"], "youngs_modulus": young}, density))
     return scene, reference
 
 
@@ -80,14 +94,16 @@ def tool_at(tool, time):
 
 
 def deepest(scene, positions):
-    """How far watched nodes are inside the tool, or beyond the plane between two like bodies [m]."""
+    """How far watched nodes are inside the tool, or beyond the plane between two like bodies [m]; else None."""
+    if not scene["tools"] and "plane" not in scene:
+        return None
     depth = 0.0
     for time, nodes in zip(scene["sample_times"], numpy.array(positions)):
         if scene["tools"]:
             tool = scene["tools"][0]
             depth = max(depth, (tool["radius"] - numpy.linalg.norm(nodes - tool_at(tool, time), axis=1)).max())
         else:
-            depth = max(depth, nodes[:, 1].max())
+            depth = max(depth, nodes[:, 1].max() - scene["plane"])
     return depth
 
 
@@ -104,12 +120,14 @@ def score(scene, reference, found):
     there = rest + numpy.array(reference["displacements"])
     surface = numpy.linalg.norm(numpy.array(found["positions"]) - there, axis=2).max()
 
+    inside = deepest(scene, found["positions"])
+
     def digits(value):
         return float(f"{value:.3g}")
     return {"peak_N": digits(peak), "own_peak_N": digits(numpy.linalg.norm(force, axis=1).max()),
             "error_max_N": digits(apart.max()), "error_rms_N": digits(numpy.sqrt((apart**2).mean())),
             "jnd": digits(noticeable(truth, force, dt)), "surface_mm": digits(1e3 * surface),
-            "penetration_mm": digits(1e3 * max(0.0, deepest(scene, found["positions"]))),
+            "penetration_mm": None if inside is None else digits(1e3 * max(0.0, inside)),
             "step_us": [digits(value) for value in found["step_us"]], "dt": found["dt"], "settings": found["settings"]}
 
 
@@ -138,9 +156,10 @@ def table():
         for result in results:
             row = result["cases"].get(name)
             if row:
+                inside = "" if row["penetration_mm"] is None else f"{row['penetration_mm']:g}"
                 lines.append(f"| {name} | {result['engine']} | {row['own_peak_N']:g}, {row['peak_N']:g} | "
                              f"{row['error_max_N']:g} | {row['jnd']:g} | {row['surface_mm']:g} | "
-                             f"{row['penetration_mm']:g} | {row['step_us'][0]:g}, {row['step_us'][1]:g} |")
+                             f"{inside} | {row['step_us'][0]:g}, {row['step_us'][1]:g} |")
     return "\n".join(lines)
 
 

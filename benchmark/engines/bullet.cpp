@@ -61,7 +61,7 @@ class World {
     world_ = std::make_unique<btDeformableMultiBodyDynamicsWorld>(
         &dispatcher_, &broadphase_, &solver_, &configuration_, &deformable_);
     world_->setGravity(btVector3(0, 0, 0));
-    // Implicit elastic forces come after the contact impulses, which are then no forces of contact.
+    // With implicit elastic forces a body that is touched does not get their momentum.
     world_->setImplicit(false);
     world_->setLineSearch(false);
     world_->setUseProjection(true);

@@ -2,7 +2,6 @@
 
 #include <memory>
 #include <optional>
-#include <regex>
 #include <string>
 #include <vector>
 
@@ -94,9 +93,18 @@ CLI::Validator within(double lowest, double highest) {
   return {fault, ""};
 }
 
+// Words between single slashes, none of which begins with a digit.
 std::string fault_of_name(const std::string& text) {
-  static const std::regex name("[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*");
-  return std::regex_match(text, name) ? "" : in_quotes(text) + " is no ROS name";
+  char before = '/';
+  bool good = true;
+  for (const char letter : text + '/') {
+    const bool digit = letter >= '0' && letter <= '9';
+    const bool other = (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z') ||
+                       letter == '_' || letter == '/';
+    good = good && (digit || other) && !(before == '/' && (digit || letter == '/'));
+    before = letter;
+  }
+  return good ? "" : in_quotes(text) + " is no ROS name";
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 
@@ -29,23 +30,22 @@ constexpr double kPressed = 0.115;  // 5 mm below
 class Programs {
  public:
   Programs() {
-    std::ofstream(path("scene.toml")) << "[server]\nport = 0\nblack_box = \"\"\n"
-                                         "[[object]]\nmodel = \"" IRDM_SYSTEM_MODEL
-                                         "\"\nposition = [0, 0.06, 0]\n"
-                                         "[[scenery]]\nplane = {}\n"
-                                         "[[stylus]]\ncoupling_stiffness = 500\n";
     std::ofstream(path("bridge.toml")) << "[bridge]\nmode = \"hold\"\n";
-    server_.emplace(std::vector<std::string>{IRDM_SERVER, path("scene.toml"), "--record", trace()});
-    const auto address = [](std::string line) { return line.substr(line.rfind('/') + 1); };
-    const std::string viewer = address(server_->line_with("listening on http://"));
-    const std::string server = server_->line_with("listening on 127");
+    start_server("0", "0");
     const std::string xml = kLoopbackOnly;
     bridge_.emplace(
-        std::vector<std::string>{
-            IRDM_ROS_BRIDGE, "--server", server.substr(server.rfind(' ') + 1), "--viewer",
-            viewer.substr(0, viewer.find_last_of("0123456789") + 1), "--config",
-            path("bridge.toml"), "--domain", std::to_string(domain()), "--namespace", name_space()},
+        std::vector<std::string>{IRDM_ROS_BRIDGE, "--server", "127.0.0.1:" + port_, "--viewer",
+                                 "127.0.0.1:" + viewer_port_, "--config", path("bridge.toml"),
+                                 "--domain", std::to_string(domain()), "--namespace", name_space()},
         ChildOptions{.environment = {"CYCLONEDDS_URI=" + xml}});
+  }
+
+  /// Kills the server and starts another one in its place.
+  void restart_server() {
+    server_->signal(SIGKILL);
+    server_->wait();
+    std::filesystem::remove(trace());
+    start_server(port_, viewer_port_);
   }
 
   std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
@@ -57,7 +57,26 @@ class Programs {
   static std::string name_space() { return "irdm_" + std::to_string(::getpid()); }
 
  private:
+  void start_server(const std::string& port, const std::string& viewer_port) {
+    std::ofstream(path("scene.toml"))
+        << "server.port = " << port << "\nviewer.port = " << viewer_port
+        << "\nserver.black_box = \"\"\n"
+           "[[object]]\nmodel = \"" IRDM_SYSTEM_MODEL
+           "\"\nposition = [0, 0.06, 0]\n"
+           "[[scenery]]\nplane = {}\n"
+           "[[stylus]]\ncoupling_stiffness = 500\n";
+    server_.emplace(std::vector<std::string>{IRDM_SERVER, path("scene.toml"), "--record", trace()});
+    const auto port_in = [](const std::string& line) {
+      const std::size_t colon = line.rfind(':') + 1;
+      return line.substr(colon, line.find_first_not_of("0123456789", colon) - colon);
+    };
+    viewer_port_ = port_in(server_->line_with("listening on http://"));
+    port_ = port_in(server_->line_with("listening on 127"));
+  }
+
   TemporaryFolder folder_;
+  std::string port_;
+  std::string viewer_port_;
   std::optional<ChildProcess> server_;
   std::optional<ChildProcess> bridge_;
 };
@@ -98,24 +117,34 @@ void compare(const std::vector<Vector3>& forces, const std::string& path) {
   }
 }
 
+bool at_rest(const RosCloud& cloud, const ModelMesh& mesh) {
+  for (int i = 0; i < mesh.surface_node_count(); ++i) {
+    Eigen::Vector3f point;
+    std::memcpy(point.data(), cloud.data.data() + 12 * i, 12);
+    const Vector3 x = mesh.rest_position(i);  // right, up, back
+    const Vector3 expected(-x.z(), -x.x(), x.y() + kTop / 2);
+    if ((point.cast<double>() - expected).norm() > 1e-5) return false;
+  }
+  return true;
+}
+
 // The surface of the cube at rest.
 void check_points(RosPeer& peer) {
   const ModelMesh mesh = read_model(IRDM_SYSTEM_MODEL, ResponseKind::kModal).mesh;
-  std::optional<RosCloud> cloud;
-  REQUIRE(eventually([&] { return (cloud = peer.points()).has_value(); }));
-  CHECK(cloud->fields == std::vector<std::string>{"x", "y", "z"});
-  REQUIRE(cloud->width == static_cast<std::uint32_t>(mesh.surface_node_count()));
-  REQUIRE(cloud->height * cloud->point_step == 12);
-  REQUIRE(cloud->data.size() == 12 * cloud->width);
-  for (int i = 0; i < mesh.surface_node_count(); ++i) {
-    Eigen::Vector3f point;
-    std::memcpy(point.data(), cloud->data.data() + 12 * i, 12);
-    const Vector3 x = mesh.rest_position(i);  // right, up, back
-    CHECK((point.cast<double>() - Vector3(-x.z(), -x.x(), x.y() + kTop / 2)).norm() < 1e-5);
-  }
-  std::optional<RosPose> body;
-  REQUIRE(eventually([&] { return (body = peer.body()).has_value(); }));
-  CHECK((vector(body->position) - Vector3(0, 0, kTop / 2)).norm() < 1e-5);
+  const auto count = static_cast<std::uint32_t>(mesh.surface_node_count());
+  REQUIRE(eventually([&] {
+    const std::optional<RosCloud> cloud = peer.points();
+    if (!cloud) return false;
+    CHECK(cloud->fields == std::vector<std::string>{"x", "y", "z"});
+    REQUIRE(cloud->width == count);
+    REQUIRE(cloud->height * cloud->point_step == 12);
+    REQUIRE(cloud->data.size() == 12 * count);
+    return at_rest(*cloud, mesh);
+  }));
+  REQUIRE(eventually([&] {
+    const std::optional<RosPose> body = peer.body();
+    return body && (vector(body->position) - Vector3(0, 0, kTop / 2)).norm() < 1e-5;
+  }));
 }
 
 void play(std::unique_ptr<RosPeer> (*make)(std::uint32_t, const std::string&)) {
@@ -176,6 +205,22 @@ TEST_CASE("ROS bridge: a node of ROS 2 is a stylus and sees the surface, Fast DD
   play(make_fast_peer);
 }
 #endif
+
+TEST_CASE("ROS bridge: after a killed server the next one takes its place") {
+  Programs programs;
+  const auto peer = make_cyclone_peer(Programs::domain(), Programs::name_space());
+  double height = 0.15;
+  press(*peer, height);
+  programs.restart_server();
+  REQUIRE(eventually([&] {
+    std::optional<RosWrench> newest;
+    while (const auto wrench = peer->wrench()) newest = wrench;
+    return newest && vector(newest->force).isZero(0.0);
+  }));
+  check_points(*peer);
+  height = 0.15;
+  press(*peer, height);
+}
 
 TEST_CASE("ROS bridge: wrong use is refused in one line", "[slow]") {
   const auto run = [](const std::vector<std::string>& arguments) {

@@ -1,9 +1,13 @@
 """Models and scenes that the tests share."""
 
 import functools
+import os
 import tempfile
 
 import irdm
+
+# Of a sanitizer, which only an interpreter needs: programs that are started have their own.
+PRELOADED = os.environ.pop("LD_PRELOAD", "")
 
 folder = tempfile.TemporaryDirectory(prefix="irdm-test-")
 

@@ -6,7 +6,7 @@ import time
 import unittest
 
 import numpy
-from support import cube, folder
+from support import PRELOADED, cube, folder
 
 import irdm
 
@@ -134,7 +134,8 @@ class RealTimeTest(unittest.TestCase):
             code = ("import irdm, sys\ns = irdm.Stylus.connect(sys.argv[1], [0, 0.2, 0], stylus=1)\nprint('on', flush=True)\n"
                     "while True: s.set([0, 0.115, 0])\n")
             self.press(other)
-            with subprocess.Popen([sys.executable, "-c", code, server.address], stdout=subprocess.PIPE, text=True) as child:
+            with subprocess.Popen([sys.executable, "-c", code, server.address], stdout=subprocess.PIPE, text=True,
+                                  env={**os.environ, "LD_PRELOAD": PRELOADED}) as child:
                 self.assertEqual(child.stdout.readline(), "on\n")
                 child.send_signal(signal.SIGKILL)
             with irdm.Stylus.connect(server.address, [0, 0.2, 0], stylus=1) as stylus:

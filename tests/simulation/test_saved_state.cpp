@@ -41,7 +41,7 @@ Two slide_and_hold(int k) {
 
 }  // namespace
 
-TEST_CASE("saved state: fingertips, holds and floor, each kind of response") {
+TEST_CASE("saved state: fingertips, holds and floor, each kind of response", "[slow]") {
   const ResponseKind kind =
       GENERATE(ResponseKind::kModal, ResponseKind::kDense, ResponseKind::kCompressed);
   const int before = GENERATE(0, 1, 95, 150, 333);
@@ -75,7 +75,7 @@ TEST_CASE("saved state: spin loads a body, and it is saved with other settings")
   }
 }
 
-TEST_CASE("saved state: a body that touches itself, with each kind of response") {
+TEST_CASE("saved state: a body that touches itself, with each kind of response", "[slow]") {
   const ResponseKind kind =
       GENERATE(ResponseKind::kModal, ResponseKind::kDense, ResponseKind::kCompressed);
   SimulationConfig config;

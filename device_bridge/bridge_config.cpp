@@ -84,6 +84,10 @@ DeviceConfig read_device(TomlTable table, const BridgeOverrides& overrides) {
   device.type = table.choice("type", device_types(), device.type);
   if (!overrides.device.empty()) device.type = overrides.device;
   device.name = table.text("name", "");
+  device.auto_init = table.boolean("auto_init", false);
+  if (device.auto_init && device.type != "forcedimension") {
+    table.fail("auto_init", "is for devices of Force Dimension", "remove it");
+  }
   if (table.has("script")) {
     device.script = table.path("script");
     if (!overrides.script.empty()) {

@@ -28,6 +28,8 @@ ServerAddress parse_server_address(const std::string& text, const std::string& w
 struct DeviceConfig {
   std::string type = "virtual";  ///< key `type`: virtual | openhaptics | forcedimension
   std::string name = {};  ///< key `name`: of a real device in its vendor's setup; empty: default
+  /// key `auto_init`: a device of Force Dimension may move by itself to be initialised
+  bool auto_init = false;
   std::filesystem::path script = {};  ///< key `script`: of a virtual device, required there
   std::optional<HandParameters> hand =
       {};  ///< key `hand`, a table; left out: moves exactly as scripted

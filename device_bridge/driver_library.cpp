@@ -47,8 +47,12 @@ DriverLibrary::DriverLibrary(const DriverSource& source) : source_(source) {
   throw Error(source.vendor, "its library is not found (tried " + tried + ")", source.install);
 }
 
+void* DriverLibrary::find(const char* name) const noexcept {
+  return ::dlsym(library_, name);
+}
+
 void* DriverLibrary::symbol(const char* name) const {
-  if (void* const found = ::dlsym(library_, name)) return found;
+  if (void* const found = find(name)) return found;
   throw Error(source_.vendor, name_ + " has no function " + name, source_.install);
 }
 

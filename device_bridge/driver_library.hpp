@@ -28,9 +28,15 @@ class DriverLibrary {
   void bind(const char* name, Function& function) const {
     function = reinterpret_cast<Function>(symbol(name));
   }
+  /// The same; null where the library has none.
+  template <typename Function>
+  void bind_if_there(const char* name, Function& function) const {
+    function = reinterpret_cast<Function>(find(name));
+  }
 
  private:
   void* symbol(const char* name) const;
+  void* find(const char* name) const noexcept;
 
   DriverSource source_;
   std::string name_;

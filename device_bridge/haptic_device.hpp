@@ -33,6 +33,7 @@ struct DeviceState {
   bool ready = true;               ///< calibrated; while it is not, no force
   bool failed = false;             ///< something went wrong: no force any more
   bool lost = false;               ///< and no readings either
+  bool repeated = false;           ///< the reading is that of a moment ago, nothing newer
 };
 
 /// The largest forces and torques that a device is made for; infinity: it does not say.

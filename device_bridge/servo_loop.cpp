@@ -116,7 +116,8 @@ void ServoLoop::apply(std::int64_t now_ns, const ServoInput& input) noexcept {
   const Wrench wrench = filter_.step(now_ns,
                                      {.tip = *reading_,
                                       .orientation = orientation_,
-                                      .motor_temperature = device_state_.motor_temperature},
+                                      .motor_temperature = device_state_.motor_temperature,
+                                      .repeated = device_state_.repeated},
                                      wanted);
   demanded_ = wanted;
   if (applied_ns_) {

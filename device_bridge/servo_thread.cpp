@@ -142,8 +142,7 @@ void ServoThread::wait_for_session(std::int64_t now_ns) noexcept {
   }
   bool lost = false;
   for (ServoLoop& loop : loops_) {
-    if (source_ == nullptr) continue;
-    loop.idle(0.0);
+    loop.idle(0.0);  // a driver's watchdog wants to hear of us
     lost = lost || loop.device_state().lost;
   }
   report_.end = lost ? ServoEnd::kDeviceLost : ServoEnd::kStopped;

@@ -2,6 +2,12 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <mutex>
+#include <set>
+#include <string_view>
 #include <utility>
 
 #include "common/error.hpp"
@@ -13,6 +19,9 @@ namespace {
 constexpr unsigned char kOn = 1;
 constexpr unsigned char kOff = 0;
 constexpr int kMostFailures = 50;  // in a row, then it is lost
+constexpr int kStatusTicks = 8;    // from one status to the next: force off is seen within 10 ms
+constexpr int kPause = 60;         // statuses without force before it is turned on again: 0.5 s
+constexpr int kNewOmega3 = 110;    // type, whose only button is bit 1
 
 // From the driver's axes (towards the person, right, up) to D's (right, up, towards the person).
 const Matrix3& axes() noexcept {
@@ -26,66 +35,174 @@ Vector3 to_driver(const Vector3& vector) noexcept {
   return axes().transpose() * vector;
 }
 
+// Largest force by the model's name [N], from public drivers' tables; infinity: not known.
+double peak_force(std::string_view model) noexcept {
+  struct Rated {
+    std::string_view model;
+    double force;
+  };
+  constexpr std::array kRated{Rated{"omega", 12.0}, Rated{"Falcon", 8.0}, Rated{"FALCON", 8.0}};
+  for (const Rated& rated : kRated) {
+    if (model.find(rated.model) != std::string_view::npos) return rated.force;
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+const char* words(dhd::ForceOff cause) noexcept {
+  switch (cause) {
+    case dhd::ForceOff::kButton:
+      return "the force button; press it again";
+    case dhd::ForceOff::kVelocity:
+      return "it was moved too fast; the force comes back by itself";
+    case dhd::ForceOff::kWatchdog:
+      return "its watchdog; the force comes back by itself";
+    case dhd::ForceOff::kUnplugged:
+      return "the cable; plug it in, and start irdm-bridge again";
+    case dhd::ForceOff::kDeadman:
+      return "nobody holds the handle; take it";
+    default:
+      return "no reason given; press its force button";
+  }
+}
+
+// The driver gives the same id again for one that is open.
+std::mutex open_mutex;
+std::set<int> open_ids;
+
 }  // namespace
 
-ForceDimensionDevice::ForceDimensionDevice(std::string name, const dhd::Api& api)
-    : name_(std::move(name)), dhd_(api) {}
+ForceDimensionDevice::ForceDimensionDevice(std::string name, const dhd::Api& api, bool auto_init)
+    : name_(std::move(name)), dhd_(api), auto_init_(auto_init) {}
 
 std::string ForceDimensionDevice::label() const {
   return name_.empty() ? "first Force Dimension device" : "Force Dimension device " + name_;
 }
 
+void ForceDimensionDevice::fail(const std::string& what) const {
+  const char* const reason = dhd_.error_get_last_str();
+  throw Error(label(), what + (reason != nullptr ? reason : "no reason given"),
+              "check power and cable, the udev rule for USB vendors 1451 and 0403, and that no "
+              "other program uses it");
+}
+
 int ForceDimensionDevice::open_by_name() const {
+  constexpr std::size_t kLongest = 9;
   if (name_.empty()) return dhd_.open();
-  if (name_.size() != 1 || name_[0] < '0' || name_[0] > '9') {
-    throw Error(label(), "has no number", "give its number as name, \"0\" for the first");
+  const bool digits =
+      std::all_of(name_.begin(), name_.end(), [](char c) { return c >= '0' && c <= '9'; });
+  if (!digits || name_.size() > kLongest) {
+    throw Error(label(), "has no number",
+                "give its number as name, \"0\" for the first, or its serial number");
   }
-  return dhd_.open_id(static_cast<char>(name_[0] - '0'));
+  const int number = std::stoi(name_);
+  return name_.size() == 1 ? dhd_.open_id(static_cast<char>(number)) : dhd_.open_serial(number);
 }
 
 void ForceDimensionDevice::open() {
   const int id = open_by_name();
-  const auto fail = [&](const char* what) {
-    const char* const words = dhd_.error_get_last_str();
-    throw Error(label(), std::string(what) + (words != nullptr ? words : "no reason given"),
-                "check power and cable, the udev rule for USB vendors 1451 and 0403, and that no "
-                "other program uses it");
-  };
   if (id < 0) fail("cannot be opened: ");
+  {
+    const std::lock_guard<std::mutex> lock(open_mutex);
+    if (!open_ids.insert(id).second) {
+      throw Error(label(), "is open already", "give each [[device]] a name of its own");
+    }
+  }
   id_ = id;
-  if (dhd_.enable_force(kOn, static_cast<char>(id_)) < 0) fail("its force cannot be turned on: ");
-  const bool wrist = dhd_.has_active_wrist(static_cast<char>(id_));
+  try {
+    prepare();
+  } catch (...) {
+    close();
+    throw;
+  }
+}
+
+void ForceDimensionDevice::prepare() {
+  const auto id = static_cast<char>(id_);
+  std::array<int, dhd::kStatusRoom> status{};
+  if (dhd_.get_status(status.data(), id) < 0) fail("does not tell its status: ");
+  initialise(status[dhd::kInitialised] != 0);
+  dhd_.set_gravity_compensation(1, id);
+  if (dhd_.enable_force(kOn, id) < 0) fail("its force cannot be turned on: ");
+  write({});
+  const char* const name = dhd_.get_system_name(id);
+  const std::string model = name != nullptr ? name : "unknown";
+  type_ = dhd_.get_system_type(id);
+  rating_.peak = peak_force(model);
+  const bool wrist = dhd_.has_active_wrist(id);
   if (wrist) rating_.peak_torque = std::numeric_limits<double>::infinity();
-  const char* const model = dhd_.get_system_name(static_cast<char>(id_));
-  spdlog::info("{}: {}, {}", label(), model != nullptr ? model : "unknown",
-               wrist ? "force and torque" : "force");
+  if (dhd_.has_gripper(id) && dhd_.emulate_button != nullptr) dhd_.emulate_button(kOn, id);
+  if (std::isfinite(rating_.peak) && dhd_.set_max_force != nullptr) {
+    dhd_.set_max_force(rating_.peak, id);
+  }
+  unsigned short serial = 0;
+  const bool numbered = dhd_.get_serial_number(&serial, id) >= 0;
+  spdlog::info("{}: {}, {}{}", label(), model, wrist ? "force and torque" : "force",
+               numbered ? ", serial number " + std::to_string(serial) : "");
+}
+
+void ForceDimensionDevice::initialise(bool initialised) {
+  initialised_ = initialised;
+  if (initialised || !auto_init_) return;
+  if (dhd_.auto_init == nullptr) {
+    throw Error(label(), "cannot be initialised: auto_init needs libdrd",
+                "name libdrd.so in $FORCEDIMENSION_LIB, or use the vendor's program");
+  }
+  spdlog::warn("{}: moves by itself now, to be initialised: keep hands off", label());
+  if (dhd_.auto_init(static_cast<char>(id_)) < 0) fail("cannot be initialised: ");
+  initialised_ = true;
 }
 
 void ForceDimensionDevice::close() noexcept {
   if (id_ == kClosed) return;
   write({});
-  const auto id = static_cast<char>(std::exchange(id_, kClosed));
-  dhd_.enable_force(kOff, id);
-  dhd_.close(id);
+  const int id = std::exchange(id_, kClosed);
+  dhd_.enable_force(kOff, static_cast<char>(id));
+  dhd_.close(static_cast<char>(id));
+  const std::lock_guard<std::mutex> lock(open_mutex);
+  open_ids.erase(id);
+  if (repeats_ + refused_ + saturated_ == 0) return;
+  spdlog::info("{}: {} readings were repeated, {} forces failed, {} were more than its motors give",
+               label(), repeats_, refused_, saturated_);
 }
 
 StylusPose ForceDimensionDevice::read(double) noexcept {
   const auto id = static_cast<char>(id_);
+  if (++ticks_ >= kStatusTicks) look();
   Vector3 tip = Vector3::Zero();
   double rows[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  const bool good = dhd_.get_position(&tip.x(), &tip.y(), &tip.z(), id) >= 0 &&
-                    dhd_.get_orientation_frame(rows, id) >= 0;
-  count(!good);
-  StylusPose pose;
-  if (!good) {
-    pose.tip.setConstant(std::numeric_limits<double>::quiet_NaN());
-    return pose;
+  const int result =
+      dhd_.get_position_and_orientation_frame(&tip.x(), &tip.y(), &tip.z(), rows, id);
+  count(result < 0);
+  repeated_ = result == dhd::kRepeated;
+  if (repeated_) ++repeats_;
+  if (result < 0) {
+    pose_.tip.setConstant(std::numeric_limits<double>::quiet_NaN());
+    return pose_;
   }
   const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> frame(&rows[0][0]);
-  pose.tip = axes() * tip;
-  pose.orientation = Quaternion(Matrix3(axes() * frame * axes().transpose())).normalized();
-  pose.buttons = dhd_.get_button_mask(id);
-  return pose;
+  pose_.tip = axes() * tip;
+  pose_.orientation = Quaternion(Matrix3(axes() * frame * axes().transpose())).normalized();
+  pose_.buttons = dhd_.get_button_mask(id);
+  if (type_ == kNewOmega3) pose_.buttons >>= 1;
+  return pose_;
+}
+
+// What the device does by itself.
+void ForceDimensionDevice::look() noexcept {
+  const auto id = static_cast<char>(id_);
+  ticks_ = 0;
+  std::array<int, dhd::kStatusRoom> status{};
+  if (dhd_.get_status(status.data(), id) < 0) return;  // a reading fails as well
+  const bool on = status[dhd::kForceOn] != 0;
+  const auto cause = static_cast<dhd::ForceOff>(status[dhd::kForceOffCause]);
+  initialised_.store(status[dhd::kInitialised] != 0, std::memory_order_relaxed);
+  cause_.store(cause, std::memory_order_relaxed);
+  if (force_on_.exchange(on, std::memory_order_relaxed) && !on) pause_ = kPause;
+  if (cause == dhd::ForceOff::kUnplugged) lost_.store(true, std::memory_order_relaxed);
+  const bool comes_back = cause == dhd::ForceOff::kVelocity || cause == dhd::ForceOff::kWatchdog ||
+                          cause == dhd::ForceOff::kSoftware;
+  if (on || !comes_back) return;
+  if (--pause_ <= 0) dhd_.enable_force(kOn, id);
 }
 
 // Three readings in a row that failed are a fault of the safety filter already.
@@ -94,29 +211,40 @@ void ForceDimensionDevice::count(bool failed) noexcept {
   if (failures_ >= kMostFailures) lost_.store(true, std::memory_order_relaxed);
 }
 
+// Without an active wrist the driver leaves the torque out.
 void ForceDimensionDevice::write(const Wrench& shown) noexcept {
-  const auto id = static_cast<char>(id_);
   const Vector3 f = to_driver(shown.force);
-  const Vector3 t = to_driver(shown.torque);
-  if (rating_.peak_torque > 0.0) {
-    dhd_.set_force_and_torque(f.x(), f.y(), f.z(), t.x(), t.y(), t.z(), id);
-  } else {
-    dhd_.set_force(f.x(), f.y(), f.z(), id);
-  }
+  const Vector3 t = rating_.peak_torque > 0.0 ? to_driver(shown.torque) : Vector3::Zero();
+  const int result = dhd_.set_force_and_torque_and_gripper_force(
+      f.x(), f.y(), f.z(), t.x(), t.y(), t.z(), 0.0, static_cast<char>(id_));
+  if (result < 0) ++refused_;
+  if (result == dhd::kSaturated) ++saturated_;
 }
 
 DeviceState ForceDimensionDevice::state() const noexcept {
   const bool lost = lost_.load(std::memory_order_relaxed);
-  return {.failed = lost, .lost = lost};
+  return {.ready = initialised_.load(std::memory_order_relaxed) &&
+                   force_on_.load(std::memory_order_relaxed),
+          .failed = lost,
+          .lost = lost,
+          .repeated = repeated_};
 }
 
 std::string ForceDimensionDevice::trouble() const {
-  if (!lost_.load(std::memory_order_relaxed)) return {};
-  return label() + ": no readings any more; check power and cable, and start irdm-bridge again";
+  if (lost_.load(std::memory_order_relaxed)) {
+    return label() + ": no readings any more; check power and cable, and start irdm-bridge again";
+  }
+  if (!initialised_.load(std::memory_order_relaxed)) {
+    return label() +
+           ": is not initialised, no force; use the vendor's program, or auto_init = true";
+  }
+  const dhd::ForceOff cause = cause_.load(std::memory_order_relaxed);
+  const bool off = !force_on_.load(std::memory_order_relaxed) && cause != dhd::ForceOff::kNone;
+  return off ? label() + ": its force is off: " + words(cause) : "";
 }
 
 std::unique_ptr<HapticDevice> make_forcedimension_device(const DeviceConfig& config) {
-  return std::make_unique<ForceDimensionDevice>(config.name, dhd::library());
+  return std::make_unique<ForceDimensionDevice>(config.name, dhd::library(), config.auto_init);
 }
 
 }  // namespace irdm

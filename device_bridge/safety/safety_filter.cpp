@@ -107,7 +107,9 @@ Wrench SafetyFilter::step(std::int64_t now_ns, const DeviceReading& reading,
 
 // Sanity of the reading and of the time.
 ReadingVerdict SafetyFilter::check(std::int64_t now_ns, const DeviceReading& reading) noexcept {
-  const ReadingVerdict verdict = reading_.look(now_ns, reading.tip, reading.orientation);
+  const ReadingVerdict verdict = reading.repeated
+                                     ? reading_.repeat(now_ns)
+                                     : reading_.look(now_ns, reading.tip, reading.orientation);
   counts_.readings = reading_.unused();
   if (verdict == ReadingVerdict::kFault) fail();
   return verdict;

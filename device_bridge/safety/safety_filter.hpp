@@ -39,6 +39,7 @@ struct DeviceReading {
   Vector3 tip = Vector3::Zero();                    ///< [m], D; anything
   Quaternion orientation = Quaternion::Identity();  ///< in D; anything
   double motor_temperature = 0.0;  ///< what the device says, 0 to 1; 0: it says nothing
+  bool repeated = false;           ///< of a moment ago, nothing newer
 };
 
 /// The force and torque that the world asks for at one tick, and what they rest on. Nothing in it

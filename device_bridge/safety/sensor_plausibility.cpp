@@ -28,6 +28,20 @@ ReadingVerdict SensorPlausibility::look(std::int64_t now_ns, const Vector3& tip,
   return std::max(clock, reading);
 }
 
+ReadingVerdict SensorPlausibility::repeat(std::int64_t now_ns) noexcept {
+  displacement_ = Twist{};
+  const ReadingVerdict clock = look_at_clock(now_ns);
+  const bool recent = last_good_ns_ && now_ns - *last_good_ns_ <= limits_.gap_ns;
+  return recent ? clock : std::max(clock, leave_out());
+}
+
+// A reading of no use.
+ReadingVerdict SensorPlausibility::leave_out() noexcept {
+  ++unused_;
+  bad_ = std::min(bad_ + 1, limits_.bad_ticks);
+  return bad_ >= limits_.bad_ticks ? ReadingVerdict::kFault : ReadingVerdict::kUnused;
+}
+
 ReadingVerdict SensorPlausibility::look_at_clock(std::int64_t now_ns) noexcept {
   const std::int64_t last_ns = last_ns_.value_or(now_ns);
   last_ns_ = now_ns;
@@ -54,9 +68,7 @@ ReadingVerdict SensorPlausibility::look_at_pose(std::int64_t now_ns, const Vecto
   displacement_ = Twist{};
   velocity_ = Twist{};
   if (!sane(tip, orientation) && guards_.on(Guard::kReadingFinite)) {
-    ++unused_;
-    bad_ = std::min(bad_ + 1, limits_.bad_ticks);
-    return bad_ >= limits_.bad_ticks ? ReadingVerdict::kFault : ReadingVerdict::kUnused;
+    return leave_out();
   }
   bad_ = 0;
   const Quaternion turned = limits_.turns ? orientation.normalized() : Quaternion::Identity();

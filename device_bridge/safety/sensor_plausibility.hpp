@@ -38,6 +38,10 @@ class SensorPlausibility {
   ReadingVerdict look(std::int64_t now_ns, const Vector3& tip,
                       const Quaternion& orientation) noexcept;
 
+  /// The same of a reading that is the last one once more: it says nothing of a speed, and the next
+  /// one has the way of both. After a gap it is of no use.
+  ReadingVerdict repeat(std::int64_t now_ns) noexcept;
+
   /// Of the last good reading.
   const Vector3& tip() const noexcept { return tip_; }
   /// The same; where turns do not count, the identity.
@@ -56,6 +60,7 @@ class SensorPlausibility {
                               const Quaternion& orientation) noexcept;
   bool sane(const Vector3& tip, const Quaternion& orientation) const noexcept;
   ReadingVerdict look_at_speed() noexcept;
+  ReadingVerdict leave_out() noexcept;
 
   ReadingLimits limits_;
   Guards guards_;

@@ -2,16 +2,20 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <limits>
 #include <vector>
 
 #include "common/error.hpp"
 #include "device_bridge/forcedimension/forcedimension_device.hpp"
+#include "device_bridge/safety/sensor_plausibility.hpp"
 #include "device_bridge/servo_thread.hpp"
 #include "tests/fake_libdhd/fake_dhd.hpp"
 #include "tests/support/allocation_guard.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/left_out.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 using Catch::Matchers::Contains;
 using namespace irdm;
@@ -40,7 +44,21 @@ Vector3 torque_of(int index) {
 
 TEST_CASE("libdhd.so is looked for by its usual names, or by the one that is given alone") {
   ::unsetenv("FORCEDIMENSION_LIB");
-  CHECK(dhd::library_names().front() == "libdhd.so.3");
+  ::unsetenv("FDSDK");
+  CHECK(dhd::library_names().back() == "libdhd.so");
+  // As the SDK ships it: no links, libdrd before libdhd, the newest first.
+  const TemporaryFolder sdk;
+  const std::filesystem::path folder = sdk.path() / "lib/release/lin-x86_64-gcc";
+  std::filesystem::create_directories(folder);
+  for (const char* name : {"libdhd.so.3.17.5", "libdrd.so.3.9.1", "libdrd.so.3.17.5"}) {
+    std::ofstream(folder / name) << "x";
+  }
+  ::setenv("FDSDK", sdk.path().c_str(), 1);
+  const std::vector<std::string> names = dhd::library_names();
+  CHECK(names[0] == (folder / "libdrd.so.3.17.5").string());
+  CHECK(names[1] == (folder / "libdrd.so.3.9.1").string());
+  CHECK(names[2] == (folder / "libdhd.so.3.17.5").string());
+  ::unsetenv("FDSDK");
   ::setenv("FORCEDIMENSION_LIB", "/opt/libdrd.so", 1);
   CHECK(dhd::library_names() == std::vector<std::string>{"/opt/libdrd.so"});
   ::unsetenv("FORCEDIMENSION_LIB");
@@ -54,13 +72,18 @@ TEST_CASE("a device of Force Dimension is opened by its number or as the first, 
   second.open();
   CHECK(fakedhd_is_open(1) == 1);
   CHECK(fakedhd_force_is_on(1) == 1);
+  CHECK(fakedhd_compensates(1) == 1);
   CHECK(fakedhd_is_open(0) == 0);
   {
     ForceDimensionDevice first("", api());
     first.open();
     CHECK(fakedhd_is_open(0) == 1);
     ForceDimensionDevice again("0", api());
-    CHECK_THROWS_WITH(again.open(), Contains("cannot be opened: no device found"));
+    CHECK_THROWS_WITH(again.open(), Contains("is open already"));
+    ForceDimensionDevice by_serial("10777", api());
+    CHECK_THROWS_WITH(by_serial.open(), Contains("is open already"));
+    ForceDimensionDevice unknown("10778", api());
+    CHECK_THROWS_WITH(unknown.open(), Contains("cannot be opened: no device found"));
   }
   CHECK(fakedhd_is_open(0) == 0);
   CHECK(fakedhd_force_is_on(0) == 0);
@@ -128,6 +151,135 @@ TEST_CASE("readings that fail are of no use, and after fifty the device is lost"
   CHECK_THAT(device.trouble(), Contains("no readings any more"));
 }
 
+namespace {
+
+// So many ticks with this force. Whether it was ready in the last of them.
+bool tick(ForceDimensionDevice& device, int ticks, const Vector3& force = Vector3::Zero()) {
+  for (int k = 0; k < ticks; ++k) {
+    device.read(0.0);
+    device.write({force});
+  }
+  return device.state().ready;
+}
+
+constexpr int kSeen = 10;  // ticks: 10 ms
+
+}  // namespace
+
+TEST_CASE("a device that turns its force off is not ready until that is on again") {
+  fakedhd_reset();
+  ForceDimensionDevice device("", api());
+  device.open();
+  CHECK(tick(device, kSeen));
+  CHECK(device.trouble().empty());
+  SECTION("the person's button stays off until it is pressed again") {
+    fakedhd_force_off(0, 1);
+    CHECK_FALSE(tick(device, kSeen));
+    CHECK_THAT(device.trouble(), Contains("the force button"));
+    CHECK_FALSE(tick(device, 2000));
+    CHECK(fakedhd_turned_on(0) == 1);
+    fakedhd_force_off(0, 0);
+    CHECK(tick(device, kSeen));
+    CHECK(device.trouble().empty());
+  }
+  SECTION("what the watchdog or the velocity limit turned off comes back after a pause") {
+    const auto [cause, words] =
+        GENERATE(table<int, const char*>({{3, "its watchdog"}, {2, "too fast"}}));
+    fakedhd_force_off(0, cause);
+    CHECK_FALSE(tick(device, kSeen));
+    CHECK_THAT(device.trouble(), Contains(words));
+    CHECK_FALSE(tick(device, 400));
+    CHECK(fakedhd_turned_on(0) == 1);
+    CHECK(tick(device, 200));
+    CHECK(fakedhd_turned_on(0) == 2);
+  }
+  SECTION("a cable that is out is a device that is lost") {
+    fakedhd_force_off(0, 5);
+    CHECK_FALSE(tick(device, kSeen));
+    CHECK(device.state().lost);
+  }
+}
+
+TEST_CASE("a device that is not initialised has no force, and moves by itself only when asked to") {
+  fakedhd_reset();
+  fakedhd_initialised(0, 0);
+  {
+    ForceDimensionDevice device("", api());
+    device.open();
+    CHECK_FALSE(tick(device, 3 * kSeen));
+    CHECK_THAT(device.trouble(), Contains("not initialised"));
+    fakedhd_initialised(0, 1);  // by the vendor's program, or by hand
+    CHECK(tick(device, kSeen));
+  }
+  fakedhd_initialised(0, 0);
+  ForceDimensionDevice moves("", api(), true);
+  moves.open();
+  CHECK(tick(moves, kSeen));
+  moves.close();
+  fakedhd_initialised(0, 0);
+  dhd::Api only_dhd = api();
+  only_dhd.auto_init = nullptr;
+  ForceDimensionDevice cannot("", only_dhd, true);
+  CHECK_THROWS_WITH(cannot.open(), Contains("auto_init needs libdrd"));
+  CHECK(fakedhd_is_open(0) == 0);
+}
+
+TEST_CASE("the largest force is the model's, and the driver cuts off there, too") {
+  fakedhd_reset();
+  fakedhd_model(0, "Falcon", 60);
+  fakedhd_model(1, "lambda.7", 108);
+  ForceDimensionDevice falcon("0", api());
+  falcon.open();
+  CHECK(falcon.rating().peak == 8.0);
+  CHECK(fakedhd_max_force(0) == 8.0);
+  ForceDimensionDevice other("1", api());
+  other.open();
+  CHECK(std::isinf(other.rating().peak));
+  CHECK(fakedhd_max_force(1) == 0.0);
+}
+
+TEST_CASE("a gripper that closes is a button, and the later omega.3 has its button at bit 0") {
+  fakedhd_reset();
+  fakedhd_give_gripper(0);
+  fakedhd_model(1, "omega.3", 110);
+  ForceDimensionDevice gripper("0", api());
+  gripper.open();
+  CHECK(gripper.read(0.0).buttons == 0);
+  fakedhd_close_gripper(0, 1);
+  CHECK(gripper.read(0.0).buttons == 1);
+  ForceDimensionDevice omega("1", api());
+  omega.open();
+  fakedhd_press(1, 2);
+  CHECK(omega.read(0.0).buttons == 1);
+}
+
+TEST_CASE("a reading that is repeated says nothing of a speed, and the next has the way of both") {
+  fakedhd_reset();
+  ForceDimensionDevice device("", api());
+  device.open();
+  SensorPlausibility sense({}, {});
+  std::int64_t now_ns = 0;
+  double fastest = 0.0;
+  for (int k = 0; k < 200; ++k) {
+    fakedhd_place(0, 0.0, 0.0, 0.0005 * k);  // 0.5 m/s
+    if (k % 4 == 3) fakedhd_repeat(0, 1);
+    const StylusPose pose = device.read(0.0);
+    CHECK(device.state().repeated == (k % 4 == 3));
+    const ReadingVerdict verdict = device.state().repeated
+                                       ? sense.repeat(now_ns)
+                                       : sense.look(now_ns, pose.tip, pose.orientation);
+    CHECK(verdict == ReadingVerdict::kGood);
+    if (k > 0) CHECK(sense.velocity().linear.y() == Approx(0.5));
+    fastest = std::max(fastest, sense.velocity().linear.norm());
+    now_ns += 1'000'000;
+  }
+  CHECK(fastest == Approx(0.5));
+  // Nothing newer for too long is of no use.
+  ReadingVerdict verdict = ReadingVerdict::kGood;
+  for (int k = 0; k < 60; ++k) verdict = sense.repeat(now_ns += 1'000'000);
+  CHECK(verdict == ReadingVerdict::kFault);
+}
+
 TEST_CASE("a tick with a device of Force Dimension allocates nothing") {
   if (!AllocationGuard::active()) return leave_out(kNotCounted);
   fakedhd_reset();
@@ -139,6 +291,21 @@ TEST_CASE("a tick with a device of Force Dimension allocates nothing") {
     device.write({Vector3(0, 1, 0)});
   }
   CHECK(guard.count() == 0);
+}
+
+TEST_CASE("the driver hears of the bridge in every tick, before any server is there") {
+  fakedhd_reset();
+  ForceDimensionDevice device("", api());
+  device.open();
+  std::vector<ServoLoop> loops;
+  loops.emplace_back(device, FilterLimits{});
+  ServoLink link(1);
+  EventFd done;
+  ServoThread servo(link, loops, {.duration = std::numeric_limits<double>::infinity()}, done);
+  servo.start();
+  CHECK(eventually([] { return fakedhd_forces(0) > 100; }));
+  CHECK(force_of(0).isZero(0.0));
+  servo.stop();
 }
 
 TEST_CASE("a device of Force Dimension that is unplugged ends the servo thread") {
@@ -167,4 +334,50 @@ TEST_CASE("a device of Force Dimension that is unplugged ends the servo thread")
   servo.stop();
   CHECK(servo.report().end == ServoEnd::kDeviceLost);
   CHECK(loops[0].counts().faults > 0);
+}
+
+// In ticks of the servo loop, whatever else the machine does.
+TEST_CASE("a force that the device turned off in the middle of a contact comes back as a ramp") {
+  constexpr double kDemand = 2.0;  // [N]
+  constexpr double kRamp = 500.0;  // ticks
+  fakedhd_reset();
+  ForceDimensionDevice device("", api());
+  device.open();
+  std::vector<ServoLoop> loops;
+  loops.emplace_back(device, FilterLimits{});
+  ServoLink link(1);
+  EventFd done;
+  ServoThread servo(link, loops, {.duration = std::numeric_limits<double>::infinity()}, done);
+  servo.start();
+  link.state.put({.linked = true, .sessions = 1, .dt = 0.002});
+  const auto serve = [&] {
+    if (link.styluses[0].sample.receive()) {
+      link.styluses[0].input.put(
+          {.linked = true,
+           .any_force = true,
+           .force = {.sample_time_ns = link.styluses[0].sample.front().time_ns,
+                     .force = Vector3(0, kDemand, 0)}});
+    }
+    return force_of(0).norm();
+  };
+  REQUIRE(eventually([&] { return serve() > 0.9 * kDemand; }));
+  fakedhd_force_off(0, GENERATE(3, 2));
+  const int off = fakedhd_forces(0);
+  int silent = off;
+  bool risen = false;
+  REQUIRE(eventually([&] {
+    const int tick = fakedhd_forces(0);
+    const double force = serve();
+    if (force == 0.0) {
+      silent = fakedhd_forces(0);
+    } else if (tick > silent) {
+      CHECK(force <= kDemand * (tick - silent + 5) / kRamp);
+      risen = true;
+    }
+    return force > 0.9 * kDemand;
+  }));
+  CHECK(risen);
+  CHECK(silent - off > 400);  // the pause
+  servo.stop();
+  CHECK(servo.report().end == ServoEnd::kStopped);
 }

@@ -142,7 +142,8 @@ void ServoThread::wait_for_session(std::int64_t now_ns) noexcept {
   }
   bool lost = false;
   for (ServoLoop& loop : loops_) {
-    loop.idle(0.0);  // a driver's watchdog wants to hear of us
+    if (loop.device().simulated()) continue;  // its time has not begun
+    loop.idle(0.0);                           // a driver's watchdog wants to hear of us
     lost = lost || loop.device_state().lost;
   }
   report_.end = lost ? ServoEnd::kDeviceLost : ServoEnd::kStopped;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/error.hpp"
+#include "common/realtime/clock.hpp"
 #include "device_bridge/forcedimension/forcedimension_device.hpp"
 #include "device_bridge/safety/sensor_plausibility.hpp"
 #include "device_bridge/servo_thread.hpp"
@@ -336,10 +337,11 @@ TEST_CASE("a device of Force Dimension that is unplugged ends the servo thread")
   CHECK(loops[0].counts().faults > 0);
 }
 
-// In ticks of the servo loop, whatever else the machine does.
+// From the last moment at which there was none, whatever else the machine does.
 TEST_CASE("a force that the device turned off in the middle of a contact comes back as a ramp") {
   constexpr double kDemand = 2.0;  // [N]
-  constexpr double kRamp = 500.0;  // ticks
+  constexpr double kRamp = 0.5;    // [s]
+  constexpr double kTick = 0.05;   // the longest that counts, since the last one without force [s]
   fakedhd_reset();
   ForceDimensionDevice device("", api());
   device.open();
@@ -364,17 +366,21 @@ TEST_CASE("a force that the device turned off in the middle of a contact comes b
   fakedhd_force_off(0, GENERATE(3, 2));
   const int off = fakedhd_forces(0);
   int silent = off;
+  std::int64_t silent_ns = 0;
   bool risen = false;
   REQUIRE(eventually([&] {
+    const std::int64_t before_ns = monotonic_ns();
     const int tick = fakedhd_forces(0);
     const double force = serve();
     if (force == 0.0) {
-      silent = fakedhd_forces(0);
-    } else if (tick > silent) {
-      CHECK(force <= kDemand * (tick - silent + 5) / kRamp);
+      silent = tick;
+      silent_ns = before_ns;
+    } else if (silent > off) {
+      const double since = 1e-9 * static_cast<double>(monotonic_ns() - silent_ns);
+      CHECK(force <= kDemand * (since + kTick) / kRamp);
       risen = true;
     }
-    return force > 0.9 * kDemand;
+    return silent > off && force > 0.9 * kDemand;
   }));
   CHECK(risen);
   CHECK(silent - off > 400);  // the pause

@@ -172,6 +172,7 @@ typedef struct irdm_feedback {
   uint64_t ticks;      /* so far; in lockstep: steps */
   uint64_t late_ticks; /* that were left out, as the thread was late by more than a period */
   uint64_t sessions;   /* with a server, so far */
+  double time;         /* of the tick, of CLOCK_MONOTONIC; in lockstep of the step [s] */
 } irdm_feedback;
 
 /* Connects, within the time of the option `timeout`. *client is NULL where it fails.

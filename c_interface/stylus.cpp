@@ -2,6 +2,7 @@
 
 #include "c_interface/caller.hpp"
 #include "c_interface/irdm.h"
+#include "common/realtime/clock.hpp"
 #include "device_bridge/stylus_client.hpp"
 
 struct irdm_stylus_client {
@@ -30,6 +31,7 @@ void write_feedback(const irdm::StylusFeedback& from, irdm_feedback& to) noexcep
   to.ticks = from.ticks;
   to.late_ticks = from.late_ticks;
   to.sessions = from.sessions;
+  to.time = irdm::kNanosecond * static_cast<double>(from.time_ns);
 }
 
 }  // namespace

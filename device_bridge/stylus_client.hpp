@@ -34,7 +34,7 @@ StylusSettings read_stylus_settings(const std::string& address, TomlTable option
 /// What a program gets back. In real time as shown by the safety filter, D; in lockstep as the
 /// server found it, W.
 struct StylusFeedback {
-  std::int64_t time_ns = 0;  ///< of the tick
+  std::int64_t time_ns = 0;  ///< of the tick, monotonic clock; in lockstep of the step
   bool ready = false;        ///< linked, armed, poses are set
   bool linked = false;
   bool fresh = false;  ///< a pose was set not longer ago than stale_after

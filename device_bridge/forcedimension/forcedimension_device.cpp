@@ -7,7 +7,6 @@
 #include <cmath>
 #include <mutex>
 #include <set>
-#include <string_view>
 #include <utility>
 
 #include "common/error.hpp"
@@ -35,17 +34,25 @@ Vector3 to_driver(const Vector3& vector) noexcept {
   return axes().transpose() * vector;
 }
 
-// Largest force by the model's name [N], from public drivers' tables; infinity: not known.
-double peak_force(std::string_view model) noexcept {
+// By the driver's number of the model, from public drivers' tables (chai3d's CDeltaDevices).
+ForceRating rating_of(int type, bool active_wrist) noexcept {
   struct Rated {
-    std::string_view model;
-    double force;
+    int first, last;  // types
+    double force;     // [N]
+    double torque;    // [N m], of an active wrist
   };
-  constexpr std::array kRated{Rated{"omega", 12.0}, Rated{"Falcon", 8.0}, Rated{"FALCON", 8.0}};
+  constexpr std::array kRated{Rated{31, 31, 20.0, 0.0},  Rated{61, 64, 20.0, 0.2},    // Delta
+                              Rated{32, 37, 12.0, 0.0},  Rated{110, 110, 12.0, 0.0},  // Omega
+                              Rated{60, 60, 8.0, 0.0},                                // Falcon
+                              Rated{104, 105, 12.0, 0.2}};                            // Sigma
+  ForceRating rating;
+  if (active_wrist) rating.peak_torque = std::numeric_limits<double>::infinity();
   for (const Rated& rated : kRated) {
-    if (model.find(rated.model) != std::string_view::npos) return rated.force;
+    if (type < rated.first || type > rated.last) continue;
+    rating.peak = rated.force;
+    if (active_wrist && rated.torque > 0.0) rating.peak_torque = rated.torque;
   }
-  return std::numeric_limits<double>::infinity();
+  return rating;
 }
 
 const char* words(dhd::ForceOff cause) noexcept {
@@ -127,9 +134,8 @@ void ForceDimensionDevice::prepare() {
   const char* const name = dhd_.get_system_name(id);
   const std::string model = name != nullptr ? name : "unknown";
   type_ = dhd_.get_system_type(id);
-  rating_.peak = peak_force(model);
   const bool wrist = dhd_.has_active_wrist(id);
-  if (wrist) rating_.peak_torque = std::numeric_limits<double>::infinity();
+  rating_ = rating_of(type_, wrist);
   if (dhd_.has_gripper(id) && dhd_.emulate_button != nullptr) dhd_.emulate_button(kOn, id);
   if (std::isfinite(rating_.peak) && dhd_.set_max_force != nullptr) {
     dhd_.set_max_force(rating_.peak, id);

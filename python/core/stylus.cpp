@@ -157,6 +157,10 @@ meanwhile. Raises ValueError, and irdm.Error when the run is over; Ctrl-C ends t
           "sessions", [](const Self& self) { return self.get().sessions; },
           "With a server, so far.")
       .def_property_readonly(
+          "time",
+          [](const Self& self) { return kNanosecond * static_cast<double>(self.get().time_ns); },
+          "Of the newest tick, of time.monotonic(); in lockstep of the step [s].")
+      .def_property_readonly(
           "dt", [](const Self& self) { return self.idle_client().dt(); },
           "Force step of the server [s].")
       .def_property_readonly(

@@ -125,57 +125,80 @@ TEST_CASE("C interface: a program is a stylus of a server in real time") {
   CHECK_THAT(std::string(state.data()), Catch::StartsWith("ready"));
 }
 
-// What a hand feels is judged by the ticks that showed it, whatever else the machine does.
+namespace {
+
+// A tip that comes from the side and presses; what is shown to it, judged by the ticks that showed
+// it.
+struct Pressing {
+  // The force of the newest tick [N].
+  double look() {
+    const irdm_command command = beside(x = std::max(0.056, x - 5e-5));
+    irdm_stylus_set(stylus.handle, &command);
+    irdm_stylus_get(stylus.handle, &feedback);
+    const double force = std::hypot(feedback.force[0], feedback.force[1], feedback.force[2]);
+    if (force == 0.0) {
+      silent = feedback.time;
+    } else {
+      steepest = std::max(steepest, force / (feedback.time - silent));
+    }
+    return force;
+  }
+  bool pressed() {
+    return eventually([&] { return look() > 0.3; });
+  }
+  // Until there is no force; how many ticks were seen that had one.
+  int fade() {
+    int faded = 0;
+    REQUIRE(eventually([&] {
+      if (look() == 0.0) return true;
+      oldest = std::max(oldest, feedback.latency);
+      ++faded;
+      return false;
+    }));
+    return faded;
+  }
+
+  const Connected& stylus;
+  irdm_feedback feedback{};
+  double x = 0.2;
+  double oldest = 0.0;    // tip that a force answered while it faded [s]
+  double silent = 0.0;    // last tick without force [s]
+  double steepest = 0.0;  // force by the time since then [N/s]
+};
+
+}  // namespace
+
 TEST_CASE("C interface: the force is gone 50 ms after the server, and comes back as a ramp") {
-  constexpr double kGone = 0.05;   // [s]
-  constexpr double kRamp = 500.0;  // ticks in which a force comes back
-  constexpr double kTick = 1e-3;   // [s]
-  constexpr double kMost = 3.3;    // max_force by default [N]
+  constexpr double kGone = 0.05;  // [s]
+  constexpr double kTick = 1e-3;  // [s]
+  constexpr double kMost = 3.3;   // max_force by default [N]
+  constexpr double kRamp = 0.5;   // in which a force comes back [s]
   auto server = std::make_unique<RealTimeServer>();
   const std::string port = server->address.substr(server->address.rfind(':') + 1);
   const Connected stylus(server->address.c_str(), "tip = [0.2, 0.06, 0]\nmode = \"hold\"");
   INFO(stylus.error);
   REQUIRE(stylus.status == IRDM_OK);
-  irdm_feedback feedback{};
-  double x = 0.2;
-  const auto look = [&] {
-    const irdm_command command = beside(x = std::max(0.056, x - 5e-5));
-    irdm_stylus_set(stylus.handle, &command);
-    irdm_stylus_get(stylus.handle, &feedback);
-    return std::hypot(feedback.force[0], feedback.force[1], feedback.force[2]);
-  };
-  // No force is shown longer than that, and then none at all.
-  const auto fades = [&] {
-    int faded = 0;
-    const bool gone = eventually([&] {
-      const double force = look();
-      if (force == 0.0) return true;
-      CHECK(feedback.latency <= kGone + kTick);
-      ++faded;
-      return false;
-    });
-    CHECK(faded > 0);
-    return gone;
-  };
-  REQUIRE(eventually([&] { return look() > 0.3; }));
-  server->program.signal(SIGSTOP);
-  REQUIRE(fades());
-  std::uint64_t silent = feedback.ticks + feedback.late_ticks;
-  server->program.signal(SIGCONT);
+  Pressing hand{stylus};
+  // A machine that stands still for so long shows nothing of it: again, then.
   REQUIRE(eventually([&] {
-    const double force = look();
-    const std::uint64_t tick = feedback.ticks + feedback.late_ticks;
-    if (force == 0.0) silent = tick;
-    CHECK(force <= kMost * static_cast<double>(tick - silent + 1) / kRamp);
-    return force > 0.3;
+    REQUIRE(hand.pressed());
+    server->program.signal(SIGSTOP);
+    const int faded = hand.fade();
+    hand.steepest = 0.0;
+    server->program.signal(SIGCONT);
+    return faded > 0;
   }));
+  REQUIRE(hand.pressed());
+  CHECK(hand.steepest > 0.0);
+  CHECK(hand.steepest < 1.000001 * kMost / kRamp);
   server->program.signal(SIGKILL);
-  REQUIRE(fades());
+  hand.fade();
+  CHECK(hand.oldest <= kGone + kTick);
   server.reset();
   server = std::make_unique<RealTimeServer>(port);
-  x = 0.2;  // a tip that is inside from the start touches nothing
-  REQUIRE(eventually([&] { return look() > 0.3; }));
-  CHECK(feedback.sessions == 2);
+  hand.x = 0.2;  // a tip that is inside from the start touches nothing
+  REQUIRE(hand.pressed());
+  CHECK(hand.feedback.sessions == 2);
 }
 
 TEST_CASE("C interface: setting and getting neither allocates nor locks") {

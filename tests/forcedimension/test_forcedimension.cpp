@@ -5,10 +5,10 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "common/error.hpp"
-#include "common/realtime/clock.hpp"
 #include "device_bridge/forcedimension/forcedimension_device.hpp"
 #include "device_bridge/safety/sensor_plausibility.hpp"
 #include "device_bridge/servo_thread.hpp"
@@ -228,11 +228,21 @@ TEST_CASE("a device that is not initialised has no force, and moves by itself on
 TEST_CASE("the largest force is the model's, and the driver cuts off there, too") {
   fakedhd_reset();
   fakedhd_model(0, "Falcon", 60);
-  fakedhd_model(1, "lambda.7", 108);
+  {
+    fakedhd_model(1, "sigma.7", 104);
+    fakedhd_activate_wrist(1);
+    ForceDimensionDevice sigma("1", api());
+    sigma.open();
+    CHECK(sigma.rating().peak == 12.0);
+    CHECK(sigma.rating().peak_torque == 0.2);
+  }
   ForceDimensionDevice falcon("0", api());
   falcon.open();
   CHECK(falcon.rating().peak == 8.0);
+  CHECK(falcon.rating().peak_torque == 0.0);
   CHECK(fakedhd_max_force(0) == 8.0);
+  fakedhd_reset();
+  fakedhd_model(1, "lambda.7", 108);
   ForceDimensionDevice other("1", api());
   other.open();
   CHECK(std::isinf(other.rating().peak));
@@ -294,65 +304,39 @@ TEST_CASE("a tick with a device of Force Dimension allocates nothing") {
   CHECK(guard.count() == 0);
 }
 
-TEST_CASE("the driver hears of the bridge in every tick, before any server is there") {
-  fakedhd_reset();
-  ForceDimensionDevice device("", api());
-  device.open();
-  std::vector<ServoLoop> loops;
-  loops.emplace_back(device, FilterLimits{});
-  ServoLink link(1);
-  EventFd done;
-  ServoThread servo(link, loops, {.duration = std::numeric_limits<double>::infinity()}, done);
-  servo.start();
-  CHECK(eventually([] { return fakedhd_forces(0) > 100; }));
-  CHECK(force_of(0).isZero(0.0));
-  servo.stop();
-}
+namespace {
 
-TEST_CASE("a device of Force Dimension that is unplugged ends the servo thread") {
-  fakedhd_reset();
-  ForceDimensionDevice device("", api());
-  device.open();
-  std::vector<ServoLoop> loops;
-  loops.emplace_back(device, FilterLimits{});
-  ServoLink link(1);
-  EventFd done;
-  ServoThread servo(link, loops, {.duration = std::numeric_limits<double>::infinity()}, done);
-  servo.start();
-  link.state.put({.linked = true, .sessions = 1, .dt = 0.002});
-  REQUIRE(eventually([&] {
-    if (link.styluses[0].sample.receive()) {
-      link.styluses[0].input.put(
-          {.linked = true,
-           .any_force = true,
-           .force = {.sample_time_ns = link.styluses[0].sample.front().time_ns,
-                     .force = Vector3(0, 2, 0)}});
-    }
-    return force_of(0).norm() > 1.9;
-  }));
-  fakedhd_unplug(0, 1);
-  REQUIRE(done.wait(kDeadlineMs));
-  servo.stop();
-  CHECK(servo.report().end == ServoEnd::kDeviceLost);
-  CHECK(loops[0].counts().faults > 0);
-}
+constexpr double kDemand = 2.0;  // [N]
 
-// From the last moment at which there was none, whatever else the machine does.
-TEST_CASE("a force that the device turned off in the middle of a contact comes back as a ramp") {
-  constexpr double kDemand = 2.0;  // [N]
-  constexpr double kRamp = 0.5;    // [s]
-  constexpr double kTick = 0.05;   // the longest that counts, since the last one without force [s]
-  fakedhd_reset();
-  ForceDimensionDevice device("", api());
-  device.open();
-  std::vector<ServoLoop> loops;
-  loops.emplace_back(device, FilterLimits{});
-  ServoLink link(1);
-  EventFd done;
-  ServoThread servo(link, loops, {.duration = std::numeric_limits<double>::infinity()}, done);
-  servo.start();
-  link.state.put({.linked = true, .sessions = 1, .dt = 0.002});
-  const auto serve = [&] {
+// What was shown, tick by tick.
+struct ShownTicks final : TickListener {
+  ShownTicks() { rows.reserve(kMost); }
+  void put(const TickRow& row) noexcept override {
+    if (rows.size() < kMost) rows.push_back({row.time_ns, row.device.ready, row.force.norm()});
+  }
+  static constexpr std::size_t kMost = 500'000;
+  struct Row {
+    std::int64_t time_ns;
+    bool ready;
+    double force;  // [N]
+  };
+  std::vector<Row> rows;
+};
+
+// The first device in a servo thread, and a server that always asks for the same force.
+struct Served {
+  Served() {
+    fakedhd_reset();
+    device.open();
+    loops.emplace_back(device, FilterLimits{});
+    servo.emplace(link, loops,
+                  ServoSettings{.duration = std::numeric_limits<double>::infinity(), .log = &shown},
+                  done);
+    servo->start();
+  }
+  void begin_session() { link.state.put({.linked = true, .sessions = 1, .dt = 0.002}); }
+  // Of the device [N], after the newest sample was answered.
+  double serve() {
     if (link.styluses[0].sample.receive()) {
       link.styluses[0].input.put(
           {.linked = true,
@@ -361,29 +345,64 @@ TEST_CASE("a force that the device turned off in the middle of a contact comes b
                      .force = Vector3(0, kDemand, 0)}});
     }
     return force_of(0).norm();
-  };
-  REQUIRE(eventually([&] { return serve() > 0.9 * kDemand; }));
-  fakedhd_force_off(0, GENERATE(3, 2));
+  }
+
+  ForceDimensionDevice device{"", api()};
+  std::vector<ServoLoop> loops;
+  ServoLink link{1};
+  EventFd done;
+  ShownTicks shown;
+  std::optional<ServoThread> servo;
+};
+
+}  // namespace
+
+TEST_CASE("the driver hears of the bridge in every tick, before any server is there") {
+  Served served;
+  CHECK(eventually([] { return fakedhd_forces(0) > 100; }));
+  CHECK(force_of(0).isZero(0.0));
+  served.servo->stop();
+}
+
+TEST_CASE("a device of Force Dimension that is unplugged ends the servo thread") {
+  Served served;
+  served.begin_session();
+  REQUIRE(eventually([&] { return served.serve() > 0.95 * kDemand; }));
+  fakedhd_unplug(0, 1);
+  REQUIRE(served.done.wait(kDeadlineMs));
+  served.servo->stop();
+  CHECK(served.servo->report().end == ServoEnd::kDeviceLost);
+  CHECK(served.loops[0].counts().faults > 0);
+}
+
+// Judged by the ticks themselves, whatever else the machine does.
+TEST_CASE("a force that the device turned off in the middle of a contact comes back as a ramp") {
+  constexpr double kRamp = 0.5;     // [s]
+  constexpr int kPauseTicks = 400;  // without force at least
+  Served served;
+  served.begin_session();
+  REQUIRE(eventually([&] { return served.serve() > 0.9 * kDemand; }));
   const int off = fakedhd_forces(0);
-  int silent = off;
-  std::int64_t silent_ns = 0;
-  bool risen = false;
-  REQUIRE(eventually([&] {
-    const std::int64_t before_ns = monotonic_ns();
-    const int tick = fakedhd_forces(0);
-    const double force = serve();
-    if (force == 0.0) {
-      silent = tick;
-      silent_ns = before_ns;
-    } else if (silent > off) {
-      const double since = 1e-9 * static_cast<double>(monotonic_ns() - silent_ns);
-      CHECK(force <= kDemand * (since + kTick) / kRamp);
-      risen = true;
-    }
-    return silent > off && force > 0.9 * kDemand;
-  }));
-  CHECK(risen);
-  CHECK(silent - off > 400);  // the pause
-  servo.stop();
-  CHECK(servo.report().end == ServoEnd::kStopped);
+  fakedhd_force_off(0, GENERATE(3, 2));
+  REQUIRE(eventually(
+      [&] { return served.serve() > 0.9 * kDemand && fakedhd_forces(0) > off + kPauseTicks; }));
+  served.servo->stop();
+  CHECK(served.servo->report().end == ServoEnd::kStopped);
+  const std::vector<ShownTicks::Row>& rows = served.shown.rows;
+  std::size_t k = 1;
+  while (k < rows.size() && (rows[k].ready || !rows[k - 1].ready)) ++k;
+  REQUIRE(k < rows.size());
+  int silent = 0;
+  for (; k < rows.size() && (silent == 0 || rows[k].force == 0.0); ++k) {
+    if (rows[k].force == 0.0) ++silent;
+  }
+  CHECK(silent > kPauseTicks);
+  REQUIRE(k < rows.size());
+  double largest = 0.0;
+  for (; k < rows.size(); ++k) {
+    const double elapsed = 1e-9 * static_cast<double>(rows[k].time_ns - rows[k - 1].time_ns);
+    CHECK(rows[k].force <= rows[k - 1].force + 1.000001 * kDemand * elapsed / kRamp);
+    largest = std::max(largest, rows[k].force);
+  }
+  CHECK(largest > 0.9 * kDemand);
 }

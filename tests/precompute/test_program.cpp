@@ -10,6 +10,7 @@
 #include "common/model/model_file.hpp"
 #include "common/response/modal_response.hpp"
 #include "precompute/modal/elastic_statics.hpp"
+#include "tests/precompute/program_run.hpp"
 #include "tests/support/child_process.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/file_size_limit.hpp"
@@ -17,54 +18,7 @@
 using Catch::Matchers::Contains;
 using namespace irdm;
 using namespace irdm::precompute;
-
-namespace {
-
-const std::string kBox = "[mesh]\nbox = { size = [0.12, 0.1, 0.08], cells = [3, 2, 2] }\n";
-const std::string kProgramMaterial =
-    "[material]\nyoungs_modulus = 2000\npoisson_ratio = 0.3\ndensity = 110\n";
-const std::string kMsh =
-    "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n"
-    "5 1 1 1\n$EndNodes\n$Elements\n2\n1 4 2 0 1 1 2 3 4\n2 4 2 0 1 2 3 4 5\n$EndElements\n";
-
-std::string with_words(std::string text, const std::string& from, const std::string& to) {
-  return text.replace(text.find(from), from.size(), to);
-}
-
-// Runs the real program in a folder of its own.
-struct ProgramRun : irdm::test::TemporaryFolder {
-  int status = -1;
-  std::string out;
-  std::string err;
-
-  ProgramRun() { std::filesystem::create_directory(path() / "made"); }
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(path() / name) << text;
-  }
-  std::filesystem::path model() const { return path() / "made" / "model.h5"; }
-  // The program with these words, separated by spaces, on its way.
-  irdm::test::ChildProcess begin(const std::string& arguments) const {
-    std::vector<std::string> command{IRDM_PROGRAM};
-    std::istringstream words(arguments);
-    for (std::string word; words >> word;) command.push_back(word);
-    return irdm::test::ChildProcess(command, {.folder = path()});
-  }
-  void start(const std::string& arguments) {
-    irdm::test::ChildProcess process = begin(arguments);
-    status = process.wait();
-    out = process.out();
-    err = process.err();
-  }
-  void check_refused(const std::string& message) {
-    start("c.toml -o made/model.h5");
-    CHECK(status == 1);
-    CHECK(std::count(err.begin(), err.end(), '\n') == 1);
-    CHECK_THAT(err, Catch::StartsWith("irdm-precompute: error: ") && Contains(message));
-    CHECK(std::filesystem::is_empty(path() / "made"));
-  }
-};
-
-}  // namespace
+using namespace irdm::test;
 
 TEST_CASE("program writes a model whose dense columns are the closed form of its modes") {
   ProgramRun run;
@@ -123,7 +77,7 @@ TEST_CASE("program writes a model whose dense columns are the closed form of its
 TEST_CASE("program removes what killed runs have left of its output, and leaves what is written") {
   ProgramRun run;
   run.write("c.toml", kBox + kProgramMaterial);
-  irdm::test::ChildProcess killed({"/bin/true"});
+  ChildProcess killed({"/bin/true"});
   const std::string part = "made/model.h5.part-";
   const std::string gone = part + std::to_string(killed.pid());
   const std::string ours = part + std::to_string(::getpid());
@@ -209,81 +163,6 @@ TEST_CASE("a fixed body does not move where it is clamped and has all other mode
     const bool clamped = std::abs(model.mesh.rest_position(i).z() + 0.04) < 1e-9;
     CHECK(phi.middleRows<3>(3 * i).isZero(0.0f) == clamped);
   }
-}
-
-TEST_CASE("a rigid box has exactly the mass and the inertia of a solid one") {
-  ProgramRun run;
-  const std::string rigid = "[material]\nrigid = true\ndensity = 800\n";
-  run.write("c.toml", kBox + rigid + "[response]\ndt = 0.001\n");
-  run.start("c.toml -o made/model.h5");
-  REQUIRE(run.err.empty());
-  REQUIRE(run.status == 0);
-  CHECK_THAT(run.out, Contains("mass") && !Contains("elastic modes"));
-  const Model model = read_model(run.model(), ResponseKind::kModal);
-  CHECK(is_rigid(model));
-  CHECK(model.dt == 0.001);
-  CHECK(model.body.support == Support::kFloating);
-  const double mass = 800 * 0.12 * 0.1 * 0.08;
-  const Vector3 squares(0.12 * 0.12, 0.1 * 0.1, 0.08 * 0.08);
-  const Vector3 moments = mass / 12.0 * (Vector3::Constant(squares.sum()) - squares);
-  CHECK(model.body.mass == Approx(mass).epsilon(1e-12));
-  CHECK((model.body.inertia - Matrix3(moments.asDiagonal())).norm() < 1e-12 * moments.norm());
-  CHECK((model.mesh.com_offset - Vector3(0.06, 0.05, 0.04)).norm() < 1e-12);
-}
-
-TEST_CASE("scenery is rigid and fixed without clamped nodes") {
-  ProgramRun run;
-  run.write("c.toml",
-            "[mesh]\ncapsule = { radius = 0.01, length = 0.04, cells = 3 }\norder = 2\n"
-            "[material]\nrigid = true\ndensity = 800\n[response]\nsupport = \"fixed\"\n");
-  run.start("c.toml -o made/model.h5");
-  REQUIRE(run.err.empty());
-  REQUIRE(run.status == 0);
-  const Model model = read_model(run.model(), ResponseKind::kDense);
-  CHECK(is_rigid(model));
-  CHECK(model.body.support == Support::kFixed);
-  CHECK(model.mesh.tets.cols() == 10);
-  run.start("check made/model.h5");
-  CHECK(run.status == 0);
-  CHECK_THAT(run.out, Contains("the body is rigid"));
-  run.start("compress made/model.h5 -o made/small.h5");
-  CHECK(run.status == 1);
-  CHECK_THAT(run.err, Contains("is of a rigid body, which has no response to compress"));
-}
-
-TEST_CASE("no R of a rigid body can be asked for") {
-  ProgramRun run;
-  run.write("c.toml", kBox + "[material]\nrigid = true\ndensity = 800\n");
-  for (const char* option :
-       {"--columns 0:3", "--storage dense", "--storage both", "--method time-stepping"}) {
-    run.start(std::string("c.toml -o made/model.h5 ") + option);
-    CHECK(run.status == 1);
-    CHECK(std::count(run.err.begin(), run.err.end(), '\n') == 1);
-    CHECK_THAT(run.err, Contains("c.toml: is of a rigid body, of which no R is computed"));
-    CHECK(std::filesystem::is_empty(run.path() / "made"));
-  }
-}
-
-TEST_CASE("a rigid body needs a sound mesh like any other, and says so in one line") {
-  ProgramRun run;
-  run.write("c.toml", "[mesh]\nfile = \"m.msh\"\n[material]\nrigid = true\ndensity = 800\n");
-  run.write("m.msh", with_words(kMsh, "2 4 2 0 1 2 3 4 5", "2 4 2 0 1 3 2 4 5"));
-  run.check_refused("m.msh: 1 of 2 tetrahedra are inverted");
-  run.write("m.msh", with_words(with_words(kMsh, "2 4 2 0 1 2 3 4 5", "2 4 2 0 1 3 2 4 5"),
-                                "1 4 2 0 1 1 2 3 4", "1 4 2 0 1 2 1 3 4"));
-  run.check_refused("m.msh: all 2 tetrahedra are inverted");
-  // A surface is filled: an open one cannot be, one turned inside out is turned round.
-  const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
-  const std::string faces = "f 1 3 2\nf 1 2 4\nf 1 4 3\n";
-  run.write("c.toml", "[mesh]\nfile = \"m.obj\"\n[material]\nrigid = true\ndensity = 800\n");
-  run.write("m.obj", corners + faces);
-  run.check_refused("m.obj: ");
-  run.write("m.obj", corners + "v 1 1 1\n" + faces + "f 2 3 5\nf 3 4 5\n");
-  run.check_refused("m.obj: the surface is open at 3 edges");
-  run.write("m.obj", corners + "f 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n");
-  run.start("c.toml -o made/model.h5");
-  CHECK(run.status == 0);
-  CHECK(read_model(run.model(), ResponseKind::kModal).body.mass == Approx(800.0 / 6.0));
 }
 
 TEST_CASE("a mesh file in millimetres becomes metres, and the wrong unit is hinted at") {
@@ -398,7 +277,7 @@ TEST_CASE("the program says how well some modes stand for all of them, in the fi
   std::filesystem::rename(run.model(), run.path() / "first.h5");
   run.start("c.toml -o made/model.h5 --threads 1");
   REQUIRE(run.status == 0);
-  CHECK(irdm::test::file_content(run.model()) == irdm::test::file_content(run.path() / "first.h5"));
+  CHECK(file_content(run.model()) == file_content(run.path() / "first.h5"));
 }
 
 TEST_CASE("bad mesh: one line on stderr, status 1, no output") {
@@ -496,14 +375,14 @@ TEST_CASE("SIGINT and SIGTERM leave neither the model nor its temporary file") {
     // Long enough to be interrupted while dense R is written.
     run.write("c.toml", "[mesh]\nbox = { size = [1, 1, 1], cells = [6, 6, 6] }\n" +
                             kProgramMaterial + "[response]\nsteps = 500\nstorage = \"dense\"\n");
-    irdm::test::ChildProcess process = run.begin("c.toml -o made/model.h5");
+    ChildProcess process = run.begin("c.toml -o made/model.h5");
     const auto writing = [&] {
       for (const auto& entry : std::filesystem::directory_iterator(run.path() / "made")) {
         if (std::filesystem::file_size(entry.path()) > 1'000'000) return true;
       }
       return false;
     };
-    REQUIRE(irdm::test::eventually(writing, irdm::test::ChildProcess::kDeadlineMs));
+    REQUIRE(eventually(writing, ChildProcess::kDeadlineMs));
     process.signal(signal);
     CHECK(process.wait() == -signal);
     CHECK(std::filesystem::is_empty(run.path() / "made"));
@@ -513,9 +392,9 @@ TEST_CASE("SIGINT and SIGTERM leave neither the model nor its temporary file") {
 TEST_CASE("a model that does not fit on the disk: one error, and nothing is left of it") {
   ProgramRun run;
   run.write("c.toml", kBox + kProgramMaterial);
-  const irdm::test::FinishedProgram ended = irdm::test::run_to_end(
-      irdm::test::on_full_disk(10'000, {IRDM_PROGRAM, "c.toml", "-o", run.model().string()}),
-      {.folder = run.path()});
+  const FinishedProgram ended =
+      run_to_end(on_full_disk(10'000, {IRDM_PROGRAM, "c.toml", "-o", run.model().string()}),
+                 {.folder = run.path()});
   CHECK(ended.status == 1);
   CHECK(std::count(ended.err.begin(), ended.err.end(), '\n') == 1);
   CHECK_THAT(ended.err,

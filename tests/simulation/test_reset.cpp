@@ -5,7 +5,7 @@
 
 #include "simulation/deformation/deformation.hpp"
 #include "simulation/step/simulation.hpp"
-#include "tests/support/fem_cube.hpp"
+#include "tests/simulation/two_on_floor.hpp"
 
 using namespace irdm;
 using namespace irdm::test;
@@ -13,21 +13,6 @@ using namespace irdm::test;
 namespace {
 
 constexpr double kTop = 0.06;
-
-// Two cubes that fall and turn, one on a floor, in front of two styluses.
-SimulationConfig busy(ResponseKind kind = ResponseKind::kModal) {
-  SimulationConfig config;
-  config.gravity = Vector3(0, -0.5, 0);
-  config.objects.resize(2);
-  config.objects[0].model = fem_cube({3, 2000.0, 8.0, 0.002, 200}, kind);
-  config.objects[0].angular_velocity = Vector3(0.3, 0.1, -0.2);
-  config.objects[0].friction = {0.6, 0.5};
-  config.objects[1] = config.objects[0];
-  config.objects[1].position = Vector3(0.3, 0, 0);
-  config.floor = FloorConfig{Vector3(0, 1, 0), -0.062, {0.5, 0.5}};
-  config.styluses = {{0.0, 1000.0, 0.005}, {0.0, 1000.0, 0.005}};
-  return config;
-}
 
 using Commands = std::array<StylusCommand, 2>;
 
@@ -63,8 +48,8 @@ StepRecord step(Simulation& simulation, const Commands& commands, bool reset = f
 
 TEST_CASE("reset: what follows is, to the bit, what follows a start") {
   const ResponseKind kind = GENERATE(ResponseKind::kModal, ResponseKind::kDense);
-  Simulation fresh(busy(kind));
-  Simulation used(busy(kind));
+  Simulation fresh(two_on_floor(kind));
+  Simulation used(two_on_floor(kind));
   bool touched = false;
   for (int k = 0; k < 200; ++k) {
     const StepRecord record = step(used, press(k));
@@ -94,7 +79,7 @@ TEST_CASE("reset: what follows is, to the bit, what follows a start") {
 }
 
 TEST_CASE("reset: only a button that goes down resets, once") {
-  Simulation simulation(busy());
+  Simulation simulation(two_on_floor());
   const auto resets = [&](std::uint32_t first, std::uint32_t second, bool present = true) {
     Commands commands{at(0.0, 0.2, first), at(0.3, 0.2, second)};
     commands[1].present = present;
@@ -114,7 +99,7 @@ TEST_CASE("reset: only a button that goes down resets, once") {
 }
 
 TEST_CASE("reset: a tip inside has to come from outside to touch") {
-  Simulation simulation(busy());
+  Simulation simulation(two_on_floor());
   StepRecord record;
   for (int k = 0; k < 120; ++k) record = step(simulation, press(k));
   REQUIRE(record.stylus[0].contact == ContactState::kTouching);
@@ -134,7 +119,7 @@ TEST_CASE("reset: a tip inside has to come from outside to touch") {
 }
 
 TEST_CASE("reset: the deformed surface follows") {
-  const SimulationConfig config = busy();
+  const SimulationConfig config = two_on_floor();
   Simulation simulation(config);
   Deformation whole(config);
   Deformation holed(config);

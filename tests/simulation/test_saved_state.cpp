@@ -6,6 +6,7 @@
 #include "common/error.hpp"
 #include "tests/simulation/saved_state.hpp"
 #include "tests/simulation/touching_cubes.hpp"
+#include "tests/simulation/two_on_floor.hpp"
 #include "tests/support/fixed_box.hpp"
 #include "tests/support/slotted_body.hpp"
 
@@ -17,18 +18,10 @@ namespace {
 using One = std::array<StylusCommand, 1>;
 using Two = std::array<StylusCommand, 2>;
 
-// Two cubes that turn, on a floor, under a fingertip that slides and one that takes hold.
+// Under a fingertip that slides and a point that takes hold.
 SimulationConfig on_floor(ResponseKind kind) {
-  SimulationConfig config;
-  config.gravity = Vector3(0, -0.5, 0);
-  config.objects.resize(2);
-  config.objects[0].model = fem_cube({3, 2000.0, 8.0, 0.002, 200}, kind);
-  config.objects[0].angular_velocity = Vector3(0.3, 0.1, -0.2);
-  config.objects[0].friction = {0.6, 0.5};
-  config.objects[1] = config.objects[0];
-  config.objects[1].position = Vector3(0.3, 0, 0);
-  config.floor = FloorConfig{Vector3(0, 1, 0), -0.062, {0.5, 0.5}};
-  config.styluses = {{0.01, 1000.0, 0.005}, {0.0, 1000.0, 0.005}};
+  SimulationConfig config = two_on_floor(kind);
+  config.styluses[0].radius = 0.01;
   return config;
 }
 

@@ -68,12 +68,27 @@ SceneryShape read_capsule(TomlTable table) {
   return capsule;
 }
 
+std::vector<Waypoint> read_path(TomlTable& motion) {
+  std::vector<Waypoint> path;
+  for (TomlTable& row : motion.tables("path")) {
+    Waypoint& next = path.emplace_back();
+    next.time = row.number("time", between(0.0, 1e6));
+    next.displacement = read_vector(row, "displacement", lab::kPlace);
+    if (path.size() > 1 && next.time <= path[path.size() - 2].time) {
+      row.fail("time", "is not after that of the row before", "give the rows in the order of time");
+    }
+    row.finish();
+  }
+  return path;
+}
+
 SceneryMotion read_motion(TomlTable table) {
   SceneryMotion motion;
   motion.velocity = read_vector(table, "velocity", lab::kVelocity);
   motion.angular_velocity = read_vector(table, "angular_velocity", lab::kAngularVelocity);
   motion.stroke = read_vector(table, "stroke", lab::kPlace);
   motion.frequency = table.number("frequency", between(0.0, 100.0), motion.frequency);
+  motion.path = read_path(table);
   if (!motion.stroke.isZero(0.0) && motion.frequency == 0.0) {
     table.fail("stroke", "is given without a frequency", "give motion.frequency, above 0");
   }

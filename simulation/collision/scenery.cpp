@@ -199,13 +199,29 @@ std::optional<SceneryHit> first_crossing(const SceneryConfig& scenery, const Vec
   return to_world(scenery, *hit);
 }
 
+namespace {
+
+Vector3 displacement(const std::vector<Waypoint>& path, double t) noexcept {
+  if (path.empty()) return Vector3::Zero();
+  const auto next = std::upper_bound(
+      path.begin(), path.end(), t, [](double time, const Waypoint& at) { return time < at.time; });
+  if (next == path.begin()) return next->displacement;
+  const auto last = next - 1;
+  if (next == path.end()) return last->displacement;
+  const double share = (t - last->time) / (next->time - last->time);
+  return last->displacement + share * (next->displacement - last->displacement);
+}
+
+}  // namespace
+
 void SceneryStep::go_on(double t) noexcept {
   const SceneryMotion& motion = now.motion;
   const double phase = 2.0 * std::numbers::pi * motion.frequency * t;
   const Quaternion orientation =
       (rotation_from_vector(t * motion.angular_velocity) * first_orientation).normalized();
-  const Vector3 position =
-      first_position + t * motion.velocity + 0.5 * (1.0 - std::cos(phase)) * motion.stroke;
+  const Vector3 position = first_position + t * motion.velocity +
+                           0.5 * (1.0 - std::cos(phase)) * motion.stroke +
+                           displacement(motion.path, t);
   before = t > 0 ? now.position : position;
   turn = t > 0 ? Quaternion(orientation * now.orientation.conjugate()) : Quaternion::Identity();
   now.position = position;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "common/contact/contact_problem.hpp"
 #include "common/geometry.hpp"
@@ -38,16 +39,24 @@ struct MeshShape {
 
 using SceneryShape = std::variant<PlaneShape, BoxShape, SphereShape, CapsuleShape, MeshShape>;
 
+/// Where scenery is at a time, from its place at the start.
+struct Waypoint {
+  double time = 0.0;                       ///< [s]
+  Vector3 displacement = Vector3::Zero();  ///< [m], W
+};
+
 /// How scenery moves from its pose at the start, by the time t since then or since the last reset:
-/// velocity t + stroke (1 - cos(2 pi frequency t)) / 2, turned by angular_velocity t.
+/// velocity t + stroke (1 - cos(2 pi frequency t)) / 2 + path(t), turned by angular_velocity t.
 struct SceneryMotion {
   Vector3 velocity = Vector3::Zero();          ///< [m/s], W
   Vector3 angular_velocity = Vector3::Zero();  ///< about the origin of its pose [rad/s], W
   Vector3 stroke = Vector3::Zero();            ///< there and back in a period [m], W
   double frequency = 0.0;                      ///< of that [Hz]
+  /// In the order of their times; linear between, before the first and after the last it stays.
+  std::vector<Waypoint> path;
 
   bool any() const noexcept {
-    return !velocity.isZero(0.0) || !angular_velocity.isZero(0.0) ||
+    return !path.empty() || !velocity.isZero(0.0) || !angular_velocity.isZero(0.0) ||
            (!stroke.isZero(0.0) && frequency > 0.0);
   }
 };

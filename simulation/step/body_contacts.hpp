@@ -35,7 +35,7 @@ struct ContactBody {
 class BodyContacts {
  public:
   /// Contacts that one pair can have in a step.
-  static constexpr int kMost = 64;
+  static constexpr int kMost = 128;
 
   /// A contact of this step.
   struct Contact {

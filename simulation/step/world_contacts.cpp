@@ -142,7 +142,9 @@ void WorldContacts::add_pairs(const SimulationConfig& config) {
       pairs_.emplace_back(b, two, a, one, dt, second ? 0 : two.sampling.first_edge());
     }
     for (std::size_t s = 0; s < config.scenery.size(); ++s) {
-      if (!objects_[static_cast<std::size_t>(a)]->rigid().moves()) continue;
+      const SoftObject& object = *objects_[static_cast<std::size_t>(a)];
+      const bool yields = scenery_[s].moves() && !is_rigid(object.model());
+      if (!object.rigid().moves() && !yields) continue;
       pairs_.emplace_back(a, one, static_cast<int>(s), scenery_[s], dt);
     }
   }

@@ -66,6 +66,26 @@ TEST_CASE("scenery: it stands still, or moves as it is told") {
   CHECK_THAT(rejection(with_scenery(kSphere + "motion = { speed = 1 }\n")), Contains("speed"));
 }
 
+TEST_CASE("scenery: a path has waypoints in the order of their times") {
+  const auto with_path = [](const std::string& rows) {
+    return kSphere + "motion = { path = [" + rows + "] }\n";
+  };
+  const std::string first = "{ time = 0.5 }, ";
+  const std::vector<Waypoint> path =
+      scenery(with_path(first + "{ time = 2, displacement = [1, 2, 3] }")).motion.path;
+  REQUIRE(path.size() == 2);
+  CHECK(path[0].time == 0.5);
+  CHECK(path[0].displacement == Vector3::Zero());
+  CHECK(path[1].time == 2.0);
+  CHECK(path[1].displacement == Vector3(1, 2, 3));
+  CHECK_THAT(rejection(with_scenery(with_path(first + "{ time = 0.5 }"))),
+             Contains("time is not after that of the row before"));
+  CHECK_THAT(rejection(with_scenery(with_path("{ time = -1 }"))), Contains("time is -1"));
+  CHECK_THAT(rejection(with_scenery(with_path("{ displacement = [0, 0, 0] }"))),
+             Contains("time is missing"));
+  CHECK_THAT(rejection(with_scenery(with_path("{ time = 1, place = 2 }"))), Contains("place"));
+}
+
 TEST_CASE("scenery: it is a part of what is simulated") {
   SceneConfig config;
   config.scenery.push_back(scenery(kSphere + "position = [1, 2, 3]\n"));

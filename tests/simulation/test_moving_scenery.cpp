@@ -5,6 +5,7 @@
 
 #include "common/motion/rigid_body.hpp"
 #include "tests/simulation/touching_cubes.hpp"
+#include "tests/support/fixed_box.hpp"
 #include "tests/support/synthetic_model.hpp"
 
 using namespace irdm;
@@ -52,6 +53,51 @@ TEST_CASE("moving scenery: its pose is that of the formula, without drift") {
   step.go_on(0.0);
   CHECK(step.now.position == scenery.position);
   CHECK(step.carried(point) == point);
+}
+
+TEST_CASE("moving scenery: a path leads it straight from waypoint to waypoint") {
+  SceneryConfig scenery;
+  scenery.shape = SphereShape{0.1};
+  scenery.position = Vector3(1, 2, 3);
+  scenery.motion.path = {{1.0, Vector3(0, 1, 0)}, {2.0, Vector3(0, 1, 4)}, {4.0, Vector3::Zero()}};
+  REQUIRE(scenery.motion.any());
+  SceneryStep step{scenery};
+  const auto there = [&](double t) -> Vector3 {
+    step.go_on(t);
+    return step.now.position - scenery.position;
+  };
+  CHECK((there(0.0) - Vector3(0, 1, 0)).norm() < 1e-15);
+  CHECK((there(1.0) - Vector3(0, 1, 0)).norm() < 1e-15);
+  CHECK((there(1.25) - Vector3(0, 1, 1)).norm() < 1e-15);
+  CHECK((there(2.0) - Vector3(0, 1, 4)).norm() < 1e-15);
+  CHECK((there(3.0) - Vector3(0, 0.5, 2)).norm() < 1e-15);
+  CHECK((step.carried(Vector3(0, 1, 4)) - Vector3(0, 0.5, 2)).norm() < 1e-15);
+  CHECK(there(4.0).norm() < 1e-15);
+  CHECK(there(1e9).norm() < 1e-15);
+}
+
+TEST_CASE("moving scenery: a plane that presses a bar on the ground feels E A d / L") {
+  FixedBox bar;
+  bar.size = Vector3(0.04, 0.12, 0.04);
+  bar.cells = {10, 2, 10};
+  bar.poisson_ratio = 0.0;
+  SimulationConfig config;
+  config.objects.resize(1);
+  config.objects[0].model = fixed_box(bar);
+  SceneryConfig plane;
+  plane.shape = PlaneShape{};
+  plane.position = Vector3(0, 0.061, 0);
+  plane.orientation = Quaternion(0, 1, 0, 0);  // the free side is below
+  plane.motion.path = {{0.0, Vector3::Zero()}, {0.2, Vector3(0, -0.003, 0)}};
+  config.scenery = {plane};
+  Simulation simulation(config);
+  const auto record = std::make_unique<StepRecord>();
+  step_alone(simulation, *record);
+  CHECK(record->body_contacts().empty());
+  for (int k = 0; k < 1000; ++k) step_alone(simulation, *record);
+  const double expected = bar.youngs_modulus * 0.04 * 0.04 * 0.002 / 0.12;
+  CHECK(record->body_contacts().size() == 121);  // every node of its face
+  CHECK(carried(*record).y() == Approx(-expected).epsilon(1e-5));
 }
 
 TEST_CASE("moving scenery: a block that a plane lifts weighs m (g + a)") {

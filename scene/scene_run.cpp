@@ -132,6 +132,17 @@ void SceneRun::load_state(std::span<const std::byte> state) {
   }
 }
 
+void SceneRun::set_gravity(const Vector3& gravity) {
+  for (const double component : gravity) {
+    if (lab::kGravity.contains(component)) continue;
+    throw Error("gravity", "is " + number_text(component) + " along an axis",
+                "give a finite number, from -100 to 100 m/s^2");
+  }
+  Settings settings = simulation_->settings();
+  settings.gravity = gravity;
+  simulation_->set(settings);
+}
+
 void SceneRun::surface(int i, Points& x) const {
   const SoftObject& object = simulation_->object(i);
   object.engine().displacement(x);

@@ -45,6 +45,9 @@ class SceneRun {
   /// other keys are not looked at.
   void load_state(std::span<const std::byte> state);
 
+  /// From the next step on [m/s^2], W. Throws Error where it is not within 100 m/s^2.
+  void set_gravity(const Vector3& gravity);
+
   /// Where the surface nodes of object i are at the end of the last step, (n, 3) [m], W. Uses
   /// OpenMP; not real-time safe.
   void surface(int i, Points& x) const;

@@ -170,6 +170,14 @@ class PythonSimulation {
     run_.reset();
   }
 
+  void set_gravity(const Numbers& gravity) {
+    const Use use(*this);
+    if (gravity.ndim() != 1 || gravity.size() != 3) {
+      throw py::value_error("gravity must have the shape (3)");
+    }
+    run_.set_gravity(Vector3(gravity.data()));
+  }
+
   py::bytes save_state() {
     const Use use(*this);
     const std::vector<std::byte> state = run_.save_state();
@@ -329,13 +337,14 @@ Read-only and not copied: the next call for this object writes it anew. Raises I
           "Number of the coming step.")
       .def_property_readonly(
           "stylus_count", [](const Self& self) { return self.run().stylus_count(); }, "s")
-      .def_property_readonly(
+      .def_property(
           "gravity",
           [](const Self& self) {
             const Vector3& g = self.run().simulation().settings().gravity;
             return py::array_t<double>(3, g.data());
           },
-          "(3) [m/s^2], W.")
+          &Self::set_gravity,
+          "(3) [m/s^2], W. What is set holds from the next step on. Raises ValueError, irdm.Error.")
       .def_property_readonly(
           "object_names", [](const Self& self) { return names(self.run().scene().objects); },
           "By number.")

@@ -24,7 +24,9 @@ class SimulationTest(unittest.TestCase):
         mass = numpy.array([cube().mass, block().mass])
         before = numpy.zeros((2, 3))
         kinds = set()
-        for tip in tips(400):
+        for k, tip in enumerate(tips(400)):
+            if k == 300:
+                simulation.gravity = [0.5, -8, 1]
             step = simulation.step(tip)
             force = numpy.zeros((2, 3))
             numpy.add.at(force, step.contacts["object"], step.contacts["force"])
@@ -204,6 +206,12 @@ class SimulationTest(unittest.TestCase):
                 simulation.surface(index)
             with self.assertRaises(IndexError):
                 simulation.model(index)
+        for gravity in ([0, 1], [[0, 1, 2]]):
+            with self.assertRaisesRegex(ValueError, "shape"):
+                simulation.gravity = gravity
+        for gravity in ([0, numpy.nan, 0], [0, 0, 101]):
+            with self.assertRaisesRegex(irdm.Error, "gravity: is .* give a finite number"):
+                simulation.gravity = gravity
         # Nothing of that was a step.
         self.assertEqual(simulation.step(good).objects.tobytes(), twin.step(good).objects.tobytes())
 

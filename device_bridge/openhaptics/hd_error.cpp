@@ -7,10 +7,13 @@
 namespace irdm::hd {
 
 const char* const kPermissionRemedy =
-    "install the vendor's udev rules (91-3dsystems-*.rules) or join the group that owns it "
-    "(dialout), then plug the device in again";
+    "install the udev rules of the vendor's driver for this model (91- or 99-3dsystems*.rules; "
+    "they "
+    "have to name its product id) or join the group that owns it, then plug the device in again";
 const char* const kCommaRemedy =
     "write its numbers with decimal points, or set the device up again under LC_ALL=C";
+const char* const kNameRemedy =
+    "or leave `name` out: some drivers (2022) start their default device only";
 
 const DeviceSetup* find_setup(const TouchSystem& system, const std::string& name) {
   const auto found = std::find_if(system.setups.begin(), system.setups.end(),
@@ -30,8 +33,9 @@ Advice start_advice(const std::string& name, const ErrorInfo& error, const Touch
   if (error.code == kAlreadyInitiated) return {refusal, text.remedy};
   const DeviceSetup* const setup = find_setup(system, name);
   if (!name.empty() && setup == nullptr && !system.setups.empty()) {
-    return {"no device of this name is set up, only: " + setup_names(system),
-            "correct its name, or set it up with the vendor's Touch_Setup"};
+    return {
+        "no device of this name is set up, only: " + setup_names(system),
+        std::string("correct its name, set it up with the vendor's Touch_Setup, ") + kNameRemedy};
   }
   if (system.ports.empty()) {
     return {refusal + "; and no device of 3D Systems is on USB",
@@ -46,7 +50,7 @@ Advice start_advice(const std::string& name, const ErrorInfo& error, const Touch
   if (setup != nullptr && setup->decimal_comma) {
     return {setup->file.string() + " has decimal commas", kCommaRemedy};
   }
-  return {refusal, text.remedy};
+  return {refusal, name.empty() ? text.remedy : std::string(text.remedy) + ", " + kNameRemedy};
 }
 
 }  // namespace irdm::hd
@@ -73,12 +77,13 @@ constexpr std::array kEntries{
     Entry{0x0103, {"HD_INVALID_INPUT_TYPE", "wrong type of value", kReport, Meaning::kBadFrame}},
     Entry{0x0104, {"HD_BAD_HANDLE", "the driver no longer knows it", kCable, Meaning::kLost}},
     Entry{0x0200, {"HD_WARM_MOTORS", "its motors are warm", "let them cool down", Meaning::kWarm}},
-    Entry{0x0201, {"HD_EXCEEDED_MAX_FORCE", "more force than it bears", kAgain, Meaning::kUnsafe}},
-    Entry{
-        0x0202,
-        {"HD_EXCEEDED_MAX_FORCE_IMPULSE", "force that changed too fast", kAgain, Meaning::kUnsafe}},
-    Entry{0x0203, {"HD_EXCEEDED_MAX_VELOCITY", "it was moved too fast", kAgain, Meaning::kUnsafe}},
-    Entry{0x0204, {"HD_FORCE_ERROR", "it cannot show the force", kAgain, Meaning::kUnsafe}},
+    Entry{0x0201, {"HD_EXCEEDED_MAX_FORCE", "more force than it bears", kAgain, Meaning::kWarning}},
+    Entry{0x0202,
+          {"HD_EXCEEDED_MAX_FORCE_IMPULSE", "force that changed too fast", kAgain,
+           Meaning::kWarning}},
+    Entry{0x0203, {"HD_EXCEEDED_MAX_VELOCITY", "it was moved too fast", kAgain, Meaning::kWarning}},
+    Entry{0x0204,
+          {"HD_FORCE_ERROR", "forces of different kinds in a frame", kReport, Meaning::kUnsafe}},
     Entry{0x0300, {"HD_DEVICE_FAULT", "the device does not work", kCable, Meaning::kLost}},
     Entry{0x0301,
           {"HD_DEVICE_ALREADY_INITIATED", "it is in use already",
@@ -93,9 +98,7 @@ constexpr std::array kEntries{
            Meaning::kUnsafe}},
     Entry{0x0400, {"HD_ILLEGAL_BEGIN", "a frame in a frame", kReport, Meaning::kBadFrame}},
     Entry{0x0401, {"HD_ILLEGAL_END", "the end of no frame", kReport, Meaning::kBadFrame}},
-    Entry{0x0402,
-          {"HD_FRAME_ERROR", "a frame was not served in time", "run fewer programs beside it",
-           Meaning::kBadFrame}},
+    Entry{0x0402, {"HD_FRAME_ERROR", "a call outside of its frame", kReport, Meaning::kBadFrame}},
     Entry{0x0500, {"HD_INVALID_PRIORITY", "a priority out of range", kReport, Meaning::kUnsafe}},
     Entry{0x0501,
           {"HD_SCHEDULER_FULL", "too many callbacks are scheduled", "stop other users of libHD",

@@ -12,6 +12,7 @@ enum class Meaning {
   kNothing,   ///< no error
   kWarm,      ///< the motors are warm: less force for a while
   kBadFrame,  ///< what this frame read is of no use; several in a row are a fault of the reading
+  kWarning,   ///< a force or speed was too much: no force for a while
   kUnsafe,    ///< no force any more; readings go on
   kLost,      ///< no force, and no readings any more
 };
@@ -61,5 +62,6 @@ std::string setup_names(const TouchSystem& system);
 
 extern const char* const kPermissionRemedy;
 extern const char* const kCommaRemedy;
+extern const char* const kNameRemedy;
 
 }  // namespace irdm::hd

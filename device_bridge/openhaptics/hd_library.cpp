@@ -17,8 +17,11 @@ std::string package_of(const std::string& object) {
       object.starts_with("libPhantomManager")) {
     return "install the vendor's device driver (Touch Device Driver for Linux)";
   }
-  if (object.starts_with("libncurses.so.5")) return "install the Debian package libncurses5";
-  if (object.starts_with("libtinfo.so.5")) return "install the Debian package libtinfo5";
+  for (const std::string name : {"libncurses", "libtinfo"}) {
+    if (object.starts_with(name + ".so.5")) {
+      return "install the package " + name + "5 (Debian 12 has it, later releases may not)";
+    }
+  }
   return "install what brings it, or add its folder to LD_LIBRARY_PATH";
 }
 

@@ -54,7 +54,10 @@ hd::ErrorInfo unpacked(std::uint64_t both) noexcept {
 
 OpenHapticsDevice::OpenHapticsDevice(std::string name,
                                      std::shared_ptr<OpenHapticsScheduler> scheduler)
-    : name_(std::move(name)), scheduler_(std::move(scheduler)), hd_(scheduler_->api()) {}
+    : name_(std::move(name)),
+      scheduler_(std::move(scheduler)),
+      hd_(scheduler_->api()),
+      calibration_(hd_) {}
 
 std::string OpenHapticsDevice::label() const {
   return name_.empty() ? "default device" : "device '" + name_ + "'";
@@ -64,7 +67,7 @@ void OpenHapticsDevice::open() {
   initialise();
   turn_on();
   read_rating();
-  choose_calibration();
+  calibration_.choose_style();
   scheduler_->add(*this);
   const auto text = [&](hd::Name name) {
     const char* const word = hd_.get_string(name);
@@ -73,6 +76,7 @@ void OpenHapticsDevice::open() {
   spdlog::info("{}: {}, serial number {}, at most {} N, {} N for long", label(), text(hd::kModel),
                text(hd::kSerialNumber), rating_.peak, rating_.continuous);
   scheduler_->forget_errors();
+  look_at_calibration();
 }
 
 // The vendor's setup files have decimal points, whatever the locale that a library may have set.
@@ -110,14 +114,6 @@ void OpenHapticsDevice::read_rating() {
   rating_ = {.peak = rated(peak), .continuous = rated(continuous)};
 }
 
-void OpenHapticsDevice::choose_calibration() {
-  std::int32_t styles = 0;
-  hd_.get_integerv(hd::kCalibrationStyles, &styles);
-  for (const hd::Name style : {hd::kEncoderReset, hd::kInkwell, hd::kAuto}) {  // best last
-    if ((static_cast<hd::Name>(styles) & style) != 0) calibration_style_ = style;
-  }
-}
-
 void OpenHapticsDevice::close() noexcept {
   if (handle_ == hd::kInvalidHandle) return;
   scheduler_->remove(*this);
@@ -134,13 +130,13 @@ void OpenHapticsDevice::begin_frame() noexcept {
 
 StylusPose OpenHapticsDevice::read(double) noexcept {
   if (in_frame_) write({});
+  count_tick();
   begin_frame();
   Transform transform;
   transform.fill(std::numeric_limits<double>::quiet_NaN());
   std::int32_t buttons = 0;
   hd_.get_doublev(hd::kTransform, transform.data());
   hd_.get_integerv(hd::kButtons, &buttons);
-  calibrate();
   scheduler_->fetch_errors(*this);
   read_warmth();
   StylusPose pose = to_pose(transform, buttons);
@@ -167,16 +163,25 @@ void OpenHapticsDevice::read_warmth() noexcept {
   state_.motor_temperature = warm_ticks_ > 0 ? 1.0 : warmest;
 }
 
-void OpenHapticsDevice::calibrate() noexcept {
-  const hd::Name found = hd_.check_calibration();
-  if (found == hd::kCalibrationNeedsUpdate) hd_.update_calibration(calibration_style_);
-  state_.ready = found == hd::kCalibrationOk;
-  calibration_.store(found, std::memory_order_relaxed);
+void OpenHapticsDevice::count_tick() noexcept {
+  warnings_.tick();
+  if (!warnings_.paused()) warned_.store(0, std::memory_order_relaxed);
+  if (calibration_.due()) look_at_calibration();
 }
 
+// Between frames, as the driver wants it.
+void OpenHapticsDevice::look_at_calibration() noexcept {
+  hd_.make_current_device(handle_);
+  calibrating_ = true;
+  calibration_.look();
+  scheduler_->fetch_errors(*this);
+  calibrating_ = false;
+}
+
+// While the driver only warns, the safety filter takes the force off at its own rate.
 void OpenHapticsDevice::write(const Wrench& shown) noexcept {
   if (!in_frame_) begin_frame();
-  const bool sound = shown.force.allFinite() && state_.ready;
+  const bool sound = shown.force.allFinite() && calibration_.good();
   const Vector3 force = sound ? shown.force : Vector3(Vector3::Zero());
   hd_.set_doublev(hd::kForce, force.data());
   hd_.end_frame(handle_);
@@ -185,16 +190,39 @@ void OpenHapticsDevice::write(const Wrench& shown) noexcept {
 }
 
 DeviceState OpenHapticsDevice::state() const noexcept {
-  return state_;
+  DeviceState state = state_;
+  state.ready = calibration_.good() && !warnings_.paused();
+  return state;
 }
 
 void OpenHapticsDevice::take(const hd::ErrorInfo& error) noexcept {
-  const hd::Meaning meaning = hd::describe(error.code).meaning;
-  if (meaning == hd::Meaning::kWarm) warm_ticks_ = kWarmTicks;
-  if (meaning == hd::Meaning::kBadFrame) bad_frame_ = true;
-  if (meaning < hd::Meaning::kUnsafe) return;
+  if (calibrating_ && error.code == hd::kDeviceFault) return calibration_.fail();
+  switch (hd::describe(error.code).meaning) {
+    case hd::Meaning::kNothing:
+      return;
+    case hd::Meaning::kWarm:
+      warm_ticks_ = kWarmTicks;
+      return;
+    case hd::Meaning::kBadFrame:
+      bad_frame_ = true;
+      return;
+    case hd::Meaning::kWarning:
+      return warn(error);
+    case hd::Meaning::kUnsafe:
+      return fail(error);
+    case hd::Meaning::kLost:
+      state_.lost = true;
+      return fail(error);
+  }
+}
+
+void OpenHapticsDevice::warn(const hd::ErrorInfo& error) noexcept {
+  if (!warnings_.bearable()) return fail(error);
+  warned_.store(packed(error), std::memory_order_relaxed);
+}
+
+void OpenHapticsDevice::fail(const hd::ErrorInfo& error) noexcept {
   state_.failed = true;
-  state_.lost = state_.lost || meaning == hd::Meaning::kLost;
   std::uint64_t none = 0;
   fault_.compare_exchange_strong(none, packed(error), std::memory_order_relaxed);
 }
@@ -205,15 +233,12 @@ std::string OpenHapticsDevice::trouble() const {
     return label() + ": no force any more: " + to_text(error) + "; " +
            hd::describe(error.code).remedy;
   }
-  switch (calibration_.load(std::memory_order_relaxed)) {
-    case hd::kCalibrationOk:
-    case hd::kCalibrationNeedsUpdate:
-      return {};
-    default:
-      return label() +
-             ": no force until it is calibrated; put the stylus into its inkwell, or use " +
-             "the vendor's Touch_Diagnostic";
+  if (const std::uint64_t warning = warned_.load(std::memory_order_relaxed); warning != 0) {
+    return label() + ": no force for a moment: " + to_text(unpacked(warning)) +
+           "; move more slowly and press less: it stays off when this happens often";
   }
+  const std::string calibration = calibration_.trouble();
+  return calibration.empty() ? "" : label() + ": " + calibration;
 }
 
 std::unique_ptr<HapticDevice> make_openhaptics_device(const DeviceConfig& config) {

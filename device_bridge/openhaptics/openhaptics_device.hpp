@@ -6,6 +6,8 @@
 #include <string>
 
 #include "device_bridge/haptic_device.hpp"
+#include "device_bridge/openhaptics/driver_warnings.hpp"
+#include "device_bridge/openhaptics/hd_calibration.hpp"
 #include "device_bridge/openhaptics/hd_error.hpp"
 #include "device_bridge/openhaptics/openhaptics_scheduler.hpp"
 
@@ -16,7 +18,8 @@ struct DeviceConfig;
 /// A device of 3D Systems (Touch, Phantom) by OpenHaptics' driver. D has its origin where the
 /// driver has it, +x right, +y up, +z towards the person. One frame of the driver from read() to
 /// write(), so that a force goes out in the tick of the position that it answers. The driver's own
-/// limits stay on.
+/// limits stay on. What it warns of, or a calibration that is lost, makes the device not ready: the
+/// force comes back as after arming.
 class OpenHapticsDevice : public HapticDevice {
  public:
   /// @param name by which the vendor's setup knows it; empty: the driver's default device
@@ -42,9 +45,11 @@ class OpenHapticsDevice : public HapticDevice {
   void initialise();
   void turn_on();
   void read_rating();
-  void choose_calibration();
   void begin_frame() noexcept;
-  void calibrate() noexcept;
+  void look_at_calibration() noexcept;
+  void warn(const hd::ErrorInfo& error) noexcept;
+  void fail(const hd::ErrorInfo& error) noexcept;
+  void count_tick() noexcept;
   void read_warmth() noexcept;
   std::string label() const;
 
@@ -52,15 +57,18 @@ class OpenHapticsDevice : public HapticDevice {
   std::shared_ptr<OpenHapticsScheduler> scheduler_;
   const hd::Api& hd_;
   hd::Handle handle_ = hd::kInvalidHandle;
-  hd::Name calibration_style_ = 0;
+  hd::Calibration calibration_;
+  bool calibrating_ = false;  ///< errors are about the calibration
+  hd::DriverWarnings warnings_;
   ForceRating rating_;
   DeviceState state_;
   bool tells_warmth_ = true;
   int warm_ticks_ = 0;      ///< what is left of a warning of warm motors
   bool bad_frame_ = false;  ///< the next reading is of no use
   bool in_frame_ = false;
-  std::atomic<hd::Name> calibration_{hd::kCalibrationOk};  ///< these two for trouble()
-  std::atomic<std::uint64_t> fault_{0};  ///< first error that took the force: code, internal number
+  // For trouble(): code and internal number.
+  std::atomic<std::uint64_t> warned_{0};  ///< whose pause lasts
+  std::atomic<std::uint64_t> fault_{0};   ///< first error that took the force
 };
 
 /// For the registry: loads the driver. Throws Error that says what of it is missing.

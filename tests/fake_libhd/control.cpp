@@ -32,6 +32,10 @@ void fakehd_refuse(unsigned code) {
   const Lock lock(driver().mutex);
   driver().refusal = code;
 }
+void fakehd_refuse_names() {
+  const Lock lock(driver().mutex);
+  driver().refuses_names = true;
+}
 void fakehd_refuse_rates() {
   const Lock lock(driver().mutex);
   driver().refuses_rate = true;
@@ -98,6 +102,15 @@ void fakehd_calibration(const char* name, unsigned state, int styles) {
     device.calibration = state;
     device.calibration_styles = styles;
   });
+}
+void fakehd_calibration_fails(const char* name, int fails) {
+  with(name, [&](FakeDevice& device) { device.calibration_fails = fails != 0; });
+}
+void fakehd_calibration_moves(const char* name, double x) {
+  with(name, [&](FakeDevice& device) { device.calibration_moves = x; });
+}
+unsigned long fakehd_calibration_checks(const char* name) {
+  return with(name, [&](FakeDevice& device) { return device.calibration_checks; });
 }
 unsigned fakehd_updated_style(const char* name) {
   return with(name, [&](FakeDevice& device) { return device.updated_style; });

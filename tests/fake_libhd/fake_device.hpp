@@ -30,7 +30,8 @@ struct FrameRecord {
 /// What happens to a device that has shown a force for some frames.
 struct ContactEvent {
   unsigned long after_frames = 0;  ///< with a force; 0: nothing happens
-  std::string what;                ///< "unplug", "hang", "tell", or an error's number
+  unsigned long every_frames = 0;  ///< from one event to the next
+  std::string what;                ///< "unplug", "hang", "tell", or an error's number; by commas
 };
 
 /// One device of the fake driver: a stylus in a hand that nothing disturbs, and its motors.
@@ -48,6 +49,9 @@ struct FakeDevice {
   unsigned calibration = 0x5000;
   int calibration_styles = 2 | 4;
   unsigned updated_style = 0;
+  bool calibration_fails = false;
+  double calibration_moves = 0.0;  ///< the tip, along x [mm]
+  unsigned long calibration_checks = 0;
 
   bool open = false;
   bool plugged = true;

@@ -1,5 +1,6 @@
 #include "tests/fake_libhd/fake_driver.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -62,6 +63,7 @@ void FakeDriver::reset() {
   scheduled_.clear();
   current = kInvalidHandle;
   refusal = 0;
+  refuses_names = false;
   refuses_rate = false;
   hand_driven = false;
   hangs = false;
@@ -84,7 +86,8 @@ void FakeDriver::read_environment() {
     device->motion = read_motion(variable("FAKE_HD_MOTION"));
     device->event.what = variable("FAKE_HD_EVENT");
     if (!device->event.what.empty()) {
-      device->event.after_frames = std::stoul(variable("FAKE_HD_EVENT_AFTER"));
+      device->event.every_frames = std::stoul(variable("FAKE_HD_EVENT_AFTER"));
+      device->event.after_frames = device->event.every_frames;
     }
   }
 }
@@ -121,6 +124,7 @@ unsigned FakeDriver::init(const char* name) {
   if (running_) misuse("a device is opened while the scheduler runs");
   FakeDevice* const device = find(name != nullptr ? name : "");
   unsigned error = device == nullptr ? kDeviceFault : 0;
+  if (device != nullptr && refuses_names && device->name != kDefaultName) error = kDeviceFault;
   if (device != nullptr && device->open) error = kAlreadyInitiated;
   if (device != nullptr && !device->plugged) error = kCommError;
   if (refusal != 0) error = refusal;
@@ -187,16 +191,20 @@ void FakeDriver::end_frame(unsigned handle) {
 }
 
 void FakeDriver::happen(FakeDevice& device) {
-  device.event.after_frames = 0;
-  if (device.event.what == "unplug") {
+  ContactEvent& event = device.event;
+  const std::size_t end = std::min(event.what.find(','), event.what.size());
+  const std::string what = event.what.substr(0, end);
+  event.what.erase(0, end + 1);
+  event.after_frames = event.what.empty() ? 0 : device.contact_frames + event.every_frames;
+  if (what == "unplug") {
     device.plugged = false;
-  } else if (device.event.what == "hang") {
+  } else if (what == "hang") {
     hangs = true;
-  } else if (device.event.what == "tell") {
+  } else if (what == "tell") {
     std::puts("fake device: in contact");
     std::fflush(stdout);
   } else {
-    device.at_begin.push_back(static_cast<unsigned>(std::stoul(device.event.what, nullptr, 0)));
+    device.at_begin.push_back(static_cast<unsigned>(std::stoul(what, nullptr, 0)));
   }
 }
 

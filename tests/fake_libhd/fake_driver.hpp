@@ -41,6 +41,7 @@ class FakeDriver {
   void raise(unsigned code, unsigned handle);
   ErrorInfo pop_error();
   void misuse(const std::string& what);
+  bool running() const { return running_; }
 
   void start();
   void stop();
@@ -52,6 +53,7 @@ class FakeDriver {
   std::recursive_mutex mutex;
   unsigned current = 0xFFFFFFFF;
   unsigned refusal = 0;            ///< error of the next hdInitDevice
+  bool refuses_names = false;      ///< any device but the default one
   bool refuses_rate = false;       ///< any rate but 1000
   bool hand_driven = false;        ///< ticks come from the test only
   std::atomic<bool> hangs{false};  ///< the scheduler calls nobody

@@ -14,7 +14,8 @@ namespace {
 
 constexpr unsigned kInvalidEnum = 0x0100;
 constexpr unsigned kInvalidValue = 0x0101;
-constexpr unsigned kInvalidOperation = 0x0102;
+constexpr unsigned kDeviceFault = 0x0300;
+constexpr unsigned kFrameError = 0x0402;
 constexpr unsigned kForceOutput = 0x4000;
 constexpr unsigned kMaxForceClamping = 0x4001;
 
@@ -33,6 +34,16 @@ void set_capability(unsigned name, bool on) {
   }
   std::erase(device->limits_on, name);
   if (on) device->limits_on.push_back(name);
+}
+
+// The current device, where it can be asked for its calibration; nullptr and an error otherwise.
+FakeDevice* calibrated_device() {
+  FakeDevice* const device = driver().current_device();
+  if (device == nullptr) return nullptr;
+  if (device->in_frame) driver().misuse("a calibration in a frame");
+  if (!device->calibration_fails) return device;
+  refuse(kDeviceFault);
+  return nullptr;
 }
 
 }  // namespace
@@ -106,7 +117,7 @@ void hdGetDoublev(unsigned name, double* values) {
   if (device == nullptr) return;
   switch (name) {
     case 0x2052:
-      if (!device->in_frame) refuse(kInvalidOperation);
+      if (!device->in_frame) refuse(kFrameError);
       std::copy(device->transform.begin(), device->transform.end(), values);
       break;
     case 0x2603:
@@ -136,7 +147,7 @@ void hdSetDoublev(unsigned name, const double* values) {
   if (device == nullptr) return;
   if (name != 0x2700) return refuse(kInvalidEnum);
   if (!device->in_frame) {
-    refuse(kInvalidOperation);
+    refuse(kFrameError);
     return driver().misuse("a force outside a frame");
   }
   std::copy_n(values, 3, device->commanded.begin());
@@ -144,17 +155,21 @@ void hdSetDoublev(unsigned name, const double* values) {
 
 unsigned hdCheckCalibration() {
   const Lock lock(driver().mutex);
-  const FakeDevice* const device = driver().current_device();
-  return device != nullptr ? device->calibration : 0x5000;
+  FakeDevice* const device = calibrated_device();
+  if (device == nullptr) return 0x5000;
+  ++device->calibration_checks;
+  return device->calibration;
 }
 
 void hdUpdateCalibration(unsigned style) {
   const Lock lock(driver().mutex);
-  FakeDevice* const device = driver().current_device();
+  FakeDevice* const device = calibrated_device();
   if (device == nullptr) return;
   if (device->calibration != 0x5001) driver().misuse("a calibration that was not due");
+  if (style == 1 && driver().running()) driver().misuse("encoders are reset while forces act");
   device->updated_style = style;
   device->calibration = 0x5000;
+  device->transform[12] += device->calibration_moves;
 }
 
 void hdStartScheduler() {

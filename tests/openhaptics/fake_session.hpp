@@ -6,6 +6,8 @@
 
 #include "device_bridge/openhaptics/hd_library.hpp"
 #include "device_bridge/openhaptics/openhaptics_device.hpp"
+#include "device_bridge/servo_loop.hpp"
+#include "tests/bridge/milliseconds.hpp"
 #include "tests/fake_libhd/control.hpp"
 
 namespace irdm::test {
@@ -28,10 +30,91 @@ class FakeSession {
   }
 };
 
+/// Of the last frame [N].
 inline Vector3 force_of(const char* name) {
   Vector3 force;
   fakehd_force(name, force.data());
   return force;
 }
+
+/// A device in ticks that the test makes one by one, each with a frame.
+class SteppedDevice {
+ public:
+  explicit SteppedDevice(const std::string& name = "")
+      : scheduler(std::make_shared<OpenHapticsScheduler>(FakeSession::api())),
+        device(name, scheduler) {
+    fakehd_drive_by_hand();
+    device.open();
+    scheduler->start(1000.0, [this] {
+      pose = device.read(0.0);
+      device.write({wanted});
+      return true;
+    });
+  }
+  ~SteppedDevice() {
+    scheduler->stop();
+    device.close();
+  }
+  const StylusPose& tick(int count = 1) {
+    fakehd_tick(count);
+    return pose;
+  }
+
+  std::shared_ptr<OpenHapticsScheduler> scheduler;
+  OpenHapticsDevice device;
+  StylusPose pose;
+  Vector3 wanted = Vector3::Zero();
+};
+
+/// The servo loop of the default device, on a virtual clock of 1 ms a tick.
+class SteppedLoop {
+ public:
+  explicit SteppedLoop(const FilterLimits& limits = {})
+      : scheduler_(std::make_shared<OpenHapticsScheduler>(FakeSession::api())),
+        device("", scheduler_),
+        loop(device, limits) {
+    fakehd_drive_by_hand();
+    device.open();
+    scheduler_->start(1000.0, [this] {
+      loop.read(0.0);
+      loop.apply(now_ns, input);
+      return true;
+    });
+  }
+  ~SteppedLoop() {
+    scheduler_->stop();
+    device.close();
+  }
+  /// So many ticks in which the server asks for this.
+  void tick(int count, const Vector3& force_W) {
+    for (int k = 0; k < count; ++k) {
+      input.force.force = force_W;
+      input.force.sample_time_ns = now_ns + kMs;
+      tick_as_is();
+    }
+  }
+  /// Arms; afterwards the force is shown in full.
+  void engage(const Vector3& force_W) {
+    tick(100, Vector3::Zero());
+    tick(100, force_W);
+    REQUIRE(force_of("").isApprox(force_W));
+  }
+  /// One with `input` as it is.
+  void tick_as_is() {
+    now_ns += kMs;
+    fakehd_tick(1);
+  }
+  /// That the motors show [N].
+  double force() const { return force_of("").norm(); }
+
+ private:
+  std::shared_ptr<OpenHapticsScheduler> scheduler_;
+
+ public:
+  OpenHapticsDevice device;
+  ServoLoop loop;
+  ServoInput input{.linked = true, .any_force = true};
+  std::int64_t now_ns = 0;
+};
 
 }  // namespace irdm::test

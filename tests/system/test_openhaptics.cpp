@@ -100,12 +100,27 @@ TEST_CASE("a device that is unplugged in contact: the force goes to zero, the br
   CHECK(server.process.wait() == 0);
 }
 
-TEST_CASE("a device that was moved too fast stays without force, and the bridge goes on") {
+TEST_CASE(
+    "a device that was moved too fast gets its force back after a while, and the bridge says so") {
   const DeviceStage device;
   Server server = device.stage.start_server();
   ChildProcess bridge =
-      device.stage.start_bridge(server, {}, device.with(DeviceStage::in_contact("0x0203")));
-  CHECK_THAT(bridge.line_with("HD_EXCEEDED_MAX_VELOCITY", true), Contains("no force any more"));
+      device.stage.start_bridge(server, {}, device.with(DeviceStage::in_contact("0x0203,tell")));
+  CHECK_THAT(bridge.line_with("HD_EXCEEDED_MAX_VELOCITY", true), Contains("no force for a moment"));
+  bridge.line_with("in contact");
+  bridge.signal(SIGTERM);
+  CHECK(bridge.wait() == 0);
+  CHECK_THAT(bridge.out(), Contains("faults 0"));
+  CHECK(device.misuses() == "misuses 0 \n");
+}
+
+TEST_CASE(
+    "a device that is moved too fast again and again stays without force, the bridge goes on") {
+  const DeviceStage device;
+  Server server = device.stage.start_server();
+  ChildProcess bridge = device.stage.start_bridge(
+      server, {}, device.with(DeviceStage::in_contact("0x0203,0x0203,0x0203", 20)));
+  CHECK_THAT(bridge.line_with("no force any more", true), Contains("HD_EXCEEDED_MAX_VELOCITY"));
   CHECK(bridge.running());
   bridge.signal(SIGTERM);
   CHECK(bridge.wait() == 0);

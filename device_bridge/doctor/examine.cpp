@@ -10,6 +10,7 @@
 #include "device_bridge/device_registry.hpp"
 #include "device_bridge/doctor/judgements.hpp"
 #include "device_bridge/forcedimension/dhd_api.hpp"
+#include "device_bridge/forcedimension/dhd_usb.hpp"
 #include "device_bridge/openhaptics/hd_library.hpp"
 
 namespace irdm::doctor {
@@ -53,6 +54,7 @@ Findings examine_drivers(const std::optional<BridgeConfig>& config) {
   const bool force_dimension = has_type(devices, "forcedimension");
   if (!config || force_dimension) {
     findings.push_back(judge_library("libdhd.so", failure_of(dhd::library), force_dimension));
+    add(findings, judge_usb(dhd::find_usb_devices(), force_dimension));
   }
   return findings;
 }

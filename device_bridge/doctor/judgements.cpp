@@ -90,6 +90,25 @@ Findings judge_ports(const hd::TouchSystem& system, bool wanted) {
   return {{Grade::kWarning, "port", what, "check power and cable, unless it is on another bus"}};
 }
 
+Findings judge_usb(const std::vector<dhd::UsbDevice>& devices, bool wanted) {
+  Findings findings;
+  for (const auto& [node, usb_id, permitted] : devices) {
+    const std::string subject = "usb " + node;
+    if (permitted) {
+      findings.push_back({Grade::kOk, subject, usb_id + ", permitted", ""});
+    } else {
+      findings.push_back({missing(wanted), subject, usb_id + ", not permitted",
+                          "write to /etc/udev/rules.d/60-forcedimension.rules, and plug the device "
+                          "in again: " +
+                              dhd::udev_rule(usb_id)});
+    }
+  }
+  if (!findings.empty()) return findings;
+  const std::string what = "no device of Force Dimension is on USB";
+  if (!wanted) return {{Grade::kOk, "usb", what, ""}};
+  return {{Grade::kWarning, "usb", what, "check power and cable, unless it is on another bus"}};
+}
+
 Finding judge_setup(const hd::TouchSystem& system, const std::string& name) {
   const std::string subject = name.empty() ? "setup" : "setup of '" + name + "'";
   const hd::DeviceSetup* const setup = hd::find_setup(system, name);

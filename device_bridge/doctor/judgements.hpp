@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "device_bridge/doctor/facts.hpp"
+#include "device_bridge/forcedimension/dhd_usb.hpp"
 #include "device_bridge/openhaptics/touch_system.hpp"
 
 namespace irdm::doctor {
@@ -37,6 +38,9 @@ Finding judge_library(const std::string& library, const std::string& failure, bo
 
 /// One for each port, or one for none.
 Findings judge_ports(const hd::TouchSystem& system, bool wanted);
+
+/// The same of devices of Force Dimension.
+Findings judge_usb(const std::vector<dhd::UsbDevice>& devices, bool wanted);
 
 /// The vendor's setup of a configured device. @param name empty: the driver's default device
 Finding judge_setup(const hd::TouchSystem& system, const std::string& name);

@@ -57,6 +57,23 @@ TEST_CASE("doctor: each port is told, and whether it is permitted") {
   CHECK(judge_ports({}, kNotWanted).at(0).grade == Grade::kOk);
 }
 
+TEST_CASE(
+    "doctor: devices of Force Dimension are told, with the udev rule of those not permitted") {
+  const std::vector<dhd::UsbDevice> devices{{"/dev/bus/usb/001/004", "0403:cb48", true},
+                                            {"/dev/bus/usb/001/005", "1451:0402", false}};
+  const Findings findings = judge_usb(devices, kWanted);
+  REQUIRE(findings.size() == 2);
+  CHECK(findings[0].grade == Grade::kOk);
+  CHECK_THAT(findings[0].what, Contains("0403:cb48"));
+  CHECK(findings[1].grade == Grade::kProblem);
+  CHECK(findings[1].subject == "usb /dev/bus/usb/001/005");
+  CHECK_THAT(findings[1].remedy,
+             Contains("/etc/udev/rules.d") && Contains(dhd::udev_rule("1451:0402")));
+  CHECK(judge_usb(devices, kNotWanted)[1].grade == Grade::kWarning);
+  CHECK(judge_usb({}, kWanted).at(0).grade == Grade::kWarning);
+  CHECK(judge_usb({}, kNotWanted).at(0).grade == Grade::kOk);
+}
+
 TEST_CASE("doctor: a device's setup is found, missing, another's, or written with commas") {
   const hd::TouchSystem system{
       .folders = {"/c"},

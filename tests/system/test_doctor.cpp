@@ -28,7 +28,7 @@ TEST_CASE("doctor says of each thing how it is, and finds the server") {
     CHECK_THAT(program.out, Contains(subject));
   }
   CHECK_THAT(program.out, !Contains("driver: "));
-  CHECK_THAT(doctor({}).out, Contains("driver: ") && Contains("port"));
+  CHECK_THAT(doctor({}).out, Contains("driver: ") && Contains("port") && Contains("usb"));
   CHECK((program.status == 0) == (program.out.find("problem") == std::string::npos));
 }
 

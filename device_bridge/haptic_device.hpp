@@ -34,6 +34,7 @@ struct DeviceState {
   bool failed = false;             ///< something went wrong: no force any more
   bool lost = false;               ///< and no readings either
   bool repeated = false;           ///< the reading is that of a moment ago, nothing newer
+  bool saturated = false;          ///< the motors show less than the last write() asked for
 };
 
 /// The largest forces and torques that a device is made for; infinity: it does not say.

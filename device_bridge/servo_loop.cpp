@@ -117,7 +117,8 @@ void ServoLoop::apply(std::int64_t now_ns, const ServoInput& input) noexcept {
                                      {.tip = *reading_,
                                       .orientation = orientation_,
                                       .motor_temperature = device_state_.motor_temperature,
-                                      .repeated = device_state_.repeated},
+                                      .repeated = device_state_.repeated,
+                                      .saturated = device_state_.saturated},
                                      wanted);
   demanded_ = wanted;
   if (applied_ns_) {

@@ -88,7 +88,7 @@ std::string ForceDimensionDevice::label() const {
 void ForceDimensionDevice::fail(const std::string& what) const {
   const char* const reason = dhd_.error_get_last_str();
   throw Error(label(), what + (reason != nullptr ? reason : "no reason given"),
-              "check power and cable, the udev rule for USB vendors 1451 and 0403, and that no "
+              "check power and cable, its udev rule (`irdm-bridge doctor` gives it), and that no "
               "other program uses it");
 }
 
@@ -224,7 +224,8 @@ void ForceDimensionDevice::write(const Wrench& shown) noexcept {
   const int result = dhd_.set_force_and_torque_and_gripper_force(
       f.x(), f.y(), f.z(), t.x(), t.y(), t.z(), 0.0, static_cast<char>(id_));
   if (result < 0) ++refused_;
-  if (result == dhd::kSaturated) ++saturated_;
+  cut_off_ = result == dhd::kSaturated;
+  if (cut_off_) ++saturated_;
 }
 
 DeviceState ForceDimensionDevice::state() const noexcept {
@@ -233,7 +234,8 @@ DeviceState ForceDimensionDevice::state() const noexcept {
                    force_on_.load(std::memory_order_relaxed),
           .failed = lost,
           .lost = lost,
-          .repeated = repeated_};
+          .repeated = repeated_,
+          .saturated = cut_off_};
 }
 
 std::string ForceDimensionDevice::trouble() const {

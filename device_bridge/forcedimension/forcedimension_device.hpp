@@ -58,9 +58,10 @@ class ForceDimensionDevice : public HapticDevice {
   ForceRating rating_;
   StylusPose pose_;  ///< that was read last
   bool repeated_ = false;
-  int ticks_ = 0;     ///< since the status was asked for
-  int pause_ = 0;     ///< statuses left until the force is turned on again
-  int failures_ = 0;  ///< in a row
+  bool cut_off_ = false;  ///< the last force was
+  int ticks_ = 0;         ///< since the status was asked for
+  int pause_ = 0;         ///< statuses left until the force is turned on again
+  int failures_ = 0;      ///< in a row
   std::uint64_t repeats_ = 0, refused_ = 0, saturated_ = 0;  ///< so far
   std::atomic<bool> initialised_{false};
   std::atomic<dhd::ForceOff> cause_{dhd::ForceOff::kNone};

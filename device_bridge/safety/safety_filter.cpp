@@ -40,6 +40,15 @@ RateLimits rate_limits(RateLimits rate, double slew, Guards guards) noexcept {
   return rate;
 }
 
+// Of a wrench of which an unknown share was shown: it took nothing for sure, and gave as much as in
+// full.
+Wrench giving(const Wrench& wrench, const Twist& displacement) noexcept {
+  Wrench given;
+  if (wrench.force.dot(displacement.linear) > 0.0) given.force = wrench.force;
+  if (wrench.torque.dot(displacement.angular) > 0.0) given.torque = wrench.torque;
+  return given;
+}
+
 constexpr double kTorqueSlew = kLever * ThermalLimits{}.slew;
 
 // A device that renders torque has an orientation that counts.
@@ -86,7 +95,7 @@ void SafetyFilter::fail() noexcept {
 Wrench SafetyFilter::step(std::int64_t now_ns, const DeviceReading& reading,
                           const ForceDemand& demand) noexcept {
   const ReadingVerdict verdict = check(now_ns, reading);
-  observe(now_ns);
+  observe(now_ns, reading.saturated);
   thermal_.heat(sent_.force.norm(), reading_.elapsed(), reading.motor_temperature);
   torque_thermal_.heat(sent_.torque.norm(), reading_.elapsed(), reading.motor_temperature);
   accept(now_ns, demand);
@@ -116,13 +125,14 @@ ReadingVerdict SafetyFilter::check(std::int64_t now_ns, const DeviceReading& rea
 }
 
 // What the hand did against what was really sent.
-void SafetyFilter::observe(std::int64_t now_ns) noexcept {
-  passivity_.observe(reading_.displacement(), sent_);
+void SafetyFilter::observe(std::int64_t now_ns, bool saturated) noexcept {
+  const Twist& displacement = reading_.displacement();
+  const Wrench shown = saturated ? giving(sent_, displacement) : sent_;
+  passivity_.observe(displacement, shown);
   if (held_.solved_here && held_.contact == ContactState::kFree) {
     passivity_.forgive(reading_.elapsed());
   }
-  oscillation_.observe(-work(sent_, reading_.displacement()), reading_.elapsed(), age_,
-                       !sent_.is_zero());
+  oscillation_.observe(-work(shown, displacement), reading_.elapsed(), age_, !sent_.is_zero());
   world_.observe(now_ns, reading_.tip(), reading_.orientation());
 }
 

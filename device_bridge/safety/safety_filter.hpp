@@ -40,6 +40,7 @@ struct DeviceReading {
   Quaternion orientation = Quaternion::Identity();  ///< in D; anything
   double motor_temperature = 0.0;  ///< what the device says, 0 to 1; 0: it says nothing
   bool repeated = false;           ///< of a moment ago, nothing newer
+  bool saturated = false;          ///< since the last tick less was shown than was sent
 };
 
 /// The force and torque that the world asks for at one tick, and what they rest on. Nothing in it
@@ -73,10 +74,10 @@ struct FilterCounts {
 /// its age; no pull unless held; gain; passivity; rate limit; largest force; warmth of the motors.
 /// Force and torque share age, gain, damping and the account of energy; each has limits of its own,
 /// so that a spring stays one where it is cut off. The observer of passivity is told what was
-/// really sent. Whatever comes in, no force or torque that goes out is beyond the limits of
-/// magnitude and rate. Pure: knows no clock, thread or file; what it does depends on its arguments
-/// alone. Real-time safe. One thread.
-/// Large: each guard is a member of a class of its own; their order is the purpose of it.
+/// really sent; where the motors showed less, what that took does not count. Whatever comes in, no
+/// force or torque that goes out is beyond the limits of magnitude and rate. Pure: knows no clock,
+/// thread or file; what it does depends on its arguments alone. Real-time safe. One thread. Large:
+/// each guard is a member of a class of its own; their order is the purpose of it.
 class SafetyFilter {
  public:
   /// @param guards all but in tests
@@ -113,7 +114,7 @@ class SafetyFilter {
   std::int64_t beyond_horizon(std::int64_t now_ns, const ForceDemand& demand) const noexcept;
   double fresh(std::int64_t now_ns) const noexcept;
   void watch_link(double fresh) noexcept;
-  void observe(std::int64_t now_ns) noexcept;
+  void observe(std::int64_t now_ns, bool saturated) noexcept;
   Wrench wanted() const noexcept;
   Wrench damped(const Wrench& wrench, double share) const noexcept;
   Wrench limited(const Wrench& wrench) const noexcept;

@@ -16,7 +16,8 @@ struct FilterRig {
   /// One tick later.
   const Vector3& tick() {
     now_ns += kMs;
-    const Wrench wrench = filter.step(now_ns, {.tip = tip, .orientation = orientation}, demand);
+    const Wrench wrench = filter.step(
+        now_ns, {.tip = tip, .orientation = orientation, .saturated = saturated}, demand);
     shown = wrench.force;
     torque = wrench.torque;
     return shown;
@@ -46,6 +47,7 @@ struct FilterRig {
   std::int64_t now_ns = 5'000 * kMs;
   Vector3 tip = Vector3::Zero();
   Quaternion orientation = Quaternion::Identity();
+  bool saturated = false;  ///< what was shown since the last tick
   ForceDemand demand{.contact = ContactState::kTouching, .normal = Vector3::UnitY()};
   Vector3 shown = Vector3::Zero();   ///< force
   Vector3 torque = Vector3::Zero();  ///< shown with it

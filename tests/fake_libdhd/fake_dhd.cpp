@@ -170,15 +170,17 @@ int dhdSetMaxForce(double limit, char id) {
   });
 }
 
-// More than the motors give is cut off. Without an active wrist no torque acts.
+// More than the motors give is cut off, which the result says (dhdc.h: 2). Without an active wrist
+// no torque acts.
 int dhdSetForceAndTorqueAndGripperForce(double fx, double fy, double fz, double tx, double ty,
                                         double tz, double, char id) {
   return with_open(id, [&](Device& device) {
     ++device.forces;
-    device.force = {fx, fy, fz};
+    const double share = kMotors / std::max(kMotors, std::hypot(fx, fy, fz));
+    device.force = {share * fx, share * fy, share * fz};
     device.torque = {0, 0, 0};
     if (device.active_wrist) device.torque = {tx, ty, tz};
-    return std::max({std::abs(fx), std::abs(fy), std::abs(fz)}) > kMotors ? 2 : 0;
+    return share < 1.0 ? 2 : 0;
   });
 }
 

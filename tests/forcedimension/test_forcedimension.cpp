@@ -12,7 +12,7 @@
 #include "device_bridge/forcedimension/forcedimension_device.hpp"
 #include "device_bridge/safety/sensor_plausibility.hpp"
 #include "device_bridge/servo_thread.hpp"
-#include "tests/fake_libdhd/fake_dhd.hpp"
+#include "tests/forcedimension/fake_api.hpp"
 #include "tests/support/allocation_guard.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/left_out.hpp"
@@ -23,11 +23,6 @@ using namespace irdm;
 using namespace irdm::test;
 
 namespace {
-
-const dhd::Api& api() {
-  static const dhd::Api kApi = dhd::load_library({IRDM_FAKE_LIBDHD});
-  return kApi;
-}
 
 Vector3 force_of(int index) {
   Vector3 force;
@@ -69,32 +64,32 @@ TEST_CASE("libdhd.so is looked for by its usual names, or by the one that is giv
 
 TEST_CASE("a device of Force Dimension is opened by its number or as the first, and closed") {
   fakedhd_reset();
-  ForceDimensionDevice second("1", api());
+  ForceDimensionDevice second("1", fake_api());
   second.open();
   CHECK(fakedhd_is_open(1) == 1);
   CHECK(fakedhd_force_is_on(1) == 1);
   CHECK(fakedhd_compensates(1) == 1);
   CHECK(fakedhd_is_open(0) == 0);
   {
-    ForceDimensionDevice first("", api());
+    ForceDimensionDevice first("", fake_api());
     first.open();
     CHECK(fakedhd_is_open(0) == 1);
-    ForceDimensionDevice again("0", api());
+    ForceDimensionDevice again("0", fake_api());
     CHECK_THROWS_WITH(again.open(), Contains("is open already"));
-    ForceDimensionDevice by_serial("10777", api());
+    ForceDimensionDevice by_serial("10777", fake_api());
     CHECK_THROWS_WITH(by_serial.open(), Contains("is open already"));
-    ForceDimensionDevice unknown("10778", api());
+    ForceDimensionDevice unknown("10778", fake_api());
     CHECK_THROWS_WITH(unknown.open(), Contains("cannot be opened: no device found"));
   }
   CHECK(fakedhd_is_open(0) == 0);
   CHECK(fakedhd_force_is_on(0) == 0);
-  ForceDimensionDevice nameless("Left", api());
+  ForceDimensionDevice nameless("Left", fake_api());
   CHECK_THROWS_WITH(nameless.open(), Contains("has no number"));
 }
 
 TEST_CASE("positions, orientations and forces are taken from the driver's axes to ours and back") {
   fakedhd_reset();
-  ForceDimensionDevice device("", api());
+  ForceDimensionDevice device("", fake_api());
   device.open();
   fakedhd_place(0, 0.03, 0.01, 0.02);  // towards the person, right, up
   fakedhd_press(0, 2);
@@ -115,13 +110,13 @@ TEST_CASE("positions, orientations and forces are taken from the driver's axes t
 TEST_CASE("a device with an active wrist gets torques, in the driver's axes, and others none") {
   fakedhd_reset();
   fakedhd_activate_wrist(1);
-  ForceDimensionDevice passive("0", api());
+  ForceDimensionDevice passive("0", fake_api());
   passive.open();
   CHECK(passive.rating().peak_torque == 0.0);
   passive.write({Vector3(1, 2, 3), Vector3(0.1, 0.2, 0.3)});
   CHECK(force_of(0).isApprox(Vector3(3, 1, 2)));
   CHECK(torque_of(0).isZero(0.0));
-  ForceDimensionDevice active("1", api());
+  ForceDimensionDevice active("1", fake_api());
   active.open();
   CHECK(active.rating().peak_torque > 0.0);
   active.write({Vector3(1, 2, 3), Vector3(0.1, 0.2, 0.3)});
@@ -138,7 +133,7 @@ TEST_CASE("a device with an active wrist gets torques, in the driver's axes, and
 
 TEST_CASE("readings that fail are of no use, and after fifty the device is lost") {
   fakedhd_reset();
-  ForceDimensionDevice device("", api());
+  ForceDimensionDevice device("", fake_api());
   device.open();
   fakedhd_unplug(0, 1);
   for (int tick = 0; tick < 49; ++tick) CHECK(device.read(0.0).tip.hasNaN());
@@ -169,7 +164,7 @@ constexpr int kSeen = 10;  // ticks: 10 ms
 
 TEST_CASE("a device that turns its force off is not ready until that is on again") {
   fakedhd_reset();
-  ForceDimensionDevice device("", api());
+  ForceDimensionDevice device("", fake_api());
   device.open();
   CHECK(tick(device, kSeen));
   CHECK(device.trouble().empty());
@@ -205,7 +200,7 @@ TEST_CASE("a device that is not initialised has no force, and moves by itself on
   fakedhd_reset();
   fakedhd_initialised(0, 0);
   {
-    ForceDimensionDevice device("", api());
+    ForceDimensionDevice device("", fake_api());
     device.open();
     CHECK_FALSE(tick(device, 3 * kSeen));
     CHECK_THAT(device.trouble(), Contains("not initialised"));
@@ -213,12 +208,12 @@ TEST_CASE("a device that is not initialised has no force, and moves by itself on
     CHECK(tick(device, kSeen));
   }
   fakedhd_initialised(0, 0);
-  ForceDimensionDevice moves("", api(), true);
+  ForceDimensionDevice moves("", fake_api(), true);
   moves.open();
   CHECK(tick(moves, kSeen));
   moves.close();
   fakedhd_initialised(0, 0);
-  dhd::Api only_dhd = api();
+  dhd::Api only_dhd = fake_api();
   only_dhd.auto_init = nullptr;
   ForceDimensionDevice cannot("", only_dhd, true);
   CHECK_THROWS_WITH(cannot.open(), Contains("auto_init needs libdrd"));
@@ -231,19 +226,19 @@ TEST_CASE("the largest force is the model's, and the driver cuts off there, too"
   {
     fakedhd_model(1, "sigma.7", 104);
     fakedhd_activate_wrist(1);
-    ForceDimensionDevice sigma("1", api());
+    ForceDimensionDevice sigma("1", fake_api());
     sigma.open();
     CHECK(sigma.rating().peak == 12.0);
     CHECK(sigma.rating().peak_torque == 0.2);
   }
-  ForceDimensionDevice falcon("0", api());
+  ForceDimensionDevice falcon("0", fake_api());
   falcon.open();
   CHECK(falcon.rating().peak == 8.0);
   CHECK(falcon.rating().peak_torque == 0.0);
   CHECK(fakedhd_max_force(0) == 8.0);
   fakedhd_reset();
   fakedhd_model(1, "lambda.7", 108);
-  ForceDimensionDevice other("1", api());
+  ForceDimensionDevice other("1", fake_api());
   other.open();
   CHECK(std::isinf(other.rating().peak));
   CHECK(fakedhd_max_force(1) == 0.0);
@@ -253,12 +248,12 @@ TEST_CASE("a gripper that closes is a button, and the later omega.3 has its butt
   fakedhd_reset();
   fakedhd_give_gripper(0);
   fakedhd_model(1, "omega.3", 110);
-  ForceDimensionDevice gripper("0", api());
+  ForceDimensionDevice gripper("0", fake_api());
   gripper.open();
   CHECK(gripper.read(0.0).buttons == 0);
   fakedhd_close_gripper(0, 1);
   CHECK(gripper.read(0.0).buttons == 1);
-  ForceDimensionDevice omega("1", api());
+  ForceDimensionDevice omega("1", fake_api());
   omega.open();
   fakedhd_press(1, 2);
   CHECK(omega.read(0.0).buttons == 1);
@@ -266,7 +261,7 @@ TEST_CASE("a gripper that closes is a button, and the later omega.3 has its butt
 
 TEST_CASE("a reading that is repeated says nothing of a speed, and the next has the way of both") {
   fakedhd_reset();
-  ForceDimensionDevice device("", api());
+  ForceDimensionDevice device("", fake_api());
   device.open();
   SensorPlausibility sense({}, {});
   std::int64_t now_ns = 0;
@@ -291,10 +286,53 @@ TEST_CASE("a reading that is repeated says nothing of a speed, and the next has 
   CHECK(verdict == ReadingVerdict::kFault);
 }
 
+TEST_CASE("a force that is more than the motors give is said to be, as long as it is asked for") {
+  fakedhd_reset();
+  fakedhd_model(0, "delta.3", 63);
+  ForceDimensionDevice device("0", fake_api());
+  device.open();
+  device.write({Vector3(0, 5, 0)});
+  CHECK_FALSE(device.state().saturated);
+  device.write({Vector3(0, 15, 0)});
+  CHECK(device.state().saturated);
+  CHECK(force_of(0).norm() == Approx(12.0));
+  device.write({});
+  CHECK_FALSE(device.state().saturated);
+}
+
+// Up against a force that pushes up, and down again.
+TEST_CASE("the safety filter hears of forces that the motors cut off") {
+  const auto taken = [](double newton) {
+    fakedhd_reset();
+    fakedhd_model(0, "delta.3", 63);
+    ForceDimensionDevice device("0", fake_api());
+    device.open();
+    ServoLoop loop(device, {.max_force = 20.0, .continuous_force = 20.0});
+    std::int64_t now_ns = 0;
+    const auto move = [&](double up, int ticks) {
+      for (int k = 0; k < ticks; ++k) {
+        fakedhd_place(0, 0.0, 0.0, up * k);
+        loop.read(0.0);
+        now_ns += 1'000'000;
+        loop.apply(now_ns, {.linked = true,
+                            .any_force = true,
+                            .force = {.sample_time_ns = now_ns,
+                                      .contact = ContactState::kHeld,
+                                      .force = Vector3(0, newton, 0)}});
+      }
+      return loop.filter().port_energy();
+    };
+    const double before = move(0.0, 1000);
+    return move(-1e-5, 100) - before;
+  };
+  CHECK(taken(10.0) == Approx(10.0 * 99e-5));
+  CHECK(taken(15.0) == 0.0);
+}
+
 TEST_CASE("a tick with a device of Force Dimension allocates nothing") {
   if (!AllocationGuard::active()) return leave_out(kNotCounted);
   fakedhd_reset();
-  ForceDimensionDevice device("", api());
+  ForceDimensionDevice device("", fake_api());
   device.open();
   const AllocationGuard guard;
   for (int tick = 0; tick < 100; ++tick) {
@@ -347,7 +385,7 @@ struct Served {
     return force_of(0).norm();
   }
 
-  ForceDimensionDevice device{"", api()};
+  ForceDimensionDevice device{"", fake_api()};
   std::vector<ServoLoop> loops;
   ServoLink link{1};
   EventFd done;

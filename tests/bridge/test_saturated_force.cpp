@@ -92,14 +92,3 @@ TEST_CASE("saturated motors: in force and in torque apart, only what was given c
   const double given = way > 0.0 ? way : 20.0 * -way * 0.05;
   CHECK(rig.filter.port_energy() == Approx(before - given));
 }
-
-TEST_CASE("saturated motors: a wall that they cannot hold is damped or made softer, not driven") {
-  // Pressed far beyond what the motors give: by its own account the device gives more than it took.
-  SaturatedMotors told({}, 0.5, true);
-  double least = 0.0;
-  for (int i = 0; i < 3000; ++i) {
-    told.tick(i);
-    least = std::min(least, told.energy());
-  }
-  CHECK(least > -1e-3);
-}

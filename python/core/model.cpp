@@ -178,6 +178,10 @@ Raises irdm.Error.)")
           "fixed", of_model([](const Model& m) { return m.body.support == Support::kFixed; }),
           "Whether some of its nodes are clamped; otherwise it floats.")
       .def_property_readonly("mass", of_model([](const Model& m) { return m.body.mass; }), "[kg]")
+      .def_property_readonly("com_offset", of_model([](const Model& m) {
+                               return py::array_t<double>(3, m.mesh.com_offset.data());
+                             }),
+                             "Where the centre of mass is in the frame of the mesh file, (3) [m].")
       .def_property_readonly("inertia",
                              of_model([](const Model& m) { return copy(m.body.inertia); }),
                              "About the centre of mass, (3, 3) [kg m^2], B.")

@@ -70,6 +70,7 @@ class ModelTest(unittest.TestCase):
         self.assertTrue(model.rigid)
         self.assertIsNone(model.modes)
         self.assertNotIn("youngs_modulus", model.material)
+        numpy.testing.assert_allclose(model.com_offset, [0.03, 0.03, 0.03], atol=1e-15)
         numpy.testing.assert_allclose(model.inertia, numpy.eye(3) * model.mass * 0.06**2 / 6, atol=1e-15)
         with self.assertRaisesRegex(irdm.Error, "rigid"):
             model.zero_lag()

@@ -94,10 +94,14 @@ TEST_CASE("moving scenery: a plane that presses a bar on the ground feels E A d 
   const auto record = std::make_unique<StepRecord>();
   step_alone(simulation, *record);
   CHECK(record->body_contacts().empty());
-  for (int k = 0; k < 1000; ++k) step_alone(simulation, *record);
+  double mean = 0.0;  // of two steps: their forces are by turns 3e-5 too large and too small
+  for (int k = 0; k < 1000; ++k) {
+    step_alone(simulation, *record);
+    if (k >= 998) mean += 0.5 * carried(*record).y();
+  }
   const double expected = bar.youngs_modulus * 0.04 * 0.04 * 0.002 / 0.12;
   CHECK(record->body_contacts().size() == 121);  // every node of its face
-  CHECK(carried(*record).y() == Approx(-expected).epsilon(1e-5));
+  CHECK(mean == Approx(-expected).epsilon(5e-6));
 }
 
 TEST_CASE("moving scenery: a block that a plane lifts weighs m (g + a)") {

@@ -87,8 +87,8 @@ void SafetyFilter::disarm() noexcept {
 }
 
 void SafetyFilter::fail() noexcept {
-  ++counts_.faults;
   if (std::exchange(waits_, false)) arming_.arm();  // else the fault would be forgotten
+  if (state() != FilterState::kDisarmed) ++counts_.faults;
   arming_.fail();
 }
 

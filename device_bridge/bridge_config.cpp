@@ -1,5 +1,6 @@
 #include "device_bridge/bridge_config.hpp"
 
+#include <array>
 #include <charconv>
 #include <limits>
 #include <set>
@@ -11,7 +12,7 @@
 
 namespace irdm {
 std::vector<std::string> device_types() {
-  return {"virtual", "openhaptics", "forcedimension"};
+  return {"virtual", "openhaptics", "forcedimension", "haply"};
 }
 
 namespace {
@@ -79,7 +80,20 @@ ButtonMap read_buttons(TomlTable table) {
   return buttons;
 }
 
-DeviceConfig read_device(TomlTable table, const BridgeOverrides& overrides) {
+// Keys of Haply devices alone.
+void read_haply(TomlTable& table, const std::string& file, DeviceConfig& device) {
+  for (const char* key : {"service", "grip"}) {
+    if (table.has(key) && device.type != "haply") {
+      table.fail(key, "is for devices of type haply", "remove it");
+    }
+  }
+  const std::string service = table.text("service", "");
+  if (!service.empty()) device.service = parse_server_address(service, file + ": device.service");
+  device.grip = table.text("grip", "");
+}
+
+DeviceConfig read_device(TomlTable table, const std::string& file,
+                         const BridgeOverrides& overrides) {
   DeviceConfig device;
   device.type = table.choice("type", device_types(), device.type);
   if (!overrides.device.empty()) device.type = overrides.device;
@@ -88,6 +102,7 @@ DeviceConfig read_device(TomlTable table, const BridgeOverrides& overrides) {
   if (device.auto_init && device.type != "forcedimension") {
     table.fail("auto_init", "is for devices of Force Dimension", "remove it");
   }
+  read_haply(table, file, device);
   if (table.has("script")) {
     device.script = table.path("script");
     if (!overrides.script.empty()) {
@@ -141,9 +156,11 @@ void read_bridge(TomlTable table, const std::string& file, BridgeConfig& config)
 
 // Two devices of a driver have to be told apart.
 void check_names(const std::vector<DeviceConfig>& devices, const std::string& file) {
-  std::set<std::pair<std::string, std::string>> seen;
+  std::set<std::array<std::string, 3>> seen;
   for (const DeviceConfig& device : devices) {
-    if (device.type == "virtual" || seen.insert({device.type, device.name}).second) continue;
+    const ServerAddress service = device.service.value_or(ServerAddress{});
+    const std::string where = service.host + ":" + std::to_string(service.port);
+    if (device.type == "virtual" || seen.insert({device.type, where, device.name}).second) continue;
     throw Error(
         file, "has two devices of type " + device.type + " with the name " + in_quotes(device.name),
         "give each its own name, as in the vendor's setup");
@@ -221,7 +238,8 @@ BridgeConfig read_bridge_config(TomlTable root, const std::string& name,
   BridgeConfig config;
   read_bridge(root.table("bridge"), name, config);
   for (TomlTable& table : root.tables("device")) {
-    config.devices.push_back(read_device(std::move(table), overrides));
+    config.devices.push_back(read_device(std::move(table), name, overrides));
+    config.devices.back().realtime = config.realtime;
   }
   root.finish();
   if (config.devices.empty()) {

@@ -26,8 +26,13 @@ ServerAddress parse_server_address(const std::string& text, const std::string& w
 
 /// One [[device]] table.
 struct DeviceConfig {
-  std::string type = "virtual";  ///< key `type`: virtual | openhaptics | forcedimension
+  std::string type = "virtual";  ///< key `type`: virtual | openhaptics | forcedimension | haply
   std::string name = {};  ///< key `name`: of a real device in its vendor's setup; empty: default
+  /// key `service`: of a Haply device, "HOST:PORT"; none: localhost:10001
+  std::optional<ServerAddress> service = {};
+  std::string grip = {};  ///< key `grip`: id of a Haply device's VerseGrip; empty: the first
+  /// as bridge.realtime: of threads that a device has
+  RealTimeScheduling realtime = RealTimeScheduling::kPrefer;
   /// key `auto_init`: a device of Force Dimension may move by itself to be initialised
   bool auto_init = false;
   std::filesystem::path script = {};  ///< key `script`: of a virtual device, required there

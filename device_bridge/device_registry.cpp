@@ -6,6 +6,7 @@
 
 #include "common/error.hpp"
 #include "device_bridge/forcedimension/forcedimension_device.hpp"
+#include "device_bridge/haply/haply_device.hpp"
 #include "device_bridge/openhaptics/openhaptics_device.hpp"
 #include "device_bridge/virtual_stylus.hpp"
 
@@ -39,6 +40,7 @@ constexpr std::array kEntries{
     Entry{"virtual", make_virtual_stylus},
     Entry{"openhaptics", make_openhaptics_device},
     Entry{"forcedimension", make_forcedimension_device},
+    Entry{"haply", make_haply_device},
 };
 
 }  // namespace
@@ -48,7 +50,7 @@ std::unique_ptr<HapticDevice> make_device(const DeviceConfig& config) {
     if (config.type == entry.type) return entry.make(config);
   }
   throw Error("device " + in_quotes(config.type), "is not a known type",
-              "use virtual, openhaptics or forcedimension");
+              "use virtual, openhaptics, forcedimension or haply");
 }
 
 }  // namespace irdm

@@ -1,7 +1,9 @@
 #include "device_bridge/doctor/examine.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <memory>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -11,6 +13,7 @@
 #include "device_bridge/doctor/judgements.hpp"
 #include "device_bridge/forcedimension/dhd_api.hpp"
 #include "device_bridge/forcedimension/dhd_usb.hpp"
+#include "device_bridge/haply/haply_device.hpp"
 #include "device_bridge/openhaptics/hd_library.hpp"
 
 namespace irdm::doctor {
@@ -78,6 +81,23 @@ Findings open_devices(const std::vector<DeviceConfig>& configs) {
   return findings;
 }
 
+// How long the services of devices take to answer; those that do not open are told of above.
+Findings examine_services(const std::vector<DeviceConfig>& configs) {
+  constexpr std::chrono::milliseconds kMeasured(500);
+  Findings findings;
+  for (std::size_t i = 0; i < configs.size(); ++i) {
+    if (configs[i].type != "haply") continue;
+    HaplyDevice device(inverse_settings(configs[i]));
+    if (!failure_of([&] { device.open(); }).empty()) continue;
+    std::this_thread::sleep_for(kMeasured);
+    device.close();
+    const haply::InverseReport& report = device.report();
+    findings.push_back(judge_service("service of device " + std::to_string(i), report.answers,
+                                     report.round_trip.percentile(0.99)));
+  }
+  return findings;
+}
+
 Finding examine_server(const BridgeConfig& config) {
   const ServerAddress& server = *config.server;
   const std::string address = server.host + ":" + std::to_string(server.port);
@@ -93,7 +113,10 @@ Finding examine_server(const BridgeConfig& config) {
 Findings examine(const std::optional<BridgeConfig>& config) {
   const RealTimeScheduling scheduling = config ? config->realtime : RealTimeScheduling::kPrefer;
   Findings findings = examine_drivers(config);
-  if (config) add(findings, open_devices(config->devices));
+  if (config) {
+    add(findings, open_devices(config->devices));
+    add(findings, examine_services(config->devices));
+  }
   findings.push_back(judge_real_time(try_real_time(), scheduling));
   findings.push_back(judge_locked_memory(try_locked_memory(), scheduling));
   const ClockFacts clock = look_at_clock();

@@ -184,6 +184,16 @@ Finding judge_wakeup(const ClockFacts& clock) {
   return {Grade::kOk, subject, what, ""};
 }
 
+Finding judge_service(const std::string& subject, std::uint64_t answers,
+                      std::int64_t round_trip_ns) {
+  const std::string what =
+      std::to_string(answers) + " answers, 99 % of them within " + milliseconds(round_trip_ns);
+  if (answers > 0 && round_trip_ns <= kVeryLateNs) return {Grade::kOk, subject, what, ""};
+  return {Grade::kWarning, subject, what,
+          "run the service on this machine, end other programs that use it, and plug the device "
+          "into a USB port of the machine itself"};
+}
+
 Finding judge_server(const ServerFacts& server, const std::string& address) {
   const std::string subject = "server " + address;
   if (server.welcomes) return {Grade::kOk, subject, "welcomes this bridge", ""};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -49,6 +50,11 @@ Finding judge_real_time(const Permission& permission, RealTimeScheduling wanted)
 Finding judge_locked_memory(const Permission& permission, RealTimeScheduling wanted);
 Finding judge_clock_source(const ClockFacts& clock);
 Finding judge_wakeup(const ClockFacts& clock);
+
+/// Of the service of a device that is reached by a network connection.
+/// @param answers that were counted  @param round_trip_ns that 99 % of them do not exceed
+Finding judge_service(const std::string& subject, std::uint64_t answers,
+                      std::int64_t round_trip_ns);
 
 /// @param address as a person writes it
 Finding judge_server(const ServerFacts& server, const std::string& address);

@@ -74,6 +74,14 @@ TEST_CASE(
   CHECK(judge_usb({}, kNotWanted).at(0).grade == Grade::kOk);
 }
 
+TEST_CASE("doctor: a device's service is judged by how long it takes to answer") {
+  CHECK(judge_service("service", 500, 400'000).grade == Grade::kOk);
+  CHECK_THAT(judge_service("service", 500, 400'000).what, Contains("500 answers, 99 %"));
+  CHECK(judge_service("service", 500, 2'100'000).grade == Grade::kWarning);
+  CHECK_FALSE(judge_service("service", 500, 2'100'000).remedy.empty());
+  CHECK(judge_service("service", 0, 0).grade == Grade::kWarning);
+}
+
 TEST_CASE("doctor: a device's setup is found, missing, another's, or written with commas") {
   const hd::TouchSystem system{
       .folders = {"/c"},

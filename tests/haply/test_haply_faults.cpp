@@ -1,0 +1,141 @@
+#include <catch2/catch.hpp>
+#include <string>
+#include <vector>
+
+#include "device_bridge/haply/haply_device.hpp"
+#include "tests/haply/fake_service.hpp"
+#include "tests/haply/served_device.hpp"
+#include "tests/support/eventually.hpp"
+
+using Catch::Matchers::Contains;
+using namespace irdm;
+using namespace irdm::test;
+
+namespace {
+
+using Rows = std::vector<ShownTicks::Row>;
+
+// After an outage in the middle of a contact: not ready within the age of a reading that is of use
+// and a tick, without force then, and a ramp when it is ready again. Judged by the ticks
+// themselves, whatever else the machine does.
+void check_ramp(const Rows& rows) {
+  constexpr double kRamp = 0.5;  // [s]
+  const double demand = ServedDevice::kDemand;
+  std::size_t k = 1;
+  while (k < rows.size() && !(rows[k - 1].force > 0.9 * demand && !rows[k].ready)) ++k;
+  REQUIRE(k < rows.size());
+  int silent = 0;
+  for (; k < rows.size() && !rows[k].ready; ++k) {
+    CHECK(rows[k].force <= rows[k - 1].force);  // down at the filter's rate
+    silent = rows[k].force == 0.0 ? silent + 1 : 0;
+  }
+  REQUIRE(k < rows.size());
+  CHECK(rows[k - 1].force == 0.0);
+  CHECK(silent > 0);
+  double largest = 0.0;
+  for (; k < rows.size(); ++k) {
+    const double elapsed = 1e-9 * static_cast<double>(rows[k].time_ns - rows[k - 1].time_ns);
+    CHECK(rows[k].force <= rows[k - 1].force + 1.000001 * demand * elapsed / kRamp);
+    largest = std::max(largest, rows[k].force);
+  }
+  CHECK(largest > 0.9 * demand);
+}
+
+bool tick_ready(HaplyDevice& device) {
+  device.read(0.0);
+  device.write({});
+  return device.state().ready;
+}
+
+// The ordered fault is on as long as this says so.
+struct OrderedFault {
+  const char* on;
+  const char* off;
+  const char* words;  // of the trouble that is told
+};
+
+}  // namespace
+
+TEST_CASE("a service that is killed in contact and started again: no force, then a ramp") {
+  FakeService service(GENERATE("3.0", "3.5"));
+  ServedDevice served(service);
+  REQUIRE(eventually([&] { return served.felt(service); }));
+  service.kill();
+  REQUIRE(eventually([&] {
+    served.serve();
+    return served.device.trouble().find("no connection to the service") != std::string::npos;
+  }));
+  service.start();
+  REQUIRE(eventually([&] { return served.felt(service); }));
+  served.servo->stop();
+  CHECK(served.servo->report().end == ServoEnd::kStopped);
+  CHECK(served.loops[0].counts().faults == 0);
+  check_ramp(served.shown.rows);
+  CHECK(served.device.trouble().empty());
+  served.device.close();
+  CHECK(service.told().force.isZero(0.0));
+  CHECK(service.misuses().starts_with("0 "));
+  CHECK(served.device.report().reconnects > 0);
+}
+
+TEST_CASE("a fault in the middle of a contact: no force, and a ramp when it is over") {
+  const OrderedFault fault = GENERATE(
+      OrderedFault{"silent 1", "silent 0", "does not answer"},
+      OrderedFault{"garbage {\"inverse3\":", "garbage", "is not understood: it is no JSON"},
+      OrderedFault{"number null", "number", "x is no number"},
+      OrderedFault{"number 1e999", "number", "is not understood"},
+      OrderedFault{"late 120", "late 0", "does not answer"},
+      OrderedFault{"plugged 049D 0", "plugged 049D 1",
+                   "is unplugged, no force; check power and cable"},
+      OrderedFault{"status 049D 0 1 1 0", "status 049D 1 1 1 0", "is not calibrated, no force"},
+      OrderedFault{"status 049D 1 0 1 0", "status 049D 1 1 1 0", "is not ready, no force"},
+      OrderedFault{"status 049D 1 1 0 0", "status 049D 1 1 1 0", "has no power supply"});
+  CAPTURE(fault.on);
+  FakeService service;
+  ServedDevice served(service);
+  REQUIRE(eventually([&] { return served.felt(service); }));
+  service.order(fault.on);
+  REQUIRE(eventually([&] {
+    served.serve();
+    return served.device.trouble().find(fault.words) != std::string::npos;
+  }));
+  const FakeService::Told before = service.told();
+  REQUIRE(eventually([&] {
+    served.serve();
+    return service.told().force.isZero(0.0);
+  }));
+  CHECK(before.largest < 1.0001 * ServedDevice::kDemand);
+  service.order(fault.off);
+  REQUIRE(eventually([&] { return served.felt(service); }));
+  served.servo->stop();
+  CHECK(served.servo->report().end == ServoEnd::kStopped);
+  CHECK(served.loops[0].counts().faults == 0);
+  check_ramp(served.shown.rows);
+}
+
+TEST_CASE("a device that is not ready from the start has no force until it is") {
+  FakeService service;
+  service.order("status 049D 0 0 1 0");
+  HaplyDevice device(service.settings());
+  device.open();
+  for (int k = 0; k < 20; ++k) CHECK_FALSE(tick_ready(device));
+  CHECK_THAT(device.trouble(), Contains("Haply device 049D: is not calibrated, no force"));
+  CHECK_FALSE(device.read(0.0).tip.hasNaN());
+  service.order("status 049D 1 1 1 0");
+  CHECK(eventually([&] { return tick_ready(device); }));
+  CHECK(device.trouble().empty());
+}
+
+TEST_CASE("without states for 50 ms a reading is of no use, and the device not ready") {
+  FakeService service;
+  HaplyDevice device(service.settings());
+  device.open();
+  REQUIRE(eventually([&] { return tick_ready(device); }));
+  service.order("silent 1");
+  REQUIRE(eventually([&] { return device.read(0.0).tip.hasNaN(); }));
+  CHECK_FALSE(device.state().ready);
+  CHECK(device.state().repeated);
+  CHECK_FALSE(device.state().lost);
+  service.order("silent 0");
+  CHECK(eventually([&] { return tick_ready(device); }));
+}

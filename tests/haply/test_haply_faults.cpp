@@ -139,3 +139,16 @@ TEST_CASE("without states for 50 ms a reading is of no use, and the device not r
   service.order("silent 0");
   CHECK(eventually([&] { return tick_ready(device); }));
 }
+
+TEST_CASE("a device that was not ready between two ticks is not ready in the next one") {
+  FakeService service;
+  HaplyDevice device(service.settings());
+  device.open();
+  REQUIRE(eventually([&] { return tick_ready(device); }));
+  service.order("status 049D 1 0 1 0");
+  REQUIRE(eventually([&] { return !device.trouble().empty(); }));
+  service.order("status 049D 1 1 1 0");
+  REQUIRE(eventually([&] { return device.trouble().empty(); }));
+  CHECK_FALSE(tick_ready(device));
+  CHECK(eventually([&] { return tick_ready(device); }));
+}

@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
-"""A case by irdm: irdm_engine.py [--ball] SCENE.json RESULT.json (README.md: what both hold)
+"""A case by irdm: irdm_engine.py [--ball | --fine] SCENE.json RESULT.json (README.md: what both hold)
 
 The tool is irdm's fingertip: its point is the ball's foremost one, its radius that of Hertz' contact at the greatest
 depth. With --ball it is a rigid body that a stylus leads. Linear elements of the given mesh, all modes.
+With --fine it is scenery, an exact ball on its path; quadratic elements, of shapes/ where the case has one, a quarter of
+the step.
 """
 
 import json
@@ -17,13 +19,15 @@ import irdm
 import meshes
 
 COUPLING = 1e5  # N/m; a fixed object needs a spring
-BALL_CELLS = 15  # in a quarter circle: irdm accepts 1500 nodes
+SHAPES = Path(__file__).resolve().parent / "shapes"
+FINE_MODES = 300  # where all would take long
+FINE_STEPS = 4  # in one of the case
+BALL_CELLS = 15  # in a quarter circle: nodes of the surface
 BALL_DENSITY = 20000.0  # kg/m^3: what touches it hardly moves it
 
 
-def model(body, dt, folder):
-    mesh = folder / f"body{len(list(folder.iterdir()))}.msh"
-    meshes.write(mesh, numpy.array(body["nodes"]), numpy.array(body["tets"]))
+def table_of(body, dt, mesh):
+    """What irdm-precompute is given."""
     material = {key: body["material"][key] for key in
                 ("youngs_modulus", "poisson_ratio", "rayleigh_alpha", "rayleigh_beta")}
     config = {"mesh": {"file": str(mesh), "order": 1}, "material": {**material, "density": body["density"]},
@@ -33,6 +37,30 @@ def model(body, dt, folder):
     if "fixed_below" in body:
         config["response"]["support"] = "fixed"
         config["support"] = {"half_space": {"point": [0, body["fixed_below"] + 1e-9, 0], "normal": [0, 1, 0]}}
+    return config
+
+
+def given_mesh(body, folder):
+    mesh = folder / f"body{len(list(folder.iterdir()))}.msh"
+    meshes.write(mesh, numpy.array(body["nodes"]), numpy.array(body["tets"]))
+    return mesh
+
+
+def model(body, dt, folder):
+    return irdm.precompute(table_of(body, dt, given_mesh(body, folder)), threads=1)
+
+
+def shape_of(body):
+    return SHAPES / ("palpation.geo" if "regions" in body else Path(body["mesh"]).with_suffix(".geo"))
+
+
+def fine_model(body, dt, folder):
+    """Of a shape of our own, else of the given mesh; with some modes where all would take long."""
+    shape = shape_of(body)
+    config = table_of(body, dt, shape if shape.exists() else given_mesh(body, folder))
+    config["mesh"]["order"] = 2
+    if not shape.exists() or "regions" in body:
+        config["modes"] = {"count": FINE_MODES}
     return irdm.precompute(config, threads=1)
 
 
@@ -65,7 +93,8 @@ class Fingertip:
         self.foremost = self.tool["radius"] * first / numpy.linalg.norm(first)
         radius = fingertip_radius(scene)
         stiffness = COUPLING if "fixed_below" in scene["bodies"][0] else 0
-        self.styluses, self.objects = [{"radius": radius, "coupling_stiffness": stiffness}], []
+        self.styluses = [{"radius": radius, "coupling_stiffness": stiffness}]
+        self.objects, self.scenery = [], []
         self.settings = f"fingertip of {1e3 * radius:.1f} mm, spring {stiffness:g} N/m"
 
     def tip(self, time):
@@ -87,7 +116,7 @@ class Ball:
         self.objects = [{"name": "ball", "model": one, "position": self.tip(0.0), "friction": friction,
                          "velocity": (self.tip(dt) - self.tip(0.0)) / dt}]
         stiffness = 0.4 * mass / dt**2
-        self.styluses = [{"tool": {"object": "ball", "stiffness": stiffness}}]
+        self.styluses, self.scenery = [{"tool": {"object": "ball", "stiffness": stiffness}}], []
         self.number = len(scene["bodies"])
         self.settings = (f"rigid ball of {mass:.2g} kg, {BALL_CELLS} cells in a quarter circle, "
                          f"spring {stiffness:.2g} N/m")
@@ -99,6 +128,23 @@ class Ball:
         return on_object(step, self.number)
 
 
+class Kinematic:
+    """A tool as scenery: an exact ball on the path."""
+
+    def __init__(self, scene):
+        tool = scene["tools"][0]
+        start = centre(tool, 0.0)
+        path = [{"time": row[0], "displacement": (numpy.array(row[1:]) - start).tolist()} for row in tool["path"]]
+        self.scenery = [{"sphere": {"radius": tool["radius"]}, "position": start.tolist(), "motion": {"path": path},
+                         "friction": {"static": tool["friction"], "kinetic": tool["friction"]}}]
+        self.objects, self.styluses = [], []
+        self.settings = "exact ball on its path"
+
+    def force(self, step):
+        contacts = step.contacts
+        return -contacts["force"][contacts["kind"] == irdm.SCENERY].sum(axis=0)
+
+
 def on_object(step, number):
     """All contacts of an object with others [N], W."""
     contacts = step.contacts
@@ -107,47 +153,81 @@ def on_object(step, number):
 
 
 def run(scene, tool_kind):
-    dt = scene["dt"]
+    fine = tool_kind is Kinematic
+    parts = FINE_STEPS if fine else 1
+    dt = scene["dt"] / parts
     tool = tool_kind(scene) if scene["tools"] else None
     with tempfile.TemporaryDirectory() as folder:
-        models = [model(body, dt, Path(folder)) for body in scene["bodies"]]
+        models = [(fine_model if fine else model)(body, dt, Path(folder)) for body in scene["bodies"]]
         objects, starts = [], []
         for number, (body, one) in enumerate(zip(scene["bodies"], models)):
-            node = numpy.array(body["nodes"])[numpy.array(body["tets"])[0, 0]]
-            shift = node - one.volume_nodes[numpy.array(body["tets"])[0, 0]]
-            objects.append({"name": f"body{number}", "model": one, "position": shift,
+            own = fine and shape_of(body).exists()  # in the frame of its file
+            orientation = body.get("orientation", [1, 0, 0, 0]) if own else [1, 0, 0, 0]
+            turn = meshes.rotation(orientation)
+            if own:
+                shift = turn @ one.com_offset + body.get("position", [0, 0, 0])
+            else:
+                shift = numpy.array(body["nodes"]).min(axis=0) - one.volume_nodes.min(axis=0)
+            objects.append({"name": f"body{number}", "model": one, "position": shift, "orientation": orientation,
                             "friction": {"static": scene["friction"], "kinetic": scene["friction"]},
                             "velocity": body.get("velocity", [0, 0, 0])})
-            starts.append(one.nodes + shift)
-        table = {"world": {"gravity": scene["gravity"]}, "object": objects + (tool.objects if tool else [])}
+            starts.append(one.nodes @ turn.T + shift)
+        table = {"object": objects + (tool.objects if tool else [])}
         if tool:
-            table["stylus"] = tool.styluses
+            table["stylus"], table["scenery"] = tool.styluses, tool.scenery
+        if fine:
+            table["contact"] = {"samples": 4096}
         simulation = irdm.Simulation(table)
-    steps = round(scene["duration"] / dt)
-    samples = {round(t / dt) for t in scene["sample_times"]}
+    if any(scene["gravity"]):
+        simulation.step()  # the objects are at rest without gravity
+        simulation.gravity = scene["gravity"]
+    steps = round(scene["duration"] / scene["dt"])
+    samples = {round(t / scene["dt"]) for t in scene["sample_times"]}
     force, taken, shapes = [], [], []
+    styluses = tool.styluses if tool else []
     for k in range(1, steps + 1):
         begin = time.process_time_ns()
-        step = simulation.step([tool.tip(k * dt)] if tool else None)
+        for part in range(parts):
+            now = ((k - 1) * parts + part + 1) * dt
+            step = simulation.step([tool.tip(now)] if styluses else None)
         taken.append((time.process_time_ns() - begin) / 1e3)
         force.append((tool.force(step) if tool else on_object(step, 1)).tolist())
         if k in samples:
-            shapes.append(matched(scene, starts[0], simulation.surface(0)))
-    settings = "linear elements, all modes" + (f", {tool.settings}" if tool else "")
-    return {"version": irdm.__version__, "settings": settings, "dt": dt, "force": force, "step_us": numpy.percentile(taken, [50, 99]).tolist(), "positions": shapes}
+            shapes.append(matched(scene, starts[0], models[0].triangles, simulation.surface(0)))
+    elements = "quadratic elements" if fine else "linear elements"
+    settings = f"{elements}, all modes or {FINE_MODES}, steps of {1e3 * dt:g} ms" if fine else f"{elements}, all modes"
+    settings += f", {tool.settings}" if tool else ""
+    return {"version": irdm.__version__, "settings": settings, "dt": scene["dt"], "force": force,
+            "step_us": numpy.percentile(taken, [50, 99]).tolist(), "positions": shapes}
 
 
-def matched(scene, start, now):
-    """Where the mesh's nodes are that the reference looks at; irdm numbers surface nodes on its own."""
+def weights_in(corners, point):
+    """Barycentric, of a point in triangles (t, 3, 3), with their distances from it."""
+    a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
+    ab, ac, way = b - a, c - a, point - a
+    dot = lambda x, y: numpy.einsum("ij,ij->i", x, y)
+    determinant = dot(ab, ab) * dot(ac, ac) - dot(ab, ac) ** 2
+    v = (dot(ac, ac) * dot(way, ab) - dot(ab, ac) * dot(way, ac)) / determinant
+    w = (dot(ab, ab) * dot(way, ac) - dot(ab, ac) * dot(way, ab)) / determinant
+    weights = numpy.clip(numpy.stack([1 - v - w, v, w], axis=1), 0, None)
+    weights /= weights.sum(axis=1, keepdims=True)
+    return weights, numpy.linalg.norm(numpy.einsum("ti,tij->tj", weights, corners) - point, axis=1)
+
+
+def matched(scene, start, triangles, now):
+    """Where the mesh's nodes are that the reference looks at, on the surface that irdm has."""
     found = []
     for node in numpy.array(scene["bodies"][0]["nodes"])[scene["watched"]]:
-        found.append(now[numpy.argmin(numpy.linalg.norm(start - node, axis=1))].tolist())
+        weights, distance = weights_in(start[triangles], node)
+        nearest = numpy.argmin(distance)
+        moved = (now - start)[triangles[nearest]]
+        found.append((node + weights[nearest] @ moved).tolist())
     return found
 
 
 def main():
     arguments = sys.argv[1:]
-    kind = Ball if arguments[0] == "--ball" else Fingertip
+    kind = {"--ball": Ball, "--fine": Kinematic}.get(arguments[0], Fingertip)
     scene = json.loads(Path(arguments[-2]).read_text(encoding="utf-8"))
     Path(arguments[-1]).write_text(json.dumps(run(scene, kind)), encoding="utf-8")
 

@@ -85,6 +85,14 @@ def ball(x):
                                        1 - a / 2 - b / 2 + a * b / 3], axis=1))
 
 
+def rotation(quaternion):
+    """Of (w, x, y, z), a unit quaternion."""
+    w, x, y, z = quaternion
+    return numpy.array([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+                        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+                        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]])
+
+
 def write(path, nodes, tets):
     """Gmsh's text format 2.2."""
     lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$Nodes", str(len(nodes))]

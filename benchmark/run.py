@@ -20,6 +20,7 @@ import meshes
 HERE = Path(__file__).resolve().parent
 BUILT = HERE.parent / "out" / "benchmark"  # by engines/setup.sh
 ENGINES = {"irdm": [sys.executable, str(HERE / "irdm_engine.py")],
+           "irdm, fine": [sys.executable, str(HERE / "irdm_engine.py"), "--fine"],
            "irdm, rigid ball": [sys.executable, str(HERE / "irdm_engine.py"), "--ball"],
            "bullet": [str(BUILT / "bullet")],
            "jolt": ["node", str(BUILT / "jolt.mjs")],
@@ -45,13 +46,6 @@ def choose(name, known, what):
     return name
 
 
-def rotation(quaternion):
-    w, x, y, z = quaternion
-    return numpy.array([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-                        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-                        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]])
-
-
 def scene_of(name):
     """A case with its meshes where they start, and its reference: all that an adapter needs."""
     case = json.loads((HERE / "cases" / f"{name}.json").read_text(encoding="utf-8"))
@@ -60,7 +54,7 @@ def scene_of(name):
     for body in scene["bodies"]:
         nodes, tets = meshes.read(HERE / "cases" / body["mesh"])
         volume = meshes.signed_volume(nodes, tets)
-        nodes = nodes @ rotation(body.get("orientation", [1, 0, 0, 0])).T + body.get("position", [0, 0, 0])
+        nodes = nodes @ meshes.rotation(body.get("orientation", [1, 0, 0, 0])).T + body.get("position", [0, 0, 0])
         density = body["mass"] / volume.sum()  # the mesh has the body's mass, if not its volume
         node_mass = numpy.bincount(tets.ravel(), weights=numpy.repeat(density * volume / 4, 4))
         young = numpy.full(len(tets), body["material"]["youngs_modulus"])

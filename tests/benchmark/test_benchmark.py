@@ -135,13 +135,16 @@ class TruthTest(unittest.TestCase):
 class TableTest(unittest.TestCase):
     def test_irdm_is_as_the_table_says(self):
         for name, engine, results in (("push", "irdm", "irdm"), ("two-spheres", "irdm", "irdm"),
-                                      ("push", "irdm, rigid ball", "irdm-ball")):
+                                      ("push", "irdm, rigid ball", "irdm-ball"),
+                                      ("push", "irdm, fine", "irdm-fine")):
             with self.subTest(name, engine=engine):
                 _, found = run.run(engine, name)
                 said = json.loads((BENCHMARK / "results" / f"{results}.json").read_text())["cases"][name]
                 for key in ("error_max_N", "error_rms_N", "jnd", "surface_mm"):
                     self.assertLess(found[key], 1.2 * said[key], key)
                     self.assertGreater(found[key], 0.8 * said[key], key)
+                if results == "irdm-fine":
+                    self.assertLess(found["error_max_N"], 0.02 * found["peak_N"])
 
     def test_page_has_the_results(self):
         self.assertIn(run.table(), (BENCHMARK / "README.md").read_text())

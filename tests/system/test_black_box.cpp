@@ -84,7 +84,7 @@ TEST_CASE("black box: a device that fails in contact leaves two seconds of ticks
   const DeviceStage device;
   device.stage.hold_forces();
   Server server = device.stage.start_server({}, {.folder = device.stage.path("")});
-  ChildOptions options = device.with(DeviceStage::in_contact("0x0203", 2100));
+  ChildOptions options = device.with(DeviceStage::in_contact("0x0204", 2100));
   options.folder = device.stage.path("");
   ChildProcess bridge = device.stage.start_bridge(server, {}, options);
   // Of a busy machine there may be others before it: connections that were lost with a force.

@@ -74,10 +74,18 @@ std::vector<Waypoint> read_path(TomlTable& motion) {
     Waypoint& next = path.emplace_back();
     next.time = row.number("time", between(0.0, 1e6));
     next.displacement = read_vector(row, "displacement", lab::kPlace);
-    if (path.size() > 1 && next.time <= path[path.size() - 2].time) {
+    row.finish();
+    if (path.size() < 2) continue;
+    const Waypoint& before = path[path.size() - 2];
+    if (next.time <= before.time) {
       row.fail("time", "is not after that of the row before", "give the rows in the order of time");
     }
-    row.finish();
+    const double speed =
+        (next.displacement - before.displacement).norm() / (next.time - before.time);
+    if (!lab::kVelocity.contains(speed)) {
+      row.fail("displacement", "is reached at " + number_text(speed) + " m/s",
+               "give at most 1000 m/s from row to row");
+    }
   }
   return path;
 }

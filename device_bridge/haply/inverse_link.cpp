@@ -18,7 +18,7 @@ namespace {
 constexpr std::int64_t kPeriodNs = 500'000;            // from one message to the next
 constexpr std::int64_t kAbsentPeriodNs = 100'000'000;  // while the device is not there
 constexpr std::int64_t kSilenceNs = 1'000'000'000;     // then the connection is made anew
-constexpr std::int64_t kPauseNs = 250'000'000;         // before it is
+constexpr std::int64_t kPauseNs = 250'000'000;         // before it is tried a second time
 constexpr std::int64_t kConnectNs = 4'000'000'000;     // until the first message
 constexpr std::int64_t kEndNs = 300'000'000;           // for the last answer and the goodbye
 
@@ -76,17 +76,34 @@ void InverseLink::open() {
   constexpr std::chrono::seconds kPatience(10);
   std::future<void> opened = opened_.get_future();
   connect();
-  thread_ = std::thread([this] { io_.run(); });
+  thread_ = std::thread([this] { run(); });
   try {
     apply_scheduling(settings_.scheduling, thread_, kNetworkPriority);
     if (opened.wait_for(kPatience) != std::future_status::ready) {
-      throw Error(label(), "the service at " + host_text(settings_.service) + " does not answer",
-                  kStart);
+      throw Error(
+          settings_.device.empty() ? "first Haply device" : "Haply device " + settings_.device,
+          "the service at " + host_text(settings_.service) + " does not answer", kStart);
     }
     opened.get();
   } catch (...) {
     close();
     throw;
+  }
+}
+
+// What a handler throws (no memory, no threads) costs the connection.
+void InverseLink::run() noexcept {
+  for (;;) {
+    try {
+      io_.run();
+      return;
+    } catch (const std::exception& error) {
+      try {
+        fail(error.what(), "connecting again");
+      } catch (...) {
+        return;
+      }
+    }
   }
 }
 
@@ -197,11 +214,15 @@ bool InverseLink::choose(const ServiceMessage& inventory) {
   return true;
 }
 
-// Waits for the service's HTTP, while the device has no force.
+// Waits for the service's HTTP. One that is connected to again is known: it hears zero at once.
 void InverseLink::set_up(const ServiceMessage& inventory, const InverseDevice& device) {
+  device_.status = device.status;
+  if (!waited_for_) {
+    if (!device.gravity_compensation.value_or(true)) turn_gravity_on();
+    return begin_exchange();
+  }
   const auto answer = http_request(settings_.service, boost::beast::http::verb::get, "/version");
   const auto version = answer ? decode_version(*answer) : std::nullopt;
-  device_.status = device.status;
   if (version && version->major != 3) {
     return refuse("the service's version " + std::to_string(version->major) + "." +
                       std::to_string(version->minor) + " is not known",
@@ -364,7 +385,8 @@ void InverseLink::fail(const std::string& cause, const std::string& remedy) {
   withhold();
   complain(cause + "; " + remedy);
   ++report_.reconnects;
-  wake_at(monotonic_ns() + kPauseNs, &InverseLink::connect);
+  const std::int64_t pause_ns = phase_ == Phase::kConnecting ? kPauseNs : 0;
+  wake_at(monotonic_ns() + pause_ns, &InverseLink::connect);
 }
 
 void InverseLink::begin_end() {

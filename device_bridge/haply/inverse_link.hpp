@@ -99,6 +99,7 @@ class InverseLink {
     kEnding,
   };
 
+  void run() noexcept;
   void connect();
   void take(const std::string& text);
   void take_inventory(const ServiceMessage& inventory);

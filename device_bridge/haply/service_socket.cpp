@@ -74,11 +74,12 @@ void ServiceSocket::leave(std::function<void()> done) {
 
 void ServiceSocket::drop() noexcept {
   listens_ = false;
+  resolver_.cancel();
   beast::get_lowest_layer(stream_).close();
 }
 
 bool ServiceSocket::good(ErrorCode error) {
-  if (!error) return true;
+  if (!error) return listens_;
   if (std::exchange(listens_, false)) listener_.lost(error.message());
   return false;
 }

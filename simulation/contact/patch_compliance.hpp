@@ -16,7 +16,7 @@ namespace irdm {
 class PatchCompliance {
  public:
   /// Surface nodes of an object that can touch others: the table has some (3n)^2 numbers.
-  static constexpr int kMaxNodes = 3000;
+  static constexpr int kMaxNodes = 2000;
 
   /// Throws Error when the object has more nodes than that.
   /// @param sampling of the model's surface

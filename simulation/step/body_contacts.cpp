@@ -168,14 +168,14 @@ int BodyContacts::find() noexcept {
     candidate.depth = contact.gap.dot(contact.normal);
     if (candidate.pressed) closed_ = std::max(closed_, candidate.depth);
   }
-  if (candidates_.size() > kMost) {
-    std::nth_element(candidates_.begin(), candidates_.begin() + kMost, candidates_.end(),
+  if (candidates_.size() > static_cast<std::size_t>(most_)) {
+    std::nth_element(candidates_.begin(), candidates_.begin() + most_, candidates_.end(),
                      [](const Candidate& a, const Candidate& b) {
                        if (a.pressed != b.pressed) return a.pressed;
                        if (a.depth != b.depth) return a.depth > b.depth;
                        return a.sample < b.sample;
                      });
-    candidates_.resize(kMost);
+    candidates_.resize(static_cast<std::size_t>(most_));
     std::sort(candidates_.begin(), candidates_.end(),
               [](const Candidate& a, const Candidate& b) { return a.sample < b.sample; });
   }

@@ -34,7 +34,7 @@ struct ContactBody {
 /// pass through. Real-time safe after construction; one thread.
 class BodyContacts {
  public:
-  /// Contacts that one pair can have in a step.
+  /// Contacts that one pair can have in a step, without limit().
   static constexpr int kMost = 128;
 
   /// A contact of this step.
@@ -58,6 +58,8 @@ class BodyContacts {
   /// Of an object with itself. @param reach of the body's samples; must outlive this
   BodyContacts(int object, const ContactBody& body, const SelfReach& reach, double dt);
 
+  /// It can have at most so many contacts from now on. @param most 1 to kMost
+  void limit(int most) noexcept { most_ = most; }
   void reset() noexcept;
   /// State, in or out (StateArchive).
   void archive(StateArchive& state) {
@@ -70,8 +72,8 @@ class BodyContacts {
   }
 
   /// Chooses this step's contacts: samples that would be inside the other by the end of it, and
-  /// those that were pressed on it; at most kMost, those that were pressed and then the deepest
-  /// first. Returns how many.
+  /// those that were pressed on it; at most as many as it can have, those that were pressed and
+  /// then the deepest first. Returns how many.
   int find() noexcept;
   /// Writes contact i of the step as a constraint on the object, in W.
   void pose(int i, const Friction& friction, ContactConstraint& constraint) const noexcept;
@@ -184,6 +186,7 @@ class BodyContacts {
   double closed_ = 0.0;            ///< how deep samples were before forces closed it [m]
   double displaced_ = 0.0;         ///< how far surfaces were seen away from rest [m]
   int first_sample_ = 0;
+  int most_ = kMost;
   std::vector<Sample> samples_;
   struct Candidate {
     int sample;

@@ -21,6 +21,10 @@ constexpr double kDeepestOverlap = 5e-4;
 // Objects with a floor that may be one contact problem: its matrix has room for all that their
 // floors can add, 9 (200 m)^2 numbers for m of them.
 constexpr std::size_t kMostOnFloor = 4;
+// Of more pairs than these (two bodies, from both sides) each has fewer contacts, so that there are
+// some for all.
+constexpr std::size_t kFewPairs = 2;
+constexpr int kMostOfMany = 64;
 
 // How often the mass of a light one a heavy one that moves may have. Where it rests on the light
 // one, more makes the solver leave out steps, which lets it sink in.
@@ -65,7 +69,10 @@ std::string pair_name(const SimulationConfig& config, const BodyContacts& pair) 
 WorldContacts::WorldContacts(const SimulationConfig& config,
                              const std::vector<std::unique_ptr<SoftObject>>& objects)
     : dt_(objects.front()->model().dt), leader_(objects.size(), 0) {
-  for (const SceneryConfig& scenery : config.scenery) scenery_.push_back({scenery});
+  for (const SceneryConfig& scenery : config.scenery) {
+    scenery_.push_back({scenery});
+    if (scenery_.back().moves()) scenery_.back().go_on(0.0);
+  }
   if (touches_others(config) && config.floor && objects.size() > kMostOnFloor) {
     throw Error("floor",
                 "is for at most " + std::to_string(kMostOnFloor) + " objects that touch each other",
@@ -79,6 +86,9 @@ WorldContacts::WorldContacts(const SimulationConfig& config,
         {*shape.sampling, object->surface(), object->deformed_surface(), object->motion()});
   }
   add_pairs(config);
+  if (pairs_.size() > kFewPairs) {
+    for (BodyContacts& pair : pairs_) pair.limit(kMostOfMany);
+  }
   const auto others = static_cast<int>(objects_.size() - 1 + scenery_.size());
   const int with_others = std::min(kMaxBodyContacts, 2 * others * BodyContacts::kMost);
   island_ = std::make_unique<ContactIsland>(

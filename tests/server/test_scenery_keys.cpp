@@ -80,6 +80,9 @@ TEST_CASE("scenery: a path has waypoints in the order of their times") {
   CHECK(path[1].displacement == Vector3(1, 2, 3));
   CHECK_THAT(rejection(with_scenery(with_path(first + "{ time = 0.5 }"))),
              Contains("time is not after that of the row before"));
+  CHECK_THAT(
+      rejection(with_scenery(with_path(first + "{ time = 0.6, displacement = [0, 101, 0] }"))),
+      Contains("displacement is reached at 1010 m/s"));
   CHECK_THAT(rejection(with_scenery(with_path("{ time = -1 }"))), Contains("time is -1"));
   CHECK_THAT(rejection(with_scenery(with_path("{ displacement = [0, 0, 0] }"))),
              Contains("time is missing"));

@@ -76,6 +76,18 @@ TEST_CASE("moving scenery: a path leads it straight from waypoint to waypoint") 
   CHECK(there(1e9).norm() < 1e-15);
 }
 
+TEST_CASE("moving scenery: it is where its path begins from the start, as after a reset") {
+  SimulationConfig config = block();
+  config.scenery[0].position.y() = 0.01;  // in the block, but for the path
+  config.scenery[0].motion.path = {{0.0, Vector3(0, -0.02, 0)}};
+  Simulation simulation(config);
+  const auto record = std::make_unique<StepRecord>();
+  for (int k = 0; k < 15; ++k) {
+    step_alone(simulation, *record);
+    CHECK(record->body_contacts().empty());  // it falls 4.4 mm of 10
+  }
+}
+
 TEST_CASE("moving scenery: a plane that presses a bar on the ground feels E A d / L") {
   FixedBox bar;
   bar.size = Vector3(0.04, 0.12, 0.04);

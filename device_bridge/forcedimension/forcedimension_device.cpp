@@ -178,7 +178,7 @@ StylusPose ForceDimensionDevice::read(double) noexcept {
   double rows[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   const int result =
       dhd_.get_position_and_orientation_frame(&tip.x(), &tip.y(), &tip.z(), rows, id);
-  count(result < 0);
+  count(result < 0, failures_);  // three are a fault of the safety filter already
   repeated_ = result == dhd::kRepeated;
   if (repeated_) ++repeats_;
   if (result < 0) {
@@ -211,10 +211,9 @@ void ForceDimensionDevice::look() noexcept {
   if (--pause_ <= 0) dhd_.enable_force(kOn, id);
 }
 
-// Three readings in a row that failed are a fault of the safety filter already.
-void ForceDimensionDevice::count(bool failed) noexcept {
-  failures_ = failed ? failures_ + 1 : 0;
-  if (failures_ >= kMostFailures) lost_.store(true, std::memory_order_relaxed);
+void ForceDimensionDevice::count(bool failed, int& in_a_row) noexcept {
+  in_a_row = failed ? in_a_row + 1 : 0;
+  if (in_a_row >= kMostFailures) lost_.store(true, std::memory_order_relaxed);
 }
 
 // Without an active wrist the driver leaves the torque out.
@@ -223,9 +222,10 @@ void ForceDimensionDevice::write(const Wrench& shown) noexcept {
   const Vector3 t = rating_.peak_torque > 0.0 ? to_driver(shown.torque) : Vector3::Zero();
   const int result = dhd_.set_force_and_torque_and_gripper_force(
       f.x(), f.y(), f.z(), t.x(), t.y(), t.z(), 0.0, static_cast<char>(id_));
+  count(result < 0, refusals_);
   if (result < 0) ++refused_;
-  cut_off_ = result == dhd::kSaturated;
-  if (cut_off_) ++saturated_;
+  if (result == dhd::kSaturated) ++saturated_;
+  cut_off_ = result < 0 || result == dhd::kSaturated;
 }
 
 DeviceState ForceDimensionDevice::state() const noexcept {
@@ -240,7 +240,8 @@ DeviceState ForceDimensionDevice::state() const noexcept {
 
 std::string ForceDimensionDevice::trouble() const {
   if (lost_.load(std::memory_order_relaxed)) {
-    return label() + ": no readings any more; check power and cable, and start irdm-bridge again";
+    return label() +
+           ": does not answer any more; check power and cable, and start irdm-bridge again";
   }
   if (!initialised_.load(std::memory_order_relaxed)) {
     return label() +

@@ -47,7 +47,7 @@ class ForceDimensionDevice : public HapticDevice {
   void prepare();
   void initialise(bool initialised);
   void look() noexcept;
-  void count(bool failed) noexcept;
+  void count(bool failed, int& in_a_row) noexcept;
   std::string label() const;
 
   std::string name_;
@@ -58,10 +58,11 @@ class ForceDimensionDevice : public HapticDevice {
   ForceRating rating_;
   StylusPose pose_;  ///< that was read last
   bool repeated_ = false;
-  bool cut_off_ = false;  ///< the last force was
+  bool cut_off_ = false;  ///< the last force was, or was not taken
   int ticks_ = 0;         ///< since the status was asked for
   int pause_ = 0;         ///< statuses left until the force is turned on again
-  int failures_ = 0;      ///< in a row
+  int failures_ = 0;      ///< readings in a row
+  int refusals_ = 0;      ///< forces in a row
   std::uint64_t repeats_ = 0, refused_ = 0, saturated_ = 0;  ///< so far
   std::atomic<bool> initialised_{false};
   std::atomic<dhd::ForceOff> cause_{dhd::ForceOff::kNone};

@@ -25,7 +25,7 @@ constexpr std::int64_t kEndNs = 300'000'000;           // for the last answer an
 constexpr const char* kStart =
     "start the Inverse Service (systemctl start haply-inverse-service), or correct `service`";
 
-// Devices that this process has opened.
+// Devices that this process has opened, by id: a service has more than one address.
 std::mutex claims_mutex;
 std::set<std::string> claims;
 
@@ -187,14 +187,11 @@ void InverseLink::take_inventory(const ServiceMessage& inventory) {
 
 // Once. False: refused.
 bool InverseLink::choose(const ServiceMessage& inventory) {
-  const auto claim_of = [this](const std::string& id) {
-    return host_text(settings_.service) + "/" + id;
-  };
   const InverseDevice* chosen = nullptr;
   for (const InverseDevice& device : inventory.devices) {
     const bool wanted = settings_.device.empty() || device.id == settings_.device;
     if (!wanted || device.id.empty()) continue;
-    if (lay_claim(claim_of(device.id))) {
+    if (lay_claim(device.id)) {
       chosen = &device;
       break;
     }
@@ -210,7 +207,7 @@ bool InverseLink::choose(const ServiceMessage& inventory) {
     return false;
   }
   device_ = *chosen;
-  claim_ = claim_of(device_.id);
+  claim_ = device_.id;
   return true;
 }
 

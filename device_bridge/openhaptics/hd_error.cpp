@@ -8,8 +8,8 @@ namespace irdm::hd {
 
 const char* const kPermissionRemedy =
     "install the udev rules of the vendor's driver for this model (91- or 99-3dsystems*.rules; "
-    "they "
-    "have to name its product id) or join the group that owns it, then plug the device in again";
+    "they have to name its product id) or join the group that owns it, then plug the device in "
+    "again";
 const char* const kCommaRemedy =
     "write its numbers with decimal points, or set the device up again under LC_ALL=C";
 const char* const kNameRemedy =

@@ -18,6 +18,7 @@ struct Device {
   bool open = false;
   bool on = false;
   bool unplugged = false;
+  bool refuses = false;
   bool initialised = true;
   bool gripper = false;
   bool closed = false;
@@ -175,6 +176,7 @@ int dhdSetMaxForce(double limit, char id) {
 int dhdSetForceAndTorqueAndGripperForce(double fx, double fy, double fz, double tx, double ty,
                                         double tz, double, char id) {
   return with_open(id, [&](Device& device) {
+    if (device.refuses) return -1;
     ++device.forces;
     const double share = kMotors / std::max(kMotors, std::hypot(fx, fy, fz));
     device.force = {share * fx, share * fy, share * fz};
@@ -220,6 +222,12 @@ void fakedhd_press(int index, unsigned buttons) {
 void fakedhd_unplug(int index, int unplugged) {
   with(index, [&](Device& device) {
     device.unplugged = unplugged != 0;
+    return 0;
+  });
+}
+void fakedhd_refuse_forces(int index, int refused) {
+  with(index, [&](Device& device) {
+    device.refuses = refused != 0;
     return 0;
   });
 }

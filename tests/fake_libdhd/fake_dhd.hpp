@@ -9,7 +9,8 @@ void fakedhd_reset();
 void fakedhd_place(int index, double x, double y, double z);  ///< [m]
 void fakedhd_turn(int index, const double* row_by_row);       ///< 9 numbers
 void fakedhd_press(int index, unsigned buttons);
-void fakedhd_unplug(int index, int unplugged);  ///< every call fails
+void fakedhd_unplug(int index, int unplugged);       ///< every call fails
+void fakedhd_refuse_forces(int index, int refused);  ///< those calls fail, what was set stays
 void fakedhd_activate_wrist(int index);
 void fakedhd_model(int index, const char* name, int type);
 void fakedhd_give_gripper(int index);

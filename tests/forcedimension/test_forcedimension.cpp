@@ -5,13 +5,12 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
-#include <optional>
 #include <vector>
 
 #include "common/error.hpp"
 #include "device_bridge/forcedimension/forcedimension_device.hpp"
 #include "device_bridge/safety/sensor_plausibility.hpp"
-#include "device_bridge/servo_thread.hpp"
+#include "tests/bridge/served_device.hpp"
 #include "tests/forcedimension/fake_api.hpp"
 #include "tests/support/allocation_guard.hpp"
 #include "tests/support/eventually.hpp"
@@ -144,7 +143,7 @@ TEST_CASE("readings that fail are of no use, and after fifty the device is lost"
   for (int tick = 0; tick < 50; ++tick) device.read(0.0);
   CHECK(device.state().lost);
   CHECK(device.state().failed);
-  CHECK_THAT(device.trouble(), Contains("no readings any more"));
+  CHECK_THAT(device.trouble(), Contains("does not answer any more"));
 }
 
 namespace {
@@ -286,6 +285,26 @@ TEST_CASE("a reading that is repeated says nothing of a speed, and the next has 
   CHECK(verdict == ReadingVerdict::kFault);
 }
 
+// What is not taken leaves on what was shown before, which nobody knows to be right.
+TEST_CASE("a driver that takes no force any more has lost its device") {
+  fakedhd_reset();
+  ForceDimensionDevice device("", fake_api());
+  device.open();
+  device.write({Vector3(0, 1, 0)});
+  fakedhd_refuse_forces(0, 1);
+  for (int k = 0; k < 49; ++k) device.write({});
+  CHECK(device.state().saturated);
+  CHECK_FALSE(device.state().lost);
+  fakedhd_refuse_forces(0, 0);
+  device.write({});
+  CHECK_FALSE(device.state().saturated);
+  fakedhd_refuse_forces(0, 1);
+  for (int k = 0; k < 50; ++k) device.write({});
+  CHECK(device.state().failed);
+  CHECK(device.state().lost);
+  CHECK_THAT(device.trouble(), Contains("does not answer any more"));
+}
+
 TEST_CASE("a force that is more than the motors give is said to be, as long as it is asked for") {
   fakedhd_reset();
   fakedhd_model(0, "delta.3", 63);
@@ -344,68 +363,27 @@ TEST_CASE("a tick with a device of Force Dimension allocates nothing") {
 
 namespace {
 
-constexpr double kDemand = 2.0;  // [N]
+using Served = ServedDevice<ForceDimensionDevice>;
 
-// What was shown, tick by tick.
-struct ShownTicks final : TickListener {
-  ShownTicks() { rows.reserve(kMost); }
-  void put(const TickRow& row) noexcept override {
-    if (rows.size() < kMost) rows.push_back({row.time_ns, row.device.ready, row.force.norm()});
-  }
-  static constexpr std::size_t kMost = 500'000;
-  struct Row {
-    std::int64_t time_ns;
-    bool ready;
-    double force;  // [N]
-  };
-  std::vector<Row> rows;
-};
-
-// The first device in a servo thread, and a server that always asks for the same force.
-struct Served {
-  Served() {
-    fakedhd_reset();
-    device.open();
-    loops.emplace_back(device, FilterLimits{});
-    servo.emplace(link, loops,
-                  ServoSettings{.duration = std::numeric_limits<double>::infinity(), .log = &shown},
-                  done);
-    servo->start();
-  }
-  void begin_session() { link.state.put({.linked = true, .sessions = 1, .dt = 0.002}); }
-  // Of the device [N], after the newest sample was answered.
-  double serve() {
-    if (link.styluses[0].sample.receive()) {
-      link.styluses[0].input.put(
-          {.linked = true,
-           .any_force = true,
-           .force = {.sample_time_ns = link.styluses[0].sample.front().time_ns,
-                     .force = Vector3(0, kDemand, 0)}});
-    }
-    return force_of(0).norm();
-  }
-
-  ForceDimensionDevice device{"", fake_api()};
-  std::vector<ServoLoop> loops;
-  ServoLink link{1};
-  EventFd done;
-  ShownTicks shown;
-  std::optional<ServoThread> servo;
-};
+bool felt() {
+  return force_of(0).norm() > 0.95 * Served::kDemand;
+}
 
 }  // namespace
 
 TEST_CASE("the driver hears of the bridge in every tick, before any server is there") {
-  Served served;
+  fakedhd_reset();
+  Served served("", fake_api());
   CHECK(eventually([] { return fakedhd_forces(0) > 100; }));
   CHECK(force_of(0).isZero(0.0));
   served.servo->stop();
 }
 
 TEST_CASE("a device of Force Dimension that is unplugged ends the servo thread") {
-  Served served;
+  fakedhd_reset();
+  Served served("", fake_api());
   served.begin_session();
-  REQUIRE(eventually([&] { return served.serve() > 0.95 * kDemand; }));
+  REQUIRE(eventually(felt));
   fakedhd_unplug(0, 1);
   REQUIRE(served.done.wait(kDeadlineMs));
   served.servo->stop();
@@ -417,13 +395,13 @@ TEST_CASE("a device of Force Dimension that is unplugged ends the servo thread")
 TEST_CASE("a force that the device turned off in the middle of a contact comes back as a ramp") {
   constexpr double kRamp = 0.5;     // [s]
   constexpr int kPauseTicks = 400;  // without force at least
-  Served served;
+  fakedhd_reset();
+  Served served("", fake_api());
   served.begin_session();
-  REQUIRE(eventually([&] { return served.serve() > 0.9 * kDemand; }));
+  REQUIRE(eventually(felt));
   const int off = fakedhd_forces(0);
   fakedhd_force_off(0, GENERATE(3, 2));
-  REQUIRE(eventually(
-      [&] { return served.serve() > 0.9 * kDemand && fakedhd_forces(0) > off + kPauseTicks; }));
+  REQUIRE(eventually([&] { return fakedhd_forces(0) > off + kPauseTicks && felt(); }));
   served.servo->stop();
   CHECK(served.servo->report().end == ServoEnd::kStopped);
   const std::vector<ShownTicks::Row>& rows = served.shown.rows;
@@ -439,8 +417,8 @@ TEST_CASE("a force that the device turned off in the middle of a contact comes b
   double largest = 0.0;
   for (; k < rows.size(); ++k) {
     const double elapsed = 1e-9 * static_cast<double>(rows[k].time_ns - rows[k - 1].time_ns);
-    CHECK(rows[k].force <= rows[k - 1].force + 1.000001 * kDemand * elapsed / kRamp);
+    CHECK(rows[k].force <= rows[k - 1].force + 1.000001 * Served::kDemand * elapsed / kRamp);
     largest = std::max(largest, rows[k].force);
   }
-  CHECK(largest > 0.9 * kDemand);
+  CHECK(largest > 0.9 * Served::kDemand);
 }

@@ -22,7 +22,7 @@ using Rows = std::vector<ShownTicks::Row>;
 // ordered then
 void check_ramp(const Rows& rows, std::int64_t since_ns) {
   constexpr double kRamp = 0.5;  // [s]
-  const double demand = ServedDevice::kDemand;
+  const double demand = ServedHaply::kDemand;
   std::size_t k = 1;
   while (k < rows.size() && (rows[k].time_ns < since_ns || rows[k].ready)) ++k;
   REQUIRE(k < rows.size());
@@ -60,7 +60,7 @@ struct OrderedFault {
 
 TEST_CASE("a service that is killed in contact and started again: no force, then a ramp") {
   FakeService service(GENERATE("3.0", "3.5"));
-  ServedDevice served(service);
+  ServedHaply served(service);
   REQUIRE(eventually([&] { return served.felt(service); }));
   const std::int64_t since_ns = monotonic_ns();
   const int silent = served.shown.silent;
@@ -95,7 +95,7 @@ TEST_CASE("a fault in the middle of a contact: no force, and a ramp when it is o
       OrderedFault{"status 049D 1 1 0 0", "status 049D 1 1 1 0", "has no power supply"});
   CAPTURE(fault.on);
   FakeService service;
-  ServedDevice served(service);
+  ServedHaply served(service);
   REQUIRE(eventually([&] { return served.felt(service); }));
   const std::int64_t since_ns = monotonic_ns();
   const int silent = served.shown.silent;
@@ -106,7 +106,7 @@ TEST_CASE("a fault in the middle of a contact: no force, and a ramp when it is o
   }));
   const FakeService::Told before = service.told();
   REQUIRE(eventually([&] { return service.told().force.isZero(0.0); }));
-  CHECK(before.largest < 1.0001 * ServedDevice::kDemand);
+  CHECK(before.largest < 1.0001 * ServedHaply::kDemand);
   service.order(fault.off);
   REQUIRE(eventually([&] { return served.felt(service); }));
   served.servo->stop();

@@ -19,6 +19,11 @@ double length(const Twist& twist) noexcept {
   return std::max(twist.linear.norm(), kLever * twist.angular.norm());
 }
 
+// Exact for any two times; of a time that goes back, longer than any gap [ns].
+std::uint64_t time_since(std::int64_t earlier_ns, std::int64_t now_ns) noexcept {
+  return static_cast<std::uint64_t>(now_ns) - static_cast<std::uint64_t>(earlier_ns);
+}
+
 }  // namespace
 
 ReadingVerdict SensorPlausibility::look(std::int64_t now_ns, const Vector3& tip,
@@ -31,7 +36,8 @@ ReadingVerdict SensorPlausibility::look(std::int64_t now_ns, const Vector3& tip,
 ReadingVerdict SensorPlausibility::repeat(std::int64_t now_ns) noexcept {
   displacement_ = Twist{};
   const ReadingVerdict clock = look_at_clock(now_ns);
-  const bool recent = last_good_ns_ && now_ns - *last_good_ns_ <= limits_.gap_ns;
+  const auto longest = static_cast<std::uint64_t>(limits_.gap_ns);
+  const bool recent = last_good_ns_ && time_since(*last_good_ns_, now_ns) <= longest;
   return recent ? clock : std::max(clock, leave_out());
 }
 
@@ -49,9 +55,7 @@ ReadingVerdict SensorPlausibility::look_at_clock(std::int64_t now_ns) noexcept {
   if (now_ns < last_ns) {
     return guards_.on(Guard::kClock) ? ReadingVerdict::kFault : ReadingVerdict::kGood;
   }
-  // Unsigned: exact for any two times.
-  const std::uint64_t gap =
-      static_cast<std::uint64_t>(now_ns) - static_cast<std::uint64_t>(last_ns);
+  const std::uint64_t gap = time_since(last_ns, now_ns);
   const bool long_gap = gap > static_cast<std::uint64_t>(limits_.gap_ns);
   elapsed_ =
       kNanosecond * static_cast<double>(std::min(gap, static_cast<std::uint64_t>(limits_.gap_ns)));

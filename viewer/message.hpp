@@ -21,7 +21,9 @@ inline constexpr std::size_t kMaxTokenLength = 128;
 inline constexpr std::size_t kMaxRecordingName = 64;
 inline constexpr std::size_t kMaxRecordings = 100;
 inline constexpr std::size_t kMaxNotice = 512;
-inline constexpr double kFarthest = 1000.0;  ///< of a tip, in each direction [m]
+inline constexpr double kFarthest = 1000.0;             ///< of a tip, in each direction [m]
+inline constexpr std::size_t kMaxRegions = 64;          ///< of an object that are listed
+inline constexpr std::size_t kMaxRegionFaces = 20'000;  ///< inside an object
 
 using Bytes = std::vector<std::uint8_t>;
 
@@ -29,6 +31,34 @@ using Bytes = std::vector<std::uint8_t>;
 class MessageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
+};
+
+/// Least and greatest value of a region's elements.
+struct Span {
+  float lowest = 0;
+  float highest = 0;  ///< not below the lowest
+};
+
+/// What a region of an object is made of.
+struct SceneRegion {
+  std::uint32_t number = 0;  ///< of the [[region]], from 1; 0: what is in none
+  Span youngs_modulus = {};  ///< [Pa]
+  Span poisson_ratio = {};
+  Span density = {};  ///< [kg/m^3]
+};
+
+/// The regions of a soft object of several materials: t triangles of its surface, q faces inside.
+struct SceneRegions {
+  std::vector<SceneRegion> regions = {};    ///< by number; none: the object is of one material
+  bool some_unlisted = false;               ///< there are more than kMaxRegions
+  bool faces_left_out = false;              ///< there are more than kMaxRegionFaces
+  std::vector<float> surface_modulus = {};  ///< (t) Young's modulus [Pa]; NaN: not known
+  /// Faces between tetrahedra of different regions, as corners of them.
+  Points nodes = Points(0, 3);           ///< (p, 3) at rest [m], B; single precision on the wire
+  Triangles faces = Triangles(0, 3);     ///< (q, 3), into nodes, outward of the later region
+  std::vector<float> face_modulus = {};  ///< (q) of the later region [Pa]
+
+  bool empty() const { return regions.empty(); }
 };
 
 /// One object of a Scene.
@@ -39,6 +69,7 @@ struct SceneObject {
   float mass = 0;                      ///< [kg]
   float stiffness = 0;                 ///< Young's modulus [Pa]
   std::vector<float> compliance = {};  ///< static, along the normal, per node [m/N]; NaN: not known
+  SceneRegions regions = {};
 };
 
 /// What does not change while the server runs.

@@ -1,8 +1,11 @@
 #include "viewer/scene_message.hpp"
 
+#include <cmath>
+
 #include "common/response/stored_response.hpp"
 #include "simulation/collision/rest_surface.hpp"
 #include "viewer/message_parts.hpp"
+#include "viewer/scene_regions.hpp"
 
 namespace irdm {
 namespace {
@@ -27,6 +30,7 @@ viewer::SceneObject viewer_object(const std::string& name, const Model& model) {
   object.mass = static_cast<float>(model.body.mass);
   object.stiffness = static_cast<float>(model.material.youngs_modulus);
   object.compliance = normal_compliance(model);
+  object.regions = viewer::scene_regions(model);
   return object;
 }
 
@@ -72,6 +76,112 @@ constexpr int kFloorFlag = 2;
 constexpr int kViewerStylusFlag = 4;
 constexpr int kRecordedFlag = 8;
 
+constexpr int kUnlistedFlag = 1;
+constexpr int kFacesLeftOutFlag = 2;
+
+std::uint16_t flags_of(const SceneRegions& regions) {
+  return static_cast<std::uint16_t>((regions.some_unlisted ? kUnlistedFlag : 0) |
+                                    (regions.faces_left_out ? kFacesLeftOutFlag : 0));
+}
+
+void put_triangles(Writer& writer, const Triangles& triangles) {
+  for (Eigen::Index i = 0; i < triangles.size(); ++i) {
+    writer.put(static_cast<std::uint32_t>(triangles.data()[i]));
+  }
+}
+
+void put_points(Writer& writer, const Points& points) {
+  for (Eigen::Index i = 0; i < points.size(); ++i) {
+    writer.put(static_cast<float>(points.data()[i]));
+  }
+}
+
+Triangles get_triangles(Reader& reader, std::uint32_t count, std::uint32_t nodes) {
+  reader.expect(count, 12);
+  Triangles triangles(count, 3);
+  for (Eigen::Index i = 0; i < triangles.size(); ++i) {
+    const auto node = reader.get<std::uint32_t>();
+    if (node >= nodes) throw MessageError("a triangle has a node that is not there");
+    triangles.data()[i] = static_cast<int>(node);
+  }
+  return triangles;
+}
+
+Points get_points(Reader& reader, std::uint32_t count) {
+  reader.expect(count, 12);
+  Points points(count, 3);
+  for (Eigen::Index i = 0; i < points.size(); ++i) {
+    points.data()[i] = static_cast<double>(reader.get_single());
+  }
+  return points;
+}
+
+std::vector<float> get_singles(Reader& reader, std::size_t count) {
+  reader.expect(count, 4);
+  std::vector<float> values;
+  for (std::size_t i = 0; i < count; ++i) values.push_back(reader.get_single());
+  return values;
+}
+
+/// Of an object that has some.
+void put_regions(Writer& writer, const SceneRegions& regions) {
+  for (const SceneRegion& region : regions.regions) {
+    writer.put(region.number);
+    for (const Span& span : {region.youngs_modulus, region.poisson_ratio, region.density}) {
+      writer.put(span.lowest);
+      writer.put(span.highest);
+    }
+  }
+  for (const float modulus : regions.surface_modulus) writer.put(modulus);
+  writer.put(static_cast<std::uint32_t>(regions.nodes.rows()));
+  writer.put(static_cast<std::uint32_t>(regions.faces.rows()));
+  put_points(writer, regions.nodes);
+  put_triangles(writer, regions.faces);
+  for (const float modulus : regions.face_modulus) writer.put(modulus);
+}
+
+void require_modulus(float value) {
+  if (!(std::isfinite(value) && value > 0.0F)) throw MessageError("a number is out of range");
+}
+
+Span get_span(Reader& reader) {
+  const float lowest = reader.get_single();
+  const Span span{lowest, reader.get_single()};
+  if (!(span.lowest <= span.highest)) throw MessageError("a number is out of range");
+  return span;
+}
+
+SceneRegion get_region(Reader& reader) {
+  SceneRegion region;
+  region.number = reader.get<std::uint32_t>();
+  region.youngs_modulus = get_span(reader);
+  require_modulus(region.youngs_modulus.lowest);
+  require_modulus(region.youngs_modulus.highest);
+  region.poisson_ratio = get_span(reader);
+  region.density = get_span(reader);
+  return region;
+}
+
+/// @param triangles of the object's surface
+SceneRegions get_regions(Reader& reader, std::size_t count, int flags, std::size_t triangles) {
+  SceneRegions regions;
+  regions.some_unlisted = (flags & kUnlistedFlag) != 0;
+  regions.faces_left_out = (flags & kFacesLeftOutFlag) != 0;
+  for (std::size_t i = 0; i < count; ++i) regions.regions.push_back(get_region(reader));
+  regions.surface_modulus = get_singles(reader, triangles);
+  const auto nodes = reader.get<std::uint32_t>();
+  const auto faces = reader.get<std::uint32_t>();
+  if (faces > kMaxRegionFaces) throw MessageError("a count is out of range");
+  regions.nodes = get_points(reader, nodes);
+  regions.faces = get_triangles(reader, faces, nodes);
+  regions.face_modulus = get_singles(reader, faces);
+  for (const float modulus : regions.surface_modulus) {
+    if (!std::isnan(modulus)) require_modulus(modulus);
+  }
+  for (const float modulus : regions.face_modulus) require_modulus(modulus);
+  return regions;
+}
+
 void put_object(Writer& writer, const SceneObject& object) {
   const std::string name = object.name.substr(0, kMaxNameLength);
   writer.put(static_cast<std::uint32_t>(object.rest.rows()));
@@ -79,20 +189,18 @@ void put_object(Writer& writer, const SceneObject& object) {
   writer.put(static_cast<std::uint32_t>(name.size()));
   writer.put(object.mass);
   writer.put(object.stiffness);
-  writer.put_zeros(4);
+  writer.put(static_cast<std::uint16_t>(object.regions.regions.size()));
+  writer.put(flags_of(object.regions));
   writer.put_text(name);
   writer.align();
-  for (Eigen::Index i = 0; i < object.rest.size(); ++i) {
-    writer.put(static_cast<float>(object.rest.data()[i]));
-  }
-  for (Eigen::Index i = 0; i < object.triangles.size(); ++i) {
-    writer.put(static_cast<std::uint32_t>(object.triangles.data()[i]));
-  }
+  put_points(writer, object.rest);
+  put_triangles(writer, object.triangles);
   const auto nodes = static_cast<std::size_t>(object.rest.rows());
   for (std::size_t i = 0; i < nodes; ++i) {
     writer.put(i < object.compliance.size() ? object.compliance[i]
                                             : std::numeric_limits<float>::quiet_NaN());
   }
+  if (!object.regions.empty()) put_regions(writer, object.regions);
 }
 
 SceneObject get_object(Reader& reader) {
@@ -103,23 +211,15 @@ SceneObject get_object(Reader& reader) {
   if (length > kMaxNameLength) throw MessageError("a name is too long");
   object.mass = reader.get_single();
   object.stiffness = reader.get_single();
-  reader.skip(4);
+  const std::size_t regions = reader.get<std::uint16_t>();
+  const int flags = reader.get<std::uint16_t>();
+  if (regions > kMaxRegions) throw MessageError("a count is out of range");
   object.name = reader.get_text(length);
   reader.align();
-  reader.expect(nodes, 12);
-  object.rest.resize(nodes, 3);
-  for (Eigen::Index i = 0; i < object.rest.size(); ++i) {
-    object.rest.data()[i] = static_cast<double>(reader.get_single());
-  }
-  reader.expect(triangles, 12);
-  object.triangles.resize(triangles, 3);
-  for (Eigen::Index i = 0; i < object.triangles.size(); ++i) {
-    const auto node = reader.get<std::uint32_t>();
-    if (node >= nodes) throw MessageError("a triangle has a node that is not there");
-    object.triangles.data()[i] = static_cast<int>(node);
-  }
-  reader.expect(nodes, 4);
-  for (std::uint32_t i = 0; i < nodes; ++i) object.compliance.push_back(reader.get_single());
+  object.rest = get_points(reader, nodes);
+  object.triangles = get_triangles(reader, triangles, nodes);
+  object.compliance = get_singles(reader, nodes);
+  if (regions > 0) object.regions = get_regions(reader, regions, flags, triangles);
   return object;
 }
 
@@ -163,15 +263,7 @@ MeshShape get_surface(Reader& reader) {
     mesh.nodes.row(i) = reader.get_single_vector().cast<double>().transpose();
     mesh.surface_nodes.push_back(static_cast<int>(i));
   }
-  reader.expect(triangles, 12);
-  mesh.triangles.resize(triangles, 3);
-  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
-    for (Eigen::Index corner = 0; corner < 3; ++corner) {
-      const auto node = reader.get<std::uint32_t>();
-      if (node >= nodes) throw MessageError("a triangle has a node that is not there");
-      mesh.triangles(t, corner) = static_cast<int>(node);
-    }
-  }
+  mesh.triangles = get_triangles(reader, triangles, nodes);
   return {std::make_shared<const RestSurface>(mesh)};
 }
 

@@ -16,6 +16,21 @@ inline std::vector<SceneryConfig> example_scenery() {
           {"capsule", CapsuleShape{0.25, 0.75}, Vector3(0, -0.3, 0), turned, {}}};
 }
 
+/// Of an object of four triangles: two regions, and one triangle between them.
+inline viewer::SceneRegions example_regions() {
+  viewer::SceneRegions regions;
+  regions.regions = {{0, {2000.0F, 2000.0F}, {0.25F, 0.5F}, {1000.0F, 1000.0F}},
+                     {3, {500.0F, 8000.0F}, {0.25F, 0.25F}, {1024.0F, 1024.0F}}};
+  regions.some_unlisted = true;
+  regions.surface_modulus = {2000.0F, 500.0F, 8000.0F, 2000.0F};
+  regions.nodes.resize(3, 3);
+  regions.nodes << 0.5, 0, 0, 0, 0.5, 0, 0, 0, -0.5;
+  regions.faces.resize(1, 3);
+  regions.faces << 0, 2, 1;
+  regions.face_modulus = {500.0F};
+  return regions;
+}
+
 /// A scene of a synthetic cube and a single tetrahedron, with two styluses, a floor and scenery.
 inline viewer::Scene example_scene() {
   viewer::Scene scene;
@@ -30,6 +45,7 @@ inline viewer::Scene example_scene() {
   viewer::SceneObject second{"tet", Points::Zero(4, 3), Triangles(4, 3), 0.5F, 1e5F};
   second.rest.bottomRows(3).setIdentity();
   second.triangles << 0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3;
+  second.regions = example_regions();
   for (int i = 0; i < first.rest.rows(); ++i) {
     first.compliance.push_back(0.001F * static_cast<float>(i));
   }

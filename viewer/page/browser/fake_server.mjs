@@ -38,11 +38,21 @@ export class FakeServer {
   #step = 8;
   #timer = null;
 
-  /** @param page where the page was built to */
+  /**
+   * @param page where the page was built to
+   * @param changes `scene`, `state`: parts of the messages; `inclusions`: beside a cube of one material there is one
+   *   with a stiff cube inside, whose regions have these parts
+   */
   static async start(context, folder, changes = {}) {
     const server = new FakeServer();
     server.#messages = await loadMessages();
-    const { cube, SETTINGS } = server.#messages;
+    const { cube, inclusion, SETTINGS } = server.#messages;
+    if (changes.inclusions) {
+      const plain = cube(EDGE, 12, "plain");
+      const tissue = cube(EDGE, 12, "tissue");
+      const regions = { ...inclusion(tissue, 0.03, 3250, 42500), ...changes.inclusions };
+      changes.scene = { objects: [plain, { ...tissue, regions }], ...changes.scene };
+    }
     server.scene = { objects: [cube(EDGE, 12)], radii: [0, 0.006], dt: 0.002, flags: 4, floorHeight: 0, largestForce: BOUND, scenery: [], ...changes.scene };
     server.state = {
       flags: FLAG.free | FLAG.canRecord,

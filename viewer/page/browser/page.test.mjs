@@ -243,6 +243,85 @@ test("health shows the bridges' times, the view its compliance", async (context)
   assert.match(await page.locator("#legend").innerText(), /mm\/N/);
 });
 
+test("bodies of one material have no colours of the material, and the page says why", async (context) => {
+  const { page } = await stage(context);
+  const option = page.locator("#colour option[value=modulus]");
+  assert.equal(await option.isDisabled(), true);
+  assert.equal(await option.innerText(), "Young’s modulus (no body has regions)");
+  for (let i = 0; i < 4; ++i) await page.keyboard.press("c");
+  assert.equal(await page.locator("#colour").inputValue(), "none", "its key passes it over");
+  assert.equal(await page.locator("#materials li").count(), 1);
+  assert.equal(await page.locator("#materials").isVisible(), false);
+});
+
+const saturated = ([red, green, blue]) => Math.max(red, green, blue) - Math.min(red, green, blue) > 60;
+const MIDDLE = [0.13, 0, 0]; // of the second object
+const FRONT = [0.12, 0.03, 0.05]; // on its surface, before nothing
+
+test("an inclusion is seen in the colour of its modulus through the body, with a legend", async (context) => {
+  const options = { viewport: { width: 1000, height: 700 }, deviceScaleFactor: 1 };
+  const { page } = await stage(context, { options, inclusions: {} });
+  const colour = page.locator("#colour");
+  const plain = await pixel(page, MIDDLE);
+  assert.equal(saturated(plain), false);
+  await colour.selectOption("modulus");
+  const [red, green, blue, alpha] = await pixel(page, MIDDLE);
+  assert.ok(alpha > 240, "the inclusion is solid");
+  assert.ok(red > blue + 60 && green > blue + 60, `stiff is yellow, not ${red} ${green} ${blue}`);
+  const before = await pixel(page, FRONT);
+  assert.ok(before[3] < 230, `the surface is seen through, alpha ${before[3]}`);
+  assert.equal((await pixel(page, [0, 0, 0]))[3], 255, "the other body stays opaque");
+
+  const legend = await page.locator("#legend").innerText();
+  assert.match(legend, /Young’s modulus, logarithmic\s+3\.25 kPa\s*42\.5 kPa/);
+  const rows = await page.locator("#materials li").allInnerTexts();
+  assert.deepEqual(rows.map((row) => row.replaceAll("\u00a0", " ")), [
+    "plain\n20 kPa",
+    "tissue, outside the regions\n3.25 kPa, ν 0.45, 1000 kg/m³",
+    "tissue, region 1\n42.5 kPa, ν 0.3, 1100 kg/m³",
+  ]);
+  assert.match(await page.locator("#materials-note").innerText(), /drawn undeformed/);
+  const swatches = await page.locator("#materials i").evaluateAll((list) => list.map((one) => getComputedStyle(one).backgroundImage));
+  assert.equal(new Set(swatches).size, 3);
+
+  await colour.selectOption("compliance");
+  assert.equal(await page.locator("#materials").isVisible(), false);
+  assert.equal((await pixel(page, FRONT))[3], 255);
+  await colour.selectOption("none");
+  assert.deepEqual(await pixel(page, MIDDLE), plain, "it is as before");
+  assert.deepEqual(page.faults, []);
+});
+
+test("regions at the surface have sharp bounds, and what is left out is said", async (context) => {
+  const options = { viewport: { width: 1000, height: 700 }, deviceScaleFactor: 1 };
+  const triangles = 6 * 12 * 12 * 2;
+  const surfaceModulus = Array.from({ length: triangles }, (_, t) => (t < triangles - 144 ? 3250 : 42500)); // half of the front
+  const inclusions = { flags: 3, surfaceModulus, nodes: [], faces: [], faceModulus: [] };
+  const { page } = await stage(context, { options, inclusions });
+  await page.locator("#colour").selectOption("modulus");
+  const row = [];
+  for (let i = 0; i < 24; ++i) row.push(await pixel(page, [0.13 - 0.046 + 0.004 * i, 0, 0.05]));
+  const yellow = row.map(([red, , blue]) => red > blue + 60);
+  assert.deepEqual(yellow, [...yellow].sort(), "one side is stiff");
+  assert.ok(yellow.includes(true) && yellow.includes(false));
+  const between = row.filter(([red, green, blue]) => green > red + 30 && green > blue + 10);
+  assert.equal(between.length, 0, "no colour of a modulus that is nowhere");
+  assert.ok(row.every(([, , , alpha]) => alpha === 255), "with nothing to see inside the body is opaque");
+  const note = await page.locator("#materials-note").innerText();
+  assert.match(note, /tissue: too many faces inside to be drawn\. tissue: further regions are not listed\./);
+  assert.doesNotMatch(note, /undeformed/);
+});
+
+test("regions of which a face has no such node are refused, and the page says so", async (context) => {
+  const browserContext = await newContext(context, SMALL);
+  const server = await FakeServer.start(browserContext, process.env.PAGE, { inclusions: { faces: [0, 1, 8], faceModulus: [42500] } });
+  context.after(() => server.stop());
+  const page = await browserContext.newPage();
+  await visit(page, server.address);
+  await until(async () => /has a node that is not there/.test(await page.locator("#link").innerText()), "it says so");
+  assert.equal(await page.evaluate(() => window.irdm.scene()), null);
+});
+
 test("at 360 pixels nothing sticks out", async (context) => {
   const options = { viewport: { width: 360, height: 740 }, hasTouch: true };
   const recordings = [{ number: 0, name: "a recording with a name that is as long as names can be, or so" }];

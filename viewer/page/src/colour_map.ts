@@ -35,6 +35,22 @@ export function colourAt(ramp: Ramp, at: number, into: Float32Array, offset: num
   for (let c = 0; c < 3; ++c) into[offset + c] = (ramp[i]![c]! * (1 - part) + ramp[i + 1]![c]! * part) / 255;
 }
 
+/** Where a value is between the ends of a logarithmic ramp, 0 to 1. All are positive. */
+export function logarithmic(value: number, { low, high }: { low: number; high: number }): number {
+  return high > low ? Math.log(value / low) / Math.log(high / low) : 0;
+}
+
+/** A part of a ramp from left to right. @param from, to 0 to 1 */
+export function cssPart(ramp: Ramp, from: number, to: number): string {
+  const steps = 4;
+  const colour = new Float32Array(3);
+  const stops = Array.from({ length: steps + 1 }, (_, i) => {
+    colourAt(ramp, from + ((to - from) * i) / steps, colour, 0);
+    return `rgb(${[...colour].map((part) => Math.round(255 * part)).join(" ")})`;
+  });
+  return `linear-gradient(to right, ${stops.join(", ")})`;
+}
+
 export function cssRamp(ramp: Ramp): string {
   return `linear-gradient(to right, ${ramp.map((stop) => `rgb(${stop.join(" ")})`).join(", ")})`;
 }

@@ -5,6 +5,8 @@ export interface CreasedMesh {
   nodeOf: Uint32Array;
   /** three vertices a triangle */
   index: Uint32Array;
+  /** for each vertex: the first one of its bundle, which has the same normal */
+  firstOf: Uint32Array;
 }
 
 type Triple = [number, number, number];
@@ -18,9 +20,16 @@ function normalOf(points: ArrayLike<number>, triangles: Uint32Array, t: number):
 
 /**
  * Gives a node one vertex for each bundle of its triangles that are smooth among themselves: those that can be
- * reached from each other by way of triangles whose normals at rest differ by less than the crease angle.
+ * reached from each other by way of triangles whose normals at rest differ by less than the crease angle. Triangles
+ * of different kinds share no vertex, so that each kind can have a colour of its own.
+ * @param kinds a number for each triangle; null: all are of one kind
  */
-export function creaseMesh(rest: ArrayLike<number>, triangles: Uint32Array, creaseDegrees = 35): CreasedMesh {
+export function creaseMesh(
+  rest: ArrayLike<number>,
+  triangles: Uint32Array,
+  creaseDegrees = 35,
+  kinds: ArrayLike<number> | null = null,
+): CreasedMesh {
   const count = triangles.length / 3;
   const normals = Array.from({ length: count }, (_, t) => {
     const n = normalOf(rest, triangles, t);
@@ -35,6 +44,7 @@ export function creaseMesh(rest: ArrayLike<number>, triangles: Uint32Array, crea
   });
   const least = Math.cos((creaseDegrees * Math.PI) / 180);
   const nodeOf: number[] = [];
+  const firstOf: number[] = [];
   const index = new Uint32Array(triangles.length);
   for (const [node, corners] of around) {
     let left = corners;
@@ -50,20 +60,34 @@ export function creaseMesh(rest: ArrayLike<number>, triangles: Uint32Array, crea
         bundle.push(...left.filter(smooth));
         left = left.filter((corner) => !smooth(corner));
       }
-      for (const corner of bundle) index[corner] = nodeOf.length;
-      nodeOf.push(node);
+      const first = nodeOf.length;
+      for (const corners of byKind(bundle, kinds)) {
+        for (const corner of corners) index[corner] = nodeOf.length;
+        nodeOf.push(node);
+        firstOf.push(first);
+      }
     }
   }
-  return { nodeOf: Uint32Array.from(nodeOf), index };
+  return { nodeOf: Uint32Array.from(nodeOf), index, firstOf: Uint32Array.from(firstOf) };
 }
 
-/** Normals of the vertices, weighted by area; `normals` has three numbers a vertex. */
-export function vertexNormals(positions: Float32Array, index: Uint32Array, normals: Float32Array): void {
+function byKind(corners: number[], kinds: ArrayLike<number> | null): number[][] {
+  if (kinds === null) return [corners];
+  const groups = new Map<number, number[]>();
+  for (const corner of corners) {
+    const kind = kinds[Math.floor(corner / 3)]!;
+    groups.set(kind, [...(groups.get(kind) ?? []), corner]);
+  }
+  return [...groups.values()];
+}
+
+/** Normals of the vertices, weighted by area, the same in a bundle; `normals` has three numbers a vertex. */
+export function vertexNormals(positions: Float32Array, { index, firstOf }: CreasedMesh, normals: Float32Array): void {
   normals.fill(0);
   for (let t = 0; t < index.length / 3; ++t) {
     const n = normalOf(positions, index, t);
     for (let i = 0; i < 3; ++i) {
-      const at = 3 * index[3 * t + i]!;
+      const at = 3 * firstOf[index[3 * t + i]!]!;
       for (let c = 0; c < 3; ++c) normals[at + c] = normals[at + c]! + n[c]!;
     }
   }
@@ -71,4 +95,7 @@ export function vertexNormals(positions: Float32Array, index: Uint32Array, norma
     const length = Math.hypot(normals[at]!, normals[at + 1]!, normals[at + 2]!) || 1;
     for (let c = 0; c < 3; ++c) normals[at + c] = normals[at + c]! / length;
   }
+  firstOf.forEach((first, v) => {
+    if (first !== v) normals.copyWithin(3 * v, 3 * first, 3 * first + 3);
+  });
 }

@@ -5,6 +5,7 @@
  */
 
 import { ProtocolError, Reader } from "./byte_reader";
+import { readRegions, type Regions } from "./regions";
 
 export const MAGIC = "IRVW";
 export const VERSION = 1;
@@ -25,6 +26,7 @@ const MAX_TRAIL = 128;
 export const MAX_CONTACTS = 256;
 const NORMAL_UNITS = 32767;
 const MAX_NAME = 256;
+const MAX_REGIONS = 64;
 const MAX_TOKEN = 128;
 const MAX_RECORDINGS = 100;
 const RECORDING_NAME = 64;
@@ -58,6 +60,8 @@ export interface SceneObject {
   triangles: Uint32Array;
   /** a node: displacement along the normal for a force along it [m/N]; NaN: not known */
   compliance: Float32Array;
+  /** null: it is of one material, or rigid */
+  regions: Regions | null;
 }
 
 /** In its own frame: a plane has the normal +y, a capsule the axis y with `length` between its balls' centres. [m] */
@@ -279,13 +283,16 @@ function readObject(reader: Reader): SceneObject {
   if (length > MAX_NAME) throw new ProtocolError("a name is too long");
   const mass = reader.f32();
   const stiffness = reader.f32();
-  reader.skip(4);
+  const regionCount = upTo(MAX_REGIONS, reader.u16());
+  const flags = reader.u16();
   const name = reader.text(length);
   reader.align();
   const rest = reader.singles(3 * nodes);
   const triangles = reader.words(3 * triangleCount);
   if (triangles.some((node) => node >= nodes)) throw new ProtocolError("a triangle has a node that is not there");
-  return { name, mass, stiffness, rest, triangles, compliance: reader.singles(nodes) };
+  const compliance = reader.singles(nodes);
+  const regions = regionCount > 0 ? readRegions(reader, regionCount, flags, triangleCount) : null;
+  return { name, mass, stiffness, rest, triangles, compliance, regions };
 }
 
 function readShape(number: number, [x, y, z]: Vec3): Shape {

@@ -1,18 +1,19 @@
 import * as THREE from "three";
-import { colourAt, linear, VIRIDIS } from "./colour_map";
+import { colourAt, linear, logarithmic, VIRIDIS } from "./colour_map";
+import { InsideFaces } from "./inside_faces";
 import { SurfaceMarks } from "./surface_marks";
 import { creaseMesh, vertexNormals, type CreasedMesh } from "./creases";
 import type { ObjectState, SceneObject } from "./protocol";
+import type { Span } from "./regions";
 import type { Theme } from "./theme";
 
-export type Colouring = "none" | "displacement" | "velocity" | "compliance";
+export type Colouring = "none" | "displacement" | "velocity" | "compliance" | "modulus";
 
-/** Values at both ends of the colours' ramp: [m], [m/s] or [m/N]. */
-export interface ColourRange {
-  low: number;
-  high: number;
-}
+/** Values at both ends of the colours' ramp: [m], [m/s], [m/N] or, logarithmic, [Pa]. */
+export type ColourRange = Span;
 
+const THROUGH_RIGID = 0.6; // opacity of the surface
+const THROUGH_INSIDE = 0.4;
 const UNKNOWN: readonly [number, number, number] = [0.5, 0.5, 0.5];
 
 /** One deforming object: its surface, and the rigid body alone as a wireframe (the paper's Figure 4). */
@@ -25,12 +26,17 @@ export class SoftObject {
   readonly marks: SurfaceMarks;
   /** of its nodes [m/N]; null: not known */
   readonly complianceRange: ColourRange | null;
+  /** of Young's moduli at its surface and inside [Pa]; null: it is rigid */
+  readonly modulusRange: ColourRange | null;
 
   private readonly creased: CreasedMesh;
   private readonly geometry = new THREE.BufferGeometry();
   private readonly material = new THREE.MeshStandardMaterial({ roughness: 0.48, metalness: 0 });
   private readonly rigid: THREE.LineSegments<THREE.WireframeGeometry, THREE.LineBasicMaterial>;
+  private readonly inside: InsideFaces | null;
   private readonly values: Float32Array;
+  /** of each vertex that is drawn: Young's modulus [Pa]; NaN: not known */
+  private readonly moduli: Float32Array;
   private readonly world: Float32Array;
   private worldTime = Number.NaN;
 
@@ -39,8 +45,15 @@ export class SoftObject {
     this.displacement = new Float32Array(3 * nodes);
     this.values = new Float32Array(nodes);
     this.world = new Float32Array(3 * nodes);
-    this.creased = creaseMesh(object.rest, object.triangles);
+    const { regions } = object;
+    this.creased = creaseMesh(object.rest, object.triangles, undefined, regions?.surfaceModulus);
     const vertices = this.creased.nodeOf.length;
+    this.moduli = new Float32Array(vertices).fill(object.stiffness > 0 ? object.stiffness : Number.NaN);
+    if (regions !== null) {
+      this.creased.index.forEach((v, corner) => (this.moduli[v] = regions.surfaceModulus[Math.floor(corner / 3)]!));
+    }
+    this.modulusRange = rangeOf(Float32Array.from([...this.moduli, ...listedModuli(object)]));
+    this.inside = regions !== null && regions.faces.length > 0 ? new InsideFaces(regions) : null;
     for (const name of ["position", "normal", "color"]) {
       const attribute = new THREE.BufferAttribute(new Float32Array(3 * vertices), 3);
       this.geometry.setAttribute(name, attribute.setUsage(THREE.DynamicDrawUsage));
@@ -65,6 +78,7 @@ export class SoftObject {
     );
     this.rigid.visible = false;
     this.group.add(mesh, this.rigid);
+    if (this.inside !== null) this.group.add(this.inside.mesh);
     this.draw(1, "none", { low: 0, high: 0 });
   }
 
@@ -72,11 +86,13 @@ export class SoftObject {
     return this.object.name;
   }
 
-  set showsRigid(shows: boolean) {
-    this.rigid.visible = shows;
-    // The wires are looked at through the body.
-    this.material.transparent = shows;
-    this.material.opacity = shows ? 0.6 : 1;
+  /** The wires of the rigid body, and the faces inside in the colours of a range, are looked at through the surface. */
+  showThrough(rigid: boolean, inside: ColourRange | null): void {
+    this.rigid.visible = rigid;
+    if (this.inside !== null) this.inside.mesh.visible = inside !== null;
+    if (inside !== null) this.inside?.paint(inside);
+    this.material.opacity = this.inside?.mesh.visible ? THROUGH_INSIDE : rigid ? THROUGH_RIGID : 1;
+    this.material.transparent = this.material.opacity < 1;
     this.material.needsUpdate = true;
   }
 
@@ -131,26 +147,29 @@ export class SoftObject {
     }
   }
 
-  draw(exaggeration: number, colouring: Colouring, { low, high }: ColourRange): void {
+  draw(exaggeration: number, colouring: Colouring, range: ColourRange): void {
     const positions = this.geometry.getAttribute("position") as THREE.BufferAttribute;
     const normals = this.geometry.getAttribute("normal") as THREE.BufferAttribute;
     const colours = this.geometry.getAttribute("color") as THREE.BufferAttribute;
     const at = positions.array as Float32Array;
     const colour = colours.array as Float32Array;
-    const { nodeOf, index } = this.creased;
+    const { nodeOf } = this.creased;
     const coloured = colouring !== "none";
-    const values = colouring === "compliance" ? this.object.compliance : this.values;
+    const ofMaterial = colouring === "modulus";
+    const values = ofMaterial ? this.moduli : colouring === "compliance" ? this.object.compliance : this.values;
+    const share = ofMaterial ? logarithmic : linearly;
     for (let v = 0; v < nodeOf.length; ++v) {
       const node = nodeOf[v]!;
       for (let c = 0; c < 3; ++c) {
         at[3 * v + c] = this.object.rest[3 * node + c]! + exaggeration * this.displacement[3 * node + c]!;
       }
       if (!coloured) continue;
-      if (Number.isNaN(values[node]!)) colour.set(UNKNOWN, 3 * v);
-      else colourAt(VIRIDIS, high > low ? (values[node]! - low) / (high - low) : 0, colour, 3 * v);
+      const value = values[ofMaterial ? v : node]!;
+      if (Number.isNaN(value)) colour.set(UNKNOWN, 3 * v);
+      else colourAt(VIRIDIS, share(value, range), colour, 3 * v);
       for (let c = 0; c < 3; ++c) colour[3 * v + c] = linear(colour[3 * v + c]!);
     }
-    vertexNormals(at, index, normals.array as Float32Array);
+    vertexNormals(at, this.creased, normals.array as Float32Array);
     positions.needsUpdate = true;
     normals.needsUpdate = true;
     colours.needsUpdate = coloured;
@@ -204,10 +223,20 @@ export class SoftObject {
     this.material.dispose();
     this.rigid.geometry.dispose();
     this.rigid.material.dispose();
+    this.inside?.dispose();
   }
 }
 
 type Vector = THREE.Vector3;
+
+function linearly(value: number, { low, high }: ColourRange): number {
+  return high > low ? (value - low) / (high - low) : 0;
+}
+
+/** Those at the ends of what its regions have [Pa]. */
+function listedModuli({ regions }: SceneObject): number[] {
+  return (regions?.list ?? []).flatMap(({ youngsModulus }) => [youngsModulus.low, youngsModulus.high]);
+}
 
 function rangeOf(values: Float32Array): ColourRange | null {
   const known = values.filter((value) => !Number.isNaN(value));

@@ -1,9 +1,9 @@
 import * as THREE from "three";
+import { OWN_LIGHT, SHINE } from "./own_light";
 
 const MOST = 16; // contacts on one object, as many as there are styluses
 const POINT = 0.0013; // radius at which the contact of a point is drawn [m]
 const AMONG_COLOURS = "#ffffff"; // which the ramp does not have
-const OWN_LIGHT = 0.6; // share of a colour that stands for a value and must not go dark in the shade
 
 /**
  * Marks where styluses touch, as discs on the surface at rest, which the deformation takes along. The material
@@ -70,9 +70,4 @@ for (int i = 0; i < ${MOST}; ++i) {
   float strength = markRadii[i] > ${(1.01 * POINT).toFixed(6)} ? max(0.4 * inside, 0.95 * rim) : 0.95 * inside;
   diffuseColor.rgb = mix(diffuseColor.rgb, markColour, strength);
 }
-`;
-
-const SHINE = `
-totalEmissiveRadiance += ownLight * diffuseColor.rgb;
-diffuseColor.rgb *= 1.0 - ownLight;
 `;

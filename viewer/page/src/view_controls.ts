@@ -1,15 +1,18 @@
 import { cssRamp, PLASMA, VIRIDIS } from "./colour_map";
 import { element } from "./elements";
+import { insideNotes, materialRows, stressText } from "./material_legend";
 import type { Scene } from "./protocol";
 import { scaleBar } from "./scale_bar";
 import type { Colouring } from "./soft_object";
 import type { World } from "./world";
 
-const LEGENDS: Record<Exclude<Colouring, "none">, { title: string; factor: number; unit: string }> = {
+const LEGENDS: Record<Exclude<Colouring, "none" | "modulus">, { title: string; factor: number; unit: string }> = {
   displacement: { title: "Displacement", factor: 1000, unit: "mm" },
   velocity: { title: "Speed of the surface", factor: 100, unit: "cm/s" },
   compliance: { title: "Compliance: give per push", factor: 1000, unit: "mm/N" },
 };
+
+const MODULUS = "Young’s modulus";
 
 /** How the picture is drawn: exaggeration, colours with their legend, wireframe, camera; and the scale. */
 export class ViewControls {
@@ -32,10 +35,22 @@ export class ViewControls {
 
   show(scene: Scene): void {
     const known = scene.objects.some((object) => object.compliance.some((value) => !Number.isNaN(value)));
-    const option = this.colour.querySelector<HTMLOptionElement>("option[value=compliance]")!;
-    option.disabled = !known;
-    if (!known && this.colour.value === "compliance") this.colour.value = "none";
+    this.allow("compliance", known);
+    this.allow("modulus", scene.objects.some((object) => object.regions !== null));
+    const option = this.optionOf("modulus");
+    option.textContent = option.disabled ? `${MODULUS} (no body has regions)` : MODULUS;
+    if (this.world !== null) element("materials").replaceChildren(...materialRows(scene, this.world.modulusRange));
+    element("materials-note").textContent = insideNotes(scene);
     this.apply();
+  }
+
+  private optionOf(colouring: Colouring): HTMLOptionElement {
+    return this.colour.querySelector<HTMLOptionElement>(`option[value=${colouring}]`)!;
+  }
+
+  private allow(colouring: Colouring, allowed: boolean): void {
+    this.optionOf(colouring).disabled = !allowed;
+    if (!allowed && this.colour.value === colouring) this.colour.value = "none";
   }
 
   nextColour(): void {
@@ -62,9 +77,15 @@ export class ViewControls {
     const { largest } = this.world.contacts;
     element("pressure").hidden = !this.contacts.checked || largest === 0;
     element("pressure-max").textContent = `${(largest / 1000).toPrecision(3)} kPa`;
-    if (this.world.look.colouring === "none") return;
-    const { factor, unit } = LEGENDS[this.world.look.colouring];
+    const { colouring } = this.world.look;
+    if (colouring === "none") return;
     const { low, high } = this.world.colours;
+    if (colouring === "modulus") {
+      element("legend-min").textContent = stressText({ low, high: low });
+      element("legend-max").textContent = stressText({ low: high, high });
+      return;
+    }
+    const { factor, unit } = LEGENDS[colouring];
     element("legend-min").textContent = low === 0 ? "0" : (low * factor).toPrecision(3);
     element("legend-max").textContent = `${(high * factor).toPrecision(3)} ${unit}`;
   }
@@ -74,7 +95,9 @@ export class ViewControls {
     element("exaggeration-value").textContent = `× ${factor}`;
     const colouring = this.colour.value as Colouring;
     element("legend").hidden = colouring === "none" || this.world === null;
-    if (colouring !== "none") element("legend-title").textContent = LEGENDS[colouring].title;
+    element("materials").hidden = element("materials-note").hidden = colouring !== "modulus";
+    if (colouring === "modulus") element("legend-title").textContent = `${MODULUS}, logarithmic`;
+    else if (colouring !== "none") element("legend-title").textContent = LEGENDS[colouring].title;
     if (this.world === null) return;
     this.world.look = {
       exaggeration: factor,

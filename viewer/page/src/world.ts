@@ -105,15 +105,20 @@ export class World {
   /** The ramp's end follows upwards at once and downwards slowly, so that colours can be compared. */
   private followColours(): void {
     if (this.look.colouring === "compliance") {
-      const ranges = this.objects.flatMap((object) => object.complianceRange ?? []);
-      this.colours = {
-        low: Math.min(...ranges.map((range) => range.low)),
-        high: Math.max(...ranges.map((range) => range.high)),
-      };
+      this.colours = rangeOfAll(this.objects.flatMap((object) => object.complianceRange ?? []));
+      return;
+    }
+    if (this.look.colouring === "modulus") {
+      this.colours = this.modulusRange;
       return;
     }
     const largest = Math.max(...this.objects.map((object) => object.largest));
     this.colours = { low: 0, high: Math.max(largest, this.colours.high * 0.995) };
+  }
+
+  /** Of all objects that are soft [Pa]. */
+  get modulusRange(): ColourRange {
+    return rangeOfAll(this.objects.flatMap((object) => object.modulusRange ?? []));
   }
 
   /** Moves camera, light and shadow, gently, when the objects' middle is further off than they are large. */
@@ -133,7 +138,8 @@ export class World {
   private radius = 0.1;
 
   applyLook(): void {
-    for (const object of this.objects) object.showsRigid = this.look.rigid;
+    const inside = this.look.colouring === "modulus" ? this.modulusRange : null;
+    for (const object of this.objects) object.showThrough(this.look.rigid, inside);
     this.contacts.group.visible = this.look.contacts;
     this.colours = { low: 0, high: 0 };
     if (this.frame !== null) this.follow(this.frame);
@@ -268,4 +274,8 @@ export class World {
     this.renderer.render(this.three, this.camera);
     this.onDraw();
   }
+}
+
+function rangeOfAll(ranges: ColourRange[]): ColourRange {
+  return { low: Math.min(...ranges.map(({ low }) => low)), high: Math.max(...ranges.map(({ high }) => high)) };
 }

@@ -19,6 +19,7 @@ import {
   cube,
   frameMessage,
   healthMessage,
+  inclusion,
   sceneMessage,
   SETTINGS,
   stateMessage,
@@ -48,6 +49,14 @@ const parts: SceneParts = {
 const sceneBytes = sceneMessage(parts);
 const scene = decode(sceneBytes, null) as Scene;
 const nodes = scene.objects[0]!.rest.length;
+
+const block = cube(0.1, 2);
+const tissueBytes = sceneMessage({
+  ...parts,
+  objects: [{ ...block, regions: { ...inclusion(block, 0.03, 3250, 42500), flags: 2 } }],
+  scenery: [],
+});
+const tissue = decode(tissueBytes, null) as Scene;
 
 const frameBytes = frameMessage({
   step: 7,
@@ -147,7 +156,7 @@ test("the live run is no playback, and the server's own recorded run has no numb
 
 test("what is cut, too long or comes before the scene is refused", () => {
   const state = stateMessage(STATE);
-  for (const good of [sceneBytes, frameBytes, healthBytes, state]) {
+  for (const good of [sceneBytes, tissueBytes, frameBytes, healthBytes, state]) {
     const step = good.byteLength > 2000 ? 97 : 1;
     for (let size = 0; size < good.byteLength; size += step) {
       assert.throws(() => decode(good.slice(0, size), scene), ProtocolError);
@@ -158,6 +167,49 @@ test("what is cut, too long or comes before the scene is refused", () => {
   }
   assert.throws(() => decode(state, null), ProtocolError);
   assert.throws(() => decode(frameBytes, null), ProtocolError);
+});
+
+test("an object of one material has no regions, another what was written", () => {
+  assert.equal(scene.objects[0]!.regions, null);
+  const { list, faces, faceModulus, nodes, surfaceModulus, someUnlisted, facesLeftOut } = tissue.objects[0]!.regions!;
+  const one = (value: number): { low: number; high: number } => ({ low: Math.fround(value), high: Math.fround(value) });
+  assert.deepEqual(list, [
+    { number: 0, youngsModulus: one(3250), poissonRatio: one(0.45), density: one(1000) },
+    { number: 1, youngsModulus: one(42500), poissonRatio: one(0.3), density: one(1100) },
+  ]);
+  assert.deepEqual([faces.length, faceModulus.length, nodes.length], [36, 12, 24]);
+  assert.ok(surfaceModulus.every((value) => value === 3250));
+  assert.deepEqual([someUnlisted, facesLeftOut], [false, true]);
+});
+
+test("regions that break the rules are refused", () => {
+  const changed = (offset: number, ...values: number[]): ArrayBuffer => {
+    const copy = tissueBytes.slice(0);
+    new Uint8Array(copy).set(values, offset);
+    return copy;
+  };
+  const block = 12 * 3 * 4; // faces
+  const counts = tissueBytes.byteLength - 12 * 4 - block - 8 * 12 - 8;
+  const header = 56 + 2 * 16 + 20;
+  const list = counts - 4 * (tissue.objects[0]!.triangles.length / 3) - 2 * 28;
+  assert.equal(decode(changed(counts, 8), null)?.kind, "scene");
+  const unknown = decode(changed(list + 2 * 28, 0, 0, 0xc0, 0x7f), null) as Scene;
+  assert.ok(Number.isNaN(unknown.objects[0]!.regions!.surfaceModulus[0]));
+  for (const [offset, ...values] of [
+    [header, 65], // regions
+    [header, 0], // none, and yet their bytes
+    [list + 4, 0, 0, 0x80, 0x7f], // least above greatest
+    [list + 4, 0, 0, 0xc0, 0x7f], // not a number
+    [counts, 9], // nodes
+    [counts + 4, 13], // faces
+    [counts + 4, 0x21, 0x4e], // more faces than there can be
+    [counts + 8 + 8 * 12, 8], // node of a face
+    [list + 4, 0, 0, 0, 0x80], // least modulus: -0
+    [list + 2 * 28, 0, 0, 0x80, 0xff], // modulus at the surface: infinite
+    [tissueBytes.byteLength - 4, 0, 0, 0xc0, 0x7f], // modulus of a face: not a number
+  ] as [number, ...number[]][]) {
+    assert.throws(() => decode(changed(offset, ...values), null), ProtocolError, `${offset}: ${values.join()}`);
+  }
 });
 
 test("a number out of its range is refused", () => {

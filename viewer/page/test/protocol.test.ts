@@ -30,6 +30,19 @@ test("a scene is what the server made it", () => {
   assert.deepEqual(scene.objects.map((object) => object.name), ["würfel", "tet"]);
   near(scene.objects[0]!.rest, "rest", 0);
   near(scene.objects[1]!.triangles, "triangles", 0);
+  assert.equal(scene.objects[0]!.regions, null);
+  const regions = scene.objects[1]!.regions!;
+  assert.deepEqual(regions.list[1], {
+    number: 3,
+    youngsModulus: { low: 500, high: 8000 },
+    poissonRatio: { low: 0.25, high: 0.25 },
+    density: { low: 1024, high: 1024 },
+  });
+  assert.deepEqual([regions.someUnlisted, regions.facesLeftOut], [true, false]);
+  assert.deepEqual([...regions.surfaceModulus], [2000, 500, 8000, 2000]);
+  assert.deepEqual([...regions.nodes], [0.5, 0, 0, 0, 0.5, 0, 0, 0, -0.5]);
+  assert.deepEqual([...regions.faces], [0, 2, 1]);
+  assert.deepEqual([...regions.faceModulus], [500]);
   assert.deepEqual(scene.scenery.map(({ name }) => name), ["wände", "box", "ball", "capsule"]);
   assert.deepEqual(scene.scenery[1]!.shape, { kind: "box", size: [0.5, 0.25, 0.125] });
   assert.deepEqual(scene.scenery[3]!.shape, { kind: "capsule", radius: 0.25, length: 0.75 });

@@ -72,6 +72,34 @@ export interface ObjectParts {
   rest: number[];
   triangles: number[];
   compliance: number[];
+  regions?: RegionsParts;
+}
+
+export interface RegionsParts {
+  /** number; least and greatest Young's modulus, Poisson's ratio, density */
+  list: { number: number; spans: number[] }[];
+  /** bit 0 some are not listed, 1 faces inside are left out */
+  flags: number;
+  surfaceModulus: number[];
+  nodes: number[];
+  faces: number[];
+  faceModulus: number[];
+}
+
+/** A cube of its own in the middle of an object: region 1. */
+export function inclusion(object: ObjectParts, edge: number, soft: number, stiff: number): RegionsParts {
+  const { rest, triangles } = cube(edge, 1);
+  return {
+    list: [
+      { number: 0, spans: [soft, soft, 0.45, 0.45, 1000, 1000] },
+      { number: 1, spans: [stiff, stiff, 0.3, 0.3, 1100, 1100] },
+    ],
+    flags: 0,
+    surfaceModulus: new Array<number>(object.triangles.length / 3).fill(soft),
+    nodes: rest,
+    faces: triangles,
+    faceModulus: new Array<number>(triangles.length / 3).fill(stiff),
+  };
 }
 
 /** A cube of that many cells an edge, centred; compliance grows towards its edges. [m] */
@@ -131,14 +159,22 @@ export interface SceneParts {
   scenery: SceneryParts[];
 }
 
+function putRegions(to: Writer, { list, surfaceModulus, nodes, faces, faceModulus }: RegionsParts): void {
+  for (const { number, spans } of list) to.u32(number).f32(...spans);
+  to.f32(...surfaceModulus).u32(nodes.length / 3, faces.length / 3);
+  to.f32(...nodes).u32(...faces).f32(...faceModulus);
+}
+
 export function sceneMessage(parts: SceneParts): ArrayBuffer {
   const to = begin(1).u16(parts.objects.length, parts.radii.length).u16(parts.flags, parts.scenery.length).f64(parts.dt);
   to.f64(0, (parts.flags & 2) !== 0 ? 1 : 0, 0, parts.floorHeight);
   for (const radius of parts.radii) to.f32(radius, 400, 0, parts.largestForce);
   for (const object of parts.objects) {
     const name = utf8(object.name);
-    to.u32(object.rest.length / 3, object.triangles.length / 3, name.length).f32(0.1, 2e4).zeros(4).raw(name).align();
+    to.u32(object.rest.length / 3, object.triangles.length / 3, name.length).f32(0.1, 2e4);
+    to.u16(object.regions?.list.length ?? 0, object.regions?.flags ?? 0).raw(name).align();
     to.f32(...object.rest).u32(...object.triangles).f32(...object.compliance);
+    if (object.regions !== undefined) putRegions(to, object.regions);
   }
   for (const scenery of parts.scenery) {
     const name = utf8(scenery.name);

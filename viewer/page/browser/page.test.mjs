@@ -273,7 +273,7 @@ test("an inclusion is seen in the colour of its modulus through the body, with a
   assert.equal((await pixel(page, [0, 0, 0]))[3], 255, "the other body stays opaque");
 
   const legend = await page.locator("#legend").innerText();
-  assert.match(legend, /Young’s modulus, logarithmic\s+3\.25 kPa\s*42\.5 kPa/);
+  assert.match(legend, /Young’s modulus, logarithmic\s+3\.25\skPa\s*42\.5\skPa/);
   const rows = await page.locator("#materials li").allInnerTexts();
   assert.deepEqual(rows.map((row) => row.replaceAll("\u00a0", " ")), [
     "plain\n20 kPa",

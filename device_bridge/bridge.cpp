@@ -10,6 +10,7 @@
 
 #include "common/blackbox/frame_log.hpp"
 #include "common/error.hpp"
+#include "common/number_text.hpp"
 #include "common/realtime/clock.hpp"
 #include "common/realtime/scheduling.hpp"
 #include "device_bridge/blackbox/tick_log.hpp"
@@ -134,14 +135,41 @@ FilterLimits limits_for(const HapticDevice& device, const BridgeConfig& config) 
           .torque_rate = {.rise = config.max_torque_rate, .fall = 4.0 * config.max_torque_rate}};
 }
 
-// Until a signal comes, a thread of ours ends, or a driver stops making ticks.
-void await_end(StopSignal& stop_signal, EventFd& done, const ServoThread& servo,
-               DeviceWatch& watch) {
+/// Whether there has been no session for all of the time that the bridge should run.
+class SessionWatch {
+ public:
+  /// @param duration [s]
+  SessionWatch(NetworkClient& client, double duration) : client_(client), duration_(duration) {}
+
+  bool over() noexcept {
+    began_ = began_ || client_.progress().link.sessions > 0;
+    const auto waited = static_cast<double>(monotonic_ns() - start_ns_);
+    return !began_ && waited * kNanosecond > duration_;
+  }
+  /// Why; empty: there was one.
+  std::string failure(const ServerAddress& server) const {
+    if (began_) return {};
+    return server.host + ":" + std::to_string(server.port) + ": no session in " +
+           number_text(duration_) + " s: " + client_.progress().trouble +
+           "; start irdm-server there, or correct --server";
+  }
+
+ private:
+  NetworkClient& client_;
+  double duration_;
+  std::int64_t start_ns_ = monotonic_ns();
+  bool began_ = false;
+};
+
+// Until a signal comes, a thread of ours ends, a driver stops making ticks, or it is too late for a
+// session.
+void await_end(StopSignal& stop_signal, EventFd& done, const ServoThread& servo, DeviceWatch& watch,
+               SessionWatch& session) {
   constexpr int kLookMs = 100;
   constexpr int kSilentLooks = 3;  // one is seen by a process that was itself asleep
   int silent = 0;
   while (!stop_signal.wait_for(kLookMs, done.descriptor()) && !done.consume() &&
-         silent < kSilentLooks) {
+         silent < kSilentLooks && !session.over()) {
     watch.look();
     silent = servo.driver_silent(monotonic_ns()) ? silent + 1 : 0;
   }
@@ -215,7 +243,9 @@ BridgeReport run_bridge(const BridgeConfig& config, StopSignal& stop_signal, dou
   client.start();
   servo.start();
   DeviceWatch watch(devices.all());
-  await_end(stop_signal, done, servo, watch);
+  SessionWatch session(client, duration);
+  await_end(stop_signal, done, servo, watch, session);
+  const std::string no_session = session.over() ? session.failure(*config.server) : "";
   if (servo.driver_silent(monotonic_ns())) black_box.report("the device's driver makes no ticks");
   servo.stop();
   client.stop(servo.report().end == ServoEnd::kFinished);
@@ -236,6 +266,7 @@ BridgeReport run_bridge(const BridgeConfig& config, StopSignal& stop_signal, dou
     report.filter.faults += counts.faults;
   }
   if (report.client.failure.empty()) report.client.failure = failure_of(report.servo.end, watch);
+  if (report.client.failure.empty()) report.client.failure = no_session;
   return report;
 }
 

@@ -21,6 +21,10 @@ namespace irdm {
 using boost::asio::ip::tcp;
 using boost::system::error_code;
 
+// Between attempts to reach a server that has not been there yet. One that was lost comes back at
+// once, or a hand waits.
+constexpr int kLongestBackOffMs = 500;
+
 class NetworkClient::Impl {
  public:
   Impl(ServoLink& link, const ClientSettings& settings, EventFd& gave_up);
@@ -66,6 +70,7 @@ class NetworkClient::Impl {
   std::int64_t began_ns_ = 0;     ///< the last attempt
   std::int64_t deadline_ns_ = 0;  ///< of the attempt to connect, or of the rest after it
   bool complained_ = false;       ///< about this run of failed attempts
+  int back_off_ms_;               ///< grows until the first session
   bool stopping_ = false;         ///< told to, or gave up
   ClientProgress progress_;       ///< the network thread's
   TripleBuffer<ClientProgress> newest_;
@@ -78,7 +83,8 @@ NetworkClient::Impl::Impl(ServoLink& link, const ClientSettings& settings, Event
       gave_up_(gave_up),
       server_(settings.server.host + ":" + std::to_string(settings.server.port)),
       samples_descriptor_(io_),
-      timer_(io_) {
+      timer_(io_),
+      back_off_ms_(settings.back_off_ms) {
   // Made before any thread logs: the thread sanitizer cannot see the guard inside spdlog.
   spdlog::default_logger();
   error_code error;
@@ -219,6 +225,10 @@ void NetworkClient::Impl::rest(int milliseconds, const std::string& what,
   complained_ = true;
   progress_.trouble = what + ": " + reason;
   newest_.put(progress_);
+  if (report_.sessions == 0) {
+    milliseconds = std::max(milliseconds, back_off_ms_);
+    back_off_ms_ = std::max(back_off_ms_, std::min(2 * back_off_ms_, kLongestBackOffMs));
+  }
   deadline_ns_ = began_ns_ + milliseconds * kNanosecondsPerMillisecond;
 }
 

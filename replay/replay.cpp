@@ -215,7 +215,7 @@ int replay(const ReplayOptions& options) {
   const Recording recording = read_recording(scene, options.trace.string());
   const FrameSteps frames(recording.steps(), scene.dt(), frame_rate(options), options.part);
   const auto path = journal_path(options);
-  LongRun run(recording.steps(), options.reference.has_value(), path.has_value());
+  LongRun run(frames.steps(), options.reference.has_value(), path.has_value());
   Outputs outputs = make_outputs(options, scene);
   std::optional<StepJournal> journal;
   if (path) journal.emplace(*path, reference_key(scene, options));
@@ -226,7 +226,7 @@ int replay(const ReplayOptions& options) {
   Deviation deviation;
   const auto recorded = std::make_unique<StepRecord>();
   const auto again = std::make_unique<StepRecord>();
-  for (std::size_t k = 0; k < recording.steps(); ++k) {
+  for (std::size_t k = 0; k < frames.steps(); ++k) {
     recording.step(k, *recorded);
     made->step(*recorded, *again);
     require_finite(*again, options.trace.string());
@@ -237,7 +237,7 @@ int replay(const ReplayOptions& options) {
   }
   for (const auto& output : outputs) output->finish();
   if (journal) journal->remove();
-  std::cout << options.trace.string() << ": " << recording.steps() << " steps of " << scene.dt()
+  std::cout << options.trace.string() << ": " << frames.steps() << " steps of " << scene.dt()
             << " s from " << (options.from_inputs ? "inputs" : "forces") << ", "
             << how(scene, options) << "; " << frames.count() << " frames\n"
             << taken_text(journal, scene) << deviation.text() << std::flush;

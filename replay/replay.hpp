@@ -46,6 +46,8 @@ class FrameSteps {
   bool has(std::size_t step) const noexcept;
   /// All of them.
   std::size_t count() const noexcept;
+  /// Of the run, up to the end of the part: later ones need not be computed.
+  std::size_t steps() const noexcept { return end_; }
 
  private:
   std::size_t frames_up_to(std::size_t steps) const noexcept;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "common/config/input_file.hpp"
+#include "common/config/near_word.hpp"
 #include "common/config/range.hpp"
 #include "common/error.hpp"
 
@@ -22,9 +24,7 @@ TomlTable TomlTable::adopt(toml::table root, std::string name, std::filesystem::
 }
 
 TomlTable TomlTable::parse_file(const std::filesystem::path& path) {
-  if (!std::filesystem::is_regular_file(path)) {
-    throw Error(path.string(), "no such file", "check the path");
-  }
+  require_file(path);
   try {
     return adopt(toml::parse_file(path.string()), path.string(),
                  std::filesystem::absolute(path).parent_path());
@@ -67,7 +67,10 @@ const toml::node* TomlTable::find(const std::string& key) {
 
 const toml::node& TomlTable::need(const std::string& key) {
   const toml::node* node = find(key);
-  if (node == nullptr) fail(key, "is missing", "add it");
+  if (node == nullptr) {
+    const std::optional<std::string> meant = nearest_word(key, keys_not_read());
+    fail(key, "is missing", meant ? "add it, or is it " + in_quotes(*meant) + "?" : "add it");
+  }
   return *node;
 }
 
@@ -188,10 +191,20 @@ std::vector<TomlTable> TomlTable::tables(const std::string& key) {
 }
 
 void TomlTable::finish() const {
+  const std::vector<std::string> unknown = keys_not_read();
+  if (unknown.empty()) return;
+  const std::optional<std::string> meant =
+      nearest_word(unknown.front(), {read_.begin(), read_.end()});
+  fail(unknown.front(), "is not a known key",
+       meant ? "did you mean " + in_quotes(*meant) + "?" : "remove it or correct its name");
+}
+
+std::vector<std::string> TomlTable::keys_not_read() const {
+  std::vector<std::string> keys;
   for (const auto& [key, node] : *table_) {
-    const std::string name(key.str());
-    if (!read_.contains(name)) fail(name, "is not a known key", "remove it or correct its name");
+    if (!read_.contains(std::string(key.str()))) keys.emplace_back(key.str());
   }
+  return keys;
 }
 
 }  // namespace irdm

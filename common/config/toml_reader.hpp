@@ -63,6 +63,7 @@ class TomlTable {
   static TomlTable adopt(toml::table root, std::string name, std::filesystem::path folder);
   const toml::node* find(const std::string& key);
   const toml::node& need(const std::string& key);
+  std::vector<std::string> keys_not_read() const;
   std::string full_name(const std::string& key) const;
   double checked(const std::string& key, const toml::node& node, const Range& range) const;
 

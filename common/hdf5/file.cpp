@@ -1,4 +1,5 @@
 #include "common/hdf5/file.hpp"
+#include "common/config/input_file.hpp"
 
 #include <algorithm>
 #include <array>
@@ -149,9 +150,7 @@ void File::begin_swmr() {
 }
 
 File File::open(const std::filesystem::path& path) {
-  if (!std::filesystem::exists(path)) {
-    throw Error(path.string(), "no such file", "check the path");
-  }
+  require_file(path);
   const Handle properties = make_access_properties();
   const unsigned access = H5F_ACC_RDONLY | (has_swmr_writer(path) ? H5F_ACC_SWMR_READ : 0u);
   Handle file(H5Fopen(path.c_str(), access, properties.get()), H5Fclose);

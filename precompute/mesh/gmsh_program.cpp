@@ -4,6 +4,7 @@
 #include <fstream>
 #include <limits>
 
+#include "common/config/input_file.hpp"
 #include "common/error.hpp"
 #include "common/process/child_program.hpp"
 #include "common/process/temporary_files.hpp"
@@ -112,9 +113,7 @@ void check_remeshed(const TetMesh& mesh, const SurfaceMesh& surface, const std::
 
 TetMesh mesh_geometry(const std::filesystem::path& script, const std::string& program,
                       double time_limit_s) {
-  if (!std::filesystem::is_regular_file(script)) {
-    throw Error(script.string(), "no such file", "check the path");
-  }
+  require_file(script);
   const TemporaryFolder folder("irdm-gmsh");
   return run_gmsh({script, script.string(), "try it with gmsh -3"}, folder, program, time_limit_s);
 }

@@ -152,7 +152,7 @@ Command add_replay_command(CLI::App& app) {
       ->check(positive_number());
   app.add_option("--begin", options->part.begin, "Time in s before which there are no frames")
       ->check(CLI::NonNegativeNumber);
-  app.add_option("--end", options->part.end, "Time in s after which there are no frames")
+  app.add_option("--end", options->part.end, "Time in s at which to stop")
       ->check(positive_number());
   app.add_option("-o,--output", options->output,
                  "Run file to write, for compare (HDF5); must not exist");

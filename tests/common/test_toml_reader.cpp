@@ -47,7 +47,7 @@ TEST_CASE("configuration reader rejects keys that nobody reads, in nested tables
   TomlTable nested = table.table("b");
   nested.number("c", {});
   CHECK_NOTHROW(table.finish());
-  CHECK_THROWS_WITH(nested.finish(), Contains("test.toml:4: b.typo is not a known key"));
+  CHECK_THROWS_WITH(nested.finish(), Contains("test.toml:4: b.typo is not a known key; remove"));
 }
 
 TEST_CASE("messages quote the beginning of what is long, and say where it is") {

@@ -39,6 +39,8 @@ TEST_CASE("there are no more frames than steps") {
 TEST_CASE("frames of a part of a run are those of the whole run that are in it") {
   const FrameSteps whole(1050, 0.002, 60.0);
   const FrameSteps part(1050, 0.002, 60.0, {0.5, 1.0});
+  CHECK(whole.steps() == 1050);
+  CHECK(part.steps() == 500);
   std::size_t count = 0;
   for (std::size_t k = 0; k < 1050; ++k) {
     const double end_of_step = 0.002 * static_cast<double>(k + 1);

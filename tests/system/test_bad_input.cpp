@@ -79,7 +79,7 @@ TEST_CASE("bad scene: one line, status 1, no trace") {
   std::filesystem::remove(stage.path("scene.toml"));
   check_server_refuses(stage, "scene.toml: no such file");
   std::filesystem::create_directory(stage.path("scene.toml"));
-  check_server_refuses(stage, "scene.toml: no such file");
+  check_server_refuses(stage, "scene.toml: is a folder; give the path of a file");
 }
 
 TEST_CASE("bad model file: one line, status 1, no trace") {
@@ -290,4 +290,16 @@ TEST_CASE("a server that is not named, or not a server's name, is told in one li
                 "--server: 'localhost' has no port");
   check_refusal(run_to_end({IRDM_BRIDGE, config, "--server", "localhost:0"}), "irdm-bridge",
                 "'localhost:0' is not a server");
+}
+
+TEST_CASE("where no server listens the bridge says so once, and ends after its duration") {
+  const Stage stage;
+  const FinishedProgram bridge = run_to_end({IRDM_BRIDGE, stage.path("bridge.toml").string(),
+                                             "--server", "127.0.0.1:1", "--duration", "1"});
+  CHECK(bridge.status == 1);
+  CHECK(std::count(bridge.err.begin(), bridge.err.end(), '\n') == 2);
+  CHECK_THAT(bridge.err,
+             Contains("server 127.0.0.1:1: no connection: Connection refused; trying") &&
+                 Contains("irdm-bridge: error: 127.0.0.1:1: no session in 1 s: ") &&
+                 Contains("start irdm-server there"));
 }

@@ -228,3 +228,15 @@ TEST_CASE("viewer: what --play cannot show is refused in one line") {
   std::filesystem::copy_file(cube_model(), stage.path("model.h5"));
   CHECK_THAT(refusal("model.h5"), Contains("is not a trace"));
 }
+
+TEST_CASE("a bridge that is sent to the page's port says so in one line, and ends") {
+  const Stage stage;
+  Server server = stage.start_server();
+  const std::string page = "127.0.0.1:" + std::to_string(viewer_port(server.process));
+  const FinishedProgram bridge =
+      run_to_end({IRDM_BRIDGE, stage.path("bridge.toml").string(), "--server", page});
+  CHECK(bridge.status == 1);
+  CHECK(bridge.err == "irdm-bridge: error: " + page +
+                          ": is no irdm-server's port for bridges; give the one that it prints "
+                          "after 'listening on', not its page's\n");
+}

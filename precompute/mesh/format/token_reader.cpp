@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "common/config/input_file.hpp"
 #include "common/error.hpp"
 
 namespace irdm::precompute {
@@ -27,7 +28,7 @@ bool parse(std::string_view word, Number& value) {
 
 std::string file_content(const std::filesystem::path& path) {
   const std::string name = path.string();
-  if (!std::filesystem::is_regular_file(path)) throw Error(name, "no such file", "check the path");
+  require_file(path);
   std::ifstream file(path, std::ios::binary);
   std::string text{std::istreambuf_iterator<char>(file), {}};
   if (!file) throw Error(name, "cannot be read", "check its permissions");

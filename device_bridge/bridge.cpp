@@ -131,7 +131,7 @@ FilterLimits limits_for(const HapticDevice& device, const BridgeConfig& config) 
   return {.max_force = std::min(config.max_force, rating.peak),
           .continuous_force = std::min(config.continuous_force, rating.continuous),
           .max_torque = std::min(config.max_torque, rating.peak_torque),
-          .continuous_torque = config.continuous_torque,
+          .continuous_torque = std::min(config.continuous_torque, rating.continuous_torque),
           .torque_rate = {.rise = config.max_torque_rate, .fall = 4.0 * config.max_torque_rate}};
 }
 

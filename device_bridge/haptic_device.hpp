@@ -35,6 +35,7 @@ struct DeviceState {
   bool lost = false;               ///< and no readings either
   bool repeated = false;           ///< the reading is that of a moment ago, nothing newer
   bool saturated = false;          ///< the motors show less than the last write() asked for
+  bool off = false;                ///< they show nothing, whatever it asked for
 };
 
 /// The largest forces and torques that a device is made for; infinity: it does not say.
@@ -42,6 +43,7 @@ struct ForceRating {
   double peak = std::numeric_limits<double>::infinity();        ///< [N], > 0
   double continuous = std::numeric_limits<double>::infinity();  ///< for ever [N], > 0
   double peak_torque = 0.0;                                     ///< [N m]; 0: it renders no torque
+  double continuous_torque = std::numeric_limits<double>::infinity();  ///< for ever [N m], > 0
 };
 
 /// A force-feedback stylus, in its own frame D; the servo loop knows where D lies in W. Made and

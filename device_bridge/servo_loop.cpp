@@ -118,7 +118,8 @@ void ServoLoop::apply(std::int64_t now_ns, const ServoInput& input) noexcept {
                                       .orientation = orientation_,
                                       .motor_temperature = device_state_.motor_temperature,
                                       .repeated = device_state_.repeated,
-                                      .saturated = device_state_.saturated},
+                                      .saturated = device_state_.saturated,
+                                      .off = device_state_.off},
                                      wanted);
   demanded_ = wanted;
   if (applied_ns_) {

@@ -192,7 +192,7 @@ void VirtualStylus::advance_hand(double dt, const StylusPose& target,
 }
 
 DeviceState VirtualStylus::state() const noexcept {
-  return {.motor_temperature = std::min(motors_.warmth(), 1.0)};
+  return {.motor_temperature = std::min(motors_.warmth(), 1.0), .off = motors_.off()};
 }
 
 std::string VirtualStylus::trouble() const {

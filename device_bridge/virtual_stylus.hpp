@@ -97,6 +97,8 @@ class VirtualMotors {
   /// @param seconds that go by, >= 0
   void advance(double seconds) noexcept;
 
+  /// They have gone off; until the next force.
+  bool off() const noexcept { return age_ > parameters_.watchdog; }
   double warmth() const noexcept { return warmth_; }  ///< 0 cold, 1 as warm as they may get
 
  private:

@@ -37,6 +37,7 @@ void write_input(ColumnGroup<TickRow>& columns, std::int64_t origin_ns) {
                                [](const TickRow& row) { return row.device.failed; });
   columns.number<std::uint8_t>("device_lost", "",
                                [](const TickRow& row) { return row.device.lost; });
+  columns.number<std::uint8_t>("device_off", "", [](const TickRow& row) { return row.device.off; });
   columns.number<double>("motor_temperature", "",
                          [](const TickRow& row) { return row.device.motor_temperature; });
   columns.number<std::uint64_t>("sequence", "",

@@ -230,12 +230,14 @@ void ForceDimensionDevice::write(const Wrench& shown) noexcept {
 
 DeviceState ForceDimensionDevice::state() const noexcept {
   const bool lost = lost_.load(std::memory_order_relaxed);
-  return {.ready = initialised_.load(std::memory_order_relaxed) &&
-                   force_on_.load(std::memory_order_relaxed),
+  const bool shows =
+      initialised_.load(std::memory_order_relaxed) && force_on_.load(std::memory_order_relaxed);
+  return {.ready = shows,
           .failed = lost,
           .lost = lost,
           .repeated = repeated_,
-          .saturated = cut_off_};
+          .saturated = cut_off_,
+          .off = lost || !shows};
 }
 
 std::string ForceDimensionDevice::trouble() const {

@@ -1,30 +1,34 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 namespace irdm::hd {
 
 /// Warnings of a driver that a force or a speed was too much. It goes on by itself; the force is
-/// dropped for a while, and for good when that does not help. Pure, real-time safe.
+/// dropped for a while, and for good when that does not help. A hand that is fast in free air has
+/// no force to blame. Pure, real-time safe.
 class DriverWarnings {
  public:
-  static constexpr int kPauseTicks = 500;               ///< without force after a warning
-  static constexpr std::size_t kMost = 3;               ///< so many pauses ...
-  static constexpr std::uint64_t kOftenTicks = 10'000;  ///< ... begun in this time are too many
+  static constexpr std::int64_t kPauseNs = 500'000'000;     ///< without force after a warning
+  static constexpr std::size_t kMost = 3;                   ///< so many pauses ...
+  static constexpr std::int64_t kOftenNs = 10'000'000'000;  ///< ... begun in this time are too many
 
-  /// Once a tick.
-  void tick() noexcept {
-    ++now_;
-    if (pause_ > 0) --pause_;
+  /// Once a tick. @param elapsed_ns since the last one
+  void tick(std::int64_t elapsed_ns) noexcept {
+    now_ += elapsed_ns;
+    pause_ = std::max<std::int64_t>(pause_ - elapsed_ns, 0);
   }
   /// A warning: a pause begins, or is prolonged. False: there were too many.
-  [[nodiscard]] bool bearable() noexcept {
+  /// @param force_shown else it does not count
+  [[nodiscard]] bool bearable(bool force_shown) noexcept {
     const bool same = pause_ > 0;
-    pause_ = kPauseTicks;
-    if (same) return true;
-    std::uint64_t& oldest = begun_[count_ % begun_.size()];
-    const bool often = count_ >= begun_.size() && now_ - oldest <= kOftenTicks;
+    pause_ = kPauseNs;
+    if (same || !force_shown) return true;
+    std::int64_t& oldest = begun_[count_ % begun_.size()];
+    const bool often = count_ >= begun_.size() && now_ - oldest <= kOftenNs;
     oldest = now_;
     ++count_;
     return !often;
@@ -32,10 +36,10 @@ class DriverWarnings {
   bool paused() const noexcept { return pause_ > 0; }
 
  private:
-  std::uint64_t now_ = 0;                         ///< ticks so far
-  std::array<std::uint64_t, kMost - 1> begun_{};  ///< when the last pauses began
-  std::size_t count_ = 0;                         ///< of pauses
-  int pause_ = 0;                                 ///< ticks that are left of it
+  std::int64_t now_ = 0;                         ///< since the first tick [ns]
+  std::array<std::int64_t, kMost - 1> begun_{};  ///< when the last pauses that count began
+  std::size_t count_ = 0;                        ///< of these
+  std::int64_t pause_ = 0;                       ///< what is left of it [ns]
 };
 
 }  // namespace irdm::hd

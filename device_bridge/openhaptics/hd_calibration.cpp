@@ -11,7 +11,7 @@ void Calibration::choose_style() noexcept {
 }
 
 void Calibration::look() noexcept {
-  ticks_ = kTicks;
+  left_ns_ = kPeriodNs;
   const Name found = api_.check_calibration();
   const bool updates = style_ == kAuto || style_ == kInkwell;
   if (found == kCalibrationNeedsUpdate && updates) api_.update_calibration(style_);

@@ -14,14 +14,15 @@ namespace irdm::hd {
 /// reset: that is right in the reset pose only, and before the scheduler runs.
 class Calibration {
  public:
-  static constexpr int kTicks = 200;  ///< from one look to the next
+  static constexpr std::int64_t kPeriodNs = 200'000'000;  ///< from one look to the next
 
   explicit Calibration(const Api& api) : api_(api) {}
 
   /// Before the scheduler runs; the device is the current one.
   void choose_style() noexcept;
   /// Once a tick: whether it is time to look. Real-time safe.
-  bool due() noexcept { return --ticks_ <= 0; }
+  /// @param elapsed_ns since the last one
+  bool due(std::int64_t elapsed_ns) noexcept { return (left_ns_ -= elapsed_ns) <= 0; }
   /// Of the current device, outside of a frame. What goes wrong is among the driver's errors.
   /// Real-time safe.
   void look() noexcept;
@@ -37,8 +38,8 @@ class Calibration {
   static constexpr Name kFailed = 0;
 
   const Api& api_;
-  Name style_ = 0;  ///< the best that the device has
-  int ticks_ = 0;   ///< to the next look
+  Name style_ = 0;            ///< the best that the device has
+  std::int64_t left_ns_ = 0;  ///< to the next look
   std::atomic<Name> found_{kCalibrationOk};
 };
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 /// The part of OpenHaptics' HDAPI that the bridge uses, as its binary interface is on 64-bit Linux.
-/// Declarations of our own: nothing of the vendor's is needed to build. Lengths in mm, forces in N;
-/// +x right, +y up, +z towards the person.
+/// Declarations of our own: nothing of the vendor's is needed to build. Lengths in mm, forces in N,
+/// torques in mN m; +x right, +y up, +z towards the person.
 namespace irdm::hd {
 
 using Handle = std::uint32_t;
@@ -34,12 +34,16 @@ inline constexpr Name kButtons = 0x2000;             // 1 int, bits
 inline constexpr Name kTransform = 0x2052;           // 16 double, column by column, mm
 inline constexpr Name kModel = 0x2501;               // string
 inline constexpr Name kSerialNumber = 0x2504;        // string
+inline constexpr Name kOutputDof = 0x2554;           // 1 int; 6: force and torque
 inline constexpr Name kCalibrationStyles = 0x2555;   // 1 int, bits
 inline constexpr Name kMaxForce = 0x2603;            // 1 double [N]
 inline constexpr Name kMaxContinuousForce = 0x2604;  // 1 double [N]
 inline constexpr Name kMotorTemperature = 0x2605;    // 3 or 6 double, 0 cold to 1 warm
 inline constexpr int kMotors = 6;
-inline constexpr Name kForce = 0x2700;  // 3 double [N]
+inline constexpr Name kMaxTorque = 0x2622;            // 1 double [mN m]
+inline constexpr Name kMaxContinuousTorque = 0x2623;  // 1 double [mN m]
+inline constexpr Name kForce = 0x2700;                // 3 double [N]
+inline constexpr Name kTorque = 0x2701;               // 3 double [mN m]
 
 // Capabilities.
 inline constexpr Name kVelocityLimit = 0x2606;

@@ -16,9 +16,11 @@
 namespace irdm {
 namespace {
 
-constexpr double kMetre = 1e-3;           // per mm
-constexpr int kWarmTicks = 5000;          // that a warning of warm motors counts
-constexpr std::int32_t kButtonBits = 15;  // four buttons
+constexpr double kMetre = 1e-3;                  // per mm
+constexpr double kNewtonMetre = 1e-3;            // per mN m
+constexpr std::int64_t kWarmNs = 5'000'000'000;  // that a warning of warm motors counts
+constexpr std::int32_t kButtonBits = 15;         // four buttons
+constexpr std::int32_t kForceAndTorque = 6;      // actuated axes
 
 using Transform = std::array<double, 16>;
 
@@ -37,8 +39,8 @@ StylusPose to_pose(const Transform& transform, std::int32_t buttons) noexcept {
   return pose;
 }
 
-double rated(double newton) noexcept {
-  return std::isfinite(newton) && newton > 0.0 ? newton : std::numeric_limits<double>::infinity();
+double rated(double told) noexcept {
+  return std::isfinite(told) && told > 0.0 ? told : std::numeric_limits<double>::infinity();
 }
 
 std::uint64_t packed(const hd::ErrorInfo& error) noexcept {
@@ -73,8 +75,10 @@ void OpenHapticsDevice::open() {
     const char* const word = hd_.get_string(name);
     return std::string(word != nullptr ? word : "unknown");
   };
-  spdlog::info("{}: {}, serial number {}, at most {} N, {} N for long", label(), text(hd::kModel),
-               text(hd::kSerialNumber), rating_.peak, rating_.continuous);
+  const bool torque = rating_.peak_torque > 0.0;
+  spdlog::info("{}: {}, serial number {}, at most {} N, {} N for long{}", label(), text(hd::kModel),
+               text(hd::kSerialNumber), rating_.peak, rating_.continuous,
+               torque ? ", and " + std::to_string(rating_.peak_torque) + " N m" : "");
   scheduler_->forget_errors();
   look_at_calibration();
 }
@@ -112,6 +116,15 @@ void OpenHapticsDevice::read_rating() {
   hd_.get_doublev(hd::kMaxForce, &peak);
   hd_.get_doublev(hd::kMaxContinuousForce, &continuous);
   rating_ = {.peak = rated(peak), .continuous = rated(continuous)};
+  std::int32_t axes = 0;
+  hd_.get_integerv(hd::kOutputDof, &axes);
+  if (axes < kForceAndTorque) return;
+  double torque = 0.0;
+  double continuous_torque = 0.0;
+  hd_.get_doublev(hd::kMaxTorque, &torque);
+  hd_.get_doublev(hd::kMaxContinuousTorque, &continuous_torque);
+  rating_.peak_torque = kNewtonMetre * rated(torque);
+  rating_.continuous_torque = kNewtonMetre * rated(continuous_torque);
 }
 
 void OpenHapticsDevice::close() noexcept {
@@ -137,6 +150,7 @@ StylusPose OpenHapticsDevice::read(double) noexcept {
   std::int32_t buttons = 0;
   hd_.get_doublev(hd::kTransform, transform.data());
   hd_.get_integerv(hd::kButtons, &buttons);
+  output_on_.store(hd_.is_enabled(hd::kForceOutput) != 0, std::memory_order_relaxed);
   scheduler_->fetch_errors(*this);
   read_warmth();
   StylusPose pose = to_pose(transform, buttons);
@@ -159,14 +173,15 @@ void OpenHapticsDevice::read_warmth() noexcept {
   for (const double motor : motors) {
     if (motor > warmest) warmest = std::min(motor, 1.0);
   }
-  if (warm_ticks_ > 0) --warm_ticks_;
-  state_.motor_temperature = warm_ticks_ > 0 ? 1.0 : warmest;
+  warm_ns_ = std::max<std::int64_t>(warm_ns_ - scheduler_->period_ns(), 0);
+  state_.motor_temperature = warm_ns_ > 0 ? 1.0 : warmest;
 }
 
 void OpenHapticsDevice::count_tick() noexcept {
-  warnings_.tick();
+  const std::int64_t elapsed_ns = scheduler_->period_ns();
+  warnings_.tick(elapsed_ns);
   if (!warnings_.paused()) warned_.store(0, std::memory_order_relaxed);
-  if (calibration_.due()) look_at_calibration();
+  if (calibration_.due(elapsed_ns)) look_at_calibration();
 }
 
 // Between frames, as the driver wants it.
@@ -181,9 +196,14 @@ void OpenHapticsDevice::look_at_calibration() noexcept {
 // While the driver only warns, the safety filter takes the force off at its own rate.
 void OpenHapticsDevice::write(const Wrench& shown) noexcept {
   if (!in_frame_) begin_frame();
-  const bool sound = shown.force.allFinite() && calibration_.good();
-  const Vector3 force = sound ? shown.force : Vector3(Vector3::Zero());
-  hd_.set_doublev(hd::kForce, force.data());
+  const bool sound = shown.force.allFinite() && shown.torque.allFinite() && calibration_.good();
+  const Wrench sent = sound ? shown : Wrench{};
+  hd_.set_doublev(hd::kForce, sent.force.data());
+  if (rating_.peak_torque > 0.0) {
+    const Vector3 torque = sent.torque / kNewtonMetre;
+    hd_.set_doublev(hd::kTorque, torque.data());
+  }
+  shows_force_ = !sent.is_zero();
   hd_.end_frame(handle_);
   in_frame_ = false;
   scheduler_->fetch_errors(*this);
@@ -191,7 +211,9 @@ void OpenHapticsDevice::write(const Wrench& shown) noexcept {
 
 DeviceState OpenHapticsDevice::state() const noexcept {
   DeviceState state = state_;
-  state.ready = calibration_.good() && !warnings_.paused();
+  const bool shows = calibration_.good() && output_on_.load(std::memory_order_relaxed);
+  state.off = state.lost || !shows;
+  state.ready = shows && !warnings_.paused();
   return state;
 }
 
@@ -201,7 +223,7 @@ void OpenHapticsDevice::take(const hd::ErrorInfo& error) noexcept {
     case hd::Meaning::kNothing:
       return;
     case hd::Meaning::kWarm:
-      warm_ticks_ = kWarmTicks;
+      warm_ns_ = kWarmNs;
       return;
     case hd::Meaning::kBadFrame:
       bad_frame_ = true;
@@ -217,7 +239,7 @@ void OpenHapticsDevice::take(const hd::ErrorInfo& error) noexcept {
 }
 
 void OpenHapticsDevice::warn(const hd::ErrorInfo& error) noexcept {
-  if (!warnings_.bearable()) return fail(error);
+  if (!warnings_.bearable(shows_force_)) return fail(error);
   warned_.store(packed(error), std::memory_order_relaxed);
 }
 
@@ -236,6 +258,9 @@ std::string OpenHapticsDevice::trouble() const {
   if (const std::uint64_t warning = warned_.load(std::memory_order_relaxed); warning != 0) {
     return label() + ": no force for a moment: " + to_text(unpacked(warning)) +
            "; move more slowly and press less: it stays off when this happens often";
+  }
+  if (!output_on_.load(std::memory_order_relaxed)) {
+    return label() + ": no force: its driver has turned it off; start irdm-bridge again";
   }
   const std::string calibration = calibration_.trouble();
   return calibration.empty() ? "" : label() + ": " + calibration;

@@ -17,9 +17,10 @@ struct DeviceConfig;
 
 /// A device of 3D Systems (Touch, Phantom) by OpenHaptics' driver. D has its origin where the
 /// driver has it, +x right, +y up, +z towards the person. One frame of the driver from read() to
-/// write(), so that a force goes out in the tick of the position that it answers. The driver's own
-/// limits stay on. What it warns of, or a calibration that is lost, makes the device not ready: the
-/// force comes back as after arming.
+/// write(), so that a force goes out in the tick of the position that it answers; with a torque
+/// where the device has six actuated axes (Premium 6DOF). The driver's own
+/// limits stay on. What it warns of, a calibration that is lost, or a force that it has turned off
+/// makes the device not ready: the force comes back as after arming.
 class OpenHapticsDevice : public HapticDevice {
  public:
   /// @param name by which the vendor's setup knows it; empty: the driver's default device
@@ -63,9 +64,11 @@ class OpenHapticsDevice : public HapticDevice {
   ForceRating rating_;
   DeviceState state_;
   bool tells_warmth_ = true;
-  int warm_ticks_ = 0;      ///< what is left of a warning of warm motors
-  bool bad_frame_ = false;  ///< the next reading is of no use
+  std::int64_t warm_ns_ = 0;  ///< what is left of a warning of warm motors
+  bool bad_frame_ = false;    ///< the next reading is of no use
   bool in_frame_ = false;
+  bool shows_force_ = false;           ///< the last frame had a force or torque
+  std::atomic<bool> output_on_{true};  ///< the driver shows forces
   // For trouble(): code and internal number.
   std::atomic<std::uint64_t> warned_{0};  ///< whose pause lasts
   std::atomic<std::uint64_t> fault_{0};   ///< first error that took the force

@@ -25,6 +25,7 @@ void OpenHapticsScheduler::start(double rate, std::function<bool()> tick) {
                 "set bridge.rate = 1000");
   }
   tick_ = std::move(tick);
+  period_ns_ = 1'000'000'000 / hertz;
   scheduled_ = api_.schedule_asynchronous(call, this, hd::kHighestPriority);
   running_ = true;
   check_started("takes no callback");

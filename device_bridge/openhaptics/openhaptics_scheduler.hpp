@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -23,6 +24,8 @@ class OpenHapticsScheduler : public TickSource {
   void stop() noexcept override;
 
   const hd::Api& api() const noexcept { return api_; }
+  /// From one tick to the next; after start().
+  std::int64_t period_ns() const noexcept { return period_ns_; }
   /// An open device; while the scheduler does not run.
   void add(OpenHapticsDevice& device) { devices_.push_back(&device); }
   void remove(OpenHapticsDevice& device) noexcept;
@@ -42,6 +45,7 @@ class OpenHapticsScheduler : public TickSource {
   const hd::Api& api_;
   std::vector<OpenHapticsDevice*> devices_;
   std::function<bool()> tick_;
+  std::int64_t period_ns_ = 1'000'000;
   hd::ScheduleHandle scheduled_ = 0;
   bool running_ = false;
 };

@@ -95,9 +95,10 @@ void SafetyFilter::fail() noexcept {
 Wrench SafetyFilter::step(std::int64_t now_ns, const DeviceReading& reading,
                           const ForceDemand& demand) noexcept {
   const ReadingVerdict verdict = check(now_ns, reading);
-  observe(now_ns, reading.saturated);
+  observe(now_ns, reading.saturated || reading.off);
   thermal_.heat(sent_.force.norm(), reading_.elapsed(), reading.motor_temperature);
   torque_thermal_.heat(sent_.torque.norm(), reading_.elapsed(), reading.motor_temperature);
+  if (reading.off) forget_sent();
   accept(now_ns, demand);
   age_ = age(now_ns);
   const double fresh_share = fresh(now_ns);
@@ -124,10 +125,16 @@ ReadingVerdict SafetyFilter::check(std::int64_t now_ns, const DeviceReading& rea
   return verdict;
 }
 
+// Motors that are off show nothing; when they are on again the force rises from there.
+void SafetyFilter::forget_sent() noexcept {
+  sent_ = Wrench{};
+  arming_.trip();
+}
+
 // What the hand did against what was really sent.
-void SafetyFilter::observe(std::int64_t now_ns, bool saturated) noexcept {
+void SafetyFilter::observe(std::int64_t now_ns, bool in_part) noexcept {
   const Twist& displacement = reading_.displacement();
-  const Wrench shown = saturated ? giving(sent_, displacement) : sent_;
+  const Wrench shown = in_part ? giving(sent_, displacement) : sent_;
   passivity_.observe(displacement, shown);
   if (held_.solved_here && held_.contact == ContactState::kFree) {
     passivity_.forgive(reading_.elapsed());

@@ -41,6 +41,7 @@ struct DeviceReading {
   double motor_temperature = 0.0;  ///< what the device says, 0 to 1; 0: it says nothing
   bool repeated = false;           ///< of a moment ago, nothing newer
   bool saturated = false;          ///< since the last tick less was shown than was sent
+  bool off = false;                ///< nothing is shown any more: what was sent is forgotten
 };
 
 /// The force and torque that the world asks for at one tick, and what they rest on. Nothing in it
@@ -114,7 +115,8 @@ class SafetyFilter {
   std::int64_t beyond_horizon(std::int64_t now_ns, const ForceDemand& demand) const noexcept;
   double fresh(std::int64_t now_ns) const noexcept;
   void watch_link(double fresh) noexcept;
-  void observe(std::int64_t now_ns, bool saturated) noexcept;
+  void observe(std::int64_t now_ns, bool in_part) noexcept;
+  void forget_sent() noexcept;
   Wrench wanted() const noexcept;
   Wrench damped(const Wrench& wrench, double share) const noexcept;
   Wrench limited(const Wrench& wrench) const noexcept;

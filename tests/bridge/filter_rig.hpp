@@ -17,7 +17,8 @@ struct FilterRig {
   const Vector3& tick() {
     now_ns += kMs;
     const Wrench wrench = filter.step(
-        now_ns, {.tip = tip, .orientation = orientation, .saturated = saturated}, demand);
+        now_ns, {.tip = tip, .orientation = orientation, .saturated = saturated, .off = off},
+        demand);
     shown = wrench.force;
     torque = wrench.torque;
     return shown;
@@ -48,6 +49,7 @@ struct FilterRig {
   Vector3 tip = Vector3::Zero();
   Quaternion orientation = Quaternion::Identity();
   bool saturated = false;  ///< what was shown since the last tick
+  bool off = false;        ///< the motors
   ForceDemand demand{.contact = ContactState::kTouching, .normal = Vector3::UnitY()};
   Vector3 shown = Vector3::Zero();   ///< force
   Vector3 torque = Vector3::Zero();  ///< shown with it

@@ -53,6 +53,7 @@ class Hostility {
     reading.motor_temperature = one_in(50) ? wild() : 0.0;
     reading.repeated = one_in(20);
     reading.saturated = one_in(10);
+    reading.off = one_in(calm_ ? 20'000 : 300);
     if (one_in(calm_ ? 50'000 : 2000)) filter.fail();
     if (one_in(5000)) filter.disarm();
     if (one_in(100)) act(filter);
@@ -158,6 +159,8 @@ struct Outcome {
   Extremes force;
   Extremes torque;
   std::uint64_t engaged = 0;
+  std::uint64_t off = 0;       ///< ticks with motors that were
+  std::uint64_t sent_off = 0;  ///< of these, with a force all the same
 };
 
 // What counts of the time between two ticks [s].
@@ -181,6 +184,11 @@ Outcome run(const DeviceKind& device, std::uint64_t seed, int ticks, Guards guar
     hostility.next(filter);
     const Wrench shown = filter.step(hostility.now_ns, hostility.reading, hostility.demand);
     const double elapsed = since(before_ns, hostility.now_ns);
+    if (hostility.reading.off) {
+      ++outcome.off;
+      outcome.sent_off += shown.is_zero() ? 0 : 1;
+      before = Wrench{};
+    }
     outcome.force.look(before.force, shown.force, kRise * elapsed, kFall * elapsed);
     outcome.torque.look(before.torque, shown.torque, kTorqueRise * elapsed, kTorqueFall * elapsed);
     outcome.engaged += filter.state() == FilterState::kEngaged ? 1 : 0;
@@ -202,6 +210,8 @@ Outcome check(const DeviceKind& device, std::uint64_t seed, int ticks, Guards gu
   const Outcome outcome = run(device, seed, ticks, guards);
   check_limits(outcome.force, device.force);
   check_limits(outcome.torque, device.torque);
+  CHECK(outcome.off > 0);
+  CHECK(outcome.sent_off == 0);
   CHECK(outcome.engaged > static_cast<std::uint64_t>(ticks) / 10);
   return outcome;
 }

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -115,6 +116,28 @@ TEST_CASE("servo loop: a device that fails before its stylus is armed stays with
   CHECK(loop.filter().state() == FilterState::kFault);
   CHECK(device.force == Vector3::Zero());
   CHECK(loop.counts().faults == 1);
+}
+
+TEST_CASE("servo loop: a device that shows nothing is sent nothing at once, and then a ramp") {
+  ProbeDevice device;
+  ServoLoop loop(device, {});
+  std::int64_t now_ns = show(loop, 0, 3, Vector3::Zero());
+  now_ns = show(loop, now_ns, 20, Vector3(0, 3, 0));
+  CHECK(device.force == Vector3(0, 3, 0));
+  device.said.off = true;
+  device.said.ready = GENERATE(true, false);
+  now_ns = show(loop, now_ns, 1, Vector3(0, 3, 0));
+  CHECK(device.force.isZero(0.0));
+  CHECK(loop.shown().isZero(0.0));
+  device.said = DeviceState{};
+  double rise = 0.0;
+  for (int tick = 0; tick < 700; ++tick) {
+    const double before = device.force.y();
+    now_ns = show(loop, now_ns, 1, Vector3(0, 3, 0));
+    rise = std::max(rise, device.force.y() - before);
+  }
+  CHECK(rise < 1.001 * 3.0 / 500.0);
+  CHECK(device.force.isApprox(Vector3(0, 3, 0)));
 }
 
 TEST_CASE("servo loop takes a device to W and the force back to it") {

@@ -33,8 +33,10 @@ TEST_CASE("motors go off when no force comes for as long as their watchdog waits
   CHECK(motors.on_for(0.01) == Approx(0.002));
   motors.advance(0.01);
   CHECK(motors.on_for(0.01) == 0.0);
+  CHECK(motors.off());
   motors.set({Vector3(0, 1, 0)});
   CHECK(motors.on_for(0.01) == 0.01);
+  CHECK_FALSE(motors.off());
 }
 
 TEST_CASE("motors warm up with the square of the force, and cool down") {

@@ -88,6 +88,12 @@ void fakehd_rate_force(const char* name, double peak, double continuous) {
     device.continuous_force = continuous;
   });
 }
+void fakehd_six_axes(const char* name, double peak, double continuous) {
+  with(name, [&](FakeDevice& device) {
+    device.max_torque = peak;
+    device.continuous_torque = continuous;
+  });
+}
 void fakehd_temperature(const char* name, double warmth) {
   with(name, [&](FakeDevice& device) { device.temperature = warmth; });
 }
@@ -124,6 +130,14 @@ void fakehd_raise_at_end(const char* name, unsigned code) {
 void fakehd_unplug(const char* name) {
   with(name, [&](FakeDevice& device) { device.plugged = false; });
 }
+void fakehd_force_off(const char* name, int off) {
+  constexpr unsigned kForceOutput = 0x4000;
+  with(name, [&](FakeDevice& device) {
+    device.force_output = off == 0;
+    std::erase(device.limits_on, kForceOutput);
+    if (off == 0) device.limits_on.push_back(kForceOutput);
+  });
+}
 int fakehd_is_open(const char* name) {
   return with(name, [&](FakeDevice& device) { return device.open ? 1 : 0; });
 }
@@ -138,6 +152,11 @@ unsigned long fakehd_frames(const char* name) {
 void fakehd_force(const char* name, double* newton) {
   with(name, [&](FakeDevice& device) {
     std::copy(device.commanded.begin(), device.commanded.end(), newton);
+  });
+}
+void fakehd_torque(const char* name, double* millinewton_metre) {
+  with(name, [&](FakeDevice& device) {
+    std::copy(device.commanded_torque.begin(), device.commanded_torque.end(), millinewton_metre);
   });
 }
 

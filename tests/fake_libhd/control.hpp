@@ -9,15 +9,17 @@
 /// update of it that fails is HD_DEVICE_FAULT, of a device that goes on; encoders are reset in the
 /// reset pose only, before the scheduler. The vendor's samples ErrorHandling.c (forces, impulses
 /// and speeds that are too much are warnings, from which the driver comes back by itself) and
-/// Calibration.c (HD_CALIBRATION_AUTO goes on refining, and positions jump by it). The notes of
+/// Calibration.c (HD_CALIBRATION_AUTO goes on refining, and positions jump by it). chai3d and HAPI:
+/// force and torque in one frame, torque in mN m. The notes of
 /// jhu-cisst-external/3ds-touch-openhaptics: with drivers of 2022 only the default device starts
 /// (by which error is not told there).
 ///
 /// A program that is run beside a test is told by its environment: FAKE_HD_DEVICES=NAME,NAME more
 /// devices; FAKE_HD_REFUSE=CODE no device starts; FAKE_HD_MOTION=FILE rows `tick x y z buttons`
 /// [ms, mm], repeated for ever; FAKE_HD_EVENT=unplug|hang|tell|CODE after FAKE_HD_EVENT_AFTER=N
-/// frames with a force, of several by commas the next after N more; FAKE_HD_LOG=FILE a row `tick
-/// failed x y z fx fy fz ns` a frame, and the misuses.
+/// frames with a force, of several by commas the next after N more; FAKE_HD_TORQUE=N six actuated
+/// axes, torque up to N mN m; FAKE_HD_LOG=FILE a row `tick failed x y z fx fy fz tx ty tz ns` a
+/// frame, and the misuses.
 extern "C" {
 void fakehd_reset();                ///< as if just loaded
 void fakehd_add(const char* name);  ///< a device that is set up
@@ -36,6 +38,7 @@ void fakehd_place(const char* name, double x, double y, double z);        ///< [
 void fakehd_transform(const char* name, const double* column_by_column);  ///< 16 numbers
 void fakehd_press(const char* name, int buttons);
 void fakehd_rate_force(const char* name, double peak, double continuous);  ///< what it bears [N]
+void fakehd_six_axes(const char* name, double peak, double continuous);    ///< torque [mN m]
 void fakehd_temperature(const char* name, double warmth);
 void fakehd_no_temperature(const char* name);                 ///< it cannot say
 void fakehd_heating(const char* name, double time_constant);  ///< by force squared [ticks]
@@ -47,8 +50,10 @@ unsigned fakehd_updated_style(const char* name);              ///< 0: was not ca
 void fakehd_raise_at_begin(const char* name, unsigned code);  ///< of its next frame
 void fakehd_raise_at_end(const char* name, unsigned code);
 void fakehd_unplug(const char* name);
+void fakehd_force_off(const char* name, int off);  ///< by itself
 int fakehd_is_open(const char* name);
 int fakehd_is_on(const char* name, unsigned capability);
 unsigned long fakehd_frames(const char* name);
-void fakehd_force(const char* name, double* newton);  ///< of the last frame, 3 numbers
+void fakehd_force(const char* name, double* newton);              ///< of the last frame, 3 numbers
+void fakehd_torque(const char* name, double* millinewton_metre);  ///< the same
 }

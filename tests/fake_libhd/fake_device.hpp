@@ -23,6 +23,7 @@ struct FrameRecord {
   unsigned long tick;
   std::array<double, 3> position;  ///< [mm]
   Force force;                     ///< that was asked for [N]
+  Force torque;                    ///< the same [mN m]
   bool failed;                     ///< the device had an error in it
   std::int64_t begun_ns;           ///< steady clock
 };
@@ -41,8 +42,10 @@ struct FakeDevice {
   int buttons = 0;
   std::vector<MotionRow> motion;  ///< repeated for ever; empty: it stays where it is put
 
-  double max_force = 3.3;                                          ///< [N]
-  double continuous_force = 0.88;                                  ///< [N]
+  double max_force = 3.3;          ///< [N]
+  double continuous_force = 0.88;  ///< [N]
+  double max_torque = 0.0;         ///< [mN m]; 0: three actuated axes, no torque
+  double continuous_torque = 0.0;  ///< [mN m]
   double heating_ticks = std::numeric_limits<double>::infinity();  ///< time constant
   double temperature = 0.0;
   bool tells_temperature = true;
@@ -62,6 +65,7 @@ struct FakeDevice {
   std::vector<unsigned> at_begin;   ///< errors of the next frame's begin
   std::vector<unsigned> at_end;     ///< and of its end
   Force commanded{};                ///< in this frame, then the last one [N]
+  Force commanded_torque{};         ///< the same [mN m]
   Force shown{};                    ///< by the motors [N]
   unsigned long frames = 0;
   unsigned long frames_this_tick = 0;

@@ -84,6 +84,10 @@ void FakeDriver::read_environment() {
   }
   for (const auto& [name, device] : devices_) {
     device->motion = read_motion(variable("FAKE_HD_MOTION"));
+    if (const std::string torque = variable("FAKE_HD_TORQUE"); !torque.empty()) {
+      device->max_torque = std::stod(torque);
+      device->continuous_torque = 0.5 * device->max_torque;
+    }
     device->event.what = variable("FAKE_HD_EVENT");
     if (!device->event.what.empty()) {
       device->event.every_frames = std::stoul(variable("FAKE_HD_EVENT_AFTER"));
@@ -167,8 +171,9 @@ void FakeDriver::begin_frame(unsigned handle) {
     raise(kCommError, handle);
   }
   device->commanded = {};
+  device->commanded_torque = {};
   const std::chrono::nanoseconds now = std::chrono::steady_clock::now().time_since_epoch();
-  device->log.push_back({ticks, device->position(), {}, failed, now.count()});
+  device->log.push_back({ticks, device->position(), {}, {}, failed, now.count()});
 }
 
 void FakeDriver::end_frame(unsigned handle) {
@@ -184,6 +189,7 @@ void FakeDriver::end_frame(unsigned handle) {
   for (const unsigned code : device->at_end) raise(code, handle);
   device->at_end.clear();
   device->log.back().force = device->commanded;
+  device->log.back().torque = device->commanded_torque;
   if (magnitude(device->commanded) > kContact) ++device->contact_frames;
   if (device->event.after_frames > 0 && device->contact_frames >= device->event.after_frames) {
     happen(*device);
@@ -287,6 +293,7 @@ void FakeDriver::write_log(const FakeDevice& device) {
     file << frame.tick << ' ' << frame.failed;
     for (const double value : frame.position) file << ' ' << value;
     for (const double value : frame.force) file << ' ' << value;
+    for (const double value : frame.torque) file << ' ' << value;
     file << ' ' << frame.begun_ns << '\n';
   }
   file << "misuses " << misuses << ' ' << first_misuse << '\n';

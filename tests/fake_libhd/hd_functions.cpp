@@ -103,6 +103,9 @@ void hdGetIntegerv(unsigned name, std::int32_t* values) {
     case 0x2000:
       *values = device->buttons;
       break;
+    case 0x2554:
+      *values = device->max_torque > 0.0 ? 6 : 3;
+      break;
     case 0x2555:
       *values = device->calibration_styles;
       break;
@@ -132,6 +135,12 @@ void hdGetDoublev(unsigned name, double* values) {
       values[1] = device->temperature;
       values[2] = 0.0;
       break;
+    case 0x2622:
+      *values = device->max_torque;
+      break;
+    case 0x2623:
+      *values = device->continuous_torque;
+      break;
     default:
       refuse(kInvalidEnum);
   }
@@ -145,12 +154,14 @@ void hdSetDoublev(unsigned name, const double* values) {
   const Lock lock(driver().mutex);
   FakeDevice* const device = driver().current_device();
   if (device == nullptr) return;
-  if (name != 0x2700) return refuse(kInvalidEnum);
+  const bool torque = name == 0x2701;
+  if (name != 0x2700 && !torque) return refuse(kInvalidEnum);
   if (!device->in_frame) {
     refuse(kFrameError);
     return driver().misuse("a force outside a frame");
   }
-  std::copy_n(values, 3, device->commanded.begin());
+  if (torque && device->max_torque == 0.0) driver().misuse("a torque for three actuated axes");
+  std::copy_n(values, 3, (torque ? device->commanded_torque : device->commanded).begin());
 }
 
 unsigned hdCheckCalibration() {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <optional>
 
@@ -91,4 +92,28 @@ TEST_CASE("Force Dimension: whatever goes wrong with the device, it is sent none
   CHECK(stepped.loop->shown().isZero(0.0));
   CHECK(stepped.loop->shown_torque().isZero(0.0));
   CHECK(stepped.device.state().ready == fault.ready);
+}
+
+TEST_CASE("Force Dimension: force and torque rise from zero when the device has turned them on") {
+  const int cause = GENERATE(1, 2, 3);
+  CAPTURE(cause);
+  SteppedLoop stepped;
+  fakedhd_force_off(0, cause);
+  while (stepped.device.state().ready) {
+    stepped.tick(1);
+    // The object gets no more than the device shows, from the status on.
+    CHECK(stepped.loop->shown().isZero(0.0) == stepped.device.state().off);
+  }
+  CHECK(stepped.loop->shown_torque().isZero(0.0));
+  stepped.tick(1);
+  if (cause == 1)
+    fakedhd_force_off(0, 0);  // pressed again, before the filter has been through a fade
+  double rise = 0.0;
+  for (int tick = 0; tick < 1500; ++tick) {
+    const double before = stepped.force();
+    stepped.tick(1);
+    rise = std::max(rise, stepped.force() - before);
+  }
+  CHECK(rise < 1.001 * 8.1 / 500);
+  CHECK(stepped.force() == Approx(8.1));
 }

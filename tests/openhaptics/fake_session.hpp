@@ -37,17 +37,23 @@ inline Vector3 force_of(const char* name) {
   return force;
 }
 
+inline Vector3 torque_of(const char* name) {  ///< [N m]
+  Vector3 torque;
+  fakehd_torque(name, torque.data());
+  return 1e-3 * torque;
+}
+
 /// A device in ticks that the test makes one by one, each with a frame.
 class SteppedDevice {
  public:
-  explicit SteppedDevice(const std::string& name = "")
+  explicit SteppedDevice(const std::string& name = "", double rate = 1000.0)
       : scheduler(std::make_shared<OpenHapticsScheduler>(FakeSession::api())),
         device(name, scheduler) {
     fakehd_drive_by_hand();
     device.open();
-    scheduler->start(1000.0, [this] {
+    scheduler->start(rate, [this] {
       pose = device.read(0.0);
-      device.write({wanted});
+      device.write({wanted, wanted_torque});
       return true;
     });
   }
@@ -64,6 +70,7 @@ class SteppedDevice {
   OpenHapticsDevice device;
   StylusPose pose;
   Vector3 wanted = Vector3::Zero();
+  Vector3 wanted_torque = Vector3::Zero();
 };
 
 /// The servo loop of the default device, on a virtual clock of 1 ms a tick.

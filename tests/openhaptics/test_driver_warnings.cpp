@@ -10,11 +10,13 @@ namespace {
 
 using hd::DriverWarnings;
 
+constexpr int kPauseTicks = DriverWarnings::kPauseNs / kMs;  // of 1 ms
+constexpr int kOftenTicks = DriverWarnings::kOftenNs / kMs;
 const Vector3 kLargeForce(0, 2, 0);
 
 // Until the pause is over, and the force is back.
 void come_back(SteppedLoop& stepped) {
-  stepped.tick(DriverWarnings::kPauseTicks + 600, kLargeForce);
+  stepped.tick(kPauseTicks + 600, kLargeForce);
   REQUIRE(force_of("").isApprox(kLargeForce));
 }
 
@@ -23,26 +25,33 @@ void come_back(SteppedLoop& stepped) {
 TEST_CASE(
     "warnings of a driver: what goes on is one of them, and the third in ten seconds latches") {
   DriverWarnings warnings;
-  const auto ticks = [&](std::uint64_t count) {
-    for (std::uint64_t k = 0; k < count; ++k) warnings.tick();
+  const auto ticks = [&](int count) {
+    for (int k = 0; k < count; ++k) warnings.tick(kMs);
   };
   CHECK_FALSE(warnings.paused());
   // A hand that is too fast for a second.
-  for (int k = 0; k < 1000; ++k, ticks(1)) REQUIRE(warnings.bearable());
-  ticks(DriverWarnings::kPauseTicks - 2);
+  for (int k = 0; k < 1000; ++k, ticks(1)) REQUIRE(warnings.bearable(true));
+  ticks(kPauseTicks - 2);
   CHECK(warnings.paused());
   ticks(1);
   CHECK_FALSE(warnings.paused());
-  CHECK(warnings.bearable());
+  CHECK(warnings.bearable(true));
   SECTION("soon") {
-    ticks(DriverWarnings::kOftenTicks / 2);
-    CHECK_FALSE(warnings.bearable());
+    ticks(kOftenTicks / 2);
+    CHECK_FALSE(warnings.bearable(true));
+  }
+  SECTION("without a force they do not count") {
+    for (int k = 0; k < 10; ++k) {
+      ticks(kPauseTicks);
+      CHECK(warnings.bearable(false));
+      CHECK(warnings.paused());
+    }
   }
   SECTION("not so soon") {
-    ticks(DriverWarnings::kOftenTicks / 2);
+    ticks(kOftenTicks / 2);
     for (int k = 0; k < 10; ++k) {
-      ticks(DriverWarnings::kOftenTicks / 2 + 1);
-      CHECK(warnings.bearable());
+      ticks(kOftenTicks / 2 + 1);
+      CHECK(warnings.bearable(true));
     }
   }
 }
@@ -61,7 +70,7 @@ TEST_CASE("a force that the driver warns of fades, and comes back as a ramp afte
   CHECK_FALSE(stepped.device.state().ready);
   CHECK_FALSE(stepped.device.state().failed);
   CHECK_THAT(stepped.device.trouble(), Contains("for a moment") && Contains("HD_EXCEEDED_MAX"));
-  for (int tick = 5; tick < DriverWarnings::kPauseTicks; ++tick) {
+  for (int tick = 5; tick < kPauseTicks; ++tick) {
     stepped.tick(1, kLargeForce);
     REQUIRE(force_of("").isZero(0.0));
   }
@@ -110,9 +119,39 @@ TEST_CASE("warnings that are seldom never take the force for good") {
   for (int k = 0; k < 6; ++k) {
     fakehd_raise_at_end("", 0x0202);
     come_back(stepped);
-    stepped.tick(static_cast<int>(DriverWarnings::kOftenTicks / 2),
+    stepped.tick(kOftenTicks / 2,
                  Vector3::Zero());  // motors cool
     stepped.tick(100, kLargeForce);
   }
   CHECK_FALSE(stepped.device.state().failed);
+}
+
+TEST_CASE("fast waves in free air pause the force, and never take it for good") {
+  const FakeSession session;
+  SteppedLoop stepped;
+  stepped.engage(kLargeForce);
+  stepped.tick(100, Vector3::Zero());
+  for (int wave = 0; wave < 5; ++wave) {
+    wave % 2 == 0 ? fakehd_raise_at_begin("", 0x0203) : fakehd_raise_at_end("", 0x0203);
+    stepped.tick(2, Vector3::Zero());
+    CHECK_FALSE(stepped.device.state().ready);
+    stepped.tick(kPauseTicks, Vector3::Zero());
+    CHECK(stepped.device.state().ready);
+  }
+  CHECK_FALSE(stepped.device.state().failed);
+  come_back(stepped);
+}
+
+TEST_CASE("a pause takes the same time at 500 Hz, and so does a look at the calibration") {
+  const FakeSession session;
+  SteppedDevice stepped("", 500.0);
+  stepped.wanted = kLargeForce;
+  stepped.tick(10);
+  fakehd_raise_at_end("", 0x0203);
+  const unsigned long looks = fakehd_calibration_checks("");
+  stepped.tick(kPauseTicks / 2 - 1);
+  CHECK_FALSE(stepped.device.state().ready);
+  stepped.tick(2);
+  CHECK(stepped.device.state().ready);
+  CHECK(fakehd_calibration_checks("") - looks == 2);
 }

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
 
@@ -65,6 +66,29 @@ TEST_CASE("OpenHaptics: whatever goes wrong with the device, the motors are at z
   CHECK(stepped.force() == 0.0);
 }
 
+TEST_CASE(
+    "OpenHaptics: a force that the driver has turned off rises from zero when it is on again") {
+  const FakeSession session;
+  SteppedLoop stepped;
+  stepped.engage(kFeltForce);
+  fakehd_force_off("", 1);
+  stepped.tick(1, kFeltForce);
+  CHECK(stepped.loop.shown().isZero(0.0));
+  CHECK(stepped.device.state().off);
+  CHECK_FALSE(stepped.device.state().ready);
+  CHECK_THAT(stepped.device.trouble(), Catch::Matchers::Contains("its driver has turned it off"));
+  fakehd_force_off("", 0);
+  double rise = 0.0;
+  for (int tick = 0; tick < 700; ++tick) {
+    const double before = stepped.force();
+    stepped.tick(1, kFeltForce);
+    rise = std::max(rise, stepped.force() - before);
+  }
+  CHECK(rise < 1.001 * kFeltForce.norm() / 500);
+  CHECK(force_of("").isApprox(kFeltForce));
+  CHECK(stepped.loop.counts().faults == 0);
+}
+
 TEST_CASE("OpenHaptics: a calibration that is lost takes the force with the look that finds it") {
   const FakeSession session;
   SteppedLoop stepped;
@@ -73,4 +97,5 @@ TEST_CASE("OpenHaptics: a calibration that is lost takes the force with the look
   const unsigned long looks = fakehd_calibration_checks("");
   while (fakehd_calibration_checks("") == looks) stepped.tick(1, kFeltForce);
   CHECK(stepped.force() == 0.0);
+  CHECK(stepped.loop.shown().isZero(0.0));  // so is what the object gets
 }

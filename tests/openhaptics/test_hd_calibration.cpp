@@ -14,7 +14,7 @@ constexpr unsigned kNeedsPerson = 0x5002;
 constexpr int kEncoderReset = 1;
 constexpr int kAuto = 2;
 constexpr int kInkwell = 4;
-constexpr int kLook = hd::Calibration::kTicks;
+constexpr int kLook = hd::Calibration::kPeriodNs / 1'000'000;
 const Vector3 kForce(0, 1, 0);
 
 }  // namespace

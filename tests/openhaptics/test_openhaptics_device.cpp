@@ -185,7 +185,7 @@ TEST_CASE("two devices in one tick: each gets its own force and its own errors")
   CHECK(fakehd_frames("Left") == 3);
   CHECK(fakehd_frames("Right") == 3);
   // Each is asked for its own calibration, outside of the other's frame, too.
-  fakehd_tick(hd::Calibration::kTicks);
+  fakehd_tick(hd::Calibration::kPeriodNs / kMs);
   CHECK(fakehd_calibration_checks("Left") == 2);
   CHECK(fakehd_calibration_checks("Right") == 2);
   // Errors wait for whoever asks first, and are still given to the device that they are about.

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -14,9 +13,10 @@ namespace irdm::test {
 struct Frame {
   unsigned long tick = 0;
   bool failed = false;
-  double height = 0.0;  ///< of the stylus [mm]
-  double force = 0.0;   ///< asked for [N]
-  double begun = 0.0;   ///< monotonic [s]
+  double height = 0.0;               ///< of the stylus [mm]
+  double force = 0.0;                ///< asked for [N]
+  Vector3 torque = Vector3::Zero();  ///< the same [N m]
+  double begun = 0.0;                ///< monotonic [s]
 };
 
 /// A bridge with a device of the fake driver (tests/fake_libhd), whose hand comes down onto the
@@ -47,9 +47,12 @@ class DeviceStage {
     std::istringstream text(file_content(stage.path("frames.txt")));
     double ignored = 0.0;
     Frame frame;
-    for (double x = 0, y = 0, z = 0; text >> frame.tick >> frame.failed >> ignored >>
-                                     frame.height >> ignored >> x >> y >> z >> frame.begun;) {
-      frame.force = std::sqrt(x * x + y * y + z * z);
+    Vector3 force;
+    for (Vector3& t = frame.torque; text >> frame.tick >> frame.failed >> ignored >> frame.height >>
+                                    ignored >> force.x() >> force.y() >> force.z() >> t.x() >>
+                                    t.y() >> t.z() >> frame.begun;) {
+      frame.force = force.norm();
+      frame.torque *= 1e-3;
       frame.begun *= 1e-9;
       found.push_back(frame);
     }

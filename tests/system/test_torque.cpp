@@ -4,12 +4,15 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <string>
 #include <thread>
 #include <vector>
 
 #include "common/hdf5/file.hpp"
 #include "common/motion/rigid_body.hpp"
 #include "tests/support/eventually.hpp"
+#include "tests/support/left_out.hpp"
+#include "tests/system/device_stage.hpp"
 #include "tests/system/stage.hpp"
 
 using Catch::Matchers::Contains;
@@ -137,6 +140,34 @@ TEST_CASE("torque: a device that renders none gets none, and the hand turns as s
   const Quaternion wanted(Eigen::AngleAxisd(kRodSlope, Vector3::UnitZ()));
   CHECK(last_turn(trace, "/stylus/0/orientation").angularDistance(wanted) < 1e-9);
   CHECK(last_vector(trace, "/stylus/0/torque").z() > 0.01);
+}
+
+TEST_CASE(
+    "torque: a device of OpenHaptics with six actuated axes shows a tool's, none in free air") {
+  if (!kKeepsPace) return leave_out(kTooSlow);
+  const DeviceStage device;
+  lay_rod(device.stage);
+  device.stage.write("bridge.toml", "[[device]]\ntype = \"openhaptics\"\n");
+  device.stage.write("motion.txt",
+                     "0 0 100 0 0\n1000 0 100 0 0\n1500 0 -5 0 0\n3000 0 -5 0 0\n3500 0 100 0 0\n");
+  std::vector<std::string> environment = DeviceStage::in_contact("tell", 300);
+  environment.emplace_back("FAKE_HD_TORQUE=500");
+  Server server = device.stage.start_server();
+  ChildProcess bridge = device.stage.start_bridge(server, {}, device.with(environment));
+  bridge.line_with("in contact");
+  bridge.signal(SIGTERM);
+  CHECK(bridge.wait() == 0);
+  CHECK_THAT(bridge.out(), Contains("peak torque"));
+  CHECK(device.misuses() == "misuses 0 \n");
+  // The rod lies on the plane, level: about its end it turns up.
+  Vector3 largest = Vector3::Zero();
+  for (const Frame& frame : device.frames()) {
+    if (frame.tick < 1000) REQUIRE(frame.torque.norm() < 1e-3);  // at rest above the plane
+    if (frame.torque.norm() > largest.norm()) largest = frame.torque;
+  }
+  CHECK(largest.z() > 0.01);
+  CHECK(largest.norm() < 0.15 * (1.0 + 1e-9));
+  CHECK(device.frames().back().torque.isZero(0.0));
 }
 
 TEST_CASE("torque: killed server, force and torque are gone within 50 ms", "[slow]") {

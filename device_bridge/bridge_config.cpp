@@ -82,7 +82,7 @@ ButtonMap read_buttons(TomlTable table) {
 
 // Keys of Haply devices alone.
 void read_haply(TomlTable& table, const std::string& file, DeviceConfig& device) {
-  for (const char* key : {"service", "grip"}) {
+  for (const char* key : {"service", "grip", "shared"}) {
     if (table.has(key) && device.type != "haply") {
       table.fail(key, "is for devices of type haply", "remove it");
     }
@@ -90,6 +90,7 @@ void read_haply(TomlTable& table, const std::string& file, DeviceConfig& device)
   const std::string service = table.text("service", "");
   if (!service.empty()) device.service = parse_server_address(service, file + ": device.service");
   device.grip = table.text("grip", "");
+  device.shared = table.boolean("shared", false);
 }
 
 DeviceConfig read_device(TomlTable table, const std::string& file,

@@ -31,6 +31,7 @@ struct DeviceConfig {
   /// key `service`: of a Haply device, "HOST:PORT"; none: localhost:10001
   std::optional<ServerAddress> service = {};
   std::string grip = {};  ///< key `grip`: id of a Haply device's VerseGrip; empty: the first
+  bool shared = false;    ///< key `shared`: another session may command a Haply device, too
   /// as bridge.realtime: of threads that a device has
   RealTimeScheduling realtime = RealTimeScheduling::kPrefer;
   /// key `auto_init`: a device of Force Dimension may move by itself to be initialised

@@ -53,19 +53,16 @@ StylusPose HaplyDevice::read(double) noexcept {
   return pose;
 }
 
-// After an outage the filter still lets fall what was not shown: until that is over, none of it.
 void HaplyDevice::write(const Wrench& shown) noexcept {
-  const double before = std::exchange(asked_, shown.force.norm());
-  withheld_ = !ready_ || (withheld_ && asked_ > 0.0 && asked_ < before);
   haply::InverseForce& newest = mailbox_.force.back();
   newest.time_ns = monotonic_ns();
   newest.generation = generation_;
-  newest.force = !withheld_ && shown.force.allFinite() ? shown.force : Vector3(Vector3::Zero());
+  newest.force = ready_ && shown.force.allFinite() ? shown.force : Vector3(Vector3::Zero());
   mailbox_.force.publish();
 }
 
 DeviceState HaplyDevice::state() const noexcept {
-  return {.ready = ready_, .repeated = repeated_, .saturated = withheld_};
+  return {.ready = ready_, .repeated = repeated_, .off = !ready_};
 }
 
 std::string HaplyDevice::trouble() const {
@@ -77,6 +74,7 @@ haply::InverseSettings inverse_settings(const DeviceConfig& config) {
   if (config.service) settings.service = *config.service;
   settings.device = config.name;
   settings.grip = config.grip;
+  settings.shared = config.shared;
   settings.scheduling = config.realtime;
   return settings;
 }

@@ -46,8 +46,6 @@ class HaplyDevice : public HapticDevice {
   std::int64_t time_ns_ = 0;      ///< the same
   bool ready_ = false;
   bool repeated_ = false;
-  bool withheld_ = false;  ///< the last force was not sent
-  double asked_ = 0.0;     ///< its magnitude [N]
 };
 
 /// What a configuration says of one.

@@ -13,15 +13,11 @@ namespace http = boost::beast::http;
 /// One exchange; what fails ends it.
 class Exchange {
  public:
-  Exchange(const ServerAddress& address, http::request<http::string_body> request)
-      : address_(address), request_(std::move(request)) {}
+  explicit Exchange(http::request<http::string_body> request) : request_(std::move(request)) {}
 
-  std::optional<std::string> run() {
+  std::optional<std::string> run(const boost::asio::ip::tcp::endpoint& to) {
     constexpr std::chrono::seconds kPatience(1);
-    resolver_.async_resolve(
-        address_.host, std::to_string(address_.port), [this](ErrorCode error, const auto& found) {
-          if (!error) stream_.async_connect(found, [this](ErrorCode e, auto&&) { write(e); });
-        });
+    stream_.async_connect(to, [this](ErrorCode error) { write(error); });
     io_.run_for(kPatience);
     return answer_;
   }
@@ -40,10 +36,8 @@ class Exchange {
     });
   }
 
-  const ServerAddress& address_;
   http::request<http::string_body> request_;
   boost::asio::io_context io_;
-  boost::asio::ip::tcp::resolver resolver_{io_};
   beast::tcp_stream stream_{io_};
   beast::flat_buffer buffer_;
   http::response<http::string_body> response_;
@@ -57,7 +51,8 @@ std::string host_text(const ServerAddress& address) {
   return (numeric6 ? '[' + address.host + ']' : address.host) + ':' + std::to_string(address.port);
 }
 
-std::optional<std::string> http_request(const ServerAddress& address, http::verb verb,
+std::optional<std::string> http_request(const boost::asio::ip::address& at,
+                                        const ServerAddress& address, http::verb verb,
                                         const std::string& target, const std::string& body) {
   constexpr unsigned kHttp11 = 11;
   http::request<http::string_body> request(verb, target, kHttp11, body);
@@ -65,7 +60,7 @@ std::optional<std::string> http_request(const ServerAddress& address, http::verb
   request.set(http::field::connection, "close");
   if (!body.empty()) request.set(http::field::content_type, "application/json");
   request.prepare_payload();
-  return Exchange(address, std::move(request)).run();
+  return Exchange(std::move(request)).run({at, address.port});
 }
 
 }  // namespace irdm::haply

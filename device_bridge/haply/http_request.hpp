@@ -16,8 +16,11 @@ std::string host_text(const ServerAddress& address);
 
 /// One question by HTTP, on a connection of its own; waits for the answer, a second at most. None
 /// when nobody answers, or not with 200.
+/// @param at where the host was found before: no name is looked up, which could take longer
+/// @param address its port, and the name for the Host line
 /// @param body of a POST, JSON
-std::optional<std::string> http_request(const ServerAddress& address, boost::beast::http::verb verb,
+std::optional<std::string> http_request(const boost::asio::ip::address& at,
+                                        const ServerAddress& address, boost::beast::http::verb verb,
                                         const std::string& target, const std::string& body = "");
 
 }  // namespace irdm::haply

@@ -3,9 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
-#include <set>
+#include <chrono>
 #include <utility>
 
 #include "common/error.hpp"
@@ -25,64 +23,24 @@ constexpr std::int64_t kEndNs = 300'000'000;           // for the last answer an
 constexpr const char* kStart =
     "start the Inverse Service (systemctl start haply-inverse-service), or correct `service`";
 
-// Devices that this process has opened, by id: a service has more than one address.
-std::mutex claims_mutex;
-std::set<std::string> claims;
-
-bool lay_claim(const std::string& claim) {
-  const std::lock_guard<std::mutex> lock(claims_mutex);
-  return claims.insert(claim).second;
-}
-
-template <typename Thing>
-const Thing* find(const std::vector<Thing>& things, const std::string& id) {
-  const auto found = std::find_if(things.begin(), things.end(),
-                                  [&](const Thing& thing) { return thing.id == id; });
-  return found != things.end() ? &*found : nullptr;
-}
-
-std::string names(const std::vector<InverseDevice>& devices) {
-  std::string all;
-  for (const InverseDevice& device : devices) all += (all.empty() ? "" : ", ") + device.id;
-  return all.empty() ? "none" : all;
-}
-
 }  // namespace
 
-std::string to_text(const InverseReport& report) {
-  const double mean = report.answers > 0 ? report.sum / static_cast<double>(report.answers) : 0.0;
-  std::array<char, 200> text{};
-  std::snprintf(text.data(), text.size(),
-                "%llu answers, round trip mean %.3f, p99 %.3f, max %.3f ms; %llu messages not "
-                "understood, %llu reconnects",
-                static_cast<unsigned long long>(report.answers), 1e3 * mean,
-                1e-6 * static_cast<double>(report.round_trip.percentile(0.99)),
-                1e-6 * static_cast<double>(report.round_trip.maximum()),
-                static_cast<unsigned long long>(report.bad_messages),
-                static_cast<unsigned long long>(report.reconnects));
-  return text.data();
-}
-
 InverseLink::InverseLink(InverseSettings settings, InverseMailbox& mailbox)
-    : settings_(std::move(settings)), mailbox_(mailbox) {
-  device_.id = settings_.device;
-}
-
-std::string InverseLink::label() const {
-  return device_.id.empty() ? "first Haply device" : "Haply device " + device_.id;
-}
+    : settings_(std::move(settings)),
+      trouble_(label_of(settings_.device)),
+      exchange_(mailbox, trouble_, report_) {}
 
 void InverseLink::open() {
   constexpr std::chrono::seconds kPatience(10);
-  std::future<void> opened = opened_.get_future();
+  waiting_.emplace();
+  std::future<void> opened = waiting_->get_future();
   connect();
   thread_ = std::thread([this] { run(); });
   try {
     apply_scheduling(settings_.scheduling, thread_, kNetworkPriority);
     if (opened.wait_for(kPatience) != std::future_status::ready) {
-      throw Error(
-          settings_.device.empty() ? "first Haply device" : "Haply device " + settings_.device,
-          "the service at " + host_text(settings_.service) + " does not answer", kStart);
+      throw Error(label_of(settings_.device),
+                  "the service at " + host_text(settings_.service) + " does not answer", kStart);
     }
     opened.get();
   } catch (...) {
@@ -109,45 +67,47 @@ void InverseLink::run() noexcept {
 
 void InverseLink::close() noexcept {
   if (!thread_.joinable()) return;
-  boost::asio::post(io_, [this] { begin_end(); });
+  boost::asio::post(io_, [this] {
+    if (phase_ != Phase::kExchanging) return io_.stop();
+    phase_ = Phase::kEnding;
+    ending_.deadline_ns = monotonic_ns() + kEndNs;
+  });
   thread_.join();
-  const std::lock_guard<std::mutex> lock(claims_mutex);
-  claims.erase(claim_);
-}
-
-std::string InverseLink::trouble() const {
-  const std::lock_guard<std::mutex> lock(trouble_mutex_);
-  return trouble_;
-}
-
-void InverseLink::complain(const std::string& what) {
-  const std::lock_guard<std::mutex> lock(trouble_mutex_);
-  trouble_ = what.empty() ? "" : label() + ": " + what;
 }
 
 void InverseLink::connect() {
   phase_ = Phase::kConnecting;
-  sent_ns_.clear();
+  exchange_.connect();
+  const std::string service = "the service at " + host_text(settings_.service);
   socket_ = std::make_shared<ServiceSocket>(
       io_, settings_.service,
       ServiceSocket::Listener{.message = [this](const std::string& text) { take(text); },
                               .lost =
-                                  [this](const std::string& cause) {
-                                    fail("no connection to the service at " +
-                                             host_text(settings_.service) + ": " + cause,
-                                         kStart);
+                                  [this, service](const std::string& cause) {
+                                    fail("no connection to " + service + ": " + cause, kStart);
                                   }});
   socket_->open();
-  wake_at(monotonic_ns() + kConnectNs, &InverseLink::give_up_connecting);
+  alarm_.set(monotonic_ns() + kConnectNs,
+             [this, service] { fail(service + " says nothing", kStart); });
 }
 
-void InverseLink::give_up_connecting() {
-  fail("the service at " + host_text(settings_.service) + " says nothing", kStart);
+// Of the events nothing depends alone: without them the states tell, if later. Once a connection.
+void InverseLink::listen_to_events() {
+  if (events_ != nullptr) events_->drop();
+  events_.reset();
+  if (opened_->key != ForceKey::kVector) return;
+  ServerAddress address = settings_.service;
+  address.port = settings_.events_port;
+  events_ = std::make_shared<ServiceSocket>(
+      io_, address,
+      ServiceSocket::Listener{.message = [this](const std::string& text) { take_event(text); },
+                              .lost = [](const std::string&) {}});
+  events_->open();
 }
 
 // Each message but the first answers one of ours, whatever is in it.
 void InverseLink::take(const std::string& text) {
-  if (phase_ != Phase::kConnecting) count_answer();
+  if (phase_ != Phase::kConnecting) exchange_.answered(monotonic_ns());
   ServiceMessage message;
   try {
     message = decode(text);
@@ -157,162 +117,80 @@ void InverseLink::take(const std::string& text) {
         std::string("the service's message is not understood: ") + error.what();
     const char* const remedy = "use an Inverse Service 3.x, or correct `service`";
     if (phase_ == Phase::kConnecting) return fail(what, remedy);
-    return complain(what + "; " + remedy);
+    return trouble_.tell(what + "; " + remedy);
   }
   if (phase_ == Phase::kConnecting) return take_inventory(message);
   if (phase_ != Phase::kEnding) take_update(message);
 }
 
-void InverseLink::count_answer() {
-  if (sent_ns_.empty()) return;
-  const std::int64_t taken_ns = monotonic_ns() - sent_ns_.front();
-  sent_ns_.pop_front();
-  ++report_.answers;
-  report_.sum += kNanosecond * static_cast<double>(taken_ns);
-  report_.round_trip.add(taken_ns);
-}
-
+// The first connection sets the device up and waits for the service's HTTP. On a later one it is
+// known: it hears zero at once.
 void InverseLink::take_inventory(const ServiceMessage& inventory) {
-  if (claim_.empty() && !choose(inventory)) return;
-  last_good_ns_ = next_turn_ns_ = monotonic_ns();
-  const InverseDevice* const device = find(inventory.devices, device_.id);
-  if (device == nullptr) {
-    withhold();
-    phase_ = Phase::kAbsent;
-    complain("is not there; check power and cable");
-    return turn();
-  }
-  set_up(inventory, *device);
-}
-
-// Once. False: refused.
-bool InverseLink::choose(const ServiceMessage& inventory) {
-  const InverseDevice* chosen = nullptr;
-  for (const InverseDevice& device : inventory.devices) {
-    const bool wanted = settings_.device.empty() || device.id == settings_.device;
-    if (!wanted || device.id.empty()) continue;
-    if (lay_claim(device.id)) {
-      chosen = &device;
-      break;
+  if (!opened_) {
+    try {
+      opened_.emplace(open_device(inventory, settings_, socket_->peer()));
+    } catch (const Error&) {
+      return refuse(std::current_exception());
     }
-    if (!settings_.device.empty()) {
-      refuse("is open already", "give each [[device]] a name of its own");
-      return false;
-    }
+    trouble_.rename(label_of(opened_->device.id));
+    return begin_exchange(opened_->device);
   }
-  if (chosen == nullptr) {
-    refuse(
-        "the service has no such device, or it is open already; found: " + names(inventory.devices),
-        "check power and cable, and give the id that Haply Hub shows as name");
-    return false;
+  const InverseDevice* const device = find_by_id(inventory.devices, opened_->device.id);
+  if (device == nullptr) return be_absent("is not there; check power and cable");
+  if (!device->gravity_compensation.value_or(true)) {
+    turn_gravity_on(device->id, opened_->key, settings_, socket_->peer());
   }
-  device_ = *chosen;
-  claim_ = device_.id;
-  return true;
+  begin_exchange(*device);
 }
 
-// Waits for the service's HTTP. One that is connected to again is known: it hears zero at once.
-void InverseLink::set_up(const ServiceMessage& inventory, const InverseDevice& device) {
-  device_.status = device.status;
-  if (!waited_for_) {
-    if (!device.gravity_compensation.value_or(true)) turn_gravity_on();
-    return begin_exchange();
-  }
-  const auto answer = http_request(settings_.service, boost::beast::http::verb::get, "/version");
-  const auto version = answer ? decode_version(*answer) : std::nullopt;
-  if (version && version->major != 3) {
-    return refuse("the service's version " + std::to_string(version->major) + "." +
-                      std::to_string(version->minor) + " is not known",
-                  "use an Inverse Service 3.x");
-  }
-  const bool new_words = version ? version->minor >= 5 : inventory.session;
-  key_ = new_words ? ForceKey::kVector : ForceKey::kValues;
-  if (!device.gravity_compensation.value_or(false)) turn_gravity_on();
-  if (device.status && device.status->in_use) {
-    spdlog::warn("{}: another program commands it, too; end that", label());
-  }
-  const std::string hand = device.handedness.empty() ? "" : ", " + device.handedness + "-handed";
-  spdlog::info("{}: {}{}, Inverse Service {}", label(),
-               device.type.empty() ? "inverse3" : device.type, hand,
-               version ? "3." + std::to_string(version->minor) : "of unknown version");
-  begin_exchange();
-}
-
-// 3.5 has it below the device, on the same port; before, it is on the port of the HTTP service.
-void InverseLink::turn_gravity_on() {
-  const bool new_words = key_ == ForceKey::kVector;
-  ServerAddress address = settings_.service;
-  if (!new_words) address.port = settings_.old_http_port;
-  const std::string target = new_words ? "/inverse3/" + device_.id + "/config/gravity_compensation"
-                                       : "/gravity_compensation";
-  if (!http_request(address, boost::beast::http::verb::post, target,
-                    encode_gravity(device_.id, key_))) {
-    spdlog::warn("{}: its gravity compensation is off; turn it on in Haply Hub", label());
-  }
-}
-
-void InverseLink::begin_exchange() {
+void InverseLink::begin_exchange(const InverseDevice& device) {
   phase_ = Phase::kExchanging;
-  withhold();
+  listen_to_events();
   const std::int64_t now_ns = monotonic_ns();
   last_good_ns_ = next_turn_ns_ = now_ns;
-  send(key_ == ForceKey::kVector ? encode_first(device_.id)
-                                 : encode_force(device_.id, Vector3::Zero(), key_),
-       now_ns);
+  send(exchange_.begin({device.id, settings_.grip, opened_->key}, device.status), now_ns);
+  wait(kPeriodNs);
+}
+
+void InverseLink::be_absent(const std::string& what) {
+  exchange_.withhold();
+  phase_ = Phase::kAbsent;
+  trouble_.tell(what);
+  last_good_ns_ = next_turn_ns_ = monotonic_ns();
   wait(kPeriodNs);
 }
 
 void InverseLink::take_update(const ServiceMessage& update) {
-  const InverseDevice* const device = find(update.devices, device_.id);
+  const InverseDevice* const device = find_by_id(update.devices, opened_->device.id);
   if (phase_ == Phase::kAbsent) {
     last_good_ns_ = monotonic_ns();
     if (device == nullptr) return;
     socket_->drop();
     return connect();  // for a first message, with its configuration
   }
-  if (device == nullptr) {
-    withhold();
-    phase_ = Phase::kAbsent;
-    return complain("is unplugged, no force; check power and cable");
+  if (device == nullptr) return be_absent("is unplugged, no force; check power and cable");
+  if (!device->tip) {
+    ++report_.bad_messages;
+    return trouble_.tell("the service tells no position, no force; update it");
   }
-  if (device->tip) return take_state(*device, update);
-  ++report_.bad_messages;
-  complain("the service tells no position, no force; update it");
+  last_good_ns_ = monotonic_ns();
+  exchange_.take(*device, update.grips, last_good_ns_);
+  if (waiting_) waiting_->set_value();
+  waiting_.reset();
 }
 
-void InverseLink::take_state(const InverseDevice& device, const ServiceMessage& update) {
-  last_good_ns_ = reading_.time_ns = monotonic_ns();
-  reading_.tip = *device.tip;
-  const VerseGrip* grip = settings_.grip.empty() && !update.grips.empty()
-                              ? &update.grips.front()
-                              : find(update.grips, settings_.grip);
-  reading_.buttons = grip != nullptr ? grip->buttons : 0;
-  if (grip != nullptr && grip->orientation) reading_.orientation = *grip->orientation;
-  if (device.status) device_.status = device.status;
-  tell_status(device_.status.value_or(InverseStatus{}));
-  mailbox_.reading.put(reading_);
-  if (std::exchange(waited_for_, false)) opened_.set_value();
-}
-
-// What was not ready begins anew.
-void InverseLink::tell_status(const InverseStatus& status) {
-  const bool ready = status.ready && status.calibrated && status.power_supply;
-  if (ready && !reading_.ready) ++reading_.generation;
-  reading_.ready = ready;
-  if (ready) return complain("");
-  if (!status.power_supply) return complain("has no power supply, no force; plug it in");
-  if (!status.calibrated) {
-    return complain(
-        "is not calibrated, no force; rest the grip in its place until the light is "
-        "steady");
+void InverseLink::take_event(const std::string& text) {
+  const std::optional<InverseEvent> event = decode_event(text);
+  if (!event || !opened_) return;
+  if (event->meaning == EventMeaning::kNotice) {
+    spdlog::warn("{}: the service says: {}", trouble_.label(), event->text);
   }
-  complain("is not ready, no force; look into Haply Hub");
-}
-
-// No force until it is ready again.
-void InverseLink::withhold() {
-  reading_.ready = false;
-  mailbox_.reading.put(reading_);
+  if (event->device != opened_->device.id || phase_ != Phase::kExchanging) return;
+  if (event->meaning == EventMeaning::kLost) {
+    be_absent("is lost, no force; check power and cable");
+  } else if (event->meaning != EventMeaning::kNotice) {
+    exchange_.lock(event->meaning == EventMeaning::kLocked);
+  }
 }
 
 void InverseLink::turn() {
@@ -322,83 +200,52 @@ void InverseLink::turn() {
     return fail("no state from the service for a second", kStart);
   }
   if (phase_ == Phase::kAbsent) {
-    if (sent_ns_.empty() && !socket_->writing()) send(encode_full_state(), now_ns);
+    if (exchange_.all_answered() && !socket_->writing()) send(encode_full_state(), now_ns);
     return wait(kAbsentPeriodNs);
   }
-  send_force(now_ns);
+  if (!socket_->writing()) {
+    if (auto message = exchange_.next(now_ns)) send(std::move(*message), now_ns);
+  }
   wait(kPeriodNs);
 }
 
-// An answer that is late is not waited for: what was sent last would stay on.
-void InverseLink::send_force(std::int64_t now_ns) {
-  if (socket_->writing()) return;
-  if (sent_ns_.empty()) {
-    return send(encode_force(device_.id, newest_force(now_ns), key_), now_ns);
-  }
-  if (sent_ns_.size() > 1 || now_ns - sent_ns_.front() <= kLongestAgeNs) return;
-  withhold();
-  complain("the service does not answer, no force; restart it");
-  send(encode_force(device_.id, Vector3::Zero(), key_), now_ns);
-}
-
-Vector3 InverseLink::newest_force(std::int64_t now_ns) {
-  mailbox_.force.receive();
-  const InverseForce& newest = mailbox_.force.front();
-  const bool usable = reading_.ready && newest.generation == reading_.generation &&
-                      now_ns - newest.time_ns <= kLongestAgeNs;
-  return usable ? newest.force : Vector3(Vector3::Zero());
-}
-
 void InverseLink::send(std::string text, std::int64_t now_ns) {
-  sent_ns_.push_back(now_ns);
+  exchange_.sent(now_ns);
   socket_->write(std::move(text));
 }
 
 void InverseLink::wait(std::int64_t period_ns) {
   next_turn_ns_ = std::max(next_turn_ns_ + period_ns, monotonic_ns());
-  wake_at(next_turn_ns_, &InverseLink::turn);
-}
-
-// One at a time: an earlier one that is due already does nothing.
-void InverseLink::wake_at(std::int64_t time_ns, void (InverseLink::*then)()) {
-  const std::uint64_t alarm = ++alarm_;
-  timer_.expires_at(std::chrono::steady_clock::time_point(std::chrono::nanoseconds(time_ns)));
-  timer_.async_wait([this, alarm, then](boost::system::error_code error) {
-    if (!error && alarm == alarm_) (this->*then)();
-  });
+  alarm_.set(next_turn_ns_, [this] { turn(); });
 }
 
 // Before open() has ended it is told there, afterwards as a trouble.
-void InverseLink::refuse(const std::string& what, const std::string& remedy) {
-  if (!std::exchange(waited_for_, false)) return fail(what, remedy);
-  opened_.set_exception(std::make_exception_ptr(Error(label(), what, remedy)));
+void InverseLink::refuse(const std::exception_ptr& error) {
+  waiting_->set_exception(error);
+  waiting_.reset();
   io_.stop();
 }
 
 void InverseLink::fail(const std::string& cause, const std::string& remedy) {
   socket_->drop();
   if (phase_ == Phase::kEnding) return io_.stop();
-  if (waited_for_) return refuse(cause, remedy);
-  withhold();
-  complain(cause + "; " + remedy);
+  if (waiting_) {
+    return refuse(std::make_exception_ptr(Error(trouble_.label(), cause, remedy)));
+  }
+  exchange_.withhold();
+  trouble_.tell(cause + "; " + remedy);
   ++report_.reconnects;
   const std::int64_t pause_ns = phase_ == Phase::kConnecting ? kPauseNs : 0;
-  wake_at(monotonic_ns() + pause_ns, &InverseLink::connect);
-}
-
-void InverseLink::begin_end() {
-  if (phase_ != Phase::kExchanging) return io_.stop();
-  phase_ = Phase::kEnding;
-  end_ns_ = monotonic_ns() + kEndNs;
+  alarm_.set(monotonic_ns() + pause_ns, [this] { connect(); });
 }
 
 // Zero is the last that the service hears.
 void InverseLink::end_turn(std::int64_t now_ns) {
-  if (now_ns > end_ns_) return io_.stop();
-  if (!said_zero_ && !socket_->writing()) {
-    said_zero_ = true;
-    send(encode_force(device_.id, Vector3::Zero(), key_), now_ns);
-  } else if (said_zero_ && sent_ns_.empty() && !std::exchange(left_, true)) {
+  if (now_ns > ending_.deadline_ns) return io_.stop();
+  if (!ending_.said_zero && !socket_->writing()) {
+    ending_.said_zero = true;
+    send(exchange_.last(), now_ns);
+  } else if (ending_.said_zero && exchange_.all_answered() && !std::exchange(ending_.left, true)) {
     socket_->leave([this] { io_.stop(); });
   }
   wait(kPeriodNs);

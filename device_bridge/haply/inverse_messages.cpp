@@ -1,9 +1,10 @@
 #include "device_bridge/haply/inverse_messages.hpp"
 
 #include <array>
+#include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
+#include <system_error>
 #include <utility>
 
 namespace irdm::haply {
@@ -170,10 +171,11 @@ std::optional<ServiceVersion> decode_version(std::string_view answer) {
   const bool wrapped = data != told.end() && data->is_object();
   const std::string words = text(wrapped ? *data : told, "project_version");
   ServiceVersion version;
-  if (std::sscanf(words.c_str(), "%d.%d", &version.major, &version.minor) != 2) {
-    return std::nullopt;
-  }
-  return version;
+  const char* const end = words.data() + words.size();
+  const auto major = std::from_chars(words.data(), end, version.major);
+  if (major.ec != std::errc() || major.ptr == end || *major.ptr != '.') return std::nullopt;
+  const auto minor = std::from_chars(major.ptr + 1, end, version.minor);
+  return minor.ec == std::errc() ? std::optional(version) : std::nullopt;
 }
 
 }  // namespace irdm::haply

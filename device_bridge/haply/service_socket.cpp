@@ -66,6 +66,11 @@ void ServiceSocket::write(std::string text) {
                       });
 }
 
+boost::asio::ip::address ServiceSocket::peer() const noexcept {
+  ErrorCode ignored;
+  return beast::get_lowest_layer(stream_).socket().remote_endpoint(ignored).address();
+}
+
 void ServiceSocket::leave(std::function<void()> done) {
   listens_ = false;
   stream_.async_close(websocket::close_code::normal,

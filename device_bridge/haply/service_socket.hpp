@@ -29,6 +29,8 @@ class ServiceSocket : public std::enable_shared_from_this<ServiceSocket> {
   /// One message at a time: not while writing().
   void write(std::string text);
   bool writing() const noexcept { return writing_; }
+  /// Where the service is; while connected, else none in particular.
+  boost::asio::ip::address peer() const noexcept;
   /// Says goodbye. @param done called when the service did, too, or is gone
   void leave(std::function<void()> done);
   /// Closes the connection without a word. From here on the listener is told nothing.

@@ -1,10 +1,10 @@
 // A stand-in for Haply's Inverse Service 3.0 or 3.5, as a process of its own:
 //
-//     fake_inverse_service 3.0|3.5 PORT OLD_HTTP_PORT DEVICE...
+//     fake_inverse_service 3.0|3.5 PORT OLD_HTTP_PORT EVENTS_PORT DEVICE...
 //
 // A port 0 is any. It prints the ports that it listens on: of the service (WebSocket, and in 3.5
-// HTTP), of the HTTP that 3.0 has on another one, and of orders, a line each, which it answers with
-// a line (FakeWorld::obey).
+// HTTP), of the HTTP that 3.0 has on another one, of the events that 3.5 has (WebSocket), and of
+// orders, a line each, which it answers with a line (FakeWorld::obey).
 #include <sys/prctl.h>
 
 #include <csignal>
@@ -54,6 +54,15 @@ void serve_websocket(FakeWorld& world, tcp::socket socket, const Request& reques
     buffer.consume(buffer.size());
     if (world.delay().count() > 0) std::this_thread::sleep_for(world.delay());
     if (answer) stream.write(boost::asio::buffer(*answer));
+  }
+}
+
+void serve_events(FakeWorld& world, tcp::socket socket) {
+  websocket::stream<tcp::socket> stream(std::move(socket));
+  stream.accept();
+  stream.text(true);
+  for (std::size_t number = world.listen();; ++number) {
+    stream.write(boost::asio::buffer(world.event(number)));
   }
 }
 
@@ -108,21 +117,24 @@ class Listener {
 }  // namespace
 
 int main(int count, char** words) {
-  if (count < 4) {
-    std::cerr << "usage: fake_inverse_service 3.0|3.5 PORT OLD_HTTP_PORT DEVICE...\n";
+  if (count < 5) {
+    std::cerr << "usage: fake_inverse_service 3.0|3.5 PORT OLD_HTTP_PORT EVENTS_PORT DEVICE...\n";
     return 2;
   }
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // a test that is killed leaves nothing behind
   const bool old = std::string(words[1]) == "3.0";
-  FakeWorld world(old, std::vector<std::string>(words + 4, words + count));
+  FakeWorld world(old, std::vector<std::string>(words + 5, words + count));
   boost::asio::io_context io;
   const auto port = [&](int i) { return static_cast<unsigned short>(std::stoi(words[i])); };
   Listener service(io, port(2),
                    [&](tcp::socket socket) { serve_web(world, std::move(socket), true, !old); });
   Listener old_http(io, port(3),
                     [&](tcp::socket socket) { serve_web(world, std::move(socket), false, old); });
+  Listener events(io, port(4), [&](tcp::socket socket) {
+    if (!old) serve_events(world, std::move(socket));
+  });
   Listener orders(io, 0, [&](tcp::socket socket) { take_orders(world, std::move(socket)); });
-  std::cout << "ports " << service.port() << ' ' << old_http.port() << ' ' << orders.port()
-            << std::endl;
+  std::cout << "ports " << service.port() << ' ' << old_http.port() << ' ' << events.port() << ' '
+            << orders.port() << std::endl;
   io.run();
 }

@@ -20,14 +20,14 @@ void FakeService::kill() {
 
 void FakeService::start() {
   std::vector<std::string> command{IRDM_FAKE_INVERSE_SERVICE, version_, std::to_string(port_),
-                                   std::to_string(old_http_port_)};
+                                   std::to_string(old_http_port_), std::to_string(events_port_)};
   std::istringstream ids(devices_);
   for (std::string id; ids >> id;) command.push_back(id);
   process_.reset();
   process_.emplace(command);
   std::istringstream words(process_->line_with("ports "));
   std::string word;
-  words >> word >> port_ >> old_http_port_ >> orders_port_;
+  words >> word >> port_ >> old_http_port_ >> events_port_ >> orders_port_;
 }
 
 std::string FakeService::order(const std::string& line) const {
@@ -54,6 +54,7 @@ haply::InverseSettings FakeService::settings(const std::string& device) const {
   haply::InverseSettings settings;
   settings.service = {"127.0.0.1", port_};
   settings.old_http_port = old_http_port_;
+  settings.events_port = events_port_;
   settings.device = device;
   return settings;
 }

@@ -43,6 +43,7 @@ class FakeService {
   std::string devices_;
   std::uint16_t port_ = 0;
   std::uint16_t old_http_port_ = 0;
+  std::uint16_t events_port_ = 0;
   std::uint16_t orders_port_ = 0;
   std::optional<ChildProcess> process_;
 };

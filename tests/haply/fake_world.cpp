@@ -115,6 +115,18 @@ std::chrono::milliseconds FakeWorld::delay() {
   return delay_;
 }
 
+std::size_t FakeWorld::listen() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  ++listeners_;
+  return events_.size();
+}
+
+std::string FakeWorld::event(std::size_t number) {
+  std::unique_lock<std::mutex> lock(mutex_);
+  event_told_.wait(lock, [&] { return events_.size() > number; });
+  return events_[number];
+}
+
 std::optional<std::string> FakeWorld::answer(const std::string& text) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const Json message = Json::parse(text, nullptr, false);
@@ -208,6 +220,11 @@ std::string FakeWorld::obey(const std::string& line) {
     text.clear();
     std::getline(words >> std::ws, text);
   }
+  if (order == "event") {
+    std::getline(words >> std::ws, events_.emplace_back());
+    event_told_.notify_all();
+  }
+  if (order == "listeners") return std::to_string(listeners_);
   if (order == "press") words >> pressed_;
   if (order == "release") pressed_.clear();
   if (order == "turn") {

@@ -2,6 +2,8 @@
 
 #include <array>
 #include <chrono>
+#include <condition_variable>
+#include <cstddef>
 #include <cstdint>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -12,13 +14,15 @@
 namespace irdm::test {
 
 /// What the fake Inverse Service knows, behind one mutex: devices, a grip, and faults to order.
-/// Behaviour is taken from these sources, named WS, SIM, CMD, CFG, MIG, OLD and USE below:
+/// Behaviour is taken from these sources, named WS, SIM, CMD, EVT, CFG, MIG, OLD and USE below:
 /// - WS: docs.haply.co/inverseSDK/service/realtime/websocket-protocol (3.5): the first message has
 ///   session_id, config, state and status; then one state for each message
 /// - SIM: .../service/api/simulation (3.5): states have state and status of all devices;
 ///   force_render_full_state brings the configuration again; probe_position
 /// - CMD: .../service/realtime/control-commands (3.5): set_cursor_force has a `vector`; a command
 ///   is applied once, and without more of them the device returns to idle
+/// - EVT: .../service/events (3.5): events of name, level, data and message, on a channel of their
+///   own that takes none
 /// - CFG: .../service/session-configuration/device-config (3.5): gravity compensation is set by
 ///   HTTP alone, POST /inverse3/ID/config/gravity_compensation; how its body looks is inferred from
 ///   the configuration in WS
@@ -44,6 +48,10 @@ class FakeWorld {
                                          const std::string& body);
   /// A line of an order, and what to say to it.
   std::string obey(const std::string& line);
+  /// Somebody listens to events (EVT) from now on: the number of the next one.
+  std::size_t listen();
+  /// Waits for that one.
+  std::string event(std::size_t number);
   /// How long answers are to wait.
   std::chrono::milliseconds delay();
 
@@ -81,6 +89,9 @@ class FakeWorld {
   std::uint64_t misuses_ = 0;                        // what the documents do not permit
   std::string misuse_;                               // the last
   int sessions_ = 0;
+  std::vector<std::string> events_;
+  std::condition_variable event_told_;
+  int listeners_ = 0;  ///< so far
 };
 
 }  // namespace irdm::test

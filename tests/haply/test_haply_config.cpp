@@ -26,17 +26,20 @@ const std::string kHaply = "[[device]]\ntype = \"haply\"\n";
 
 TEST_CASE("a Haply device is named by its id and the service's address, which has a default") {
   const BridgeConfig config = load("[bridge]\nrealtime = \"ignore\"\n" + kHaply +
-                                   "name = \"049D\"\nservice = \"[::1]:8500\"\ngrip = \"61576\"\n");
+                                   "name = \"049D\"\nservice = \"[::1]:8500\"\ngrip = \"61576\"\n"
+                                   "shared = true\n");
   const haply::InverseSettings settings = inverse_settings(config.devices.at(0));
   CHECK(settings.service.host == "::1");
   CHECK(settings.service.port == 8500);
   CHECK(settings.device == "049D");
   CHECK(settings.grip == "61576");
+  CHECK(settings.shared);
   CHECK(settings.scheduling == RealTimeScheduling::kIgnore);
   const haply::InverseSettings usual = inverse_settings(load(kHaply).devices.at(0));
   CHECK(usual.service.host == "localhost");
   CHECK(usual.service.port == 10001);
   CHECK(usual.device.empty());
+  CHECK_FALSE(usual.shared);
 }
 
 TEST_CASE("what a configuration says wrongly of a Haply device is told in one line") {
@@ -49,6 +52,8 @@ TEST_CASE("what a configuration says wrongly of a Haply device is told in one li
                     Contains("service is for devices of type haply; remove it"));
   CHECK_THROWS_WITH(load("[[device]]\ntype = \"openhaptics\"\ngrip = \"1\"\n"),
                     Contains("grip is for devices of type haply; remove it"));
+  CHECK_THROWS_WITH(load("[[device]]\ntype = \"openhaptics\"\nshared = true\n"),
+                    Contains("shared is for devices of type haply; remove it"));
   CHECK_THROWS_WITH(load(kHaply + kHaply), Contains("two devices of type haply with the name ''"));
   CHECK_THROWS_WITH(load(kHaply + "auto_init = true\n"),
                     Contains("is for devices of Force Dimension"));

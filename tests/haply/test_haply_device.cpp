@@ -5,9 +5,9 @@
 #include "common/error.hpp"
 #include "common/realtime/clock.hpp"
 #include "device_bridge/haply/haply_device.hpp"
+#include "device_bridge/haply/http_request.hpp"
 #include "tests/haply/fake_service.hpp"
 #include "tests/haply/served_device.hpp"
-#include "tests/support/captured_log.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/left_out.hpp"
 #include "tests/support/real_time_guard.hpp"
@@ -64,6 +64,9 @@ TEST_CASE("orientation and buttons are the grip's; a grip that is gone holds not
   const StylusPose pose = tick(device);
   CHECK(pose.buttons == 5);
   CHECK((pose.orientation * Vector3::UnitX()).isApprox(-Vector3::UnitZ(), 1e-9));
+  ServoLoop loop(device, FilterLimits{});
+  loop.read(0.0);
+  CHECK(loop.take_sample(0).orientation.isApprox(pose.orientation, 1e-9));
   service.order("grip 0");
   REQUIRE(eventually([&] { return tick(device).buttons == 0; }));
   CHECK((tick(device).orientation * Vector3::UnitX()).isApprox(-Vector3::UnitZ(), 1e-9));
@@ -141,15 +144,29 @@ TEST_CASE("an Inverse3 bears 10 N, and 3.3 N for long; no torque") {
   CHECK(device.rating().peak_torque == 0.0);
 }
 
-TEST_CASE("a device that another program commands is told of") {
+TEST_CASE("a device that another session commands is not opened, unless it may be shared") {
   FakeService service;
   service.order("status 049D 1 1 1 1");
-  CapturedLog log;
-  {
-    HaplyDevice device(service.settings());
-    device.open();
-  }
-  CHECK_THAT(log.text(), Contains("another program commands it") && Contains("right-handed"));
+  haply::InverseSettings settings = service.settings();
+  HaplyDevice refused(settings);
+  CHECK_THROWS_WITH(refused.open(),
+                    Contains("Haply device 049D: another session") && Contains("`shared = true`"));
+  CHECK(service.told().forces == 0);
+  settings.shared = true;
+  HaplyDevice device(settings);
+  device.open();
+  CHECK(eventually([&] { return ready(device); }));
+}
+
+TEST_CASE("the service's HTTP is asked where its socket is connected, whatever the name is") {
+  FakeService service("3.0");
+  const boost::asio::ip::address at = boost::asio::ip::address_v4::loopback();
+  const ServerAddress nowhere{"name.invalid", service.settings().old_http_port};
+  const auto answer =
+      haply::http_request(at, nowhere, boost::beast::http::verb::post, "/gravity_compensation",
+                          haply::encode_gravity("049D", haply::ForceKey::kValues));
+  REQUIRE(answer);
+  CHECK(service.told().gravity);
 }
 
 TEST_CASE("each state is read once, and then it is repeated") {

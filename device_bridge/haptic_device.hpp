@@ -76,6 +76,8 @@ class HapticDevice {
   virtual double duration() const noexcept = 0;
   /// What it bears; after open().
   virtual ForceRating rating() const noexcept { return {}; }
+  /// Model and number, by which it is known again; after open(). Empty: it does not say.
+  virtual std::string identity() const { return {}; }
   /// Whose ticks read() and write() belong to; nullptr: anybody's. Lives as long as the device.
   virtual TickSource* tick_source() noexcept { return nullptr; }
   /// What is wrong with it now and what to do, for a person; empty: nothing. Any thread.

@@ -18,6 +18,7 @@ struct ServoInput {
   bool linked = false;     ///< a session is on
   bool any_force = false;  ///< `force` is of this session (or of the last one, when not linked)
   StylusForce force = {};  ///< the newest
+  bool ageless = false;    ///< it answers no tip, and is of now in each tick
 };
 
 /// What the servo thread knows of the connection.

@@ -32,6 +32,7 @@ void ServoLoop::read(double device_time) noexcept {
   const StylusPose pose = device_.read(device_time);
   const bool finite = pose.tip.allFinite() && pose.orientation.coeffs().allFinite();
   device_state_ = device_.state();
+  device_buttons_ = pose.buttons;
   reading_ = finite ? pose.tip : Vector3::Constant(std::numeric_limits<double>::quiet_NaN());
   if (!finite) return;
   orientation_ = pose.orientation;
@@ -68,7 +69,7 @@ ForceDemand ServoLoop::demand(std::int64_t now_ns, const ServoInput& input) noex
     const StylusForce& newest = input.force;
     return {.linked = input.linked,
             .any = input.any_force,
-            .sample_time_ns = newest.sample_time_ns,
+            .sample_time_ns = input.ageless ? now_ns : newest.sample_time_ns,
             .contact = newest.contact,
             .force = newest.force,
             .torque = newest.torque};

@@ -81,6 +81,8 @@ class ServoLoop {
   HapticDevice& device() noexcept { return device_; }
   /// Tip as it was read last, not a number if of no use [m], D.
   Vector3 reading() const noexcept { return reading_.value_or(pose_.tip); }
+  /// Buttons as they were read last, the device's own bits.
+  std::uint32_t device_buttons() const noexcept { return device_buttons_; }
   /// What was asked for last, and the force [N] and torque [N m] that were shown, D.
   const ForceDemand& demanded() const noexcept { return demanded_; }
   const Vector3& shown() const noexcept { return shown_.force; }
@@ -108,6 +110,7 @@ class ServoLoop {
   /// Tip as it was read last, not a number if of no use; none since restart() [m], D.
   std::optional<Vector3> reading_;
   Quaternion orientation_ = Quaternion::Identity();  ///< the last good one, D
+  std::uint32_t device_buttons_ = 0;                 ///< as they were read last
   ForceDemand demanded_;
   Wrench shown_;
   DeviceState device_state_;

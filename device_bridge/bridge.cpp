@@ -1,5 +1,6 @@
 #include "device_bridge/bridge.hpp"
 
+#include <spdlog/spdlog.h>
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
@@ -14,6 +15,7 @@
 #include "common/realtime/clock.hpp"
 #include "common/realtime/scheduling.hpp"
 #include "device_bridge/blackbox/tick_log.hpp"
+#include "device_bridge/commission/allowance.hpp"
 #include "device_bridge/device_registry.hpp"
 #include "device_bridge/network_client.hpp"
 #include "device_bridge/servo_link.hpp"
@@ -126,13 +128,16 @@ class BridgeBlackBox {
   std::optional<BlackBox> box_;
 };
 
-FilterLimits limits_for(const HapticDevice& device, const BridgeConfig& config) {
-  const ForceRating rating = device.rating();
-  return {.max_force = std::min(config.max_force, rating.peak),
-          .continuous_force = std::min(config.continuous_force, rating.continuous),
-          .max_torque = std::min(config.max_torque, rating.peak_torque),
-          .continuous_torque = std::min(config.continuous_torque, rating.continuous_torque),
-          .torque_rate = {.rise = config.max_torque_rate, .fall = 4.0 * config.max_torque_rate}};
+// The same, and no more than its commissioning allows.
+FilterLimits allowed_limits(const HapticDevice& device, const BridgeConfig& config,
+                            const DeviceConfig& table) {
+  FilterLimits limits = filter_limits(device, config);
+  const commission::Allowance allowed = commission::allowance(table, device, limits.max_force);
+  if (!allowed.words.empty()) spdlog::warn("{}", allowed.words);
+  limits.max_force = std::min(limits.max_force, allowed.force);
+  limits.max_torque = std::min(limits.max_torque, allowed.torque);
+  limits.needed_success = LinkGate::kNeeded;
+  return limits;
 }
 
 /// Whether there has been no session for all of the time that the bridge should run.
@@ -189,6 +194,15 @@ std::string failure_of(ServoEnd end, const DeviceWatch& watch) {
 
 }  // namespace
 
+FilterLimits filter_limits(const HapticDevice& device, const BridgeConfig& config) {
+  const ForceRating rating = device.rating();
+  return {.max_force = std::min(config.max_force, rating.peak),
+          .continuous_force = std::min(config.continuous_force, rating.continuous),
+          .max_torque = std::min(config.max_torque, rating.peak_torque),
+          .continuous_torque = std::min(config.continuous_torque, rating.continuous_torque),
+          .torque_rate = {.rise = config.max_torque_rate, .fall = 4.0 * config.max_torque_rate}};
+}
+
 ClientSettings client_settings(const BridgeConfig& config) {
   ClientSettings settings{
       .server = *config.server,
@@ -211,8 +225,7 @@ BridgeReport run_bridge(const BridgeConfig& config, StopSignal& stop_signal, dou
   bool simulated = true;
   bool torque = false;
   for (const auto& device : devices.all()) {
-    FilterLimits limits = limits_for(*device, config);
-    limits.needed_success = LinkGate::kNeeded;
+    const FilterLimits limits = allowed_limits(*device, config, config.devices[loops.size()]);
     loops.emplace_back(*device, limits, config.devices[loops.size()].mapping);
     longest = std::max(longest, device->duration());
     simulated = simulated && device->simulated();

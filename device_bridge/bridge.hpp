@@ -26,6 +26,10 @@ struct BridgeReport {
 /// A few lines for a person, each `name: values`.
 std::string to_text(const BridgeReport& report);
 
+/// What the safety filter bounds: as configured, or the device's own limits where they are lower.
+/// @param device open
+FilterLimits filter_limits(const HapticDevice& device, const BridgeConfig& config);
+
 /// How a bridge of this configuration connects. Throws Error about its key file.
 /// @param config with a server
 ClientSettings client_settings(const BridgeConfig& config);

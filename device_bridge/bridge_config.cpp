@@ -114,6 +114,9 @@ DeviceConfig read_device(TomlTable table, const std::string& file,
   } else if (device.type == "virtual") {
     table.fail("", "has no script", "add script = \"FILE.csv\" or give --script FILE.csv");
   }
+  if (table.has("commissioned")) {
+    device.commissioned = commission::load_report(table.path("commissioned"));
+  }
   if (table.has("hand")) device.hand = read_hand(table.table("hand"));
   device.sensor = read_sensor(table.table("sensor"));
   device.motors = read_motors(table.table("motors"));

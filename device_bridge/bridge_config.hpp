@@ -9,6 +9,7 @@
 #include "common/blackbox/black_box.hpp"
 #include "common/config/toml_reader.hpp"
 #include "common/realtime/scheduling.hpp"
+#include "device_bridge/commission/report.hpp"
 #include "device_bridge/link/simulated_link.hpp"
 #include "device_bridge/servo_loop.hpp"
 #include "device_bridge/virtual_stylus.hpp"
@@ -52,6 +53,8 @@ struct DeviceConfig {
   // limit
   // motors.time_constant [s], 0.01 to 10000, default 60
   // motors.watchdog [s], 0.001 to 10, default: none
+  /// key `commissioned`, a file: of a real device, what commissioning it found, signed off
+  std::optional<commission::Report> commissioned = {};
   DeviceMapping mapping = {};  ///< keys `workspace` and `buttons`, tables
   // workspace.position [m], W, each within 100; rotation w x y z, normalised when read
   // workspace.scale, workspace.force_scale, 0.01 to 100

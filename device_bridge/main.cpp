@@ -16,6 +16,7 @@ int main(int argc, char** argv) {
   // A further command is one file in device_bridge/command and one line here.
   const std::map<std::string, bridge::Command> commands{
       {"check-link", bridge::add_check_link_command(app)},
+      {"commission", bridge::add_commission_command(app)},
       {"doctor", bridge::add_doctor_command(app)},
   };
 

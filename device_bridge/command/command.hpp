@@ -16,6 +16,10 @@ Command add_run_command(CLI::App& app);
 /// one of them is a problem.
 Command add_doctor_command(CLI::App& app);
 
+/// commission --config BRIDGE.toml: leads through the first hour with a device, and writes what was
+/// found into a file; status 1 unless all steps passed.
+Command add_commission_command(CLI::App& app);
+
 /// check-link measures the link to a running server; status 1 when a stylus would not arm on it.
 Command add_check_link_command(CLI::App& app);
 

@@ -142,8 +142,8 @@ void ForceDimensionDevice::prepare() {
   }
   unsigned short serial = 0;
   const bool numbered = dhd_.get_serial_number(&serial, id) >= 0;
-  spdlog::info("{}: {}, {}{}", label(), model, wrist ? "force and torque" : "force",
-               numbered ? ", serial number " + std::to_string(serial) : "");
+  identity_ = model + (numbered ? ", serial number " + std::to_string(serial) : "");
+  spdlog::info("{}: {}, {}", label(), identity_, wrist ? "force and torque" : "force");
 }
 
 void ForceDimensionDevice::initialise(bool initialised) {

@@ -37,6 +37,7 @@ class ForceDimensionDevice : public HapticDevice {
   bool simulated() const noexcept override { return false; }
   double duration() const noexcept override { return std::numeric_limits<double>::infinity(); }
   ForceRating rating() const noexcept override { return rating_; }
+  std::string identity() const override { return identity_; }
   std::string trouble() const override;
 
  private:
@@ -56,6 +57,7 @@ class ForceDimensionDevice : public HapticDevice {
   int id_ = kClosed;
   int type_ = 0;  ///< the driver's number of the model
   ForceRating rating_;
+  std::string identity_;
   StylusPose pose_;  ///< that was read last
   bool repeated_ = false;
   bool cut_off_ = false;  ///< the last force was, or was not taken

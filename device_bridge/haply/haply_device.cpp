@@ -69,6 +69,10 @@ std::string HaplyDevice::trouble() const {
   return link_ != nullptr ? link_->trouble() : "";
 }
 
+std::string HaplyDevice::identity() const {
+  return link_ != nullptr ? link_->device().type + ", " + link_->device().id : "";
+}
+
 haply::InverseSettings inverse_settings(const DeviceConfig& config) {
   haply::InverseSettings settings;
   if (config.service) settings.service = *config.service;

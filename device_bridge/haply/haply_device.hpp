@@ -31,6 +31,7 @@ class HaplyDevice : public HapticDevice {
   bool simulated() const noexcept override { return false; }
   double duration() const noexcept override { return std::numeric_limits<double>::infinity(); }
   ForceRating rating() const noexcept override { return rating_; }
+  std::string identity() const override;
   std::string trouble() const override;
 
   /// Of the connection that was closed last.

@@ -76,8 +76,9 @@ void OpenHapticsDevice::open() {
     return std::string(word != nullptr ? word : "unknown");
   };
   const bool torque = rating_.peak_torque > 0.0;
-  spdlog::info("{}: {}, serial number {}, at most {} N, {} N for long{}", label(), text(hd::kModel),
-               text(hd::kSerialNumber), rating_.peak, rating_.continuous,
+  identity_ = text(hd::kModel) + ", serial number " + text(hd::kSerialNumber);
+  spdlog::info("{}: {}, at most {} N, {} N for long{}", label(), identity_, rating_.peak,
+               rating_.continuous,
                torque ? ", and " + std::to_string(rating_.peak_torque) + " N m" : "");
   scheduler_->forget_errors();
   look_at_calibration();

@@ -35,6 +35,7 @@ class OpenHapticsDevice : public HapticDevice {
   bool simulated() const noexcept override { return false; }
   double duration() const noexcept override { return std::numeric_limits<double>::infinity(); }
   ForceRating rating() const noexcept override { return rating_; }
+  std::string identity() const override { return identity_; }
   TickSource* tick_source() noexcept override { return scheduler_.get(); }
   std::string trouble() const override;
 
@@ -62,6 +63,7 @@ class OpenHapticsDevice : public HapticDevice {
   bool calibrating_ = false;  ///< errors are about the calibration
   hd::DriverWarnings warnings_;
   ForceRating rating_;
+  std::string identity_;
   DeviceState state_;
   bool tells_warmth_ = true;
   std::int64_t warm_ns_ = 0;  ///< what is left of a warning of warm motors

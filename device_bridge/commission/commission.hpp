@@ -1,0 +1,17 @@
+#pragma once
+
+#include "device_bridge/bridge_config.hpp"
+#include "device_bridge/commission/person.hpp"
+#include "device_bridge/commission/report.hpp"
+#include "device_bridge/haptic_device.hpp"
+
+namespace irdm::commission {
+
+/// Leads a person through all steps with a device: opens it, runs its servo loop with the safety
+/// filter, and closes it. The first step that does not pass is the last. Throws Error when the
+/// servo loop cannot run.
+/// @param config with this device only
+/// @param device as made, not open
+Report commission(const BridgeConfig& config, HapticDevice& device, Person& person);
+
+}  // namespace irdm::commission

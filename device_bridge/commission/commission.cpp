@@ -112,10 +112,10 @@ StepRecord run_step(Step& step, OpenLoop& loop, Person& person, Measured& measur
   if (!person.begins(step)) return {step.name(), Verdict::kStopped, "ended by the person"};
   bool stopped = false;
   loop.runner().begin(step);
-  while (!loop.runner().ended().consume()) {
-    if (loop.over() && !loop.runner().ended().wait(kLookMs)) {
-      return {step.name(), Verdict::kFailed, "the device was lost; check power and cable"};
-    }
+  for (;;) {
+    const bool over = loop.over();  // first: a step's end comes before that of the ticks
+    if (loop.runner().ended().consume()) break;
+    if (over) return {step.name(), Verdict::kFailed, "the device was lost; check power and cable"};
     if (person.stops(kLookMs)) {
       stopped = true;
       loop.runner().stop();

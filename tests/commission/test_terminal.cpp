@@ -74,24 +74,24 @@ TEST_CASE("commission: a key stops the virtual device's step, and the rest is no
   GuidedStylus stylus({}, {}, {});
   /// Presses a key in the first step with a button.
   struct Watcher final : Person {
-    Watcher(Terminal& terminal, GuidedStylus& stylus, const Keyboard& keys)
-        : person(terminal, stylus), keyboard(keys) {}
+    Watcher(Terminal& at, GuidedStylus& held, const Keyboard& keys)
+        : person(at, held), pressed(keys) {}
     void tell(const std::string& line) override { person.tell(line); }
     bool begins(const Step& step) override {
-      if (step.name() == "button grab") keyboard.type("x");
+      if (step.name() == "button grab") pressed.type("x");
       return person.begins(step);
     }
     bool confirms(const std::string& question) override { return person.confirms(question); }
     bool stops(int timeout_ms) override { return person.stops(timeout_ms); }
 
     SimulatedPerson person;
-    const Keyboard& keyboard;
+    const Keyboard& pressed;
   } watcher(terminal, stylus, keyboard);
   BridgeConfig config;
   config.realtime = RealTimeScheduling::kIgnore;
-  config.devices.push_back({.script = std::string(IRDM_SOURCE_DIR) + "/configs/scripts/press.csv",
-                            .realtime = RealTimeScheduling::kIgnore});
-  const Report report = commission(config, stylus, watcher);
+  config.devices.push_back({.realtime = RealTimeScheduling::kIgnore,
+                            .script = IRDM_SOURCE_DIR "/configs/scripts/press.csv"});
+  const Report report = irdm::commission::commission(config, stylus, watcher);
   INFO(to_text(report));
   REQUIRE(report.steps.size() > 6);
   CHECK(report.steps[3].verdict == Verdict::kPassed);

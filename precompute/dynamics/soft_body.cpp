@@ -21,15 +21,15 @@ SoftBody::SoftBody(const TetMesh& mesh, const Material& material, Elasticity ela
 }
 
 void SoftBody::add_element(const TetMesh& mesh, Eigen::Index element, const Lame& lame) {
-  tet4::Corners corners;
-  for (int i = 0; i < 4; ++i) corners.row(i) = rest_.row(tets_(element, i));
-  const tet4::Geometry geometry = tet4::geometry(corners);
+  const int e = static_cast<int>(element);
   if (mesh.order() == 1) {
+    const tet4::Geometry geometry = tet4::geometry(corners_of(mesh, e));
     points_.push_back({element, lame, geometry.volume, geometry.gradient});
     return;
   }
   for (const tet10::Barycentric& b : tet10::quadrature_points()) {
-    points_.push_back({element, lame, 0.25 * geometry.volume, tet10::gradients(geometry, b)});
+    const tet4::Geometry near = tet10::geometry(mesh, e, b);
+    points_.push_back({element, lame, 0.25 * near.volume, tet10::gradients(near, b)});
   }
 }
 

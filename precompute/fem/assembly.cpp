@@ -9,12 +9,9 @@ namespace irdm::precompute {
 namespace {
 
 Eigen::MatrixXd element_stiffness(const TetMesh& mesh, int e, const Material& material) {
-  tet4::Corners corners;
-  for (int i = 0; i < 4; ++i) corners.row(i) = mesh.nodes.row(mesh.tets(e, i));
-  const tet4::Geometry geometry = tet4::geometry(corners);
   const Lame lame = lame_parameters(material, e);
-  if (mesh.order() == 1) return tet4::stiffness(geometry, lame);
-  return tet10::stiffness(geometry, lame);
+  if (mesh.order() == 2) return tet10::stiffness(mesh, e, lame);
+  return tet4::stiffness(tet4::geometry(corners_of(mesh, e)), lame);
 }
 
 // Share of an element's mass that each of its nodes gets.
@@ -69,7 +66,7 @@ Eigen::VectorXd lumped_mass(const TetMesh& mesh, const Material& material) {
   Eigen::VectorXd mass = Eigen::VectorXd::Zero(mesh.node_count());
   const Eigen::VectorXd shares = mass_shares(mesh.order());
   for (int e = 0; e < mesh.tet_count(); ++e) {
-    const double element_mass = density_of(material, e) * signed_volume(mesh, e);
+    const double element_mass = density_of(material, e) * element_volume(mesh, e);
     for (int i = 0; i < shares.size(); ++i) mass(mesh.tets(e, i)) += shares(i) * element_mass;
   }
   return mass;

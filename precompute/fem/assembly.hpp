@@ -26,7 +26,7 @@ RowSparseMatrix assemble_stiffness_rows(const TetMesh& mesh, const Material& mat
 /// corner, every quadratic one 1/36 to each corner and 4/27 to each mid-side node: the diagonal of
 /// the consistent mass matrix, scaled to the mass of the element (Hinton, Rock and Zienkiewicz, A
 /// note on mass lumping, Earthquake Eng. Struct. Dyn. 4, 1976). Row sums would give the corners
-/// -1/20. Total mass and centre of mass are those of the solid.
+/// -1/20. Total mass and, with straight edges, centre of mass are those of the solid.
 /// @param material of which the densities count
 Eigen::VectorXd lumped_mass(const TetMesh& mesh, const Material& material);
 

@@ -61,10 +61,19 @@ Matrix3 stress(const tet4::Geometry& geometry, const Barycentric& b, const Lame&
   return lame_stress(displacements.transpose() * gradients(geometry, b), lame);
 }
 
-Stiffness stiffness(const tet4::Geometry& geometry, const Lame& lame) {
+tet4::Geometry geometry(const TetMesh& mesh, int e, const Barycentric& b) {
+  if (is_straight(mesh, e)) return tet4::geometry(corners_of(mesh, e));
+  // A tetrahedron with the same map, whose first corner is the origin.
+  tet4::Corners corners = tet4::Corners::Zero();
+  corners.bottomRows<3>() = jacobian(mesh, e, b).transpose();
+  return tet4::geometry(corners);
+}
+
+Stiffness stiffness(const TetMesh& mesh, int e, const Lame& lame) {
   Stiffness k = Stiffness::Zero();
   for (const Barycentric& b : quadrature_points()) {
-    add_strain_energy<10>(gradients(geometry, b), 0.25 * geometry.volume, lame, k);
+    const tet4::Geometry near = geometry(mesh, e, b);
+    add_strain_energy<10>(gradients(near, b), 0.25 * near.volume, lame, k);
   }
   return k;
 }
@@ -77,3 +86,22 @@ Eigen::Matrix<double, 10, 1> mass_shares() {
 }
 
 }  // namespace irdm::precompute::tet10
+
+namespace irdm::precompute {
+
+tet4::Corners corners_of(const TetMesh& mesh, int e) {
+  tet4::Corners corners;
+  for (int i = 0; i < 4; ++i) corners.row(i) = mesh.nodes.row(mesh.tets(e, i));
+  return corners;
+}
+
+double element_volume(const TetMesh& mesh, int e) {
+  if (is_straight(mesh, e)) return signed_volume(mesh, e);
+  double sum = 0.0;
+  for (const tet10::Barycentric& b : tet10::quadrature_points()) {
+    sum += 0.25 * tet10::geometry(mesh, e, b).volume;
+  }
+  return sum;
+}
+
+}  // namespace irdm::precompute

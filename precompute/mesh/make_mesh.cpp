@@ -1,5 +1,6 @@
 #include "precompute/mesh/make_mesh.hpp"
 
+#include "common/error.hpp"
 #include "precompute/mesh/box_mesh.hpp"
 #include "precompute/mesh/mesh_check.hpp"
 #include "precompute/mesh/mesh_file.hpp"
@@ -44,7 +45,7 @@ MadeMesh file_mesh(const std::filesystem::path& path, const MeshConfig& config) 
   return made;
 }
 
-MadeMesh linear_mesh(const MeshConfig& config) {
+MadeMesh given_mesh(const MeshConfig& config) {
   if (const auto* box = std::get_if<BoxConfig>(&config.source)) return linear_mesh(*box);
   if (const auto* sphere = std::get_if<SphereConfig>(&config.source)) return linear_mesh(*sphere);
   if (const auto* capsule = std::get_if<CapsuleConfig>(&config.source)) {
@@ -56,8 +57,12 @@ MadeMesh linear_mesh(const MeshConfig& config) {
 }  // namespace
 
 MadeMesh make_mesh(const MeshConfig& config) {
-  MadeMesh made = linear_mesh(config);
-  if (config.order == 2) made.mesh = quadratic_mesh(made.mesh);
+  MadeMesh made = given_mesh(config);
+  if (config.order < made.mesh.order()) {
+    throw Error("mesh.order", "is 1 and the file has second-order tetrahedra",
+                "set it to 2, or write linear ones (gmsh -order 1)");
+  }
+  if (config.order > made.mesh.order()) made.mesh = quadratic_mesh(made.mesh);
   return made;
 }
 

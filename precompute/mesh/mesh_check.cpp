@@ -226,6 +226,23 @@ void check_volumes(const TetMesh& mesh, const std::string& name) {
               "repair the mesh");
 }
 
+// Where an element folds over first: at its corners, but for coarse meshes of strongly curved
+// edges.
+bool folds(const TetMesh& mesh, int e) {
+  for (int i = 0; i < 4; ++i) {
+    if (!(jacobian(mesh, e, Eigen::Vector4d::Unit(i)).determinant() > 0.0)) return true;
+  }
+  return !(jacobian(mesh, e, Eigen::Vector4d::Constant(0.25)).determinant() > 0.0);
+}
+
+void check_curved(const TetMesh& mesh, const std::string& name) {
+  for (int e = 0; e < mesh.tet_count(); ++e) {
+    if (is_straight(mesh, e) || !folds(mesh, e)) continue;
+    throw Error(name, element(e) + " folds over: its edges are curved too much",
+                "make it smaller, or let gmsh move the nodes (Mesh.HighOrderOptimize = 2)");
+  }
+}
+
 class Pieces {
  public:
   explicit Pieces(int count) : parent_(static_cast<std::size_t>(count)) {
@@ -283,6 +300,7 @@ void check_mesh(const TetMesh& mesh, const std::string& name) {
   check_coordinates(mesh, name);
   check_indices(mesh, name);
   check_volumes(mesh, name);
+  check_curved(mesh, name);
   check_connected(mesh, name);
   check_surface(mesh, name);
 }

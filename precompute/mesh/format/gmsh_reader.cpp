@@ -15,28 +15,19 @@
 namespace irdm::precompute {
 namespace {
 
-// Gmsh's element types: how many nodes, how many of them corners, and what the type means to us.
+// Gmsh's element types: how many nodes, and what the type means to us.
 struct ElementType {
   std::int64_t nodes;
-  int corners;
   int dimension;
-  const char* refused;  // nullptr: linear tetrahedron or not a volume element
+  const char* refused;  // nullptr: tetrahedron or not a volume element
 };
 const std::unordered_map<std::int64_t, ElementType> element_types{
-    {1, {2, 2, 1, nullptr}},
-    {2, {3, 3, 2, nullptr}},
-    {3, {4, 4, 2, nullptr}},
-    {4, {4, 4, 3, nullptr}},
-    {5, {8, 8, 3, "hexahedron"}},
-    {6, {6, 6, 3, "prism"}},
-    {7, {5, 5, 3, "pyramid"}},
-    {8, {3, 2, 1, nullptr}},
-    {9, {6, 3, 2, nullptr}},
-    {10, {9, 4, 2, nullptr}},
-    {11, {10, 4, 3, "second-order tetrahedron"}},
-    {15, {1, 1, 0, nullptr}},
-    {16, {8, 4, 2, nullptr}}};
+    {1, {2, 1, nullptr}},      {2, {3, 2, nullptr}},  {3, {4, 2, nullptr}},   {4, {4, 3, nullptr}},
+    {5, {8, 3, "hexahedron"}}, {6, {6, 3, "prism"}},  {7, {5, 3, "pyramid"}}, {8, {3, 1, nullptr}},
+    {9, {6, 2, nullptr}},      {10, {9, 2, nullptr}}, {11, {10, 3, nullptr}}, {15, {1, 0, nullptr}},
+    {16, {8, 2, nullptr}}};
 constexpr std::int64_t kLinearTet = 4;
+constexpr std::int64_t kQuadraticTet = 11;
 
 using Tag = std::pair<std::int64_t, std::int64_t>;  // dimension and number
 
@@ -164,11 +155,10 @@ class GmshReader {
     const auto found = element_types.find(type);
     if (found == element_types.end()) {
       in_.fail("element type " + std::to_string(type) + " is not known",
-               "make a mesh of linear tetrahedra");
+               "make a mesh of tetrahedra");
     }
     if (found->second.refused != nullptr) {
-      in_.fail(std::string("there is a ") + found->second.refused,
-               "write linear tetrahedra (gmsh -order 1); mesh.order = 2 makes them quadratic here");
+      in_.fail(std::string("there is a ") + found->second.refused, "write tetrahedra alone");
     }
     return found->second;
   }
@@ -185,14 +175,23 @@ class GmshReader {
   // The nodes of an element that lies in the given physical groups.
   void read_element(std::int64_t type, const std::vector<std::int64_t>& groups) {
     const ElementType& element = element_type(type);
-    if (type != kLinearTet && groups.empty()) return in_.skip(element.nodes);
-    std::vector<int> corners;
-    for (int i = 0; i < element.corners; ++i) corners.push_back(node_number());
-    in_.skip(element.nodes - element.corners);
-    if (type == kLinearTet) tets_.push_back({corners[0], corners[1], corners[2], corners[3]});
+    const bool is_tet = type == kLinearTet || type == kQuadraticTet;
+    if (!is_tet && groups.empty()) return in_.skip(element.nodes);
+    std::vector<int> nodes;
+    for (std::int64_t i = 0; i < element.nodes; ++i) nodes.push_back(node_number());
+    if (type == kQuadraticTet) std::swap(nodes[8], nodes[9]);
+    if (is_tet) add_tet(nodes);
     for (const std::int64_t group : groups) {
-      groups_[{element.dimension, std::abs(group)}].push_back(corners);
+      groups_[{element.dimension, std::abs(group)}].push_back(nodes);
     }
+  }
+
+  void add_tet(const std::vector<int>& nodes) {
+    if (!tets_.empty() && nodes.size() != tets_.front().size()) {
+      in_.fail("there are tetrahedra of first and of second order",
+               "let one order be that of all (gmsh -order)");
+    }
+    tets_.push_back(nodes);
   }
 
   void read_elements_2() {
@@ -234,10 +233,11 @@ class GmshReader {
       const auto& [x, y, z] = coordinates_[i];
       mesh.nodes.row(static_cast<Eigen::Index>(i)) << x, y, z;
     }
-    mesh.tets.resize(static_cast<Eigen::Index>(tets_.size()), 4);
+    const std::size_t width = tets_.empty() ? 4 : tets_.front().size();
+    mesh.tets.resize(static_cast<Eigen::Index>(tets_.size()), static_cast<Eigen::Index>(width));
     for (std::size_t i = 0; i < tets_.size(); ++i) {
-      const auto& [a, b, c, d] = tets_[i];
-      mesh.tets.row(static_cast<Eigen::Index>(i)) << a, b, c, d;
+      std::copy(tets_[i].begin(), tets_[i].end(),
+                mesh.tets.row(static_cast<Eigen::Index>(i)).begin());
     }
     for (const auto& [key, group] : groups_) {
       const auto named = group_names_.find(key);
@@ -252,7 +252,7 @@ class GmshReader {
   std::string version_;
   std::unordered_map<std::int64_t, int> number_;
   std::vector<std::array<double, 3>> coordinates_;
-  std::vector<std::array<int, 4>> tets_;
+  std::vector<std::vector<int>> tets_;
   std::map<Tag, std::string> group_names_;
   std::map<Tag, std::vector<std::int64_t>> entity_groups_;
   std::map<Tag, MeshGroup> groups_;

@@ -8,11 +8,12 @@
 /// One reader a format; each has a source of its own. mesh_file.hpp chooses.
 namespace irdm::precompute {
 
-/// Reads the linear tetrahedra of a Gmsh file, MSH 2.2 or 4.1, ASCII; coordinates as they are
-/// there. Points, lines and surface elements are passed over, but for the physical groups that they
-/// belong to, which become the mesh's groups; those without a name go by their number. Nodes keep
-/// the order of the file. Throws Error with file and line for other versions, binary files, other
-/// or second-order volume elements (quadratic_mesh makes those), truncated or damaged files.
+/// Reads the tetrahedra of a Gmsh file, MSH 2.2 or 4.1, ASCII, all of first or all of second order
+/// (mid-side nodes where the file has them); coordinates as they are there. Points, lines and
+/// surface elements are passed over, but for the physical groups that they belong to, which become
+/// the mesh's groups; those without a name go by their number. Nodes keep the order of the file.
+/// Throws Error with file and line for other versions, binary files, other volume elements,
+/// truncated or damaged files.
 TetMesh read_gmsh(const std::filesystem::path& path);
 
 /// Reads the tetrahedra of a Medit file (.mesh, ASCII); coordinates as they are there. Vertices,

@@ -5,6 +5,8 @@
 #include <cstring>
 
 #include "common/hdf5/file.hpp"
+#include "common/model/model_file.hpp"
+#include "common/model/model_writer.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/system/stage.hpp"
 #include "tests/system/trace.hpp"
@@ -48,7 +50,50 @@ std::size_t nodes_of(const WebPeer::Message& scene) {
   return static_cast<std::size_t>(viewer::decode_scene(scene.payload).objects.at(0).rest.rows());
 }
 
+/// The cube with another material where x > 0, B; its response is that of one material.
+void write_half_stiff_cube(const std::filesystem::path& path) {
+  Model model = read_model(cube_model(), ResponseKind::kModal);
+  const Material& whole = model.material;
+  ElementMaterials elements;
+  for (Eigen::Index e = 0; e < model.mesh.tets.rows(); ++e) {
+    double x = 0.0;
+    for (Eigen::Index c = 0; c < 4; ++c) x += model.mesh.nodes(model.mesh.tets(e, c), 0);
+    elements.region.push_back(x > 0.0 ? 1 : 0);
+    elements.youngs_modulus.push_back(whole.youngs_modulus * (x > 0.0 ? 8.0 : 1.0));
+    elements.poisson_ratio.push_back(whole.poisson_ratio);
+    elements.density.push_back(whole.density);
+  }
+  model.material.elements = elements;
+  ModelFileWriter writer(path);
+  writer.write_description(model);
+  writer.write_modal(std::get<ModalResponse>(model.response));
+  writer.commit();
+}
+
 }  // namespace
+
+TEST_CASE("viewer: a body of several materials comes with its regions, another without") {
+  const Stage stage;
+  write_half_stiff_cube(stage.path("half.h5"));
+  stage.write("scene.toml", scene_text("[[object]]\nname = \"half\"\nmodel = \"half.h5\"\n"
+                                       "position = [0, 0.3, 0]\n"));
+  Server server = stage.start_server();
+  WebPeer peer = watch(viewer_port(server.process));
+  const viewer::Scene scene = viewer::decode_scene(next(peer, kScene).payload);
+  CHECK(scene.objects.at(1).regions.empty());
+  const viewer::SceneRegions& regions = scene.objects.at(0).regions;
+  REQUIRE(regions.regions.size() == 2);
+  const float soft = scene.objects[0].stiffness;
+  CHECK(regions.regions[1].youngs_modulus.lowest == 8.0F * soft);
+  CHECK(regions.faces.rows() > 4);
+  CHECK(regions.face_modulus.front() == 8.0F * soft);
+  const auto at_surface = [&](float modulus) {
+    return std::ranges::count(regions.surface_modulus, modulus);
+  };
+  CHECK(at_surface(soft) > 10);
+  CHECK(at_surface(8.0F * soft) > 10);
+  CHECK(at_surface(soft) + at_surface(8.0F * soft) == scene.objects[0].triangles.rows());
+}
 
 TEST_CASE("viewer: a reset over the WebSocket shows up in the trace and in health") {
   const Stage stage;

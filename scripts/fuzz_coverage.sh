@@ -20,6 +20,7 @@ decoders=(
   viewer/request_rules.cpp viewer/connection.cpp
   device_bridge/link/server_session.cpp device_bridge/link/force_receiver.cpp
   device_bridge/bridge_config.cpp device_bridge/stylus_script.cpp
+  device_bridge/haply/inverse_messages.cpp device_bridge/haply/inverse_events.cpp
   device_bridge/link/server_session.cpp
   precompute/config.cpp
   precompute/columns/column_file.cpp precompute/compress/dense_input.cpp precompute/mesh/format/*.cpp

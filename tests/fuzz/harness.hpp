@@ -54,6 +54,10 @@ void server_datagrams(Input input);
 /// The payload of a contact model, and what a bridge makes of it.
 void contact_model(Input input);
 
+/// One byte: what Haply's service says, by the remainder by 3: 0 a message, and what the bridge
+/// makes of it, 1 an event, 2 an answer of its version; then the text.
+void service_message(Input input);
+
 void scene_config(Input input);
 void precompute_config(Input input);
 void bridge_config(Input input);
@@ -99,6 +103,7 @@ inline constexpr std::array kHarnesses = {
     Harness{"contact_model", contact_model},
     Harness{"bridge_session", bridge_session},
     Harness{"server_session", server_session},
+    Harness{"service_message", service_message},
     Harness{"scene_config", scene_config},
     Harness{"precompute_config", precompute_config},
     Harness{"bridge_config", bridge_config},

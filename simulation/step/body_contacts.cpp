@@ -38,8 +38,7 @@ BodyContacts::BodyContacts(int object, const ContactBody& body, int other,
       inset_left_(std::max(0.0, 1.0 - dt / kInsetTime)),
       depth_(kDepth * std::min(body.sampling.spacing(), other_body.sampling.spacing())),
       first_sample_(first_sample),
-      samples_(body.sampling.samples().size()),
-      found_(kMost) {
+      samples_(body.sampling.samples().size()) {
   candidates_.reserve(samples_.size());
   for (int i = 0; i < other_body.rest.node_count(); ++i) other_box_.extend(other_body.rest.node(i));
 }
@@ -54,8 +53,7 @@ BodyContacts::BodyContacts(int object, const ContactBody& body, int scenery,
       other_radius_(bounding_radius(there.now.shape)),
       inset_left_(std::max(0.0, 1.0 - dt / kInsetTime)),
       depth_(kDepth * body.sampling.spacing()),
-      samples_(body.sampling.samples().size()),
-      found_(kMost) {
+      samples_(body.sampling.samples().size()) {
   candidates_.reserve(samples_.size());
 }
 
@@ -168,14 +166,16 @@ int BodyContacts::find() noexcept {
     candidate.depth = contact.gap.dot(contact.normal);
     if (candidate.pressed) closed_ = std::max(closed_, candidate.depth);
   }
-  if (candidates_.size() > static_cast<std::size_t>(most_)) {
-    std::nth_element(candidates_.begin(), candidates_.begin() + most_, candidates_.end(),
+  const std::size_t most = found_.size();
+  if (candidates_.size() > most) {
+    const auto end = candidates_.begin() + static_cast<std::ptrdiff_t>(most);
+    std::nth_element(candidates_.begin(), end, candidates_.end(),
                      [](const Candidate& a, const Candidate& b) {
                        if (a.pressed != b.pressed) return a.pressed;
                        if (a.depth != b.depth) return a.depth > b.depth;
                        return a.sample < b.sample;
                      });
-    candidates_.resize(static_cast<std::size_t>(most_));
+    candidates_.resize(most);
     std::sort(candidates_.begin(), candidates_.end(),
               [](const Candidate& a, const Candidate& b) { return a.sample < b.sample; });
   }

@@ -34,9 +34,6 @@ struct ContactBody {
 /// pass through. Real-time safe after construction; one thread.
 class BodyContacts {
  public:
-  /// Contacts that one pair can have in a step, without limit().
-  static constexpr int kMost = 128;
-
   /// A contact of this step.
   struct Contact {
     int sample = 0;
@@ -58,8 +55,8 @@ class BodyContacts {
   /// Of an object with itself. @param reach of the body's samples; must outlive this
   BodyContacts(int object, const ContactBody& body, const SelfReach& reach, double dt);
 
-  /// It can have at most so many contacts from now on. @param most 1 to kMost
-  void limit(int most) noexcept { most_ = most; }
+  /// It can have at most so many contacts in a step; before: none. Not real-time safe.
+  void set_most(int most) { found_.resize(static_cast<std::size_t>(most)); }
   void reset() noexcept;
   /// State, in or out (StateArchive).
   void archive(StateArchive& state) {
@@ -186,7 +183,6 @@ class BodyContacts {
   double closed_ = 0.0;            ///< how deep samples were before forces closed it [m]
   double displaced_ = 0.0;         ///< how far surfaces were seen away from rest [m]
   int first_sample_ = 0;
-  int most_ = kMost;
   std::vector<Sample> samples_;
   struct Candidate {
     int sample;

@@ -21,8 +21,8 @@ constexpr double kDeepestOverlap = 5e-4;
 // Objects with a floor that may be one contact problem: its matrix has room for all that their
 // floors can add, 9 (200 m)^2 numbers for m of them.
 constexpr std::size_t kMostOnFloor = 4;
-// Of more pairs than these (two bodies, from both sides) each has fewer contacts, so that there are
-// some for all.
+// A pair alone can have all contacts of a step, of two each half of them. Of more pairs than these
+// (two bodies, from both sides) each has fewer, so that there are some for all.
 constexpr std::size_t kFewPairs = 2;
 constexpr int kMostOfMany = 64;
 
@@ -30,6 +30,16 @@ constexpr int kMostOfMany = 64;
 // one, more makes the solver leave out steps, which lets it sink in.
 constexpr double kMostMassRatio = 1000.0;
 constexpr double kMostMassRatioOfRigid = 100.0;  // where the light one is rigid
+
+bool touches_itself(const BodyContacts& pair) noexcept {
+  return pair.other() == pair.object();
+}
+
+// Both sides of an object's contacts with itself are its own: of these half as many.
+int contacts_of_pair(std::size_t pairs, bool itself) noexcept {
+  if (pairs > kFewPairs) return kMostOfMany;
+  return pairs > 1 || itself ? kMaxBodyContacts / 2 : kMaxBodyContacts;
+}
 
 // Of two surfaces: the geometric mean of their coefficients.
 double mixed(double a, double b) noexcept {
@@ -86,14 +96,13 @@ WorldContacts::WorldContacts(const SimulationConfig& config,
         {*shape.sampling, object->surface(), object->deformed_surface(), object->motion()});
   }
   add_pairs(config);
-  if (pairs_.size() > kFewPairs) {
-    for (BodyContacts& pair : pairs_) pair.limit(kMostOfMany);
-  }
+  const bool itself = std::any_of(pairs_.begin(), pairs_.end(), touches_itself);
+  const int most = contacts_of_pair(pairs_.size(), itself);
+  for (BodyContacts& pair : pairs_) pair.set_most(most);
   const auto others = static_cast<int>(objects_.size() - 1 + scenery_.size());
-  const int with_others = std::min(kMaxBodyContacts, 2 * others * BodyContacts::kMost);
-  island_ = std::make_unique<ContactIsland>(
-      static_cast<int>(objects_.size()), capacity(config),
-      with_others + (config.self_contact ? 2 * BodyContacts::kMost : 0));
+  const int with_others = std::min(kMaxBodyContacts, 2 * others * most);
+  island_ = std::make_unique<ContactIsland>(static_cast<int>(objects_.size()), capacity(config),
+                                            with_others + (itself ? 2 * most : 0));
   members_.reserve(objects_.size());
   contacts_.reserve(kMaxBodyContacts);
   solved_.reserve(kMaxBodyContacts);

@@ -17,6 +17,7 @@ import numpy
 
 import irdm
 import meshes
+import ring_shape
 
 COUPLING = 1e5  # N/m; a fixed object needs a spring
 SHAPES = Path(__file__).resolve().parent / "shapes"
@@ -50,17 +51,32 @@ def model(body, dt, folder):
     return irdm.precompute(table_of(body, dt, given_mesh(body, folder)), threads=1)
 
 
-def shape_of(body):
-    return SHAPES / ("palpation.geo" if "regions" in body else Path(body["mesh"]).with_suffix(".geo"))
+def shape_of(body, folder):
+    """A file with a shape of our own; none: None."""
+    if body["mesh"] == "ring.msh":
+        meshes.write(folder / "ring.msh", *ring_shape.mesh())
+        return folder / "ring.msh"
+    shape = SHAPES / ("palpation.geo" if "regions" in body else Path(body["mesh"]).with_suffix(".geo"))
+    return shape if shape.exists() else None
+
+
+def volume(mesh, dt):
+    """Of the body that a mesh is [m^3]."""
+    rigid = {"mesh": mesh, "material": {"rigid": True, "density": 1000.0}, "response": {"dt": dt}}
+    return irdm.precompute(rigid, threads=1).mass / 1000.0
 
 
 def fine_model(body, dt, folder):
     """Of a shape of our own, else of the given mesh; with some modes where all would take long."""
-    shape = shape_of(body)
-    config = table_of(body, dt, shape if shape.exists() else given_mesh(body, folder))
+    shape = shape_of(body, folder)
+    config = table_of(body, dt, shape or given_mesh(body, folder))
     config["mesh"]["order"] = 2
-    if not shape.exists() or "regions" in body:
+    if shape:
+        config["material"]["density"] = body["mass"] / volume(config["mesh"], dt)
+    if not shape or "regions" in body:
         config["modes"] = {"count": FINE_MODES}
+    elif shape.suffix == ".msh":
+        config["modes"] = {"count": FINE_MODES, "contact_radius": ring_shape.OUTER}  # it is touched all round
     return irdm.precompute(config, threads=1)
 
 
@@ -161,7 +177,7 @@ def run(scene, tool_kind):
         models = [(fine_model if fine else model)(body, dt, Path(folder)) for body in scene["bodies"]]
         objects, starts = [], []
         for number, (body, one) in enumerate(zip(scene["bodies"], models)):
-            own = fine and shape_of(body).exists()  # in the frame of its file
+            own = fine and shape_of(body, Path(folder))  # in the frame of its file
             orientation = body.get("orientation", [1, 0, 0, 0]) if own else [1, 0, 0, 0]
             turn = meshes.rotation(orientation)
             if own:

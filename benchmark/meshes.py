@@ -34,6 +34,18 @@ def tetrahedra(axes, shape=lambda x: x):
     return nodes, tets
 
 
+EDGES = (0, 1), (1, 2), (0, 2), (0, 3), (2, 3), (1, 3)  # of a tetrahedron, in Gmsh's order
+
+
+def quadratic(axes, shape):
+    """The same cells with nodes half-way as well, which `shape` moves, too: tetrahedra (e, 10), in Gmsh's order."""
+    halves = [numpy.sort(numpy.r_[axis, (axis[1:] + axis[:-1]) / 2]) for axis in axes]
+    nodes = shape(numpy.stack(numpy.meshgrid(*halves, indexing="ij"), -1).reshape(-1, 3))
+    place = numpy.stack(numpy.unravel_index(tetrahedra(axes)[1], [len(axis) for axis in axes]), -1)
+    places = numpy.concatenate([2 * place, *(place[:, [i]] + place[:, [j]] for i, j in EDGES)], axis=1)
+    return nodes, numpy.ravel_multi_index(numpy.moveaxis(places, -1, 0), [len(half) for half in halves])
+
+
 def signed_volume(nodes, tets):
     a, b, c, d = (nodes[tets[:, i]] for i in range(4))
     return numpy.einsum("ij,ij->i", numpy.cross(b - a, c - a), d - a) / 6
@@ -94,11 +106,12 @@ def rotation(quaternion):
 
 
 def write(path, nodes, tets):
-    """Gmsh's text format 2.2."""
+    """Gmsh's text format 2.2. tets: (e, 4 or 10)."""
     lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$Nodes", str(len(nodes))]
     lines += [f"{i} {x:.7g} {y:.7g} {z:.7g}" for i, (x, y, z) in enumerate(nodes, 1)]
     lines += ["$EndNodes", "$Elements", str(len(tets))]
-    lines += [f"{i} 4 2 1 1 {a} {b} {c} {d}" for i, (a, b, c, d) in enumerate(tets + 1, 1)]
+    kind = {4: 4, 10: 11}[tets.shape[1]]
+    lines += [f"{i} {kind} 2 1 1 {' '.join(map(str, tet))}" for i, tet in enumerate(tets + 1, 1)]
     path.write_text("\n".join([*lines, "$EndElements"]) + "\n", encoding="utf-8")
 
 

@@ -6,3 +6,4 @@ Field[1].F = "Min(0.025, 0.004 + 0.4*Max(0, Sqrt(x*x + (y-0.05)*(y-0.05) + z*z) 
 Background Field = 1;
 Mesh.MeshSizeExtendFromBoundary = 0;
 Mesh.MeshSizeFromPoints = 0;
+Mesh.ElementOrder = 2;

@@ -10,6 +10,7 @@ import numpy
 BENCHMARK = Path(__file__).resolve().parents[2] / "benchmark"
 sys.path.insert(0, str(BENCHMARK))
 
+import ring_shape  # noqa: E402
 import run  # noqa: E402
 
 try:
@@ -130,6 +131,22 @@ class TruthTest(unittest.TestCase):
                     force = compute(case, 2 * fine, 2 * step)[0]
                     said = sum(one["force"] for one in stored["largest_change_by_peak_with"].values())
                     self.assertLess(abs(force - truth).max() / truth.max(), 1.2 * said)
+
+
+class ShapeTest(unittest.TestCase):
+    def test_ring_with_curved_edges(self):
+        """All nodes of the hole lie on the wall, mid-side ones near the middles of edges, and nothing folds over."""
+        nodes, tets = ring_shape.mesh()
+        inner = numpy.hypot(nodes[:, 0], nodes[:, 2]) < ring_shape.wall(nodes[:, 1]) + 1e-9
+        self.assertEqual(inner.sum(), 2 * ring_shape.AROUND * (2 * len(ring_shape.ROWS) - 1))
+        self.assertLess(abs(numpy.hypot(nodes[:, 0], nodes[:, 2]) - ring_shape.wall(nodes[:, 1]))[inner].max(), 1e-12)
+        for k, (i, j) in enumerate(run.meshes.EDGES, 4):
+            ends = nodes[tets[:, [i, j]]]
+            off = numpy.linalg.norm(nodes[tets[:, k]] - ends.mean(axis=1), axis=1)
+            self.assertLess((off / numpy.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)).max(), 0.15)
+        eight = tets[:, [[0, 4, 6, 7], [4, 1, 5, 9], [6, 5, 2, 8], [7, 9, 8, 3]]].reshape(-1, 4)
+        volume = run.meshes.signed_volume(nodes, eight)
+        self.assertGreater(volume.min(), 0.0)
 
 
 class TableTest(unittest.TestCase):

@@ -28,20 +28,23 @@ class Body:
     """Free degrees of freedom of a Grid, its state, and what touches it.
 
     touching: nodes that may touch. step [s] of the second order backward difference; None: statics. along: the axes of
-    forces on them, default all. gravity: acceleration (d) [m/s^2].
+    forces on them, default all. gravity: acceleration (d) [m/s^2]. light: a face without mass (Grid.assemble): nodes that
+    meet it at some speed do not knock, so that forces are smooth.
     """
 
-    def __init__(self, grid, material, fixed, touching, step, velocity=None, along=None, gravity=None):
+    def __init__(self, grid, material, fixed, touching, step, velocity=None, along=None, gravity=None,
+                 light=None):
         d = grid.dimension
         self.grid, self.step, self.d = grid, step, d
-        self.stiffness, self.mass, self.volume = grid.assemble(material)
-        self.free = numpy.setdiff1d(numpy.arange(d * len(grid.nodes)), fixed)
+        self.stiffness, self.mass, self.volume = grid.assemble(material, light)
+        ordered = (d * grid.elimination_order()[:, None] + numpy.arange(d)).ravel()
+        self.free = ordered[~numpy.isin(ordered, fixed)]
         self.damping = material["rayleigh_beta"]
         matrix = self.stiffness
         if step is not None:
             matrix = 2.25 / step**2 * self.mass + (1 + 1.5 / step * self.damping) * self.stiffness
         matrix = matrix[self.free][:, self.free]
-        self.solve = scipy.sparse.linalg.splu(matrix.tocsc(), permc_spec="MMD_AT_PLUS_A",
+        self.solve = scipy.sparse.linalg.splu(matrix.tocsc(), permc_spec="NATURAL",
                                               options={"SymmetricMode": True, "DiagPivotThresh": 0.0}).solve
         place = numpy.full(d * len(grid.nodes), -1)
         place[self.free] = numpy.arange(len(self.free))
@@ -50,11 +53,13 @@ class Body:
         dofs = place[(d * touching[:, None] + along)].ravel()  # -1: does not move
         self.pushed = dofs
         self.compliance = numpy.zeros((dofs.size, dofs.size))
+        self.answers = numpy.zeros((dofs.size, len(self.free)))  # of all to a force of 1 N on one
         moves = numpy.flatnonzero(dofs >= 0)
         for some in numpy.array_split(moves, len(moves) // 50 + 1):
             unit = numpy.zeros((len(self.free), len(some)))
             unit[dofs[some], numpy.arange(len(some))] = 1.0
-            self.compliance[numpy.ix_(moves, some)] = self.solve(unit)[dofs[moves]]
+            self.answers[some] = self.solve(unit).T
+        self.compliance[:, moves] = self.answers[:, dofs[moves]]
         self.active = numpy.zeros(len(touching), dtype=bool)
         speed = numpy.zeros(d * len(grid.nodes)) if velocity is None else numpy.tile(velocity, len(grid.nodes))
         self.weight = self.mass @ numpy.tile(numpy.zeros(d) if gravity is None else gravity, len(grid.nodes))
@@ -63,26 +68,22 @@ class Body:
 
     def predict(self):
         """Displacements at the end of the coming step without contact."""
-        self.load = self.weight.copy()
+        load = self.weight.copy()
         if self.step is not None:
             past, v_past = self._past()
-            self.load -= self.mass @ (1.5 / self.step * past + v_past) + self.damping * (self.stiffness @ past)
-        return self._moved(self.load[self.free])
+            load -= self.mass @ (1.5 / self.step * past + v_past) + self.damping * (self.stiffness @ past)
+        self.without = numpy.zeros(len(load))
+        self.without[self.free] = self.solve(load[self.free])
+        return self.without
 
     def finish(self, force):
         """Takes the step that was predicted, with the forces on the touching nodes [N]."""
-        load = self.load[self.free]
-        moves = self.pushed >= 0
-        load[self.pushed[moves]] += force.ravel()[moves]
-        u = self._moved(load)
+        pushing = numpy.flatnonzero(force.ravel())
+        u = self.without.copy()
+        u[self.free] += force.ravel()[pushing] @ self.answers[pushing]
         if self.step is not None:
             self.v = [1.5 / self.step * u + self._past()[0], self.v[0]]
         self.u = [u, self.u[0]]
-
-    def _moved(self, load):
-        u = numpy.zeros(len(self.load))
-        u[self.free] = self.solve(load)
-        return u
 
     def _past(self):
         h = self.step

@@ -14,6 +14,17 @@ def _line(x):
     return (numpy.array([x * (x - 1) / 2, 1 - x * x, x * (x + 1) / 2]), numpy.array([x - 0.5, -2 * x, x + 0.5]))
 
 
+def _light(point, axis, end):
+    """Functions (3^d) of which those on the face at `end` of an axis are 0; linear fields are in them."""
+    lines = [_line(x)[0] for x in point]
+    x = point[axis]
+    lines[axis] = numpy.array([0.0, 1 - x, x] if end == 0 else [-x, 1 + x, 0.0])
+    value = 1.0
+    for one in lines:
+        value = numpy.multiply.outer(value, one)
+    return value.ravel()
+
+
 def _shapes(point):
     """At a point of the reference cell: functions (3^d), gradients (d, 3^d)."""
     lines = [_line(x) for x in point]
@@ -56,8 +67,25 @@ class Grid:
         """Nodes whose coordinate before `shape` is `value`."""
         return numpy.flatnonzero(abs(self.rest[:, axis] - value) < 1e-9)
 
-    def assemble(self, material):
+    def elimination_order(self):
+        """Nodes in the order of nested dissection: few entries of the factors of their matrix."""
+        number = numpy.arange(len(self.nodes)).reshape(self.counts)
+
+        def order(block, first):  # first: its place, as planes between cells have even ones
+            axis = int(numpy.argmax(block.shape))
+            middle = block.shape[axis] // 2
+            middle -= (first[axis] + middle) % 2
+            if block.size <= 40 or middle < 1 or middle > block.shape[axis] - 2:
+                return [block.ravel()]
+            low, plane, high = numpy.split(block, [middle, middle + 1], axis)
+            after = [place + (middle + 1) * (other == axis) for other, place in enumerate(first)]
+            return order(low, first) + order(high, after) + [plane.ravel()]
+        return numpy.concatenate(order(number, [0] * self.dimension))
+
+    def assemble(self, material, light=None):
         """Stiffness and consistent mass, and the volume of each node [N/m, kg, m^3].
+
+        light: (axis, value): nodes of that face have no mass. Mass, its centre and moments of inertia stay.
 
         material["stiffer"]: (centre, radius, factor): a ball of so many times the modulus, by integration points.
         """
@@ -66,6 +94,11 @@ class Grid:
         bulk = young * poisson / ((1 + poisson) * (1 - 2 * poisson))  # Lame's first
         inclusion = material.get("stiffer")
         d, count = self.dimension, self.cells.shape[1]
+        if light:
+            on_face = numpy.isin(self.cells, self.on(*light))
+            outer = numpy.flatnonzero(on_face.any(axis=1))
+            ends = numpy.arange(3**d) // 3 ** (d - 1 - light[0]) % 3
+            end = ends[on_face[outer[0]]][0]
         x = self.nodes[self.cells]
         stiffness = numpy.zeros((len(self.cells), count * d, count * d))
         mass = numpy.zeros((len(self.cells), count, count))
@@ -86,6 +119,10 @@ class Grid:
             firm = weight * numpy.where(inside, factor, 1.0) if inclusion else weight
             stiffness += numpy.einsum("c,csi,st,ctj->cij", firm, strain, elastic, strain, optimize=True)
             mass += numpy.einsum("c,i,j->cij", weight, shape, shape)
+            if light:
+                inner = _light(_POINTS[list(index)], light[0], end)
+                instead = numpy.outer(inner, inner) - numpy.outer(shape, shape)
+                mass[outer] += numpy.multiply.outer(weight[outer], instead)
             numpy.add.at(volume, self.cells, weight[:, None] * shape)
         dofs = (d * self.cells[:, :, None] + numpy.arange(d)).reshape(len(self.cells), -1)
         size = d * len(self.nodes)

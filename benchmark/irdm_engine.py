@@ -22,6 +22,7 @@ import ring_shape
 COUPLING = 1e5  # N/m; a fixed object needs a spring
 SHAPES = Path(__file__).resolve().parent / "shapes"
 FINE_MODES = 300  # where all would take long
+ALL_MODES = ("ball.geo", "cube.geo", "puck.geo")
 FINE_STEPS = 4  # in one of the case
 BALL_CELLS = 15  # in a quarter circle: nodes of the surface
 BALL_DENSITY = 20000.0  # kg/m^3: what touches it hardly moves it
@@ -73,10 +74,10 @@ def fine_model(body, dt, folder):
     config["mesh"]["order"] = 2
     if shape:
         config["material"]["density"] = body["mass"] / volume(config["mesh"], dt)
-    if not shape or "regions" in body:
-        config["modes"] = {"count": FINE_MODES}
-    elif shape.suffix == ".msh":
+    if shape and shape.suffix == ".msh":
         config["modes"] = {"count": FINE_MODES, "contact_radius": ring_shape.OUTER}  # it is touched all round
+    elif not shape or shape.name not in ALL_MODES:
+        config["modes"] = {"count": FINE_MODES}
     return irdm.precompute(config, threads=1)
 
 
@@ -145,20 +146,24 @@ class Ball:
 
 
 class Kinematic:
-    """A tool as scenery: an exact ball on the path."""
+    """Tools as scenery: exact balls on their paths."""
 
     def __init__(self, scene):
-        tool = scene["tools"][0]
-        start = centre(tool, 0.0)
-        path = [{"time": row[0], "displacement": (numpy.array(row[1:]) - start).tolist()} for row in tool["path"]]
-        self.scenery = [{"sphere": {"radius": tool["radius"]}, "position": start.tolist(), "motion": {"path": path},
-                         "friction": {"static": tool["friction"], "kinetic": tool["friction"]}}]
+        self.scenery = [self.ball(tool) for tool in scene["tools"]]
         self.objects, self.styluses = [], []
         self.settings = "exact ball on its path"
 
+    @staticmethod
+    def ball(tool):
+        start = centre(tool, 0.0)
+        path = [{"time": row[0], "displacement": (numpy.array(row[1:]) - start).tolist()} for row in tool["path"]]
+        return {"sphere": {"radius": tool["radius"]}, "position": start.tolist(), "motion": {"path": path},
+                "friction": {"static": tool["friction"], "kinetic": tool["friction"]}}
+
     def force(self, step):
         contacts = step.contacts
-        return -contacts["force"][contacts["kind"] == irdm.SCENERY].sum(axis=0)
+        first = (contacts["kind"] == irdm.SCENERY) & (contacts["other"] == 0)
+        return -contacts["force"][first].sum(axis=0)
 
 
 def on_object(step, number):
@@ -195,7 +200,8 @@ def run(scene, tool_kind):
             table["contact"] = {"samples": 4096}
         simulation = irdm.Simulation(table)
     if any(scene["gravity"]):
-        simulation.step()  # the objects are at rest without gravity
+        if any("fixed_below" in body for body in scene["bodies"]):
+            simulation.step()  # fixed ones begin at rest under gravity, here at rest without
         simulation.gravity = scene["gravity"]
     steps = round(scene["duration"] / scene["dt"])
     samples = {round(t / scene["dt"]) for t in scene["sample_times"]}

@@ -6,8 +6,11 @@ import scipy.interpolate
 import meshes
 from contact import Body, complementarity
 from fem import Grid
+from friction import Grip
 
 EDGE = 0.1  # of a cube that stands on another [m]
+SLAB = (0.08, 0.04, 0.08)
+SLIDER = 0.4  # of the ball that slides on the slab
 
 
 def box_mesh(x, y, z):
@@ -20,11 +23,25 @@ def even(low, high, cell):
 
 MESHES = {
     "cube.msh": lambda: box_mesh(*[even(-EDGE / 2, EDGE / 2, 0.0125), even(0, EDGE, 0.0125),
-                                   even(-EDGE / 2, EDGE / 2, 0.0125)])}
+                                   even(-EDGE / 2, EDGE / 2, 0.0125)]),
+    "slab.msh": lambda: box_mesh(even(-SLAB[0] / 2, SLAB[0] / 2, 0.005), even(0, SLAB[1], 0.008),
+                                 even(-SLAB[2] / 2, SLAB[2] / 2, 0.005))}
 
 
-def mirrored(grid, axis, value, symmetric, shapes):
-    """Displacements (samples, n, 3) at points (n, 3) of a face; `symmetric`: axes along which it goes on."""
+def weights_on(line, x):
+    """Of a line's nodes, two a cell, in the quadratic field at x: (n, nodes)."""
+    first = 2 * numpy.clip(numpy.searchsorted(line[::2], x) - 1, 0, len(line) // 2 - 1)
+    share = (x - line[first]) / (line[first + 2] - line[first])
+    weights = numpy.zeros((len(x), len(line)))
+    of_three = ((1 - share) * (1 - 2 * share), 4 * share * (1 - share), share * (2 * share - 1))
+    for offset, weight in enumerate(of_three):
+        weights[numpy.arange(len(x)), first + offset] = weight
+    return weights
+
+
+def mirrored(grid, axis, value, symmetric, shapes, quadratic=False):
+    """Displacements (samples, n, 3) at points (n, 3) of a face; `symmetric`: axes along which it goes on. Between nodes
+    linear or, with `quadratic`, as the cells are."""
     face = grid.on(axis, value)
     others = [other for other in range(3) if other != axis]
     counts = [grid.counts[other] for other in others]
@@ -37,6 +54,10 @@ def mirrored(grid, axis, value, symmetric, shapes):
         for one in symmetric:
             folded[:, one] = abs(points[:, one])
             sign[:, one] = numpy.where(points[:, one] < 0, -1.0, 1.0)
+        if quadratic:
+            first, second = (weights_on(line, folded[:, other]) for line, other in zip(lines, others))
+            return numpy.array([sign * numpy.einsum("na,nb,abk->nk", first, second, shape[face].reshape(*counts, 3))
+                                for shape in shapes])
         return numpy.array([sign * table(folded[:, others]) for table in tables])
     return at
 
@@ -81,6 +102,50 @@ def two_cubes(case, fine, step, material, dt):
     return numpy.array(force), shapes, lambda nodes: chosen(nodes, nodes[:, 1] > EDGE - 1e-6, at)
 
 
+def centre(case, time):
+    """Of the first tool."""
+    path = numpy.array(case["tools"][0]["path"])
+    return numpy.array([numpy.interp(time, path[:, 0], path[:, axis]) for axis in (1, 2, 3)])
+
+
+def gripped(case, body, step, dt, parts):
+    """The ball's force on the table's steps, from a half or a quarter of the body, and the body's samples."""
+    tool = case["tools"][0]
+    grip = Grip(body, centre(case, 0.0), tool["radius"], tool["friction"])
+    force, shapes = [], []
+    for k in range(1, round(case["duration"] / step) + 1):
+        pushed = -parts * grip.advance(centre(case, k * step)).sum(axis=0)
+        if k % round(dt / step) == 0:
+            force.append([*pushed[:2], 0.0])
+        if sampled(case, k, step):
+            shapes.append(body.u[0].reshape(-1, 3))
+    return numpy.array(force), shapes
+
+
+def slid_slab(case, fine, step, material, dt):
+    """Half of it, glued below; the ball comes from above."""
+    (wide, height, deep), reach = SLAB, 0.035
+    up = height - meshes.graded(fine, fine, height, 1.5)[::-1]
+    grid = Grid([even(-wide / 2, wide / 2, fine), up, even(0, deep / 2, fine)])
+    top = grid.on(1, height)
+    x, _, z = grid.nodes[top].T
+    touching = top[numpy.hypot(numpy.maximum(abs(x - 0.004) - 0.004, 0), z) < reach]
+    body = Body(grid, material, held(grid, 0.0, (2,)), touching, step, light=(1, height))
+    force, shapes = gripped(case, body, step, dt, 2)
+    at = mirrored(grid, 1, height, (2,), shapes, True)
+    return force, shapes, lambda nodes: chosen(nodes, nodes[:, 1] > height - 1e-6, at)
+
+
+def smooth(time, begin, end):
+    """From 0 to 1, without jumps of the acceleration."""
+    share = numpy.clip((time - begin) / (end - begin), 0, 1)
+    return share - numpy.sin(2 * numpy.pi * share) / (2 * numpy.pi)
+
+
+def path_of(time, x, y, z):
+    return [[round(value, 9) for value in row] for row in zip(time.tolist(), *numpy.broadcast_arrays(x, y, z))]
+
+
 def cases(material, dt):
     """As references.cases."""
     def case(name, about, duration, samples, mesh, size, fixed, tools):
@@ -95,6 +160,14 @@ def cases(material, dt):
     cubes["gravity"] = [0.0, -9.81, 0.0]
     cubes["bodies"].append({**cubes["bodies"][0], "position": [0.0, EDGE, 0.0]})
     del cubes["bodies"][1]["fixed_below"]
+
+    time = numpy.arange(0, 0.34 + dt / 2, dt)
+    deep = 1.5e-3 * smooth(time, 0.0, 0.09) - 3e-3 * smooth(time, 0.24, 0.34)
+    along = 8e-3 * smooth(time, 0.06, 0.17) - 4e-3 * smooth(time, 0.17, 0.25)
+    slide = case("slide", "a rigid ball slides to and fro on a slab that is glued to a table", 0.34,
+                 [0.07, 0.12, 0.17, 0.22], "slab.msh", SLAB, True,
+                 [{"radius": SLIDER, "friction": 0.5, "path": path_of(time, along, SLAB[1] + SLIDER - deep, 0.0)}])
     return [
         (cubes, two_cubes, (EDGE / 12, 2.5e-4)),
+        (slide, slid_slab, (SLAB[0] / 16, 5e-4)),
     ]

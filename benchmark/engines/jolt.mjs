@@ -30,12 +30,12 @@ class World {
     this.jolt.GetPhysicsSystem().SetGravity(vec(scene.gravity));
     this.soft = this.add(scene.bodies[0]);
     if (scene.tools.length === 0) return;
-    this.ball = this.tool(scene.tools[0]);
-    this.centre = toolAt(scene.tools[0], 0);
+    this.balls = scene.tools.map((tool) => this.tool(tool));
   }
-  tool({ radius, friction }) {
-    const settings = new Jolt.BodyCreationSettings(new Jolt.SphereShape(radius), place(toolAt(this.scene.tools[0], 0)),
-      upright, Jolt.EMotionType_Dynamic, kMoving);
+  tool(tool) {
+    const { radius, friction } = tool;
+    const settings = new Jolt.BodyCreationSettings(new Jolt.SphereShape(radius), place(toolAt(tool, 0)), upright,
+      Jolt.EMotionType_Dynamic, kMoving);
     settings.mFriction = friction;
     settings.mAllowSleeping = false;
     settings.mOverrideMassProperties = Jolt.EOverrideMassProperties_CalculateInertia;
@@ -43,12 +43,13 @@ class World {
     settings.mGravityFactor = settings.mLinearDamping = settings.mAngularDamping = 0;
     const body = this.bodies.CreateBody(settings);
     this.bodies.AddBody(body.GetID(), Jolt.EActivation_Activate);
-    return body;
+    return { tool, body, centre: toolAt(tool, 0) };
   }
   add(body) {
     const settings = new Jolt.SoftBodyCreationSettings(material(body), place([0, 0, 0]), upright, kMoving);
     settings.mNumIterations = kIterations;
-    settings.mFriction = settings.mLinearDamping = 0;
+    settings.mFriction = this.scene.tools[0]?.friction ?? 0;  // of a pair it is the geometric mean
+    settings.mLinearDamping = 0;
     settings.mAllowSleeping = false;
     const soft = this.bodies.CreateSoftBody(settings);
     this.bodies.AddBody(soft.GetID(), Jolt.EActivation_Activate);
@@ -59,20 +60,21 @@ class World {
     const x = vertices.at(i).mPosition, c = this.soft.GetCenterOfMassPosition();
     return [c.GetX() + x.GetX(), c.GetY() + x.GetY(), c.GetZ() + x.GetZ()];
   }
-  /** The force is the momentum that the ball gets in a step; then it is led on. */
+  /** The force is the momentum that the first ball gets in a step; then they are led on. */
   step(time) {
-    if (!this.ball) {
+    if (!this.balls) {
       this.jolt.Step(this.dt, 1);
       return [0, 0, 0];
     }
-    const next = toolAt(this.scene.tools[0], time);
-    const speed = next.map((x, axis) => (x - this.centre[axis]) / this.dt);
-    this.bodies.SetPositionRotationAndVelocity(this.ball.GetID(), place(this.centre), upright,
-      vec(speed), vec([0, 0, 0]));
+    const speeds = this.balls.map(({ tool, body, centre }) => {
+      const speed = toolAt(tool, time).map((x, axis) => (x - centre[axis]) / this.dt);
+      this.bodies.SetPositionRotationAndVelocity(body.GetID(), place(centre), upright, vec(speed), vec([0, 0, 0]));
+      return speed;
+    });
     this.jolt.Step(this.dt, 1);
-    this.centre = next;
-    const v = this.ball.GetLinearVelocity();
-    return [v.GetX(), v.GetY(), v.GetZ()].map((x, axis) => kToolMass * (x - speed[axis]) / this.dt);
+    for (const ball of this.balls) ball.centre = toolAt(ball.tool, time);
+    const v = this.balls[0].body.GetLinearVelocity();
+    return [v.GetX(), v.GetY(), v.GetZ()].map((x, axis) => kToolMass * (x - speeds[0][axis]) / this.dt);
   }
 }
 

@@ -18,9 +18,9 @@ struct DeviceConfig;
 /// A device of 3D Systems (Touch, Phantom) by OpenHaptics' driver. D has its origin where the
 /// driver has it, +x right, +y up, +z towards the person. One frame of the driver from read() to
 /// write(), so that a force goes out in the tick of the position that it answers; with a torque
-/// where the device has six actuated axes (Premium 6DOF). The driver's own
-/// limits stay on. What it warns of, a calibration that is lost, or a force that it has turned off
-/// makes the device not ready: the force comes back as after arming.
+/// where the device has six actuated axes (Premium 6DOF). The driver's own limits stay on. What it
+/// warns of, a calibration that is lost, or a force that it has turned off makes the device not
+/// ready: the force comes back as after arming.
 class OpenHapticsDevice : public HapticDevice {
  public:
   /// @param name by which the vendor's setup knows it; empty: the driver's default device

@@ -16,11 +16,11 @@ namespace {
 
 /// One change of a file that is right, or another command line.
 struct Mistake {
-  std::string file;      ///< that is changed; empty: none
-  std::string right;     ///< in it; empty: it is replaced whole
-  std::string wrong;     ///< in its place
-  std::string complaint; ///< of the program
-  std::string remedy;    ///< that it names
+  std::string file;                     ///< that is changed; empty: none
+  std::string right;                    ///< in it; empty: it is replaced whole
+  std::string wrong;                    ///< in its place
+  std::string complaint;                ///< of the program
+  std::string remedy;                   ///< that it names
   std::vector<std::string> words = {};  ///< in place of the usual command line
 };
 
@@ -101,13 +101,19 @@ TEST_CASE("mistakes: a model") {
       IRDM_PRECOMPUTE,
       {{"", "", "", "mdoel.toml: no such file", "check the path", {"@mdoel.toml", "-o", "@m.h5"}},
        {"", "", "", "folder: is a folder", "give the path of a file", {"@folder", "-o", "@m.h5"}},
-       {"", "", "", "cannot be created", "check that the folder", {"@model.toml", "-o", "@no/m.h5"}},
+       {"",
+        "",
+        "",
+        "cannot be created",
+        "check that the folder",
+        {"@model.toml", "-o", "@no/m.h5"}},
        {"model.toml", "[material]", "[material", "model.toml:5: ", "correct the TOML syntax"},
        {"model.toml", "youngs_modulus", "young_modulus", "material.youngs_modulus is missing",
         "is it 'young_modulus'?"},
        {"model.toml", "steps", "step", "response.step is not a known key", "did you mean 'steps'?"},
        {"model.toml", "[material]", "[materials]", "material is missing", "is it 'materials'?"},
-       {"model.toml", "2000", "\"2 kPa\"", "youngs_modulus is not a number", "give a finite number"},
+       {"model.toml", "2000", "\"2 kPa\"", "youngs_modulus is not a number",
+        "give a finite number"},
        {"model.toml", "0.3", "0.5", "poisson_ratio is 0.5", "< 0.5"},
        {"model.toml", "110", "-110", "density is -110", "give a finite number >="},
        {"model.toml", "dt = 0.002", "dt = 2", "response.dt is 2", "<= 1"},
@@ -138,7 +144,11 @@ TEST_CASE("mistakes: a scene") {
          {"scene.toml", "2000", "-2000", "coupling_stiffness is -2000", "give a finite number"},
          {"scene.toml", "port = 0", "port = 70000", "server.port is 70000", "0 to 65535"},
          {"scene.toml", "[[object]]", "[object]", "is not a list of tables", "[[object]]"},
-         {"", "", "", "cannot be created", "check that the folder exists",
+         {"",
+          "",
+          "",
+          "cannot be created",
+          "check that the folder exists",
           {"@scene.toml", "--record", "@no/trace.h5", "--duration", "0.1"}}});
 }
 
@@ -147,7 +157,11 @@ TEST_CASE("mistakes: a bridge") {
         {{"", "", "", "bridge.tml: no such file", "check the path", {"@bridge.tml"}},
          {"", "", "", "folder: is a folder", "give the path of a file", {"@folder"}},
          {"", "", "", "no server is named", "--server HOST:PORT", {"@bridge.toml"}},
-         {"", "", "", "'localhost' has no port", "HOST:PORT",
+         {"",
+          "",
+          "",
+          "'localhost' has no port",
+          "HOST:PORT",
           {"@bridge.toml", "--server", "localhost"}},
          {"bridge.toml", "virtual", "vrtual", "type is 'vrtual'", "give one of: "},
          {"bridge.toml", "script.csv", "scirpt.csv", "scirpt.csv: no such stylus script", ""},

@@ -28,8 +28,8 @@ class Body:
     """Free degrees of freedom of a Grid, its state, and what touches it.
 
     touching: nodes that may touch. step [s] of the second order backward difference; None: statics. along: the axes of
-    forces on them, default all. gravity: acceleration (d) [m/s^2]. light: a face without mass (Grid.assemble): nodes that
-    meet it at some speed do not knock, so that forces are smooth.
+    forces on them, default all. gravity: acceleration (d) [m/s^2]. light: the face that is touched, if it is to have no
+    mass (Grid.assemble): nodes that meet something at some speed do not knock, so that forces are smooth.
     """
 
     def __init__(self, grid, material, fixed, touching, step, velocity=None, along=None, gravity=None,

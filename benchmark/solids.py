@@ -109,7 +109,7 @@ def centre(case, time):
 
 
 def gripped(case, body, step, dt, parts):
-    """The ball's force on the table's steps, from a half or a quarter of the body, and the body's samples."""
+    """Force on the ball at the ends of the table's steps, `parts` times that of the modelled part, and the samples."""
     tool = case["tools"][0]
     grip = Grip(body, centre(case, 0.0), tool["radius"], tool["friction"])
     force, shapes = [], []

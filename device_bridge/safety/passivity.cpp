@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/motion/rigid_body.hpp"
+#include "device_bridge/safety/time_since.hpp"
 
 namespace irdm {
 
@@ -18,7 +19,8 @@ double WorldWork::answer(std::int64_t time_ns, const Wrench& wrench) noexcept {
   const Pose* pose = at(time_ns);
   if (pose == nullptr || (any_ && time_ns <= answered_.time_ns)) return 0.0;
   const Pose before = std::exchange(answered_, *pose);
-  const bool follows = std::exchange(any_, true) && pose->time_ns - before.time_ns <= kLongest;
+  const bool follows = std::exchange(any_, true) &&
+                       time_since(before.time_ns, pose->time_ns) <= std::uint64_t{kLongest};
   if (!follows) return 0.0;
   // As the step has it: the force is the one at its end.
   const double given =

@@ -5,6 +5,7 @@
 
 #include "common/motion/rigid_body.hpp"
 #include "common/realtime/clock.hpp"
+#include "device_bridge/safety/time_since.hpp"
 
 namespace irdm {
 namespace {
@@ -17,11 +18,6 @@ constexpr double kOffNorm = 0.01;
 // The way of the tip or that of the hand by the turn, whichever is longer [m, m/s].
 double length(const Twist& twist) noexcept {
   return std::max(twist.linear.norm(), kLever * twist.angular.norm());
-}
-
-// Exact for any two times; of a time that goes back, longer than any gap [ns].
-std::uint64_t time_since(std::int64_t earlier_ns, std::int64_t now_ns) noexcept {
-  return static_cast<std::uint64_t>(now_ns) - static_cast<std::uint64_t>(earlier_ns);
 }
 
 }  // namespace

@@ -115,7 +115,8 @@ DeviceConfig read_device(TomlTable table, const std::string& file,
     table.fail("", "has no script", "add script = \"FILE.csv\" or give --script FILE.csv");
   }
   if (table.has("commissioned")) {
-    device.commissioned = commission::load_report(table.path("commissioned"));
+    const std::filesystem::path report = table.path("commissioned");
+    if (!overrides.commissions) device.commissioned = commission::load_report(report);
   }
   if (table.has("hand")) device.hand = read_hand(table.table("hand"));
   device.sensor = read_sensor(table.table("sensor"));

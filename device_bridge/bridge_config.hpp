@@ -99,9 +99,10 @@ struct BridgeConfig {
 
 /// What the command line says beside the file.
 struct BridgeOverrides {
-  std::string server = {};  ///< takes the place of bridge.server; empty: not given
-  std::string device = {};  ///< takes the place of every device's type; empty: not given
-  std::string script = {};  ///< of the only device, whose table has none; empty: not given
+  std::string server = {};   ///< takes the place of bridge.server; empty: not given
+  std::string device = {};   ///< takes the place of every device's type; empty: not given
+  std::string script = {};   ///< of the only device, whose table has none; empty: not given
+  bool commissions = false;  ///< a report is made: none is read
 };
 
 /// Reads and checks a whole configuration. Throws Error with file and line.

@@ -1,6 +1,7 @@
 #include <unistd.h>
 
 #include <cctype>
+#include <csignal>
 #include <fstream>
 #include <iostream>
 #include <memory>
@@ -24,7 +25,9 @@ struct CommissionOptions {
 };
 
 BridgeConfig load_one_device(const CommissionOptions& options) {
-  BridgeConfig config = load_bridge_config(options.config, options.overrides);
+  BridgeOverrides overrides = options.overrides;
+  overrides.commissions = true;
+  BridgeConfig config = load_bridge_config(options.config, overrides);
   if (options.device >= config.devices.size()) {
     throw Error("--device",
                 "is " + std::to_string(options.device) + ", and there are only " +
@@ -64,6 +67,7 @@ void write(const std::string& file, const std::string& text, std::ios::openmode 
 
 int commission_device(const CommissionOptions& options) {
   StopSignal signal;
+  std::signal(SIGTSTP, SIG_IGN);  // a process that is suspended takes no force away
   const BridgeConfig config = load_one_device(options);
   const std::string file = options.out.empty() ? file_name(config.devices[0]) : options.out;
   write(file, "", std::ios::app);  // one that cannot be written is told before

@@ -17,8 +17,9 @@ struct Allowance {
   std::string words = {};  ///< why it is less, and what to do; empty: it is not
 };
 
-/// Without a report a device that is no simulation may show 1 N, or that in a torque; with one, as
-/// much as was shown in it. Throws Error when the report is of another device.
+/// Without a report a device that is no simulation may show 1 N; with one, as much as was shown in
+/// it. A torque is not tried in it, and may be that of 1 N at kLever in either case. Throws Error
+/// when the report is of another device.
 /// @param device open
 /// @param max_force as configured [N]
 Allowance allowance(const DeviceConfig& config, const HapticDevice& device, double max_force);

@@ -73,10 +73,12 @@ class OpenLoop {
                                  .duration = std::numeric_limits<double>::infinity(),
                                  .log = &*runner_},
                    done_);
+    lock_memory(config.realtime);
     link_.state.put({.linked = true, .sessions = 1, .dt = 1.0 / config.rate});
     try {
       servo_->start();
     } catch (...) {
+      servo_.reset();  // its thread may run already
       device_.close();
       throw;
     }
@@ -92,7 +94,9 @@ class OpenLoop {
   StepRunner& runner() noexcept { return *runner_; }
   /// There are no ticks any more.
   bool over() noexcept {
-    over_ = over_ || done_.consume() || servo_->driver_silent(monotonic_ns());
+    constexpr int kSilentLooks = 3;  // one is seen by a process that was itself asleep
+    silent_ = servo_->driver_silent(monotonic_ns()) ? silent_ + 1 : 0;
+    over_ = over_ || done_.consume() || silent_ >= kSilentLooks;
     return over_;
   }
 
@@ -104,6 +108,7 @@ class OpenLoop {
   EventFd done_;
   std::optional<StepRunner> runner_;
   std::optional<ServoThread> servo_;
+  int silent_ = 0;  ///< looks in a row
   bool over_ = false;
 };
 
@@ -160,12 +165,13 @@ bool run_plan(const std::vector<std::unique_ptr<Step>>& plan, HapticDevice& devi
 
 bool run_with_device(const BridgeConfig& config, HapticDevice& device, Person& person,
                      Report& report) {
+  std::vector<std::unique_ptr<Step>> plan;  // outlives the ticks
   OpenLoop loop(device, config);
   report.device = device.identity();
-  const auto plan = make_plan({.rate = config.rate,
-                               .max_force = loop.max_force(),
-                               .buttons = config.devices[0].mapping.buttons,
-                               .simulated = device.simulated()});
+  plan = make_plan({.rate = config.rate,
+                    .max_force = loop.max_force(),
+                    .buttons = config.devices[0].mapping.buttons,
+                    .simulated = device.simulated()});
   const bool passed = run_plan(plan, device, loop, person, report);
   for (std::size_t i = report.steps.size() - 1; i < plan.size(); ++i) {
     report.steps.push_back({.step = plan[i]->name()});

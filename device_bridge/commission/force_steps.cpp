@@ -1,6 +1,7 @@
 #include "device_bridge/commission/force_steps.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "device_bridge/commission/reading_steps.hpp"
@@ -32,9 +33,16 @@ void ForceWatch::look(const Seen& seen) noexcept {
 
 namespace {
 
-// Times of a ForceSignStep [s]: of the force, of its opposite, and of the end.
-constexpr double kRest = 0.6, kUp = 0.9, kTop = 1.7, kDown = 2.3, kBottom = 3.1, kZero = 3.4;
-constexpr double kMeasured = 0.2;  // at the end of each
+// Of a ForceSignStep [s]: it rests, and then has the force, its opposite, and both once more.
+constexpr double kRest = 0.6, kRising = 0.3, kPhase = 1.0, kTurning = 0.4;
+constexpr double kMeasured = 0.2;   // at the end of each phase
+constexpr double kAgreement = 0.2;  // of both turns, by the way
+constexpr int kPhases = 4;
+
+double end_of(int phase) noexcept {
+  return kRest + (phase + 1) * kPhase;
+}
+constexpr double kAllOver = kRest + kPhases * kPhase + kRising;
 
 Request hold_loosely(int axis) {
   const std::string to = direction_word(axis);
@@ -51,10 +59,14 @@ ForceSignStep::ForceSignStep(int axis)
 Demand ForceSignStep::tick(const Seen& seen) noexcept {
   watch_.look(seen);
   const double time = watch_.time();
-  if (time > kTop - kMeasured && time <= kTop) add(there_, seen);
-  if (time > kBottom - kMeasured && time <= kBottom) add(back_, seen);
-  const double share =
-      rising(time, kRest, kUp) - 2.0 * rising(time, kTop, kDown) + rising(time, kBottom, kZero);
+  double share = rising(time, kRest, kRest + kRising);
+  for (int phase = 0; phase < kPhases; ++phase) {
+    const double end = end_of(phase);
+    if (time > end - kMeasured && time <= end) add(places_[static_cast<std::size_t>(phase)], seen);
+    const double sign = phase % 2 == 0 ? -1.0 : 1.0;
+    if (phase + 1 < kPhases) share += 2.0 * sign * rising(time, end, end + kTurning);
+  }
+  share += rising(time, end_of(kPhases - 1), kAllOver);
   return {kForce * share * Vector3::Unit(axis_)};
 }
 
@@ -66,14 +78,23 @@ void ForceSignStep::add(Place& place, const Seen& seen) const noexcept {
 }
 
 bool ForceSignStep::over() const noexcept {
-  return watch_.trouble() != nullptr || watch_.time() >= kZero;
+  return watch_.trouble() != nullptr || watch_.time() >= kAllOver;
 }
 
 Judgement ForceSignStep::judge(Measured&) const {
   if (watch_.trouble() != nullptr) return {false, watch_.trouble()};
-  if (there_.count == 0 || back_.count == 0) return {false, "the device has no readings"};
-  const double shown = 0.5 * (there_.shown / there_.count - back_.shown / back_.count);
-  const Vector3 way = 0.5 * (there_.sum / there_.count - back_.sum / back_.count);
+  std::array<Vector3, kPhases> mean;
+  double shown = 0.0;
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    const Place& place = places_[i];
+    if (place.count == 0) return {false, "the device has no readings"};
+    mean[i] = place.sum / place.count;
+    shown += (i % 2 == 0 ? 0.25 : -0.25) * place.shown / place.count;
+  }
+  // Half the way between both forces, twice; what a hand drifts evenly is in neither.
+  const Vector3 first = 0.25 * (mean[0] - 2.0 * mean[1] + mean[2]);
+  const Vector3 second = 0.25 * (2.0 * mean[2] - mean[1] - mean[3]);
+  const Vector3 way = 0.5 * (first + second);
   const std::string wanted = axis_word(Vector3::Unit(axis_));
   if (shown < 0.5 * kForce) {
     return {false, "the safety filter showed " + in_unit(shown, "N") + " of 0.2 N; run it again"};
@@ -81,6 +102,11 @@ Judgement ForceSignStep::judge(Measured&) const {
   if (way.cwiseAbs().maxCoeff() < kLeastWay) {
     return {false, "a force along " + wanted +
                        " did not move the handle; hold it loosely, and see that its motors are on"};
+  }
+  if ((first - second).norm() > kAgreement * way.norm() || !along_an_axis(way)) {
+    return {false, "a force along " + wanted +
+                       " and the way of the handle do not agree; hold it loosely and quietly, and "
+                       "run it again"};
   }
   const std::string found = axis_word(way);
   const std::string words = "a force along " + wanted + " moved the handle along " + found +

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "device_bridge/commission/step.hpp"
@@ -25,8 +26,8 @@ class ForceWatch {
   const char* trouble_ = nullptr;
 };
 
-/// Whether a small force along an axis of D moves the handle that way: by the difference between
-/// the places under the force and under its opposite.
+/// Whether a small force along an axis of D moves the handle that way: by the differences between
+/// the places under the force and under its opposite, of two turns that have to agree.
 class ForceSignStep final : public Step {
  public:
   static constexpr double kForce = 0.2;      ///< [N]
@@ -50,8 +51,7 @@ class ForceSignStep final : public Step {
 
   int axis_;
   ForceWatch watch_;
-  Place there_;  ///< under the force
-  Place back_;   ///< under its opposite
+  std::array<Place, 4> places_;  ///< under the force, its opposite, and both once more
 };
 
 /// Slowly up to the largest force, which the handle is pushed up with.

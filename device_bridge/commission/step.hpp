@@ -17,7 +17,6 @@ struct Seen {
   DeviceState device = {};
   Vector3 shown = Vector3::Zero();  ///< force [N], D
   double gain = 1.0;                ///< of the OscillationDetector
-  double port_energy = 0.0;         ///< see Passivity [J]
   bool fault = false;               ///< of the safety filter
 };
 

@@ -21,7 +21,6 @@ Seen StepRunner::see(std::int64_t now_ns) noexcept {
       .device = loop_.device_state(),
       .shown = loop_.shown(),
       .gain = loop_.filter().gain(),
-      .port_energy = loop_.filter().port_energy(),
       .fault = loop_.filter().state() == FilterState::kFault,
   };
 }

@@ -17,6 +17,8 @@ class KeyByKey {
     if (!changed_) return;
     termios keys = before_;
     keys.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
+    // They would stop the process with the last force on.
+    keys.c_cc[VSUSP] = keys.c_cc[VQUIT] = _POSIX_VDISABLE;
     ::tcsetattr(descriptor, TCSANOW, &keys);
   }
   KeyByKey(const KeyByKey&) = delete;

@@ -12,9 +12,10 @@ WallStep::WallStep()
 Demand WallStep::tick(const Seen& seen) noexcept {
   watch_.look(seen);
   oscillates_ = oscillates_ || seen.gain < 1.0;
-  active_ = active_ || oscillates_ || seen.port_energy < -kMostGiven;
+  active_ = active_ || oscillates_;
   if (!seen.tip.allFinite() || over()) return {};
   const double depth = watch_.start().y() - kDistance - seen.tip.y();
+  judge_press(seen, depth > 0.0);
   if (depth > 0.0 && seen.shown.y() >= kFelt) pressed_ += seen.elapsed;
   if (depth <= 0.0 && pressed_ >= kPressed) {
     ++level_;
@@ -22,6 +23,16 @@ Demand WallStep::tick(const Seen& seen) noexcept {
   }
   if (over()) return {};
   return {.force = std::max(0.0, depth) * kStiffness[level_] * Vector3::UnitY(), .contact = true};
+}
+
+// A press gives back no more than it took: by what was shown since the tick before.
+void WallStep::judge_press(const Seen& seen, bool touched) noexcept {
+  if (touched && !touched_) given_ = 0.0;
+  if (touched_) given_ += shown_.dot(seen.tip - tip_);
+  if (!touched && touched_ && given_ > kMostGiven) active_ = true;
+  touched_ = touched;
+  tip_ = seen.tip;
+  shown_ = seen.shown;
 }
 
 bool WallStep::over() const noexcept {

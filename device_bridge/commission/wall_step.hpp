@@ -30,11 +30,17 @@ class WallStep final : public Step {
   Judgement judge(Measured& measured) const override;
 
  private:
+  void judge_press(const Seen& seen, bool touched) noexcept;
+
   ForceWatch watch_;
-  std::size_t level_ = 0;    ///< of kStiffness; its size: all are done
-  double pressed_ = 0.0;     ///< at this level [s]
-  bool active_ = false;      ///< the filter is
-  bool oscillates_ = false;  ///< that is its detector
+  bool touched_ = false;             ///< in the tick before, as the next two
+  Vector3 tip_ = Vector3::Zero();    ///< [m], D
+  Vector3 shown_ = Vector3::Zero();  ///< [N], D
+  double given_ = 0.0;               ///< by this press, less what it took [J]
+  std::size_t level_ = 0;            ///< of kStiffness; its size: all are done
+  double pressed_ = 0.0;             ///< at this level [s]
+  bool active_ = false;              ///< the filter is
+  bool oscillates_ = false;          ///< that is its detector
 };
 
 }  // namespace irdm::commission

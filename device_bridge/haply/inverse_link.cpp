@@ -68,7 +68,7 @@ void InverseLink::run() noexcept {
 void InverseLink::close() noexcept {
   if (!thread_.joinable()) return;
   boost::asio::post(io_, [this] {
-    if (phase_ != Phase::kExchanging) return io_.stop();
+    if (phase_ != Phase::kExchanging && phase_ != Phase::kAbsent) return io_.stop();
     phase_ = Phase::kEnding;
     ending_.deadline_ns = monotonic_ns() + kEndNs;
   });
@@ -187,6 +187,8 @@ void InverseLink::take_event(const std::string& text) {
   }
   if (event->device != opened_->device.id || phase_ != Phase::kExchanging) return;
   if (event->meaning == EventMeaning::kLost) {
+    // The service may still have it.
+    if (!socket_->writing()) send(exchange_.last(), monotonic_ns());
     be_absent("is lost, no force; check power and cable");
   } else if (event->meaning != EventMeaning::kNotice) {
     exchange_.lock(event->meaning == EventMeaning::kLocked);

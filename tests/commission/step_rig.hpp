@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <cstdint>
+#include <functional>
 #include <optional>
 
 #include "device_bridge/commission/guided_stylus.hpp"
@@ -19,7 +20,7 @@ class FaultyStylus : public commission::GuidedStylus {
 
   StylusPose read(double time) noexcept override {
     StylusPose pose = GuidedStylus::read(time);
-    pose.tip = reading_axes * pose.tip;
+    pose.tip = reading_axes * (pose.tip + drift(time));
     pose.buttons <<= button_shift;
     repeats = repeats_every > 0 && ++reads % repeats_every != 0;
     if (unplugged) pose.tip.setConstant(std::numeric_limits<double>::quiet_NaN());
@@ -38,6 +39,7 @@ class FaultyStylus : public commission::GuidedStylus {
 
   Matrix3 reading_axes = Matrix3::Identity();  ///< tip as it is to tip as it is read
   Matrix3 force_axes = Matrix3::Identity();    ///< force as it is asked for to force that acts
+  std::function<Vector3(double)> drift = [](double) { return Vector3(Vector3::Zero()); };  ///< [m]
   int button_shift = 0;
   int repeats_every = 0;  ///< of so many readings one is new; 0: all
   bool ready = true;

@@ -48,8 +48,10 @@ TEST_CASE("commission: with a report a device may show as much as it did then") 
   const NumberedStylus device;
   CHECK(allowance(with_report(3.29), device, 3.3).words.empty());
   CHECK(allowance(with_report(3.29), device, 3.3).force > 3.3);
+  CHECK(allowance(with_report(3.29), device, 3.3).torque == Approx(0.05));  // none was tried
   const Allowance less = allowance(with_report(2.0), device, 3.3);
   CHECK(less.force == 2.0);
+  CHECK(less.torque == Approx(0.05));
   CHECK_THAT(less.words, Contains("commissioned up to 2 N"));
 }
 

@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "device_bridge/commission/force_steps.hpp"
 #include "tests/commission/step_rig.hpp"
@@ -34,6 +35,29 @@ TEST_CASE("commission: a reversed force and swapped forces fail with words of th
   const Judgement exchanged = rig.run(right);
   CHECK_FALSE(exchanged.passed);
   CHECK_THAT(exchanged.words, Contains("forces are swapped"));
+}
+
+TEST_CASE("commission: a hand that drifts neither hides a force nor stands for one") {
+  FaultyStylus device;
+  StepRig rig(device);
+  device.drift = [](double time) { return Vector3(1e-3 * time, -2e-3 * time, 0.0); };
+  ForceSignStep good(0);
+  CHECK(rig.run(good).passed);
+  device.force_axes = reversed(0);
+  ForceSignStep turned(0);
+  CHECK_THAT(rig.run(turned).words, Contains("the force is reversed"));
+  device.force_axes.setZero();
+  for (int k = 0; k < 12; ++k) {
+    device.drift = [k](double time) {
+      const double phase = 0.5 * k;
+      return Vector3(3e-3 * std::sin(2.0 * time + phase), 2e-3 * std::sin(1.3 * time + phase),
+                     1e-3 * std::sin(3.0 * time - phase));
+    };
+    ForceSignStep off(0);
+    const Judgement judgement = rig.run(off);
+    CAPTURE(k, judgement.words);
+    CHECK_FALSE(judgement.passed);
+  }
 }
 
 TEST_CASE("commission: motors that are off, and a device that is not ready, fail at the force") {

@@ -84,7 +84,7 @@ Report read_report(TomlTable table) {
   report.device = head.text("device");
   report.date = head.text("date");
   head.finish();
-  report.measured = read_measured(table.table("measured", true));
+  TomlTable measured = table.table("measured", true);
   for (TomlTable& step : table.tables("step")) {
     report.steps.push_back({step.text("name"), read_verdict(step), step.text("words", "")});
     step.finish();
@@ -94,6 +94,7 @@ Report read_report(TomlTable table) {
               "run irdm-bridge commission until all steps pass, or remove the key `commissioned`: "
               "at most 1 N then");
   }
+  report.measured = read_measured(std::move(measured));
   table.finish();
   return report;
 }

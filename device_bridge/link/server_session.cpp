@@ -389,13 +389,13 @@ void ServerSession::violated(const ProtocolError& error) {
     return leave();
   }
   ++shared_.report.protocol_errors;
-  connection_->tell_violation(error);
   if (error.fault() == ProtocolFault::kWrongMagic && shared_.report.sessions == 0) {
     end_.failure = shared_.server +
                    ": is no irdm-server's port for bridges; give the one that it prints after "
                    "'listening on', not its page's";
     return leave();
   }
+  connection_->tell_violation(error);
   log().error("server {}: {}; connection closed", shared_.server, error.what());
   connection_->send(wire::Goodbye{wire::GoodbyeReason::kProtocolError});
   leave();

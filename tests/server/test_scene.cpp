@@ -382,7 +382,8 @@ TEST_CASE("a key that no table of a scene knows is an error") {
     return name + " is not a known key; remove it or correct its name";
   };
   CHECK(rejection("colour = 1\n" + kObject) == "s.toml:1: " + unknown("colour"));
-  CHECK(rejection("[server]\nprot = 1\n" + kObject) == "s.toml:2: " + unknown("server.prot"));
+  CHECK(rejection("[server]\nprot = 1\n" + kObject) ==
+        "s.toml:2: server.prot is not a known key; did you mean 'port'?");
   CHECK(rejection("[world]\nwind = 1\n" + kObject) == "s.toml:2: " + unknown("world.wind"));
   CHECK(rejection("[contact]\nk = 1\n" + kObject) == "s.toml:2: " + unknown("contact.k"));
   CHECK(rejection(kObject + "mesh = 1\n") == "s.toml:3: " + unknown("object[0].mesh"));

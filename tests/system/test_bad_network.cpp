@@ -94,8 +94,14 @@ class DistantStage : public Stage {
     std::istringstream text(file_content(path("frames.txt")));
     LinkFrame frame;
     double ignored = 0.0;
-    for (double x = 0, y = 0, z = 0; text >> ignored >> ignored >> ignored >> ignored >> ignored >>
-                                     x >> y >> z >> frame.begun_ns;) {
+    const auto ignore = [&](int numbers) {
+      for (int i = 0; i < numbers; ++i) text >> ignored;
+    };
+    for (double x = 0, y = 0, z = 0;;) {
+      ignore(5);  // tick, whether it failed, place
+      text >> x >> y >> z;
+      ignore(3);  // torque
+      if (!(text >> frame.begun_ns)) break;
       frame.force = std::sqrt(x * x + y * y + z * z);
       found.push_back(frame);
     }

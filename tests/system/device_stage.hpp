@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "common/geometry.hpp"
 #include "tests/system/stage.hpp"
 
 namespace irdm::test {

@@ -1,5 +1,4 @@
 #include "common/hdf5/file.hpp"
-#include "common/config/input_file.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,6 +6,7 @@
 #include <limits>
 #include <system_error>
 
+#include "common/config/input_file.hpp"
 #include "common/error.hpp"
 
 namespace irdm::hdf5 {

@@ -1,17 +1,20 @@
 #!/usr/bin/env bash
 # Sets up, builds and runs the suite as it ships; checks the formatting.
-#   scripts/test.sh [--all]
+#   scripts/test.sh [--all | --exhaustive]
 #     --all: first the tests under the address and undefined-behaviour sanitizers and under the thread sanitizer, and the
-#            fuzzers; then the suite with warnings as errors, MPI and SLEPc (preset ci), with the tests that repeat
-#            others of it very often (label "exhaustive")
+#            fuzzers; then the suite with warnings as errors, MPI and SLEPc (preset ci)
+#     --exhaustive: instead of the suite the tests that repeat others of it very often (label "exhaustive")
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 all=no
+preset=release
+chosen=(--label-exclude exhaustive)
 case "${1:-}" in
   "") ;;
   --all) all=yes ;;
-  *) echo "usage: scripts/test.sh [--all]" >&2; exit 2 ;;
+  --exhaustive) chosen=(--label-regex exhaustive) ;;
+  *) echo "usage: scripts/test.sh [--all | --exhaustive]" >&2; exit 2 ;;
 esac
 
 # The next builds go on while tests wait for something and fuzzers have their time; they never take a processor from one.
@@ -48,11 +51,8 @@ echo "format: checking"
 scripts/format.sh --check
 echo "includes: checking"
 scripts/check_includes.py
-preset=release
-chosen=(--label-exclude exhaustive)
 if [ $all = yes ]; then
   preset=ci
-  chosen=()
   # Tests labelled "slow" measure or play for long and find nothing new under a sanitizer.
   scripts/build.sh asan
   build_ahead tsan

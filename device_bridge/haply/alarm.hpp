@@ -10,7 +10,7 @@
 
 namespace irdm::haply {
 
-/// One call at a time of the clock, in the thread of an io_context. Setting it again puts off the
+/// One call at a time of the clock, in the thread of an io_context. Setting it again cancels the
 /// call before.
 class Alarm {
  public:
@@ -24,6 +24,7 @@ class Alarm {
       if (!error && number == newest_) call();  // an earlier one may be due already
     });
   }
+  void cancel() noexcept { ++newest_; }
 
  private:
   boost::asio::steady_timer timer_;

@@ -9,7 +9,6 @@ std::string InverseExchange::begin(const ExchangePartner& partner,
                                    const std::optional<InverseStatus>& status) {
   partner_ = partner;
   status_ = status;
-  locked_ = false;
   withhold();
   return partner.key == ForceKey::kVector ? encode_first(partner.device) : last();
 }
@@ -59,7 +58,10 @@ void InverseExchange::judge() {
   if (ready && !reading_.ready) ++reading_.generation;
   reading_.ready = ready;
   if (ready) return trouble_.tell("");
-  if (locked_) return trouble_.tell("its emergency brake is engaged, no force; release it");
+  if (locked_)
+    return trouble_.tell(
+        "its emergency brake is engaged, no force; release it (if it is: engage it and release it "
+        "again)");
   if (!status.power_supply) return trouble_.tell("has no power supply, no force; plug it in");
   if (!status.calibrated) {
     return trouble_.tell(

@@ -31,7 +31,7 @@ class InverseExchange {
   /// On a new connection: nothing that was sent before is answered.
   void connect() noexcept { sent_ns_.clear(); }
   /// The first message to this device on a connection, without force. Its emergency brake counts as
-  /// released.
+  /// it was told last, on whatever connection.
   /// @param status as the service told, if it did
   std::string begin(const ExchangePartner& partner, const std::optional<InverseStatus>& status);
 

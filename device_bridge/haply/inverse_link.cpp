@@ -13,12 +13,13 @@
 namespace irdm::haply {
 namespace {
 
-constexpr std::int64_t kPeriodNs = 500'000;            // from one message to the next
-constexpr std::int64_t kAbsentPeriodNs = 100'000'000;  // while the device is not there
-constexpr std::int64_t kSilenceNs = 1'000'000'000;     // then the connection is made anew
-constexpr std::int64_t kPauseNs = 250'000'000;         // before it is tried a second time
-constexpr std::int64_t kConnectNs = 4'000'000'000;     // until the first message
-constexpr std::int64_t kEndNs = 300'000'000;           // for the last answer and the goodbye
+constexpr std::int64_t kPeriodNs = 500'000;             // from one message to the next
+constexpr std::int64_t kAbsentPeriodNs = 100'000'000;   // while the device is not there
+constexpr std::int64_t kSilenceNs = 1'000'000'000;      // then the connection is made anew
+constexpr std::int64_t kPauseNs = 250'000'000;          // before it is tried a second time
+constexpr std::int64_t kEventsPauseNs = 1'000'000'000;  // before events are listened to again
+constexpr std::int64_t kConnectNs = 4'000'000'000;      // until the first message
+constexpr std::int64_t kEndNs = 300'000'000;            // for the last answer and the goodbye
 
 constexpr const char* kStart =
     "start the Inverse Service (systemctl start haply-inverse-service), or correct `service`";
@@ -91,8 +92,9 @@ void InverseLink::connect() {
              [this, service] { fail(service + " says nothing", kStart); });
 }
 
-// Of the events nothing depends alone: without them the states tell, if later. Once a connection.
+// Of the events nothing depends alone: without them the states tell, if later.
 void InverseLink::listen_to_events() {
+  events_alarm_.cancel();
   if (events_ != nullptr) events_->drop();
   events_.reset();
   if (opened_->key != ForceKey::kVector) return;
@@ -101,7 +103,11 @@ void InverseLink::listen_to_events() {
   events_ = std::make_shared<ServiceSocket>(
       io_, address,
       ServiceSocket::Listener{.message = [this](const std::string& text) { take_event(text); },
-                              .lost = [](const std::string&) {}});
+                              .lost =
+                                  [this](const std::string&) {
+                                    events_alarm_.set(monotonic_ns() + kEventsPauseNs,
+                                                      [this] { listen_to_events(); });
+                                  }});
   events_->open();
 }
 

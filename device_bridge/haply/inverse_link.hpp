@@ -22,7 +22,8 @@ namespace irdm::haply {
 /// A connection to the Inverse Service for one device, in a thread of its own: 2000 times a second,
 /// when the last answer is there, it sends the newest force, and the answer is the newest state
 /// (InverseExchange). A connection that is lost is made again; the last that one hears that is
-/// closed is zero. The events of a service from 3.5 on are heard where they can be.
+/// closed is zero. The events of a service from 3.5 on are heard where they can be; their channel,
+/// too, is opened again when it is lost.
 /// Large: each private method is one step in the life of the connection, in one thread.
 class InverseLink {
  public:
@@ -84,6 +85,7 @@ class InverseLink {
   std::optional<std::promise<void>> waiting_;  ///< open(), for the first state
   boost::asio::io_context io_;
   Alarm alarm_{io_};
+  Alarm events_alarm_{io_};
   std::shared_ptr<ServiceSocket> socket_;
   std::shared_ptr<ServiceSocket> events_;  ///< null: none
   std::thread thread_;

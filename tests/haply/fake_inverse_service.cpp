@@ -62,7 +62,9 @@ void serve_events(FakeWorld& world, tcp::socket socket) {
   stream.accept();
   stream.text(true);
   for (std::size_t number = world.listen();; ++number) {
-    stream.write(boost::asio::buffer(world.event(number)));
+    const std::string text = world.event(number);
+    if (text.empty()) return;  // the channel breaks
+    stream.write(boost::asio::buffer(text));
   }
 }
 

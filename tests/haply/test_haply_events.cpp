@@ -75,6 +75,25 @@ TEST_CASE("an emergency brake that is engaged takes the force until it is releas
       eventually([&] { return ready_after_tick(heard.device) && heard.device.trouble().empty(); }));
 }
 
+TEST_CASE("a brake that is engaged stays so over a lost connection, and events are heard again") {
+  Heard heard;
+  heard.service.order("event " + event("device-safety-triggered", kOurs + kBrake));
+  CHECK(eventually([&] { return !ready_after_tick(heard.device); }));
+  heard.service.order("event");  // their channel breaks, and is opened again
+  CHECK(eventually([&] { return heard.service.order("listeners") == "2"; }));
+  heard.service.kill();
+  CHECK(eventually(
+      [&] { return heard.device.trouble().find("no connection") != std::string::npos; }));
+  heard.service.start();
+  CHECK(eventually([&] {
+    return heard.device.trouble().find("its emergency brake is engaged") != std::string::npos;
+  }));
+  CHECK_FALSE(ready_after_tick(heard.device));
+  REQUIRE(eventually([&] { return heard.service.order("listeners") == "1"; }));
+  heard.service.order("event " + event("device-safety-triggered", kOurs + kRelease));
+  CHECK(eventually([&] { return ready_after_tick(heard.device); }));
+}
+
 TEST_CASE("a device that the service has lost has no force, and comes back when it is there") {
   Heard heard;
   heard.service.order("plugged 049D 0");

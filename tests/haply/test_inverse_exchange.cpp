@@ -72,8 +72,10 @@ TEST_CASE("exchange: a device that is not ready has no force, and begins anew wh
   SECTION("by its emergency brake") {
     rig.exchange.lock(true);
     rig.state();
-    CHECK(rig.trouble.text() ==
-          "Haply device 049D: its emergency brake is engaged, no force; release it");
+    CHECK(
+        rig.trouble.text() ==
+        "Haply device 049D: its emergency brake is engaged, no force; release it (if it is: engage "
+        "it and release it again)");
     rig.exchange.lock(false);
     CHECK_FALSE(rig.mailbox.reading.front().ready);
   }

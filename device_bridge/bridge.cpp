@@ -136,6 +136,10 @@ FilterLimits allowed_limits(const HapticDevice& device, const BridgeConfig& conf
   if (!allowed.words.empty()) spdlog::warn("{}", allowed.words);
   limits.max_force = std::min(limits.max_force, allowed.force);
   limits.max_torque = std::min(limits.max_torque, allowed.torque);
+  if (table.commissioned) {
+    const double noise = table.commissioned->measured.position_noise.value_or(0.0);
+    limits.reading.resolution = std::max(limits.reading.resolution, kNoiseSteps * noise);
+  }
   limits.needed_success = LinkGate::kNeeded;
   return limits;
 }
@@ -195,11 +199,12 @@ std::string failure_of(ServoEnd end, const DeviceWatch& watch) {
 }  // namespace
 
 FilterLimits filter_limits(const HapticDevice& device, const BridgeConfig& config) {
-  const ForceRating rating = device.rating();
+  const DeviceRating rating = device.rating();
   return {.max_force = std::min(config.max_force, rating.peak),
           .continuous_force = std::min(config.continuous_force, rating.continuous),
           .max_torque = std::min(config.max_torque, rating.peak_torque),
           .continuous_torque = std::min(config.continuous_torque, rating.continuous_torque),
+          .reading = {.resolution = rating.resolution},
           .torque_rate = {.rise = config.max_torque_rate, .fall = 4.0 * config.max_torque_rate}};
 }
 

@@ -38,12 +38,16 @@ struct DeviceState {
   bool off = false;                ///< they show nothing, whatever it asked for
 };
 
-/// The largest forces and torques that a device is made for; infinity: it does not say.
-struct ForceRating {
+/// Noise of a position hides steps of so many times its standard deviation.
+inline constexpr double kNoiseSteps = 4.0;
+
+/// What a device is made for: its largest forces and torques, where infinity says nothing of them.
+struct DeviceRating {
   double peak = std::numeric_limits<double>::infinity();        ///< [N], > 0
   double continuous = std::numeric_limits<double>::infinity();  ///< for ever [N], > 0
   double peak_torque = 0.0;                                     ///< [N m]; 0: it renders no torque
   double continuous_torque = std::numeric_limits<double>::infinity();  ///< for ever [N m], > 0
+  double resolution = 0.0;  ///< of the tip's position [m]; 0: it does not say
 };
 
 /// A force-feedback stylus, in its own frame D; the servo loop knows where D lies in W. Made and
@@ -74,8 +78,8 @@ class HapticDevice {
   virtual bool simulated() const noexcept = 0;
   /// Time after which nothing more comes from it [s]; infinity for a person's hand.
   virtual double duration() const noexcept = 0;
-  /// What it bears; after open().
-  virtual ForceRating rating() const noexcept { return {}; }
+  /// What it bears and tells; after open().
+  virtual DeviceRating rating() const noexcept { return {}; }
   /// Model and number, by which it is known again; after open(). Empty: it does not say.
   virtual std::string identity() const { return {}; }
   /// Whose ticks read() and write() belong to; nullptr: anybody's. Lives as long as the device.

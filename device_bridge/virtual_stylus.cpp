@@ -150,7 +150,9 @@ VirtualStylus::VirtualStylus(StylusScript script, const std::optional<HandParame
     : script_(std::move(script)),
       sensor_(sensor),
       motors_(motors),
-      rating_{.peak = motors.max_force, .continuous = motors.continuous_force} {
+      rating_{.peak = motors.max_force,
+              .continuous = motors.continuous_force,
+              .resolution = std::max(sensor.resolution, kNoiseSteps * sensor.noise)} {
   if (!hand) return;
   const StylusPose start = script_.at(0.0);
   hand_.emplace(*hand, start.tip);

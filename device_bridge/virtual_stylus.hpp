@@ -149,7 +149,7 @@ class VirtualStylus : public HapticDevice {
   DeviceState state() const noexcept override;
   bool simulated() const noexcept override { return true; }
   double duration() const noexcept override { return script_.end(); }
-  ForceRating rating() const noexcept override { return rating_; }
+  DeviceRating rating() const noexcept override { return rating_; }
   std::string trouble() const override;
 
  private:
@@ -161,7 +161,7 @@ class VirtualStylus : public HapticDevice {
   std::optional<VirtualWrist> wrist_;
   VirtualSensor sensor_;
   VirtualMotors motors_;
-  ForceRating rating_;
+  DeviceRating rating_;
   double time_ = 0.0;
   std::atomic<bool> warm_{false};
 };

@@ -33,7 +33,7 @@ class GuidedStylus : public HapticDevice {
   }
   bool simulated() const noexcept override { return true; }
   double duration() const noexcept override { return std::numeric_limits<double>::infinity(); }
-  ForceRating rating() const noexcept override { return rating_; }
+  DeviceRating rating() const noexcept override { return rating_; }
   std::string identity() const override { return "virtual stylus"; }
 
  private:
@@ -41,7 +41,7 @@ class GuidedStylus : public HapticDevice {
   ObedientHand hand_;
   VirtualSensor sensor_;
   VirtualMotors motors_;
-  ForceRating rating_;
+  DeviceRating rating_;
   double time_ = 0.0;
 };
 

@@ -35,21 +35,24 @@ Vector3 to_driver(const Vector3& vector) noexcept {
 }
 
 // By the driver's number of the model, from public drivers' tables (chai3d's CDeltaDevices).
-ForceRating rating_of(int type, bool active_wrist) noexcept {
+// Resolutions are nominal.
+DeviceRating rating_of(int type, bool active_wrist) noexcept {
   struct Rated {
-    int first, last;  // types
-    double force;     // [N]
-    double torque;    // [N m], of an active wrist
+    int first, last;           // types
+    double force;              // [N]
+    double torque;             // [N m], of an active wrist
+    double resolution = 1e-5;  // [m]
   };
-  constexpr std::array kRated{Rated{31, 31, 20.0, 0.0},  Rated{61, 64, 20.0, 0.2},    // Delta
-                              Rated{32, 37, 12.0, 0.0},  Rated{110, 110, 12.0, 0.0},  // Omega
-                              Rated{60, 60, 8.0, 0.0},                                // Falcon
-                              Rated{104, 105, 12.0, 0.2}};                            // Sigma
-  ForceRating rating;
+  constexpr std::array kRated{Rated{31, 31, 20.0, 0.0},        Rated{61, 64, 20.0, 0.2},    // Delta
+                              Rated{32, 37, 12.0, 0.0},        Rated{110, 110, 12.0, 0.0},  // Omega
+                              Rated{60, 60, 8.0, 0.0, 6.4e-5},  // Falcon
+                              Rated{104, 105, 12.0, 0.2}};      // Sigma
+  DeviceRating rating;
   if (active_wrist) rating.peak_torque = std::numeric_limits<double>::infinity();
   for (const Rated& rated : kRated) {
     if (type < rated.first || type > rated.last) continue;
     rating.peak = rated.force;
+    rating.resolution = rated.resolution;
     if (active_wrist && rated.torque > 0.0) rating.peak_torque = rated.torque;
   }
   return rating;

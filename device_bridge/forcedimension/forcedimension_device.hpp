@@ -36,7 +36,7 @@ class ForceDimensionDevice : public HapticDevice {
   DeviceState state() const noexcept override;
   bool simulated() const noexcept override { return false; }
   double duration() const noexcept override { return std::numeric_limits<double>::infinity(); }
-  ForceRating rating() const noexcept override { return rating_; }
+  DeviceRating rating() const noexcept override { return rating_; }
   std::string identity() const override { return identity_; }
   std::string trouble() const override;
 
@@ -56,7 +56,7 @@ class ForceDimensionDevice : public HapticDevice {
   bool auto_init_;
   int id_ = kClosed;
   int type_ = 0;  ///< the driver's number of the model
-  ForceRating rating_;
+  DeviceRating rating_;
   std::string identity_;
   StylusPose pose_;  ///< that was read last
   bool repeated_ = false;

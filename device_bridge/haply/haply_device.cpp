@@ -11,12 +11,14 @@ namespace irdm {
 namespace {
 
 // Peak: HaplyHaptics/chai3d, CHaplyDevices. For long: the limit of a public user's driver
-// (MAVYWAVY902/xpbd-tissue-sim, HaplyInverse3Device); Haply's own pages give none.
-ForceRating rating_of(const std::string& type) noexcept {
-  ForceRating rating;
+// (MAVYWAVY902/xpbd-tissue-sim, HaplyInverse3Device); Haply's own pages give none. Resolution:
+// nominal.
+DeviceRating rating_of(const std::string& type) noexcept {
+  DeviceRating rating;
   if (type.empty() || type.starts_with("inverse3")) {
     rating.peak = 10.0;
     rating.continuous = 3.3;
+    rating.resolution = 1e-5;
   }
   return rating;
 }

@@ -30,7 +30,7 @@ class HaplyDevice : public HapticDevice {
   DeviceState state() const noexcept override;
   bool simulated() const noexcept override { return false; }
   double duration() const noexcept override { return std::numeric_limits<double>::infinity(); }
-  ForceRating rating() const noexcept override { return rating_; }
+  DeviceRating rating() const noexcept override { return rating_; }
   std::string identity() const override;
   std::string trouble() const override;
 
@@ -42,7 +42,7 @@ class HaplyDevice : public HapticDevice {
   haply::InverseMailbox mailbox_;
   std::unique_ptr<haply::InverseLink> link_;  ///< while open
   haply::InverseReport report_;
-  ForceRating rating_;
+  DeviceRating rating_;
   std::uint64_t generation_ = 0;  ///< of the reading before
   std::int64_t time_ns_ = 0;      ///< the same
   bool ready_ = false;

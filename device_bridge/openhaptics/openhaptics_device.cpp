@@ -21,6 +21,7 @@ constexpr double kNewtonMetre = 1e-3;            // per mN m
 constexpr std::int64_t kWarmNs = 5'000'000'000;  // that a warning of warm motors counts
 constexpr std::int32_t kButtonBits = 15;         // four buttons
 constexpr std::int32_t kForceAndTorque = 6;      // actuated axes
+constexpr double kResolution = 5.5e-5;           // nominal, of a Touch; others are finer [m]
 
 using Transform = std::array<double, 16>;
 
@@ -116,7 +117,7 @@ void OpenHapticsDevice::read_rating() {
   double continuous = 0.0;
   hd_.get_doublev(hd::kMaxForce, &peak);
   hd_.get_doublev(hd::kMaxContinuousForce, &continuous);
-  rating_ = {.peak = rated(peak), .continuous = rated(continuous)};
+  rating_ = {.peak = rated(peak), .continuous = rated(continuous), .resolution = kResolution};
   std::int32_t axes = 0;
   hd_.get_integerv(hd::kOutputDof, &axes);
   if (axes < kForceAndTorque) return;

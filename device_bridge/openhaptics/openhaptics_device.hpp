@@ -34,7 +34,7 @@ class OpenHapticsDevice : public HapticDevice {
   DeviceState state() const noexcept override;
   bool simulated() const noexcept override { return false; }
   double duration() const noexcept override { return std::numeric_limits<double>::infinity(); }
-  ForceRating rating() const noexcept override { return rating_; }
+  DeviceRating rating() const noexcept override { return rating_; }
   std::string identity() const override { return identity_; }
   TickSource* tick_source() noexcept override { return scheduler_.get(); }
   std::string trouble() const override;
@@ -62,7 +62,7 @@ class OpenHapticsDevice : public HapticDevice {
   hd::Calibration calibration_;
   bool calibrating_ = false;  ///< errors are about the calibration
   hd::DriverWarnings warnings_;
-  ForceRating rating_;
+  DeviceRating rating_;
   std::string identity_;
   DeviceState state_;
   bool tells_warmth_ = true;

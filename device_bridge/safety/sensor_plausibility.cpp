@@ -10,8 +10,6 @@
 namespace irdm {
 namespace {
 
-// Two ticks can follow one another closely after a late one; no speed is told from less [s].
-constexpr double kShortest = 5e-4;
 // Of a quaternion's norm from 1.
 constexpr double kOffNorm = 0.01;
 
@@ -72,21 +70,23 @@ ReadingVerdict SensorPlausibility::look_at_pose(std::int64_t now_ns, const Vecto
   }
   bad_ = 0;
   const Quaternion turned = limits_.turns ? orientation.normalized() : Quaternion::Identity();
+  Twist raw;
   if (last_good_ns_) {
     displacement_ = {tip - tip_, rotation_vector(turned * orientation_.conjugate())};
     const double seconds =
         kNanosecond * (static_cast<double>(now_ns) - static_cast<double>(*last_good_ns_));
-    const double time = std::max(seconds, kShortest);
-    velocity_ = {displacement_.linear / time, displacement_.angular / time};
+    const double time = std::max(seconds, VelocityEstimate::kShortest);
+    raw = {displacement_.linear / time, displacement_.angular / time};
   }
+  velocity_ = {estimate_.next(now_ns, tip), raw.angular};
   tip_ = tip;
   orientation_ = turned;
   last_good_ns_ = now_ns;
-  return look_at_speed();
+  return look_at_speed(raw);
 }
 
-ReadingVerdict SensorPlausibility::look_at_speed() noexcept {
-  const double speed = length(velocity_);
+ReadingVerdict SensorPlausibility::look_at_speed(const Twist& raw) noexcept {
+  const double speed = length(raw);
   const bool jumped = length(displacement_) > limits_.jump && speed > limits_.jump_speed;
   fast_ = speed > limits_.top_speed ? std::min(fast_ + 1, limits_.speed_ticks) : 0;
   if (jumped && guards_.on(Guard::kReadingJump)) return ReadingVerdict::kTrip;

@@ -5,10 +5,12 @@
 
 #include "common/motion/wrench.hpp"
 #include "device_bridge/safety/guards.hpp"
+#include "device_bridge/safety/velocity_estimate.hpp"
 
 namespace irdm {
 
 struct ReadingLimits {
+  double resolution = 0.0;   ///< steps in which the tip comes, as noise has them, too [m]
   double farthest = 2.0;     ///< of a tip from the device's origin [m]
   double top_speed = 1.0;    ///< of a hand that feels a force [m/s] ...
   int speed_ticks = 3;       ///< ... exceeded in so many ticks in a row, the force is dropped
@@ -31,7 +33,7 @@ enum class ReadingVerdict {
 class SensorPlausibility {
  public:
   SensorPlausibility(const ReadingLimits& limits, Guards guards)
-      : limits_(limits), guards_(guards) {}
+      : limits_(limits), guards_(guards), estimate_(limits.resolution) {}
 
   /// Once a tick.
   /// @param tip [m], D; anything  @param orientation in D; anything
@@ -49,6 +51,7 @@ class SensorPlausibility {
   /// Since the good reading before it; zero when the reading was not used. No turn where turns do
   /// not count.
   const Twist& displacement() const noexcept { return displacement_; }
+  /// Zero when the reading was not used; of the tip by VelocityEstimate.
   const Twist& velocity() const noexcept { return velocity_; }
   /// Since the last tick [s], 0 to the longest gap.
   double elapsed() const noexcept { return elapsed_; }
@@ -59,11 +62,12 @@ class SensorPlausibility {
   ReadingVerdict look_at_pose(std::int64_t now_ns, const Vector3& tip,
                               const Quaternion& orientation) noexcept;
   bool sane(const Vector3& tip, const Quaternion& orientation) const noexcept;
-  ReadingVerdict look_at_speed() noexcept;
+  ReadingVerdict look_at_speed(const Twist& raw) noexcept;
   ReadingVerdict leave_out() noexcept;
 
   ReadingLimits limits_;
   Guards guards_;
+  VelocityEstimate estimate_;
   std::optional<std::int64_t> last_ns_;       ///< of the last tick
   std::optional<std::int64_t> last_good_ns_;  ///< of the last good reading
   Vector3 tip_ = Vector3::Zero();

@@ -8,6 +8,7 @@
 
 #include "common/config/input_file.hpp"
 #include "common/error.hpp"
+#include "common/hdf5/data_space.hpp"
 
 namespace irdm::hdf5 {
 
@@ -46,11 +47,6 @@ hid_t native_type<std::uint64_t>() {
 }
 
 namespace {
-
-Handle make_space(const Shape& shape, const hsize_t* maximum = nullptr) {
-  if (shape.empty()) return {H5Screate(H5S_SCALAR), H5Sclose};
-  return {H5Screate_simple(static_cast<int>(shape.size()), shape.data(), maximum), H5Sclose};
-}
 
 // Missing groups on the way to a new object are made with it.
 Handle make_link_properties() {
@@ -197,10 +193,6 @@ bool File::exists(const std::string& path) const {
   }
 }
 
-bool File::has_attribute(const std::string& object, const std::string& name) const {
-  return H5Aexists_by_name(file_.get(), object.c_str(), name.c_str(), H5P_DEFAULT) > 0;
-}
-
 void File::create_group(const std::string& path) {
   const Handle links = make_link_properties();
   const Handle group(H5Gcreate2(file_.get(), path.c_str(), links.get(), H5P_DEFAULT, H5P_DEFAULT),
@@ -238,103 +230,6 @@ Handle File::make_dataset(const std::string& path, hid_t type, hid_t space,
       H5Dclose);
   if (dataset.get() < 0) fail_write("cannot create " + path);
   return dataset;
-}
-
-void File::write_attribute(const std::string& object, const std::string& name,
-                           const std::string& value) {
-  const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
-  H5Tset_size(type.get(), std::max<std::size_t>(value.size(), 1));
-  H5Tset_strpad(type.get(), H5T_STR_NULLPAD);
-  H5Tset_cset(type.get(), H5T_CSET_UTF8);
-  write_numbers(object, name, type.get(), {}, value.empty() ? "\0" : value.data());
-}
-
-void File::write_attribute(const std::string& object, const std::string& name, double value) {
-  write_numbers(object, name, H5T_NATIVE_DOUBLE, {}, &value);
-}
-
-void File::write_attribute(const std::string& object, const std::string& name, std::int64_t value) {
-  write_numbers(object, name, H5T_NATIVE_INT64, {}, &value);
-}
-
-void File::write_attribute(const std::string& object, const std::string& name, const Shape& shape,
-                           const double* values) {
-  write_numbers(object, name, H5T_NATIVE_DOUBLE, shape, values);
-}
-
-void File::write_numbers(const std::string& object, const std::string& name, hid_t type,
-                         const Shape& shape, const void* values) {
-  const Handle owner = open_object(object);
-  const Handle space = make_space(shape);
-  const Handle attribute(
-      H5Acreate2(owner.get(), name.c_str(), type, space.get(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
-  if (attribute.get() < 0 || H5Awrite(attribute.get(), type, values) < 0) {
-    fail_write("cannot write attribute " + name);
-  }
-}
-
-std::string File::read_string_attribute(const std::string& object, const std::string& name) const {
-  const Handle owner = open_object(object);
-  const Handle attribute(H5Aopen(owner.get(), name.c_str(), H5P_DEFAULT), H5Aclose);
-  if (attribute.get() < 0) fail_read("has no attribute " + name + " at " + object);
-  const Handle stored(H5Aget_type(attribute.get()), H5Tclose);
-  if (H5Tget_class(stored.get()) != H5T_STRING) fail_read("attribute " + name + " is not text");
-  if (H5Tis_variable_str(stored.get()) > 0) {  // as h5py writes it
-    char* text = nullptr;
-    const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
-    H5Tset_size(type.get(), H5T_VARIABLE);
-    H5Tset_cset(type.get(), H5Tget_cset(stored.get()));
-    if (H5Aread(attribute.get(), type.get(), &text) < 0 || text == nullptr) {
-      fail_read("attribute " + name + " cannot be read");
-    }
-    std::string value(text);
-    H5free_memory(text);
-    return value;
-  }
-  std::string value(H5Tget_size(stored.get()), '\0');
-  if (H5Aread(attribute.get(), stored.get(), value.data()) < 0) {
-    fail_read("attribute " + name + " cannot be read");
-  }
-  value.resize(std::min(value.size(), value.find('\0')));
-  return value;
-}
-
-void File::read_numbers(const std::string& object, const std::string& name, hid_t type,
-                        std::size_t count, void* values) const {
-  const Handle owner = open_object(object);
-  const Handle attribute(H5Aopen(owner.get(), name.c_str(), H5P_DEFAULT), H5Aclose);
-  if (attribute.get() < 0) fail_read("has no attribute " + name + " at " + object);
-  const Handle stored(H5Aget_type(attribute.get()), H5Tclose);
-  const H5T_class_t kind = H5Tget_class(stored.get());
-  const Handle space(H5Aget_space(attribute.get()), H5Sclose);
-  if ((kind != H5T_FLOAT && kind != H5T_INTEGER) ||
-      H5Sget_simple_extent_npoints(space.get()) != static_cast<hssize_t>(count)) {
-    fail_read("attribute " + name + " at " + object + " is not " + std::to_string(count) +
-              " number(s)");
-  }
-  if (H5Aread(attribute.get(), type, values) < 0) {
-    fail_read("attribute " + name + " cannot be read");
-  }
-}
-
-double File::read_double_attribute(const std::string& object, const std::string& name) const {
-  double value = 0.0;
-  read_numbers(object, name, H5T_NATIVE_DOUBLE, 1, &value);
-  return value;
-}
-
-std::int64_t File::read_integer_attribute(const std::string& object,
-                                          const std::string& name) const {
-  std::int64_t value = 0;
-  read_numbers(object, name, H5T_NATIVE_INT64, 1, &value);
-  return value;
-}
-
-std::vector<double> File::read_doubles_attribute(const std::string& object, const std::string& name,
-                                                 std::size_t count) const {
-  std::vector<double> values(count);
-  read_numbers(object, name, H5T_NATIVE_DOUBLE, count, values.data());
-  return values;
 }
 
 Shape File::shape(const std::string& dataset) const {

@@ -2,10 +2,12 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <cstdint>
 #include <random>
+#include <sstream>
 
+#include "device_bridge/bridge.hpp"
 #include "device_bridge/safety/velocity_estimate.hpp"
+#include "device_bridge/virtual_stylus.hpp"
 #include "tests/bridge/filter_rig.hpp"
 
 using namespace irdm;
@@ -114,4 +116,14 @@ TEST_CASE("encoder steps: without a resolution it is the difference of two readi
 TEST_CASE("encoder steps: a force on a resting hand stays what it is") {
   CHECK(least_force(kStep, 0.2) == Approx(0.2).epsilon(1e-9));
   CHECK(least_force(0.0, 0.2) < 0.15);  // damping by noise looks like energy given
+}
+
+TEST_CASE("encoder steps: a device's resolution, or that of its noise, is the filter's") {
+  std::istringstream script("time,x,y,z\n0,0,0,0\n");
+  const VirtualStylus coarse(StylusScript::parse(script, "script"), {}, {.resolution = kStep});
+  CHECK(filter_limits(coarse, {}).reading.resolution == kStep);
+  script = std::istringstream("time,x,y,z\n0,0,0,0\n");
+  const VirtualStylus noisy(StylusScript::parse(script, "script"), {},
+                            {.resolution = kStep, .noise = kStep});
+  CHECK(filter_limits(noisy, {}).reading.resolution == kNoiseSteps * kStep);
 }

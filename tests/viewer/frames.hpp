@@ -1,11 +1,40 @@
 #pragma once
 
+#include <cctype>
 #include <random>
+#include <string>
 
 #include "tests/support/synthetic_model.hpp"
 #include "viewer/message.hpp"
 
 namespace irdm::test {
+
+/// "49 52 .." as bytes; '|' and blanks are for the reader.
+inline viewer::Bytes from_hex(const std::string& text) {
+  viewer::Bytes bytes;
+  std::string digits;
+  for (const char c : text) {
+    if (std::isxdigit(static_cast<unsigned char>(c)) != 0) digits += c;
+    if (digits.size() == 2) {
+      bytes.push_back(static_cast<std::uint8_t>(std::stoi(digits, nullptr, 16)));
+      digits.clear();
+    }
+  }
+  return bytes;
+}
+
+/// One object of one node and one triangle, one stylus.
+inline viewer::Scene one_point_scene() {
+  viewer::Scene scene;
+  scene.dt = 0.002;
+  scene.styluses = {{0.5, 2000.0, 0.25}};
+  viewer::SceneObject object{"ab", Points(1, 3), Triangles(1, 3), 0.5F, 2000.0F};
+  object.rest << 0.5, -1.0, 2.0;
+  object.triangles << 0, 0, 0;
+  object.compliance = {0.25F};
+  scene.objects = {object};
+  return scene;
+}
 
 /// Scenery of each shape.
 inline std::vector<SceneryConfig> example_scenery() {

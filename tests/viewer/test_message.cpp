@@ -14,20 +14,6 @@ using namespace irdm::viewer;
 
 namespace {
 
-/// "49 52 .." as bytes; '|' and blanks are for the reader.
-Bytes from_hex(const std::string& text) {
-  Bytes bytes;
-  std::string digits;
-  for (const char c : text) {
-    if (std::isxdigit(static_cast<unsigned char>(c)) != 0) digits += c;
-    if (digits.size() == 2) {
-      bytes.push_back(static_cast<std::uint8_t>(std::stoi(digits, nullptr, 16)));
-      digits.clear();
-    }
-  }
-  return bytes;
-}
-
 Bytes frame_bytes(const SurfaceFrame& frame) {
   Bytes bytes(7, 0xAA);  // what was there before goes
   encode(frame, bytes);
@@ -46,18 +32,6 @@ const char* const kSettingsHex =
     "0000000000000000 000000000000f0bf 0000000000000000 | 000000000000f03f 000000000000e03f"
     "0000000000000040 0000000000001040 0000000000002040 000000000000d03f 000000000000e03f"
     "01 00 00000000000000000000000000000000000000000000";
-
-Scene one_point_scene() {
-  Scene scene;
-  scene.dt = 0.002;
-  scene.styluses = {{0.5, 2000.0, 0.25}};
-  SceneObject object{"ab", Points(1, 3), Triangles(1, 3), 0.5F, 2000.0F};
-  object.rest << 0.5, -1.0, 2.0;
-  object.triangles << 0, 0, 0;
-  object.compliance = {0.25F};
-  scene.objects = {object};
-  return scene;
-}
 
 SurfaceFrame one_point_frame(const Vector3& displacement) {
   SurfaceFrame frame;
@@ -124,90 +98,6 @@ TEST_CASE("a scene's bytes are those of the document") {
                  "0000003f 0000fa44 0000803e 00000000 |"
                  "01000000 01000000 02000000 0000003f 0000fa44 00000000 61620000"
                  "0000003f 000080bf 00000040 | 00000000 00000000 00000000 | 0000803e"));
-}
-
-TEST_CASE("the bytes of an object's regions are those of the document") {
-  Scene scene = one_point_scene();
-  const std::size_t before = encode(scene).size();
-  SceneRegions regions = example_regions();
-  regions.surface_modulus.resize(1);
-  regions.some_unlisted = false;
-  regions.faces_left_out = true;
-  scene.objects[0].regions = regions;
-  const Bytes bytes = encode(scene);
-  CHECK(Bytes(bytes.begin() + 92, bytes.begin() + 96) == from_hex("0200 0200"));
-  CHECK(Bytes(bytes.begin() + static_cast<std::ptrdiff_t>(before), bytes.end()) ==
-        from_hex("00000000 0000fa44 0000fa44 0000803e 0000003f 00007a44 00007a44"
-                 "03000000 0000fa43 0000fa45 0000803e 0000803e 00008044 00008044 |"
-                 "0000fa44 | 03000000 01000000"
-                 "0000003f 00000000 00000000 00000000 0000003f 00000000"
-                 "00000000 00000000 000000bf | 00000000 02000000 01000000 | 0000fa43"));
-}
-
-TEST_CASE("regions that break the rules are refused") {
-  Scene scene = one_point_scene();
-  const std::size_t at = encode(scene).size();
-  scene.objects[0].regions = example_regions();
-  scene.objects[0].regions.surface_modulus.resize(1);
-  Bytes bytes = encode(scene);
-  CHECK_NOTHROW(decode_scene(bytes));
-  const std::size_t counts = at + 2 * 28 + 4;
-  SECTION("more than can be listed") {
-    bytes[92] = kMaxRegions + 1;
-  }
-  SECTION("more than there are bytes") {
-    bytes[92] = kMaxRegions;
-  }
-  SECTION("none, and yet their bytes") {
-    bytes[92] = 0;
-  }
-  SECTION("a least value above the greatest") {
-    bytes[at + 7] = 0x45;
-  }
-  SECTION("a least value that is not a number") {
-    bytes[at + 6] = 0xC0;
-    bytes[at + 7] = 0x7F;
-  }
-  SECTION("no modulus") {
-    for (std::size_t i = 4; i < 8; ++i) bytes[at + i] = 0;
-  }
-  SECTION("an infinite modulus at the surface") {
-    bytes[counts - 2] = 0x80;
-    bytes[counts - 1] = 0x7F;
-  }
-  SECTION("a modulus of a face that is not a number") {
-    bytes[bytes.size() - 2] = 0xC0;
-    bytes[bytes.size() - 1] = 0x7F;
-  }
-  SECTION("more nodes than bytes") {
-    bytes[counts + 3] = 1;
-  }
-  SECTION("more faces than bytes") {
-    bytes[counts + 4] = 2;
-  }
-  SECTION("a node that is not there") {
-    bytes[counts + 8 + 36] = 3;
-  }
-  SECTION("cut") {
-    bytes.pop_back();
-  }
-  CHECK_THROWS_AS(decode_scene(bytes), MessageError);
-}
-
-TEST_CASE("faces inside an object have a limit") {
-  Scene scene = one_point_scene();
-  SceneRegions regions = example_regions();
-  regions.surface_modulus.resize(1);
-  const std::size_t more = GENERATE(0, 1);
-  regions.faces = Triangles::Zero(static_cast<Eigen::Index>(kMaxRegionFaces + more), 3);
-  regions.face_modulus.resize(kMaxRegionFaces + more, 1.0F);
-  scene.objects[0].regions = regions;
-  const Bytes bytes = encode(scene);
-  if (more == 0) {
-    CHECK(decode_scene(bytes).objects[0].regions.faces.rows() == kMaxRegionFaces);
-  } else {
-    CHECK_THROWS_AS(decode_scene(bytes), MessageError);
-  }
 }
 
 TEST_CASE("a frame's bytes are those of the document") {
@@ -292,18 +182,6 @@ TEST_CASE("viewers are sent the floor and the scenery of the simulation") {
   REQUIRE(scene.scenery.size() == 4);
   CHECK(scene.scenery[2].name == "ball");
   CHECK(scene.objects[0].regions.empty());
-}
-
-TEST_CASE("viewers are sent the regions of a model") {
-  Model cube = synthetic_cube(2, 1, 1);
-  cube.material.elements = {{8000.0}, {0.25}, {1024.0}, {3}};
-  SimulationConfig config;
-  config.objects.resize(1);
-  config.objects[0].model = std::make_shared<const Model>(cube);
-  const SceneRegions regions = viewer_scene({"cube"}, config).objects.at(0).regions;
-  REQUIRE(regions.regions.size() == 1);
-  CHECK(regions.regions[0].number == 3);
-  CHECK(regions.regions[0].density.highest == 1024.0F);
 }
 
 TEST_CASE("the bytes of a contact between bodies are those of the document") {

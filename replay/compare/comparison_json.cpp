@@ -88,9 +88,12 @@ Json verdict_json(const std::optional<bool>& verdict) {
 }
 
 Json force_json(const ForceDifference& force, const std::vector<double>& times) {
-  return {{"limit", perception::kForceShare},       {"largest", force.largest},
-          {"largest_at", times[force.worst_frame]}, {"noticeable_time", force.noticeable_time},
-          {"noticeable", force.noticeable()},       {"share_over_time", force.share}};
+  return {{"limit", perception::kForceShare},
+          {"largest", force.largest},
+          {"largest_at", times[force.worst_frame]},
+          {"noticeable_time", force.noticeable_time},
+          {"noticeable", verdict_json(force.noticeable())},
+          {"share_over_time", force.share}};
 }
 
 Json compliance_json(const StylusMeasures& stylus) {

@@ -1,5 +1,6 @@
 #include "replay/compare/comparison_output.hpp"
 
+#include <array>
 #include <cstdio>
 
 namespace irdm::replay {
@@ -46,11 +47,36 @@ std::string ringing_line(const SignalPair& pair) {
   return text.empty() ? "" : "  both ring with     " + text + "\n";
 }
 
-std::string force_finding(const ForceDifference& force, const std::vector<double>& times) {
-  return "force: apart by up to " + percent(force.largest) + ", at " +
-         digits(times[force.worst_frame]) + " s (limit " + percent(perception::kForceShare) +
-         "), above that in " + percent(force.noticeable_time) +
-         " of the contact: " + verdict(force.noticeable(), "");
+std::string row_of(const std::array<std::string, 4>& cells) {
+  char text[256];
+  std::snprintf(text, sizeof text, "  %-16s%-20s%-20s%s\n", cells[0].c_str(), cells[1].c_str(),
+                cells[2].c_str(), cells[3].c_str());
+  return text;
+}
+
+// Each column has what it is averaged over, and the smallest force that shares refer to.
+std::string force_columns(const DifferenceSeries& apart, const ForceDifference& felt,
+                          const std::vector<double>& times) {
+  const auto share = [&](double difference) {
+    return apart.reference > 0 ? percent(difference / apart.reference) : std::string("-");
+  };
+  return row_of({"force, B - A", "rms", "largest", "as felt"}) +
+         row_of({"  size", digits(apart.rms_over_time()) + " N", digits(apart.maximum()) + " N",
+                 "-"}) +
+         row_of({"  share of A", share(apart.rms_over_time()), share(apart.maximum()),
+                 percent(felt.largest)}) +
+         row_of({"  refers to", "peak " + digits(apart.reference) + " N",
+                 "peak " + digits(apart.reference) + " N", "force at that time"}) +
+         row_of({"  at", "-", digits(times[apart.worst_frame()]) + " s",
+                 digits(times[felt.worst_frame]) + " s"}) +
+         row_of({"  window", "all frames", "one frame", digits(perception::kForceTime) + " s"}) +
+         row_of({"  floor", "none", "none", digits(perception::kSmallForce) + " N"});
+}
+
+std::string force_finding(const ForceDifference& force) {
+  return "force as felt: apart by up to " + percent(force.largest) + " (limit " +
+         percent(perception::kForceShare) + "), above that in " + percent(force.noticeable_time) +
+         " of the contact: " + verdict(force.noticeable(), "no contact");
 }
 
 std::string compliance_finding(const StylusMeasures& stylus) {
@@ -75,11 +101,22 @@ std::string onset_finding(const OnsetDelays& onsets, double interval) {
                  onsets.onsets.empty() ? "none in both" : "the frames are too far apart");
 }
 
-std::vector<std::string> perceptual_findings(const StylusMeasures& stylus, const Measures& measures,
-                                             const std::vector<double>& times) {
-  return {force_finding(stylus.difference, times), compliance_finding(stylus),
+std::vector<std::string> perceptual_findings(const StylusMeasures& stylus,
+                                             const Measures& measures) {
+  return {force_finding(stylus.difference), compliance_finding(stylus),
           vibration_finding(stylus.vibration_difference, measures.evenly_spaced),
           onset_finding(stylus.onsets, measures.interval)};
+}
+
+// Nothing is judged without contact; an absent stylus has none.
+std::string stylus_section(std::size_t s, const Comparison& comparison, const Measures& measures) {
+  const StylusMeasures& stylus = measures.styluses[s];
+  std::string text = "stylus " + std::to_string(s);
+  if (!stylus.difference.contact) return text + ": no contact in A or B, not judged\n";
+  text += "\n" + force_columns(comparison.forces[s], stylus.difference, comparison.times) +
+          ringing_line(stylus.force);
+  for (const std::string& each : perceptual_findings(stylus, measures)) text += "  " + each + "\n";
+  return text;
 }
 
 }  // namespace
@@ -102,13 +139,7 @@ std::string comparison_table(const Comparison& comparison, const Measures& measu
             ringing_line(measures.nodes[i]);
   }
   for (std::size_t s = 0; s < comparison.forces.size(); ++s) {
-    text += "stylus " + std::to_string(s) + "\n" +
-            line("force", comparison.forces[s], "N", comparison.times) +
-            ringing_line(measures.styluses[s].force);
-    for (const std::string& each :
-         perceptual_findings(measures.styluses[s], measures, comparison.times)) {
-      text += "  " + each + "\n";
-    }
+    text += stylus_section(s, comparison, measures);
   }
   return text;
 }

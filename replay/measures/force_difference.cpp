@@ -38,19 +38,20 @@ ForceDifference force_difference(const Points& a, const Points& b, double dt) {
   std::size_t in_contact = 0;
   std::size_t above = 0;
   for (Eigen::Index k = 0; k < a.rows(); ++k) {
+    const bool acts = !a.row(k).isZero(0.0) || !b.row(k).isZero(0.0);
     const double apart = (slow_a.row(k) - slow_b.row(k)).norm();
-    const double share = apart / std::max(slow_a.row(k).norm(), kSmallForce);
+    const double share = acts ? apart / std::max(slow_a.row(k).norm(), kSmallForce) : 0.0;
     found.share.push_back(share);
-    if (!a.row(k).isZero(0.0) || !b.row(k).isZero(0.0)) ++in_contact;
+    if (acts) ++in_contact;
     if (share > kForceShare) ++above;
     if (share > found.largest) {
       found.largest = share;
       found.worst_frame = static_cast<std::size_t>(k);
     }
   }
-  if (above > 0) {
-    const auto of = static_cast<double>(std::max<std::size_t>(in_contact, 1));
-    found.noticeable_time = std::min(1.0, static_cast<double>(above) / of);
+  found.contact = in_contact > 0;
+  if (found.contact) {
+    found.noticeable_time = static_cast<double>(above) / static_cast<double>(in_contact);
   }
   return found;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "common/geometry.hpp"
@@ -31,12 +32,16 @@ struct ForceDifference {
   double largest = 0.0;          ///< of them
   std::size_t worst_frame = 0;   ///< where that is
   double noticeable_time = 0.0;  ///< share of the frames in contact that are above the limit
-  bool noticeable() const noexcept { return noticeable_time > 0.0; }
+  bool contact = false;          ///< a force acts in some frame, in A or B
+  /// Nothing where there was no contact.
+  std::optional<bool> noticeable() const noexcept {
+    return contact ? std::optional(noticeable_time > 0.0) : std::nullopt;
+  }
 };
 
 /// Forces on a stylus, a row every dt [s] [N], both averaged over perception::kForceTime round each
-/// frame. The share is |F_B - F_A| over |F_A|, or over perception::kSmallForce if that is more; the
-/// limit perception::kForceShare.
+/// frame; judged in the frames in which one of them acts. The share is |F_B - F_A| over |F_A|, or
+/// over perception::kSmallForce if that is more; the limit perception::kForceShare.
 ForceDifference force_difference(const Points& a, const Points& b, double dt);
 
 /// Means over the rows within `time` / 2 before and after each row, fewer at the ends.

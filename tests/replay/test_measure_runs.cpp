@@ -112,7 +112,7 @@ TEST_CASE("a tap on a softer object that answers later is told from the other") 
   CHECK(stylus.compliance_share() == Approx(0.2));  // of that of A
   CHECK(stylus.noticeable_compliance() == std::optional(true));
   CHECK(stylus.difference.share.at(200) == Approx(0.2));
-  CHECK(stylus.difference.noticeable());
+  CHECK(stylus.difference.noticeable() == std::optional(true));
   REQUIRE(stylus.onsets.delays.size() == 1);
   CHECK(stylus.onsets.delays[0] == Approx(0.008));
   CHECK(stylus.onsets.noticeable(taps.measures.interval) == std::optional(true));
@@ -121,7 +121,7 @@ TEST_CASE("a tap on a softer object that answers later is told from the other") 
 TEST_CASE("a tap is not noticeably different from itself") {
   const TwoTaps taps({}, {});
   const StylusMeasures& stylus = taps.measures.styluses.at(0);
-  CHECK_FALSE(stylus.difference.noticeable());
+  CHECK(stylus.difference.noticeable() == std::optional(false));
   CHECK(stylus.noticeable_compliance() == std::optional(false));
   CHECK(stylus.vibration_difference.noticeable() == std::optional(false));
   CHECK(stylus.onsets.noticeable(taps.measures.interval) == std::optional(false));
@@ -135,7 +135,18 @@ TEST_CASE("a tap is not noticeably different from itself") {
   CHECK(last(heavy) == Approx(0.5 * last(taps.measures)).epsilon(1e-3));
   const std::string table = comparison_table(taps.comparison, taps.measures);
   CHECK_THAT(table, Contains("12 Hz, damping 5.298 % (B 12 Hz, 5.298 %)") &&
-                        Contains("ms), 0 in one alone: not noticeable"));
+                        Contains("ms), 0 in one alone: not noticeable") &&
+                        Contains("all frames          one frame           0.1 s\n") &&
+                        Contains("none                none                0.5 N\n"));
+}
+
+TEST_CASE("a stylus without contact has no section and is not judged") {
+  const TwoTaps taps({.force = 0.0}, {.force = 0.0});
+  const std::string table = comparison_table(taps.comparison, taps.measures);
+  CHECK_THAT(table,
+             Contains("stylus 0: no contact in A or B, not judged\n") && !Contains("noticeable"));
+  const auto json = nlohmann::json::parse(comparison_json(taps.comparison, taps.measures));
+  CHECK(json["styluses"][0]["perception"]["force"]["noticeable"].is_null());
 }
 
 TEST_CASE("what a run has too few frames for is not judged") {

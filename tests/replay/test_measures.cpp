@@ -174,7 +174,7 @@ TEST_CASE("forces are judged by their share, slow ones alone") {
     return force_difference(a, a + Points::Constant(500, 3, by / std::sqrt(3.0)), kDt);
   };
   CHECK(off(0.1).largest == Approx(0.05));
-  CHECK_FALSE(off(0.19).noticeable());
+  CHECK(off(0.19).noticeable() == std::optional(false));
   CHECK(off(0.21).noticeable_time == 1.0);
   // As much, but at 100 Hz: a vibration, not a change of the force.
   const Points fast =
@@ -191,9 +191,14 @@ TEST_CASE("a force that only one run has counts as time in contact, whichever ru
   both.topRows(200).col(1).setConstant(5.0);
   Points one = both;
   one.bottomRows(200).col(1).setConstant(5.0);
-  // From the first frame whose mean has a part of it, 50 ms before: 225 of the 400 in contact.
-  CHECK(force_difference(both, one, kDt).noticeable_time == Approx(225.0 / 400.0));
-  CHECK(force_difference(one, both, kDt).noticeable_time == Approx(225.0 / 400.0));
+  // The means have a part of it from 50 ms before, where nothing acts and nothing is judged.
+  CHECK(force_difference(both, one, kDt).noticeable_time == Approx(200.0 / 400.0));
+  CHECK(force_difference(one, both, kDt).noticeable_time == Approx(200.0 / 400.0));
+}
+
+TEST_CASE("a force is not judged where there was no contact") {
+  const Points none = Points::Zero(10, 3);
+  CHECK_FALSE(force_difference(none, none, kDt).noticeable().has_value());
 }
 
 TEST_CASE("means over a time are those of its rows, fewer at the ends") {

@@ -4,7 +4,7 @@
 The tool is irdm's fingertip: its point is the ball's foremost one, its radius that of Hertz' contact at the greatest
 depth. With --ball it is a rigid body that a stylus leads. Linear elements of the given mesh, all modes.
 With --fine it is scenery, an exact ball on its path; quadratic elements, of shapes/ where the case has one, a quarter of
-the step.
+the step or less.
 """
 
 import json
@@ -22,8 +22,9 @@ import ring_shape
 COUPLING = 1e5  # N/m; a fixed object needs a spring
 SHAPES = Path(__file__).resolve().parent / "shapes"
 FINE_MODES = 300  # where all would take long
-ALL_MODES = ("ball.geo", "cube.geo", "puck.geo")
-FINE_STEPS = 4  # in one of the case
+ALL_MODES = ("ball.geo", "bar.geo", "block.geo", "cube.geo", "puck.geo")
+FINE_STEPS = 4  # in one of the case ...
+FINER_STEPS = {"pinch": 8}  # ... and where friction follows a force that rises within 20 ms
 BALL_CELLS = 15  # in a quarter circle: nodes of the surface
 BALL_DENSITY = 20000.0  # kg/m^3: what touches it hardly moves it
 
@@ -149,7 +150,7 @@ class Kinematic:
     """Tools as scenery: exact balls on their paths."""
 
     def __init__(self, scene):
-        self.scenery = [self.ball(tool) for tool in scene["tools"]]
+        self.scenery = [{"name": f"tool{number}", **self.ball(tool)} for number, tool in enumerate(scene["tools"])]
         self.objects, self.styluses = [], []
         self.settings = "exact ball on its path"
 
@@ -175,7 +176,7 @@ def on_object(step, number):
 
 def run(scene, tool_kind):
     fine = tool_kind is Kinematic
-    parts = FINE_STEPS if fine else 1
+    parts = FINER_STEPS.get(scene["name"], FINE_STEPS) if fine else 1
     dt = scene["dt"] / parts
     tool = tool_kind(scene) if scene["tools"] else None
     with tempfile.TemporaryDirectory() as folder:

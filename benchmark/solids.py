@@ -4,13 +4,17 @@ import numpy
 import scipy.interpolate
 
 import meshes
-from contact import Body, complementarity
+from contact import Body, complementarity, sphere
 from fem import Grid
 from friction import Grip
 
 EDGE = 0.1  # of a cube that stands on another [m]
+BAR = (0.04, 0.2, 0.04)
+PUSHER = 0.3  # radius of the ball that pushes the bar
 SLAB = (0.08, 0.04, 0.08)
 SLIDER = 0.4  # of the ball that slides on the slab
+BLOCK = 0.06  # edge of a cube that is pinched
+FINGER = 0.5  # radius of the balls that pinch it
 
 
 def box_mesh(x, y, z):
@@ -18,14 +22,22 @@ def box_mesh(x, y, z):
 
 
 def even(low, high, cell):
-    return numpy.linspace(low, high, round((high - low) / cell) + 1)
+    return numpy.linspace(low, high, max(1, round((high - low) / cell)) + 1)
+
+
+def joined(*parts):
+    """Lines of cells that follow one another: each (low, high, size of the cells)."""
+    return numpy.unique(numpy.concatenate([even(*part) for part in parts]).round(12))
 
 
 MESHES = {
     "cube.msh": lambda: box_mesh(*[even(-EDGE / 2, EDGE / 2, 0.0125), even(0, EDGE, 0.0125),
                                    even(-EDGE / 2, EDGE / 2, 0.0125)]),
+    "bar.msh": lambda: box_mesh(*[even(low, low + length, BAR[0] / 6)
+                                  for low, length in zip((-BAR[0] / 2, 0, -BAR[2] / 2), BAR)]),
     "slab.msh": lambda: box_mesh(even(-SLAB[0] / 2, SLAB[0] / 2, 0.005), even(0, SLAB[1], 0.008),
-                                 even(-SLAB[2] / 2, SLAB[2] / 2, 0.005))}
+                                 even(-SLAB[2] / 2, SLAB[2] / 2, 0.005)),
+    "block.msh": lambda: box_mesh(*[even(-BLOCK / 2, BLOCK / 2, BLOCK / 12)] * 3)}
 
 
 def weights_on(line, x):
@@ -108,6 +120,28 @@ def centre(case, time):
     return numpy.array([numpy.interp(time, path[:, 0], path[:, axis]) for axis in (1, 2, 3)])
 
 
+def pushed_bar(case, fine, step, _, dt):
+    """Half of it, glued below; the ball comes from -x."""
+    side = -BAR[0] / 2
+    grid = Grid([joined((side, side + 0.006, fine), (side + 0.006, -side, 3 * fine)),
+                 joined((0, 0.136, 3 * fine), (0.136, 0.18, fine), (0.18, BAR[1], 3 * fine)),
+                 joined((0, 0.01, fine), (0.01, BAR[2] / 2, 3 * fine))])
+    face = grid.on(0, side)
+    _, y, z = grid.nodes[face].T
+    touching = face[(abs(y - 0.158) < 0.021) & (z < 0.009)]
+    body = Body(grid, case["bodies"][0]["material"], held(grid, 0.0, (2,)), touching, step,
+                light=(0, side))
+    force, shapes = [], []
+    for k in range(1, round(case["duration"] / step) + 1):
+        pushed = -2 * body.advance(sphere(centre(case, k * step), PUSHER)).sum(axis=0)
+        if k % round(dt / step) == 0:
+            force.append([*pushed[:2], 0.0])
+        if sampled(case, k, step):
+            shapes.append(body.u[0].reshape(-1, 3))
+    at = mirrored(grid, 0, side, (2,), shapes, True)
+    return numpy.array(force), shapes, lambda nodes: chosen(nodes, nodes[:, 0] < side + 1e-6, at)
+
+
 def gripped(case, body, step, dt, parts):
     """Force on the ball at the ends of the table's steps, `parts` times that of the modelled part, and the samples."""
     tool = case["tools"][0]
@@ -136,6 +170,19 @@ def slid_slab(case, fine, step, material, dt):
     return force, shapes, lambda nodes: chosen(nodes, nodes[:, 1] > height - 1e-6, at)
 
 
+def pinched_block(case, fine, step, material, dt):
+    """A quarter, between the planes x = 0 and z = 0; the ball comes from -x."""
+    side = -BLOCK / 2
+    grid = Grid([joined((side, side * 2 / 3, fine), (side * 2 / 3, 0, 2 * fine)), even(side, -side, fine),
+                 even(0, -side, fine)])
+    face, (_, y, z) = grid.on(0, side), grid.nodes.T
+    body = Body(grid, case["bodies"][0]["material"], held(grid, None, (0, 2)), face[numpy.hypot(y, z)[face] < 0.029], step,
+                gravity=numpy.array(case["gravity"]), light=(0, side))
+    force, shapes = gripped(case, body, step, dt, 2)
+    at = mirrored(grid, 0, side, (2,), shapes, True)
+    return force, shapes, lambda nodes: chosen(nodes, nodes[:, 0] < side + 1e-6, at)
+
+
 def smooth(time, begin, end):
     """From 0 to 1, without jumps of the acceleration."""
     share = numpy.clip((time - begin) / (end - begin), 0, 1)
@@ -161,13 +208,31 @@ def cases(material, dt):
     cubes["bodies"].append({**cubes["bodies"][0], "position": [0.0, EDGE, 0.0]})
     del cubes["bodies"][1]["fixed_below"]
 
+    time = numpy.arange(0, 0.45 + dt / 2, dt)
+    away = 8e-3 * smooth(time, 0.0, 0.25) - 3e-2 * smooth(time, 0.26, 0.36)
+    swing = case("swing", "a bar, glued at its lower end, is pushed aside by a rigid ball and let go", 0.45,
+                 [0.15, 0.26, 0.28, 0.34, 0.4, 0.45], "bar.msh", BAR, True,
+                 [{"radius": PUSHER, "friction": 0.0,
+                   "path": path_of(time, away - BAR[0] / 2 - PUSHER, 0.17, 0.0)}])
+    swing["bodies"][0]["material"] = {**material, "youngs_modulus": 2e6, "rayleigh_beta": 1e-3}
     time = numpy.arange(0, 0.34 + dt / 2, dt)
     deep = 1.5e-3 * smooth(time, 0.0, 0.09) - 3e-3 * smooth(time, 0.24, 0.34)
     along = 8e-3 * smooth(time, 0.06, 0.17) - 4e-3 * smooth(time, 0.17, 0.25)
     slide = case("slide", "a rigid ball slides to and fro on a slab that is glued to a table", 0.34,
                  [0.07, 0.12, 0.17, 0.22], "slab.msh", SLAB, True,
                  [{"radius": SLIDER, "friction": 0.5, "path": path_of(time, along, SLAB[1] + SLIDER - deep, 0.0)}])
+    time = numpy.arange(0, 0.3 + dt / 16, dt / 8)
+    deep, high = 1e-3 * smooth(time, 0.0, 0.03), 0.03 * smooth(time, 0.08, 0.26)
+    away = BLOCK / 2 + FINGER - deep
+    pinch = case("pinch", "two rigid balls pinch a cube that begins to fall, and lift it", 0.3,
+                 [0.02, 0.08, 0.16, 0.3], "block.msh", [BLOCK] * 3, False,
+                 [{"radius": FINGER, "friction": 0.5, "path": path_of(time, sign * away, high, 0.0)}
+                  for sign in (-1, 1)])
+    pinch["gravity"] = cubes["gravity"]
+    pinch["bodies"][0]["material"] = {**material, "rayleigh_beta": 1e-3}
     return [
         (cubes, two_cubes, (EDGE / 12, 2.5e-4)),
+        (swing, pushed_bar, (2e-3, 2.5e-4)),
         (slide, slid_slab, (SLAB[0] / 16, 5e-4)),
+        (pinch, pinched_block, (BLOCK / 18, 1.25e-4)),
     ]

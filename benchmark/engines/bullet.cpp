@@ -255,5 +255,9 @@ int main(int argc, char** argv) {
     std::fputs("a btDeformableLinearElasticityForce has one material\n", stderr);
     return 1;
   }
+  if (scene["tools"].size() > 1) {
+    std::fputs("one tool is led, not more\n", stderr);
+    return 1;
+  }
   std::ofstream(argv[2]) << result_of(scene, explicit_steps(scene));
 }

@@ -96,7 +96,9 @@ class World {
       return this.momentum(1).map((p, axis) =>
         (p - before[axis]) / this.model.opt.timestep - mass * this.scene.gravity[axis]);
     }
-    toolAt(this.scene.tools[0], time).forEach((x, axis) => { this.data.mocap_pos[axis] = x; });
+    this.scene.tools.forEach((tool, index) => toolAt(tool, time).forEach((x, axis) => {
+      this.data.mocap_pos[3 * index + axis] = x;
+    }));
     mujoco.mj_step(this.model, this.data);
     return this.toolForce();
   }

@@ -184,7 +184,7 @@ def puck_case(name, about, depths, samples, fixed, regions=()):
         body["fixed_below"] = 0.0
     if regions:
         body["regions"] = list(regions)
-    path = [[round(t, 6), 0.0, round(centre - d, 9), 0.0] for t, d in depths]
+    path = solids.thinned([[round(t, 6), 0.0, round(centre - d, 9), 0.0] for t, d in depths])
     return {"name": name, "about": about, "duration": path[-1][0], "gravity": GRAVITY, "bodies": [body],
             "tools": [{"radius": TOOL_RADIUS, "friction": 0.0, "path": path}], "sample_times": samples}
 

@@ -189,8 +189,14 @@ def smooth(time, begin, end):
     return share - numpy.sin(2 * numpy.pi * share) / (2 * numpy.pi)
 
 
+def thinned(rows):
+    """Of rows (time, place): of a place that stays the first and the last."""
+    return rows[:1] + [now for before, now, after in zip(rows, rows[1:], rows[2:])
+                       if before[1:] != now[1:] or now[1:] != after[1:]] + rows[-1:]
+
+
 def path_of(time, x, y, z):
-    return [[round(value, 9) for value in row] for row in zip(time.tolist(), *numpy.broadcast_arrays(x, y, z))]
+    return thinned([[round(value, 9) for value in row] for row in zip(time.tolist(), *numpy.broadcast_arrays(x, y, z))])
 
 
 def cases(material, dt):

@@ -8,7 +8,6 @@
 
 #include "common/config/input_file.hpp"
 #include "common/error.hpp"
-#include "common/hdf5/data_space.hpp"
 
 namespace irdm::hdf5 {
 
@@ -47,6 +46,11 @@ hid_t native_type<std::uint64_t>() {
 }
 
 namespace {
+
+Handle make_space(const Shape& shape, const hsize_t* maximum = nullptr) {
+  if (shape.empty()) return {H5Screate(H5S_SCALAR), H5Sclose};
+  return {H5Screate_simple(static_cast<int>(shape.size()), shape.data(), maximum), H5Sclose};
+}
 
 // Missing groups on the way to a new object are made with it.
 Handle make_link_properties() {

@@ -1,7 +1,6 @@
 // Attributes of a file's groups and datasets.
 #include <algorithm>
 
-#include "common/hdf5/data_space.hpp"
 #include "common/hdf5/file.hpp"
 
 namespace irdm::hdf5 {
@@ -35,7 +34,9 @@ void File::write_attribute(const std::string& object, const std::string& name, c
 void File::write_numbers(const std::string& object, const std::string& name, hid_t type,
                          const Shape& shape, const void* values) {
   const Handle owner = open_object(object);
-  const Handle space = make_space(shape);
+  // Without dimensions it is that of a single value.
+  const Handle space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr),
+                     H5Sclose);
   const Handle attribute(
       H5Acreate2(owner.get(), name.c_str(), type, space.get(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
   if (attribute.get() < 0 || H5Awrite(attribute.get(), type, values) < 0) {

@@ -5,12 +5,24 @@
 #include <optional>
 #include <string>
 
+#include "common/realtime/histogram.hpp"
 #include "device_bridge/haply/inverse_mailbox.hpp"
 #include "device_bridge/haply/inverse_messages.hpp"
-#include "device_bridge/haply/inverse_report.hpp"
 #include "device_bridge/haply/trouble_text.hpp"
 
 namespace irdm::haply {
+
+/// How long the service took to answer, and what went wrong.
+struct InverseReport {
+  std::uint64_t answers = 0;
+  double sum = 0.0;           ///< from a message to its answer, of all [s]
+  Histogram round_trip = {};  ///< the same [ns]
+  std::uint64_t bad_messages = 0;
+  std::uint64_t reconnects = 0;
+};
+
+/// In words.
+std::string to_text(const InverseReport& report);
 
 /// Whom forces are exchanged with, and how.
 struct ExchangePartner {

@@ -3,11 +3,26 @@
 // Must come before Boost's own headers: it mends Boost 1.74 under C++20.
 #include "common/wire/asio.hpp"
 
+#include <cstdint>
+#include <string>
+
+#include "common/realtime/scheduling.hpp"
+#include "device_bridge/bridge_config.hpp"
 #include "device_bridge/haply/device_claim.hpp"
 #include "device_bridge/haply/inverse_messages.hpp"
-#include "device_bridge/haply/inverse_settings.hpp"
 
 namespace irdm::haply {
+
+/// What is opened, and where.
+struct InverseSettings {
+  ServerAddress service = {"localhost", 10001};
+  std::uint16_t old_http_port = 10000;  ///< where services before 3.5 take settings
+  std::uint16_t events_port = 10020;    ///< where services from 3.5 on tell events
+  std::string device = {};  ///< its id; empty: the first that this process has not opened
+  std::string grip = {};    ///< likewise; empty: the first in a message
+  bool shared = false;      ///< another session of the service may command it, too
+  RealTimeScheduling scheduling = RealTimeScheduling::kIgnore;
+};
 
 /// A device that was chosen and set up.
 struct OpenedDevice {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cctype>
+#include <cstddef>
 #include <random>
 #include <string>
 
@@ -21,6 +22,11 @@ inline viewer::Bytes from_hex(const std::string& text) {
     }
   }
   return bytes;
+}
+
+/// What is added to a message's first bytes.
+inline viewer::Bytes added_after(const viewer::Bytes& bytes, std::size_t first) {
+  return {bytes.begin() + static_cast<std::ptrdiff_t>(first), bytes.end()};
 }
 
 /// One object of one node and one triangle, one stylus.

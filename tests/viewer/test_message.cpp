@@ -119,7 +119,7 @@ TEST_CASE("scenery's bytes are those of the document") {
   scene.scenery = example_scenery();
   const Bytes bytes = encode(scene);
   CHECK(Bytes(bytes.begin() + 12, bytes.begin() + 16) == from_hex("0000 0400"));
-  CHECK(Bytes(bytes.begin() + static_cast<std::ptrdiff_t>(before), bytes.end()) ==
+  CHECK(added_after(bytes, before) ==
         from_hex("0000 0600 00000000 00000000 00000000"
                  "0000000000000000 b81e85eb51b8aebf 0000000000000000"
                  "0000003f 0000003f 000000bf 0000003f 77c3a46e64650000 |"
@@ -196,9 +196,8 @@ TEST_CASE("the bytes of a contact between bodies are those of the document") {
   frame.body_contacts = {contact};
   const Bytes bytes = frame_bytes(frame);
   CHECK(Bytes(bytes.begin() + 12, bytes.begin() + 16) == from_hex("0100 0100"));
-  CHECK(Bytes(bytes.begin() + static_cast<std::ptrdiff_t>(before), bytes.end()) ==
-        from_hex("00 fd 0000 ff7f 00c0 | 0000803f 0000003f 000000c0"
-                 "00000000 00008040 0000803e 0000003e"));
+  CHECK(added_after(bytes, before) == from_hex("00 fd 0000 ff7f 00c0 | 0000803f 0000003f 000000c0"
+                                               "00000000 00008040 0000803e 0000003e"));
 }
 
 TEST_CASE("contacts that are too many, or of bodies that are not there, are refused") {

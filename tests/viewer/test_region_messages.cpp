@@ -18,7 +18,7 @@ TEST_CASE("the bytes of an object's regions are those of the document") {
   scene.objects[0].regions = regions;
   const Bytes bytes = encode(scene);
   CHECK(Bytes(bytes.begin() + 92, bytes.begin() + 96) == from_hex("0200 0200"));
-  CHECK(Bytes(bytes.begin() + static_cast<std::ptrdiff_t>(before), bytes.end()) ==
+  CHECK(added_after(bytes, before) ==
         from_hex("00000000 0000fa44 0000fa44 0000803e 0000003f 00007a44 00007a44"
                  "03000000 0000fa43 0000fa45 0000803e 0000803e 00008044 00008044 |"
                  "0000fa44 | 03000000 01000000"

@@ -42,7 +42,7 @@ finish() {
 }
 
 run_tests() {
-  echo "test: preset $1"
+  echo "test: preset $1, after $SECONDS s"
   ctest --preset "$@"
 }
 
@@ -58,7 +58,8 @@ if [ $all = yes ]; then
   build_ahead tsan
   build_ahead ci tsan
   run_tests asan --label-exclude 'slow|exhaustive' --parallel 2
-  IRDM_FUZZ_SEED=1 IRDM_FUZZ_AT_ONCE=$((2 * $(nproc))) scripts/fuzz.sh 15
+  echo "test: fuzzers, after $SECONDS s"
+  IRDM_FUZZ_SEED=1 IRDM_FUZZ_AT_ONCE=$((2 * $(nproc))) scripts/fuzz.sh 10
   finish tsan
   run_tests tsan --label-exclude 'slow|exhaustive' --parallel 2
   finish ci

@@ -142,7 +142,7 @@ TEST_CASE("C interface: a state that is damaged or of other models changes nothi
   CHECK((state_of(open.handle) == state));
 }
 
-TEST_CASE("C interface: opened and closed very often, nothing is left") {
+TEST_CASE("C interface: opened and closed very often, nothing is left", "[slow]") {
   const CScene scene;
   for (int i = 0; i < 200; ++i) {
     const OpenSimulation open(scene.text());

@@ -117,7 +117,7 @@ TEST_CASE("bodies with more than six modes without energy are refused") {
                     Contains("7 modes without elastic energy"));
 }
 
-TEST_CASE("lowest elastic frequency of the paper's cube is 10.7 Hz") {
+TEST_CASE("lowest elastic frequency of the paper's cube is 10.7 Hz", "[slow]") {
   const Discrete body(test::box_mesh(Vector3(0.12, 0.12, 0.12), {12, 12, 12}), kModesMaterial);
   CHECK(lowest_frequency(body, 1000.0) == Approx(10.7).margin(0.2));
 }

@@ -272,7 +272,7 @@ TEST_CASE("a slender free beam bends at the frequency of beam theory") {
   CHECK(found == Approx(expected).epsilon(0.01));
 }
 
-TEST_CASE("lowest elastic frequency of the paper's cube is within 1 % of 9.37 Hz") {
+TEST_CASE("lowest elastic frequency of the paper's cube is within 1 % of 9.37 Hz", "[slow]") {
   const Discrete body(quadratic_mesh(test::box_mesh(Vector3(0.12, 0.12, 0.12), {6, 6, 6})),
                       kMaterial);
   const double found = lowest_frequency(body, 1000.0);

@@ -75,7 +75,7 @@ TEST_CASE("modes end smoothly: whole up to half of the cut-off, nothing there") 
   CHECK(kept_share(2.0, 2.0) == 0.0);
 }
 
-TEST_CASE("modes and residual together have the static compliance of all modes") {
+TEST_CASE("modes and residual together have the static compliance of all modes", "[slow]") {
   Cube cube;
   ModesConfig config;
   config.count = 60;
@@ -87,7 +87,8 @@ TEST_CASE("modes and residual together have the static compliance of all modes")
   CHECK(reduced.residual.reduction.shape_error < 1e-6);
 }
 
-TEST_CASE("near a contact the static compliance is that of all modes, and gives no energy") {
+TEST_CASE("near a contact the static compliance is that of all modes, and gives no energy",
+          "[slow]") {
   Cube cube;
   ModesConfig config;
   config.count = 60;
@@ -119,7 +120,8 @@ TEST_CASE("near a contact the static compliance is that of all modes, and gives 
   CHECK(values(0) > -1e-6 * values(values.size() - 1));
 }
 
-TEST_CASE("what is added to the diagonal is what is lacking to be positive semidefinite") {
+TEST_CASE("what is added to the diagonal is what is lacking to be positive semidefinite",
+          "[slow]") {
   Cube cube;
   ModesConfig config;
   config.count = 60;
@@ -152,7 +154,7 @@ TEST_CASE("the stated errors are those against all modes") {
   CHECK(reference.error(without).force > 10.0 * reduction.force_error);
 }
 
-TEST_CASE("modes are chosen by frequency and by error") {
+TEST_CASE("modes are chosen by frequency and by error", "[slow]") {
   Cube cube;
   const ModalResponse all = cube.all();
   ModesConfig by_frequency;
@@ -181,7 +183,8 @@ TEST_CASE("some of the modes and their residual are the same for any number of t
   CHECK(one.residual.reduction.force_error == three.residual.reduction.force_error);
 }
 
-TEST_CASE("a fixed body's clamped nodes answer nothing, and the others as with all modes") {
+TEST_CASE("a fixed body's clamped nodes answer nothing, and the others as with all modes",
+          "[slow]") {
   Cube cube;
   std::vector<int> clamped;
   for (int i = 0; i < cube.body.mesh.node_count(); ++i) {

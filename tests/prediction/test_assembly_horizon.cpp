@@ -94,7 +94,7 @@ std::array<double, 2> compare(Scene& scene) {
 
 }  // namespace
 
-TEST_CASE("assembly: a contact among others goes as the simulation goes on") {
+TEST_CASE("assembly: a contact among others goes as the simulation goes on", "[slow]") {
   for (const ResponseKind kind :
        {ResponseKind::kModal, ResponseKind::kDense, ResponseKind::kCompressed}) {
     for (const double E : {2e3, 2e4, 2e5}) {

@@ -36,7 +36,7 @@ ContactModel good_model(ResponseKind kind = ResponseKind::kModal) {
 
 }  // namespace
 
-TEST_CASE("contact model: what a server says of a touch is believed") {
+TEST_CASE("contact model: what a server says of a touch is believed", "[slow]") {
   for (const ResponseKind kind : {ResponseKind::kModal, ResponseKind::kDense}) {
     const ContactModel model = good_model(kind);
     CHECK(model.valid);

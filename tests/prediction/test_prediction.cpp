@@ -191,7 +191,7 @@ TEST_CASE("prediction: what late forces leave falls with the motion", "[slow]") 
   CHECK(left(0.005) < 2e-4);
 }
 
-TEST_CASE("prediction: the same with the dense engine") {
+TEST_CASE("prediction: the same with the dense engine", "[slow]") {
   const LoopSetup setup = swung(2e3, ResponseKind::kDense);
   const LoopRun direct = run_loop(setup, LoopMode::kDirect);
   CHECK(error(setup, direct, LoopMode::kPredict, {.delay = 0.01}) < 1e-6);
@@ -300,7 +300,7 @@ TEST_CASE("prediction: a pinch by friction in the air, 10 ms one way", "[slow]")
 
 // What the server's overruns leave out it makes up for, with the tips and forces of these steps, so
 // that nothing is lost.
-TEST_CASE("prediction: overruns of the server are not felt") {
+TEST_CASE("prediction: overruns of the server are not felt", "[slow]") {
   for (const double E : kStiffnesses) {
     for (LoopSetup setup : {pressed(E, 0.0), swung(E)}) {
       const LoopRun direct = run_loop(setup, LoopMode::kDirect);

@@ -15,8 +15,8 @@ bool shakes(const LoopRun& run, const RandomLoop& loop) {
 
 }  // namespace
 
-TEST_CASE(
-    "random loops: with the contact at the bridge none shakes, and the port gives no energy") {
+TEST_CASE("random loops: with the contact at the bridge none shakes, and the port gives no energy",
+          "[slow]") {
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     const RandomLoop loop(seed);
     CAPTURE(loop.words);
@@ -30,7 +30,8 @@ TEST_CASE(
 
 // Younger forces are not watched, see OscillationDetector. Without it a third of these hands shake;
 // with it some in a thousand, and which ones rounding decides, so two of all are let pass.
-TEST_CASE("random loops: forces that are held over a delay hardly ever shake a hand for long") {
+TEST_CASE("random loops: forces that are held over a delay hardly ever shake a hand for long",
+          "[slow]") {
   constexpr double kWatched = 0.002;  // one way [s]
   int shaking = 0;
   int of_much_energy = 0;

@@ -83,7 +83,7 @@ struct TwoTaps {
 
 }  // namespace
 
-TEST_CASE("a tap on a softer object that answers later is told from the other") {
+TEST_CASE("a tap on a softer object that answers later is told from the other", "[slow]") {
   const StruckRun a;
   const StruckRun b{
       .onset = 104, .force = 1.2, .compliance = 6e-3, .frequency = 12.6, .decay = 6.0};
@@ -118,7 +118,7 @@ TEST_CASE("a tap on a softer object that answers later is told from the other") 
   CHECK(stylus.onsets.noticeable(taps.measures.interval) == std::optional(true));
 }
 
-TEST_CASE("a tap is not noticeably different from itself") {
+TEST_CASE("a tap is not noticeably different from itself", "[slow]") {
   const TwoTaps taps({}, {});
   const StylusMeasures& stylus = taps.measures.styluses.at(0);
   CHECK(stylus.difference.noticeable() == std::optional(false));
@@ -140,7 +140,7 @@ TEST_CASE("a tap is not noticeably different from itself") {
                         Contains("none                none                0.5 N\n"));
 }
 
-TEST_CASE("a stylus without contact has no section and is not judged") {
+TEST_CASE("a stylus without contact has no section and is not judged", "[slow]") {
   const TwoTaps taps({.force = 0.0}, {.force = 0.0});
   const std::string table = comparison_table(taps.comparison, taps.measures);
   CHECK_THAT(table,

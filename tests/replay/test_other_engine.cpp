@@ -83,7 +83,7 @@ TEST_CASE("dense makes a run of modal again within the end of its responses and 
   CHECK(errors.deviation.other_contacts() == 0);
 }
 
-TEST_CASE("a compressed response makes a run again within its error") {
+TEST_CASE("a compressed response makes a run again within its error", "[slow]") {
   const KeptRun run = swing();
   const SimulationConfig compressed = scene(ResponseKind::kCompressed);
   ForceRerun made(compressed);

@@ -57,13 +57,14 @@ TEST_CASE("a recording whose disk gets full can be read up to its last committed
   CHECK(check_committed(disk->path() / "trace.h5") > 0);
 }
 
-TEST_CASE("a recording beyond the limit of a file can be read up to its last committed row") {
+TEST_CASE("a recording beyond the limit of a file can be read up to its last committed row",
+          "[slow]") {
   const rlim_t limit = GENERATE(320'000, 437'211, 1'000'000, 1'500'007);
   const TemporaryFolder folder;
   check_limited(folder.path() / "trace.h5", limit);
 }
 
-TEST_CASE("the same on a file system that keeps no room free on request") {
+TEST_CASE("the same on a file system that keeps no room free on request", "[slow]") {
   const rlim_t limit = GENERATE(320'000, 437'211, 1'000'000, 1'500'007);
   const auto disk = small_disk("ramfs");
   if (!disk) return;
@@ -72,7 +73,8 @@ TEST_CASE("the same on a file system that keeps no room free on request") {
 
 // HDF5 then splits the index of every set in place: a disk that is full in the middle of that would
 // cost all of its rows.
-TEST_CASE("a recording whose index is being split when the disk gets full keeps its rows") {
+TEST_CASE("a recording whose index is being split when the disk gets full keeps its rows",
+          "[slow]") {
   const rlim_t limit = GENERATE(10'640'000, 10'690'000, 10'740'000, 10'790'000);
   constexpr std::size_t kBatches = 66;  // the 65th is the first for which the index is too small
   CAPTURE(limit);

@@ -144,7 +144,8 @@ TEST_CASE("a trace gives back every number of every row") {
   }
 }
 
-TEST_CASE("a trace has the floor's forces of every step, one after the other, for each object") {
+TEST_CASE("a trace has the floor's forces of every step, one after the other, for each object",
+          "[slow]") {
   const TemporaryFolder folder;
   const auto path = folder.path() / "trace.h5";
   const bool several = GENERATE(false, true);

@@ -29,7 +29,7 @@ constexpr int kWritten = 0, kFailed = 1;
 
 }  // namespace
 
-TEST_CASE("a trace is begun, however often one looks whether it is there") {
+TEST_CASE("a trace is begun, however often one looks whether it is there", "[slow]") {
   const TemporaryFolder folder;
   for (int i = 0; i < 100; ++i) {
     CAPTURE(i);

@@ -273,7 +273,7 @@ TEST_CASE("bodies: what is shown of them is what the step has") {
   }
 }
 
-TEST_CASE("bodies: a stylus that presses on a stack feels all of it") {
+TEST_CASE("bodies: a stylus that presses on a stack feels all of it", "[slow]") {
   SimulationConfig config = stacked(2, {.cells = 4, .youngs_modulus = 5e3}, {0.6, 0.5});
   config.styluses = {{0.02, 2000.0, 0.0}};
   Simulation simulation(config);
@@ -320,7 +320,8 @@ TEST_CASE("bodies: those that begin inside one another are refused, by name and 
 }
 
 // Where the edge passes the middle of a post, the post's normal is that of the face beside it.
-TEST_CASE("body contacts: edges of a cube that is pushed between two posts do not sink into them") {
+TEST_CASE("body contacts: edges of a cube that is pushed between two posts do not sink into them",
+          "[slow]") {
   constexpr double kPostRadius = 0.03;
   constexpr double kPostAside = 0.085;
   SimulationConfig config;

@@ -193,8 +193,8 @@ TEST_CASE("compressed engine: delayed forces are those of equation (10), on and 
   }
 }
 
-TEST_CASE(
-    "compressed engine: the steps to come, and what a force does in them, are equation (10)") {
+TEST_CASE("compressed engine: the steps to come, and what a force does in them, are equation (10)",
+          "[slow]") {
   const auto model = made_up(GENERATE(false, true));
   const auto engine = make_engine(model);
   constexpr int kNow = 30;
@@ -255,7 +255,8 @@ TEST_CASE("compressed engine: same bits with one and two threads, forgets on res
   CHECK(displacement(*engine).norm() == 0.0);
 }
 
-TEST_CASE("compressed to 5 %: forces of an interaction of each kind are those of dense R") {
+TEST_CASE("compressed to 5 %: forces of an interaction of each kind are those of dense R",
+          "[slow]") {
   const FemCube cube{.cells = 3, .rayleigh_alpha = 16.0, .steps = 300};
   const auto dense = fem_cube(cube, ResponseKind::kDense);
   const auto compressed = fem_cube(cube, ResponseKind::kCompressed);

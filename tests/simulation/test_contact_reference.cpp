@@ -248,7 +248,8 @@ TEST_CASE("pressed cubes: face on face they approach and press as by finite elem
 
 // What a line of nodes carries depends on the mesh, however fine: the reference's approach is 31 %
 // larger with 12 cells an edge, 66 % with 8 quadratic ones. So it has the mesh of the run.
-TEST_CASE("pressed cubes: edge on face each node carries what it does by finite elements") {
+TEST_CASE("pressed cubes: edge on face each node carries what it does by finite elements",
+          "[slow]") {
   Press press{cube(5000.0), cube(5000.0)};
   press.gravity = 1.0;
   press.turn = 0.25 * std::numbers::pi;

@@ -198,7 +198,8 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("engine's surface is the same to the bit with one, two and three OpenMP threads") {
+TEST_CASE("engine's surface is the same to the bit with one, two and three OpenMP threads",
+          "[slow]") {
   const Model modal = synthetic_cube(5, 200, 50);
   for (const Model& model : {modal, with_dense_response<float>(modal)}) {
     const auto engine = make_engine(share(model));

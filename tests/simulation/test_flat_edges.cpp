@@ -48,8 +48,8 @@ SimulationConfig one_on(bool box, double youngs_modulus) {
 
 // A hand that holds the top at one side lifts it and lets it down: the cube turns about the edge at
 // the other side, which carries half of it and lies flat below 3 degrees.
-TEST_CASE(
-    "body contacts: an edge that turns flat hands its force over, and none is lost in a step") {
+TEST_CASE("body contacts: an edge that turns flat hands its force over, and none is lost in a step",
+          "[slow]") {
   const bool box = GENERATE(false, true);
   const double youngs_modulus = GENERATE(5e3, 2e4);
   constexpr double kSpeed = 0.02;      // [m/s]
@@ -128,7 +128,7 @@ TEST_CASE("body contacts: momentum stays in a collision in which an edge turns f
 
 // Turned by less than 3 degrees a face counts as flat, and its samples are up to 1.4 cm away from
 // its edges.
-TEST_CASE("body contacts: edges of a cube that lands nearly flat do not sink in") {
+TEST_CASE("body contacts: edges of a cube that lands nearly flat do not sink in", "[slow]") {
   const bool box = GENERATE(false, true);
   const Vector3 turn = GENERATE(Vector3(0, 0, 0.05), Vector3(0.03, 0, 0.03));
   SimulationConfig config = one_on(box, 2000.0);

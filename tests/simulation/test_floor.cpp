@@ -64,7 +64,7 @@ TEST_CASE("floor: at rest it carries the weight, and nothing moves", "[slow]") {
   CHECK(record.object[0].position.y() < -0.001);
 }
 
-TEST_CASE("floor: dropped it rings and comes to rest on the floor, no node below it") {
+TEST_CASE("floor: dropped it rings and comes to rest on the floor, no node below it", "[slow]") {
   SimulationConfig config = standing(2000.0, {0.5, 0.5});
   config.objects[0].position = Vector3(0, 0.05, 0);
   config.objects[0].damping = {0.5, 0.5};

@@ -75,7 +75,7 @@ void add_load(const ModelMesh& mesh, int node, const Vector3& force, Eigen::Vect
 
 }  // namespace
 
-TEST_CASE("gravity: a fixed cube stands in its static sag from the first step on") {
+TEST_CASE("gravity: a fixed cube stands in its static sag from the first step on", "[slow]") {
   const ResponseKind kind = GENERATE(ResponseKind::kModal, ResponseKind::kDense);
   FixedBox box;
   if (kind == ResponseKind::kModal) box.order = 2;
@@ -99,7 +99,7 @@ TEST_CASE("gravity: a fixed cube stands in its static sag from the first step on
   CHECK(record.object[0].velocity == Vector3::Zero());
 }
 
-TEST_CASE("gravity: the tip of a slender bar comes down as beam theory says") {
+TEST_CASE("gravity: the tip of a slender bar comes down as beam theory says", "[slow]") {
   constexpr double kLength = 0.3;
   constexpr double kHeight = 0.02;
   FixedBox bar;

@@ -194,7 +194,8 @@ double depth_for(double youngs_modulus) {
 
 }  // namespace
 
-TEST_CASE("hands: two, three and five fingertips lift a cube by friction and hold its weight") {
+TEST_CASE("hands: two, three and five fingertips lift a cube by friction and hold its weight",
+          "[slow]") {
   const int fingers = GENERATE(2, 3, 5);
   const double youngs_modulus = GENERATE(5e3, 5e4);
   const double radius = GENERATE(0.005, 0.01);

@@ -22,7 +22,7 @@ bool same(const StepRecord& a, const StepRecord& b) {
 
 }  // namespace
 
-TEST_CASE("predictions and late forces leave a run that is rerun the same to the bit") {
+TEST_CASE("predictions and late forces leave a run that is rerun the same to the bit", "[slow]") {
   const ResponseKind kind =
       GENERATE(ResponseKind::kModal, ResponseKind::kDense, ResponseKind::kCompressed);
   SimulationConfig config;

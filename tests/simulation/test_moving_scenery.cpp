@@ -88,7 +88,7 @@ TEST_CASE("moving scenery: it is where its path begins from the start, as after 
   }
 }
 
-TEST_CASE("moving scenery: a plane that presses a bar on the ground feels E A d / L") {
+TEST_CASE("moving scenery: a plane that presses a bar on the ground feels E A d / L", "[slow]") {
   FixedBox bar;
   bar.size = Vector3(0.04, 0.12, 0.04);
   bar.cells = {12, 2, 12};

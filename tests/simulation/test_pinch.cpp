@@ -68,7 +68,7 @@ class Pinch {
 
 }  // namespace
 
-TEST_CASE("pinch: two fingers lift a cube and hold its weight") {
+TEST_CASE("pinch: two fingers lift a cube and hold its weight", "[slow]") {
   const double radius = GENERATE(0.0, 0.01);
   Pinch pinch(radius);
   pinch.lift(0.02);

@@ -242,7 +242,7 @@ TEST_CASE("random scenes: the same for sixty", "[exhaustive]") {
   check_scenes(60);
 }
 
-TEST_CASE("random scenes: a state that was saved goes on to the same bits") {
+TEST_CASE("random scenes: a state that was saved goes on to the same bits", "[slow]") {
   Random random(12);
   for (int i = 0; i < 20; ++i) {
     const Scene scene = make_scene(random);

@@ -253,7 +253,7 @@ TEST_CASE("random worlds: the same for sixty", "[exhaustive]") {
   check_worlds(60, 1);
 }
 
-TEST_CASE("random worlds: a state that was saved goes on to the same bits") {
+TEST_CASE("random worlds: a state that was saved goes on to the same bits", "[slow]") {
   for (unsigned seed = 0; seed < 6; ++seed) {
     Random random(seed);
     const World world = make_world(random);

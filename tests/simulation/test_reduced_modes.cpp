@@ -75,7 +75,7 @@ StepwiseDifference force_difference(const FemCube& all, const FemCube& some, dou
 
 }  // namespace
 
-TEST_CASE("reduced modes: the engine answers as R does that the model stands for") {
+TEST_CASE("reduced modes: the engine answers as R does that the model stands for", "[slow]") {
   const int modes = GENERATE(20, 1100);  // the engine takes 512 at a time
   CAPTURE(modes);
   const Model model = with_residual(modes);
@@ -159,7 +159,8 @@ TEST_CASE("reduced modes: nothing allocates in a step") {
 }
 
 TEST_CASE(
-    "reduced modes: a fingertip that presses feels the force that the file says, about 1 % off") {
+    "reduced modes: a fingertip that presses feels the force that the file says, about 1 % off",
+    "[slow]") {
   FemCube all;
   all.cells = 8;
   all.poisson_ratio = 0.4;

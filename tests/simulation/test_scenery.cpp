@@ -136,7 +136,8 @@ TEST_CASE("scenery: a hit is on the surface, its normal leads out and on to the 
   }
 }
 
-TEST_CASE("scenery: no sample of the surface is nearer than the hit, and one is nearly as near") {
+TEST_CASE("scenery: no sample of the surface is nearer than the hit, and one is nearly as near",
+          "[slow]") {
   Random random(2);
   for (const SceneryShape& shape : kShapes) {
     CAPTURE(shape.index());

@@ -179,7 +179,8 @@ TEST_CASE("settings: coupling to inertia is switched where the model knows it") 
   CHECK(record.object[0].spin.norm() == Approx(5.0));
 }
 
-TEST_CASE("static compliance is what a lasting force leads to, by modes and by R itself") {
+TEST_CASE("static compliance is what a lasting force leads to, by modes and by R itself",
+          "[slow]") {
   const bool reduced = GENERATE(false, true);
   CAPTURE(reduced);
   Model modal = synthetic_cube(2, 12, 4000);

@@ -75,7 +75,8 @@ double weight_of(const SimulationConfig& config) {
 
 }  // namespace
 
-TEST_CASE("sleep: a stack at rest falls asleep, carries the weights and stays where it is") {
+TEST_CASE("sleep: a stack at rest falls asleep, carries the weights and stays where it is",
+          "[slow]") {
   for (const double youngs_modulus : {1e5, 1e6}) {
     const SimulationConfig config = sleepers(3, youngs_modulus);
     Twins twins(config);
@@ -99,7 +100,8 @@ TEST_CASE("sleep: a stack at rest falls asleep, carries the weights and stays wh
   }
 }
 
-TEST_CASE("sleep: a stylus wakes the whole stack, and its poke is that of one never asleep") {
+TEST_CASE("sleep: a stylus wakes the whole stack, and its poke is that of one never asleep",
+          "[slow]") {
   Twins twins(sleepers(2));
   twins.step(1000, kAway);
   REQUIRE(twins.all_asleep());
@@ -122,7 +124,7 @@ TEST_CASE("sleep: a stylus wakes the whole stack, and its poke is that of one ne
   CHECK(off < 0.01 * most);
 }
 
-TEST_CASE("sleep: what is woken without being touched stays at rest") {
+TEST_CASE("sleep: what is woken without being touched stays at rest", "[slow]") {
   for (const ResponseKind kind : {ResponseKind::kModal, ResponseKind::kDense}) {
     SimulationConfig config = sleepers(2);
     for (SimulationObject& object : config.objects) {
@@ -171,7 +173,7 @@ TEST_CASE("sleep: something that comes flying wakes it") {
   CHECK(apart < 1e-5);
 }
 
-TEST_CASE("sleep: it wakes when its support is pushed away") {
+TEST_CASE("sleep: it wakes when its support is pushed away", "[slow]") {
   SimulationConfig config = sleepers(2);
   config.scenery[0].friction = {0.05, 0.05};
   for (SimulationObject& object : config.objects) object.friction = {0.05, 0.05};
@@ -187,7 +189,7 @@ TEST_CASE("sleep: it wakes when its support is pushed away") {
   CHECK(twins.record->object[1].position.y() < 2.5 * kHalfEdge);
 }
 
-TEST_CASE("sleep: other settings wake it, the same do not") {
+TEST_CASE("sleep: other settings wake it, the same do not", "[slow]") {
   Twins twins(sleepers(2));
   twins.step(1000);
   REQUIRE(twins.all_asleep());
@@ -205,7 +207,7 @@ TEST_CASE("sleep: other settings wake it, the same do not") {
   CHECK(twins.apart() < 1e-5);
 }
 
-TEST_CASE("sleep: a force that comes late, and a reset, wake it") {
+TEST_CASE("sleep: a force that comes late, and a reset, wake it", "[slow]") {
   Twins twins(sleepers(2));
   twins.step(1000);
   REQUIRE(twins.all_asleep());
@@ -253,7 +255,7 @@ TEST_CASE("sleep: what swings elastically alone stays awake until that has decay
   CHECK(left.cwiseAbs().maxCoeff() < 1e-5);
 }
 
-TEST_CASE("sleep: a world that sleeps and wakes again makes no energy") {
+TEST_CASE("sleep: a world that sleeps and wakes again makes no energy", "[slow]") {
   Twins twins(sleepers(3));
   const auto energy = [&] {
     double sum = 0.0;

@@ -66,7 +66,8 @@ TEST_CASE("rounded surface: round an edge it is the mean over the disc, with the
   CHECK((flat.normal - Vector3(0, 1, 0)).norm() < 1e-14);
 }
 
-TEST_CASE("rounded surface: an edge bends no more than a circle of 0.7 discs, and smoothly") {
+TEST_CASE("rounded surface: an edge bends no more than a circle of 0.7 discs, and smoothly",
+          "[slow]") {
   const auto model = fem_cube({8});
   const RestSurface surface(model->mesh);
   SmoothedSurface rounded(surface, kTip);

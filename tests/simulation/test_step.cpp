@@ -93,7 +93,7 @@ TEST_CASE("step: an untouched object falls with gravity and spins on") {
   CHECK(u.norm() == 0.0);
 }
 
-TEST_CASE("step: a held node follows a swung stylus within 0.5 mm, with a smooth force") {
+TEST_CASE("step: a held node follows a swung stylus within 0.5 mm, with a smooth force", "[slow]") {
   for (const double youngs_modulus : {2000.0, 20000.0}) {
     for (const double dt : {0.002, 0.001}) {
       FemCube cube;

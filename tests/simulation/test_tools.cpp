@@ -197,8 +197,8 @@ TEST_CASE("tool: a led motion is of second order in dt") {
   CHECK(coarse / fine > 3.5);
 }
 
-TEST_CASE(
-    "tool: pressed on a soft cube, its stylus gets what the contacts exert, and their moment") {
+TEST_CASE("tool: pressed on a soft cube, its stylus gets what the contacts exert, and their moment",
+          "[slow]") {
   const double youngs_modulus = GENERATE(2e3, 1e5);
   const SimulationConfig config = rod_over_cube(youngs_modulus);
   Simulation simulation(config);
@@ -260,7 +260,8 @@ TEST_CASE("tool: pressed on a plane it comes to it, however light it is") {
   CHECK(deepest < 1e-5);
 }
 
-TEST_CASE("tool: what it stores is never more than what its hand put in, poked at random") {
+TEST_CASE("tool: what it stores is never more than what its hand put in, poked at random",
+          "[slow]") {
   const double youngs_modulus = GENERATE(1e3, 1e4, 1e5, 1e6);
   const SimulationConfig config = rod_over_cube(youngs_modulus);
   Simulation simulation(config);

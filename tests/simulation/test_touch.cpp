@@ -47,7 +47,7 @@ TEST_CASE(
   CHECK(slipping > 500);  // of the 650 steps in which it is dragged
 }
 
-TEST_CASE("touch: without friction the force stays normal to the surface") {
+TEST_CASE("touch: without friction the force stays normal to the surface", "[slow]") {
   Simulation simulation(tethered({8}, 0.015, {0.0, 0.0}));
   StepRecord record;
   bool flat = false;
@@ -185,7 +185,8 @@ TEST_CASE("touch: a given contact stays where it is given, after one that just b
   CHECK(record.object[0].contact[0].point.weights == point.weights);
 }
 
-TEST_CASE("touch: a grab that begins with the contact makes no jump, near an edge either") {
+TEST_CASE("touch: a grab that begins with the contact makes no jump, near an edge either",
+          "[slow]") {
   for (const double x : {0.0, 0.045, 0.055}) {
     double largest = 0.0;
     for (const bool grab : {false, true}) {
@@ -206,7 +207,7 @@ TEST_CASE("touch: a grab that begins with the contact makes no jump, near an edg
 }
 
 // What let go inside, as a hold from within reach does, has not come through the surface.
-TEST_CASE("touch: no contact begins deeper than the tip can have come in the step") {
+TEST_CASE("touch: no contact begins deeper than the tip can have come in the step", "[slow]") {
   for (const double depth : {0.001, 0.008}) {
     SimulationConfig config = tethered({8}, 0.0, {0.5, 0.5});
     config.styluses[0].reach = 0.01;

@@ -16,7 +16,8 @@ std::size_t count(const std::vector<std::uint8_t>& values, int value) {
 
 }  // namespace
 
-TEST_CASE("gallery, press: at rest under the tip the tether carries the force, and lets it back") {
+TEST_CASE("gallery, press: at rest under the tip the tether carries the force, and lets it back",
+          "[slow]") {
   Played played("press");
   const std::size_t pressed = played.row(2.45);
   const double stiffness = played.scene().objects[0].tether.stiffness;
@@ -28,7 +29,7 @@ TEST_CASE("gallery, press: at rest under the tip the tether carries the force, a
   CHECK(played.position(played.rows() - 1).norm() < 5e-4);
 }
 
-TEST_CASE("gallery, tap: the cube drifts off with the momentum of the tap") {
+TEST_CASE("gallery, tap: the cube drifts off with the momentum of the tap", "[slow]") {
   Played played("tap");
   const auto contact = played.flags("/stylus/0/contact");
   CHECK(count(contact, 1) > 10);
@@ -40,7 +41,7 @@ TEST_CASE("gallery, tap: the cube drifts off with the momentum of the tap") {
   CHECK((momentum - impulse).norm() < 1e-10 * impulse.norm());
 }
 
-TEST_CASE("gallery, two cubes: the stiff one gives the larger and shorter blow") {
+TEST_CASE("gallery, two cubes: the stiff one gives the larger and shorter blow", "[slow]") {
   Played played("two-cubes");
   const auto steps = [&](int stylus) {
     return count(played.flags("/stylus/" + std::to_string(stylus) + "/contact"), 1);
@@ -58,7 +59,7 @@ TEST_CASE("gallery, two cubes: the stiff one gives the larger and shorter blow")
         std::vector<std::uint8_t>(played.rows(), 0));
 }
 
-TEST_CASE("gallery, pinch: friction lifts the cube as far as the pinched points go up") {
+TEST_CASE("gallery, pinch: friction lifts the cube as far as the pinched points go up", "[slow]") {
   Played played("pinch");
   check_penetration(played);
   const std::size_t below = played.row(1.55);
@@ -78,7 +79,7 @@ TEST_CASE("gallery, pinch: friction lifts the cube as far as the pinched points 
   CHECK(std::abs(played.position(played.rows() - 1).y()) < 1e-3);
 }
 
-TEST_CASE("gallery, swing: the object follows the stylus that holds it") {
+TEST_CASE("gallery, swing: the object follows the stylus that holds it", "[slow]") {
   Played played("swing");
   const auto contact = played.flags("/stylus/0/contact");
   const double stiffness = played.scene().styluses[0].coupling_stiffness;
@@ -99,7 +100,7 @@ TEST_CASE("gallery, swing: the object follows the stylus that holds it") {
   CHECK(contact.back() == 0);
 }
 
-TEST_CASE("gallery, slide: the contact slips along the top, with kinetic friction") {
+TEST_CASE("gallery, slide: the contact slips along the top, with kinetic friction", "[slow]") {
   Played played("slide");
   const auto slipping = played.flags("/stylus/0/slipping");
   const double friction = played.scene().objects[0].friction.kinetic;
@@ -119,8 +120,8 @@ TEST_CASE("gallery, slide: the contact slips along the top, with kinetic frictio
         0.04);
 }
 
-TEST_CASE(
-    "gallery, rest: the floor carries the cube that has dropped on it, and pushed it slides") {
+TEST_CASE("gallery, rest: the floor carries the cube that has dropped on it, and pushed it slides",
+          "[slow]") {
   Played played("rest");
   check_penetration(played);
   const double weight = 9.81 * played.mass();

@@ -11,7 +11,8 @@ using namespace irdm::test;
 
 TEST_CASE(
     "gallery, stack: at rest each cube carries what is above it; pushed over, two fall beside the "
-    "lowest") {
+    "lowest",
+    "[slow]") {
   Played played("stack");
   check_penetration(played);
   const double weight = 9.81 * played.mass();

@@ -349,7 +349,8 @@ TEST_CASE("a run is rerun, to the bit, from the tips and buttons of its trace") 
   CHECK(std::count(trace.reset.begin(), trace.reset.end(), 1) == 1);
 }
 
-TEST_CASE("the touched point's place is recomputed from a trace, inertial loading included") {
+TEST_CASE("the touched point's place is recomputed from a trace, inertial loading included",
+          "[slow]") {
   const std::string kind = GENERATE("modal", "dense");
   const Stage stage;
   stage.write("scene.toml", scene_text("", kind) +

@@ -289,7 +289,8 @@ TEST_CASE("irdm-replay makes a run again by finite elements, and leaves no half 
   CHECK(number_after(compared.out, "orientation        rms") < 0.05);
 }
 
-TEST_CASE("a reference that is killed goes on where it was, to the same result bit for bit") {
+TEST_CASE("a reference that is killed goes on where it was, to the same result bit for bit",
+          "[slow]") {
   const Stage stage;
   const std::filesystem::path trace = record(stage, true);
   const std::string whole = stage.path("whole.csv").string();

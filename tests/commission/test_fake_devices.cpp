@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "device_bridge/forcedimension/forcedimension_device.hpp"
+#include "tests/commission/held_device.hpp"
 #include "tests/commission/played_plan.hpp"
 #include "tests/commission/step_rig.hpp"
 #include "tests/forcedimension/fake_api.hpp"
@@ -13,33 +14,6 @@ using namespace irdm::commission;
 using namespace irdm::test;
 
 namespace {
-
-/// The servo loop of a device with a step runner, on a virtual clock, and the hand that holds it.
-class HeldDevice {
- public:
-  explicit HeldDevice(HapticDevice& device)
-      : loop_(device, {.max_force = 3.3}), runner_(loop_, link_) {}
-
-  void tick() {
-    now_ns_ += kMs;
-    loop_.read(0.0);
-    link_.styluses[0].input.receive();
-    loop_.apply(now_ns_, link_.styluses[0].input.front());
-    TickRow row;
-    row.time_ns = now_ns_;
-    runner_.put(row);
-  }
-  StepRunner& runner() { return runner_; }
-
-  ObedientHand hand;
-  VirtualSensor sensor{{.resolution = 2e-5, .noise = 1e-5}};
-
- private:
-  ServoLoop loop_;
-  ServoLink link_{1};
-  StepRunner runner_;
-  std::int64_t now_ns_ = 0;
-};
 
 /// Of the fake libHD.so, whose ticks are made by hand.
 Report commission_touch(const Matrix3& reading_axes = Matrix3::Identity(),

@@ -1,3 +1,4 @@
+#include <sys/prctl.h>
 #include <unistd.h>
 
 #include <cctype>
@@ -6,6 +7,7 @@
 #include <iostream>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "common/error.hpp"
 #include "common/program/program.hpp"
@@ -22,6 +24,7 @@ struct CommissionOptions {
   BridgeOverrides overrides;
   std::size_t device = 0;
   std::string out;
+  bool push = false;
 };
 
 BridgeConfig load_one_device(const CommissionOptions& options) {
@@ -47,16 +50,24 @@ std::string file_name(const DeviceConfig& device) {
   return "commission-" + name + ".toml";
 }
 
-commission::Report run_commission(const BridgeConfig& config, StopSignal& signal) {
+// This program again, for the step in which it is killed.
+std::vector<std::string> pushing(const CommissionOptions& options) {
+  return {"/proc/self/exe", "commission", "--config",
+          options.config,   "--device",   std::to_string(options.device),
+          "--push"};
+}
+
+commission::Report run_commission(const CommissionOptions& options, const BridgeConfig& config,
+                                  StopSignal& signal) {
   const DeviceConfig& table = config.devices[0];
   commission::Terminal terminal(signal, STDIN_FILENO, std::cout);
   if (table.type != "virtual") {
     const auto device = make_device(table);
-    return commission::commission(config, *device, terminal);
+    return commission::commission(config, *device, terminal, pushing(options));
   }
   commission::GuidedStylus stylus(table.hand, table.sensor, table.motors);
   commission::SimulatedPerson person(terminal, stylus);
-  return commission::commission(config, stylus, person);
+  return commission::commission(config, stylus, person, {});
 }
 
 void write(const std::string& file, const std::string& text, std::ios::openmode mode) {
@@ -69,9 +80,14 @@ int commission_device(const CommissionOptions& options) {
   StopSignal signal;
   std::signal(SIGTSTP, SIG_IGN);  // a process that is suspended takes no force away
   const BridgeConfig config = load_one_device(options);
+  if (options.push) {
+    ::prctl(PR_SET_PDEATHSIG, SIGTERM);  // no force without the person's terminal
+    commission::push_until_stopped(config, *make_device(config.devices[0]), signal);
+    return 0;
+  }
   const std::string file = options.out.empty() ? file_name(config.devices[0]) : options.out;
   write(file, "", std::ios::app);  // one that cannot be written is told before
-  const commission::Report report = run_commission(config, signal);
+  const commission::Report report = run_commission(options, config, signal);
   write(file, to_toml(report, file), std::ios::trunc);
   std::cout << '\n' << to_text(report) << "report: " << file << std::endl;
   if (report.signed_off()) return 0;
@@ -88,6 +104,8 @@ Command add_commission_command(CLI::App& app) {
   command->add_option("--script", options->overrides.script, "As of the bridge");
   command->add_option("--device", options->device, "Which [[device]], from 0 (default: 0)");
   command->add_option("--out", options->out, "File of the report (default: commission-NAME.toml)");
+  command->add_flag("--push", options->push, "Only pushes the handle up, until it is killed")
+      ->group("");
   return [options] { return commission_device(*options); };
 }
 

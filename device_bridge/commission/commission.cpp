@@ -3,6 +3,7 @@
 #include <ctime>
 #include <limits>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -10,6 +11,8 @@
 #include "common/realtime/clock.hpp"
 #include "common/realtime/scheduling.hpp"
 #include "device_bridge/bridge.hpp"
+#include "device_bridge/commission/force_steps.hpp"
+#include "device_bridge/commission/kill_step.hpp"
 #include "device_bridge/commission/plan.hpp"
 #include "device_bridge/commission/step_runner.hpp"
 #include "device_bridge/doctor/examine.hpp"
@@ -19,7 +22,6 @@ namespace irdm::commission {
 namespace {
 
 constexpr const char* kDriver = "driver";
-constexpr const char* kKilled = "stop of a killed bridge";
 
 std::string today() {
   const std::time_t now = std::time(nullptr);
@@ -43,17 +45,6 @@ StepRecord examine_driver(const BridgeConfig& config) {
   }
   if (problems.empty()) return {kDriver, Verdict::kPassed, "no problem found"};
   return {kDriver, Verdict::kFailed, problems};
-}
-
-StepRecord ask_about_kill(Person& person) {
-  const bool told = person.confirms(
-      std::string(kKilled) +
-      ": Plug the device in. In another terminal start irdm-server and irdm-bridge, touch an "
-      "object, and end irdm-bridge with kill -9. Was the force gone within a moment?");
-  if (told) return {kKilled, Verdict::kPassed, "told by the person: no force after a moment"};
-  return {kKilled, Verdict::kFailed,
-          "told by the person: the force went on; use the device with a hand on its power switch "
-          "only"};
 }
 
 /// The servo loop of a device, open as long as it lives.
@@ -181,18 +172,38 @@ bool run_with_device(const BridgeConfig& config, HapticDevice& device, Person& p
 
 }  // namespace
 
-Report commission(const BridgeConfig& config, HapticDevice& device, Person& person) {
+Report commission(const BridgeConfig& config, HapticDevice& device, Person& person,
+                  const std::vector<std::string>& pushing) {
   Report report{.type = config.devices[0].type, .name = config.devices[0].name, .date = today()};
   person.tell(std::string("\n") + kDriver + ": Looks at driver, permissions and clock.");
   const bool examined = Protocol(report, person).add(examine_driver(config));
   const bool passed = examined && run_with_device(config, device, person, report);
   if (device.simulated() || !examined) return report;
   if (passed) {
-    Protocol(report, person).add(ask_about_kill(person));
+    Protocol(report, person).add(run_kill_step(pushing, person, report.measured));
   } else {
-    report.steps.push_back({.step = kKilled});
+    report.steps.push_back({.step = kKillStep});
   }
   return report;
+}
+
+void push_until_stopped(const BridgeConfig& config, HapticDevice& device, StopSignal& signal) {
+  /// Nobody to talk to.
+  class Nobody final : public Person {
+   public:
+    explicit Nobody(StopSignal& signal) : signal_(signal) {}
+    void tell(const std::string&) override {}
+    bool begins(const Step&) override { return true; }
+    bool confirms(const std::string&) override { return false; }
+    bool stops(int timeout_ms) override { return signal_.wait_for(timeout_ms); }
+
+   private:
+    StopSignal& signal_;
+  } nobody(signal);
+  StopStep step(StopStep::Event::kCable, -1);
+  OpenLoop loop(device, config);
+  Measured measured;
+  run_step(step, loop, nobody, measured);
 }
 
 }  // namespace irdm::commission

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
+#include "common/program/program.hpp"
 #include "device_bridge/bridge_config.hpp"
 #include "device_bridge/commission/person.hpp"
 #include "device_bridge/commission/report.hpp"
@@ -12,6 +16,12 @@ namespace irdm::commission {
 /// servo loop cannot run.
 /// @param config with this device only
 /// @param device as made, not open
-Report commission(const BridgeConfig& config, HapticDevice& device, Person& person);
+/// @param pushing command of another process, which calls push_until_stopped()
+Report commission(const BridgeConfig& config, HapticDevice& device, Person& person,
+                  const std::vector<std::string>& pushing);
+
+/// Pushes the handle up with StopStep::kForce until a signal comes or the device is lost, 60 s at
+/// most. Throws like commission().
+void push_until_stopped(const BridgeConfig& config, HapticDevice& device, StopSignal& signal);
 
 }  // namespace irdm::commission

@@ -27,6 +27,7 @@ constexpr std::array kQuantities{
     QuantityKey{"stop_button", &Measured::stop_button, "s"},
     QuantityKey{"stop_link", &Measured::stop_link, "s"},
     QuantityKey{"stop_cable", &Measured::stop_cable, "s"},
+    QuantityKey{"stop_kill", &Measured::stop_kill, "s"},
     QuantityKey{"wall_stiffness", &Measured::wall_stiffness, "N/m"},
     QuantityKey{"coupling_stiffness", &Measured::coupling_stiffness, "N/m"},
 };

@@ -25,15 +25,16 @@ struct StepRecord {
 /// What the steps measured; nothing where a step did not get so far.
 struct Measured {
   using Quantity = std::optional<double>;
-  Quantity position_noise = {};      ///< at rest, standard deviation of the worst coordinate [m]
-  Quantity velocity_noise = {};      ///< at rest, of differences from tick to tick [m/s]
-  Quantity rate = {};                ///< ticks a second
-  Quantity jitter = {};              ///< how far off 99 % of the ticks are at most [s]
-  Quantity readings = {};            ///< new ones a second
-  Quantity max_force = {};           ///< largest that was shown [N]
-  Quantity stop_button = {};         ///< from the event to no force [s]; and the next two
-  Quantity stop_link = {};           ///< of a server that is lost
-  Quantity stop_cable = {};          ///< of a device that is
+  Quantity position_noise = {};  ///< at rest, standard deviation of the worst coordinate [m]
+  Quantity velocity_noise = {};  ///< at rest, of differences from tick to tick [m/s]
+  Quantity rate = {};            ///< ticks a second
+  Quantity jitter = {};          ///< how far off 99 % of the ticks are at most [s]
+  Quantity readings = {};        ///< new ones a second
+  Quantity max_force = {};       ///< largest that was shown [N]
+  Quantity stop_button = {};     ///< from the event to no force [s]; and the next two
+  Quantity stop_link = {};       ///< of a server that is lost
+  Quantity stop_cable = {};      ///< of a device that is
+  Quantity stop_kill = {};  ///< from the kill of a bridge to the person's word that it is gone [s]
   Quantity wall_stiffness = {};      ///< largest at which the safety filter stayed passive [N/m]
   Quantity coupling_stiffness = {};  ///< proposed by that [N/m]
 };

@@ -149,7 +149,7 @@ TEST_CASE("commission: axes and buttons of the fake of Haply are right, led by t
                             .service = ServerAddress{"127.0.0.1", service.port()},
                             .realtime = RealTimeScheduling::kIgnore});
   HaplyPerson person(service, "rest noise");
-  const Report report = irdm::commission::commission(config, device, person);
+  const Report report = irdm::commission::commission(config, device, person, {});
   INFO(to_text(report));
   CHECK(report.device == "inverse3, 049D");
   REQUIRE(report.steps.size() == 18);

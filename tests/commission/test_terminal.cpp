@@ -91,7 +91,7 @@ TEST_CASE("commission: a key stops the virtual device's step, and the rest is no
   config.realtime = RealTimeScheduling::kIgnore;
   config.devices.push_back({.realtime = RealTimeScheduling::kIgnore,
                             .script = IRDM_SOURCE_DIR "/configs/scripts/press.csv"});
-  const Report report = irdm::commission::commission(config, stylus, watcher);
+  const Report report = irdm::commission::commission(config, stylus, watcher, {});
   INFO(to_text(report));
   REQUIRE(report.steps.size() > 6);
   CHECK(report.steps[3].verdict == Verdict::kPassed);

@@ -79,3 +79,17 @@ TEST_CASE(
   CHECK(other.status == 1);
   CHECK_THAT(other.err, Contains("its report is that of another device"));
 }
+
+TEST_CASE("commission: what is to be killed pushes the handle up with 0.5 N, and ends in order") {
+  const DeviceStage device;
+  ChildProcess bridge(
+      {IRDM_BRIDGE, "commission", "--config", device.stage.path("bridge.toml").string(), "--push"},
+      device.with(DeviceStage::in_contact("tell", 1200)));
+  bridge.line_with("in contact");
+  bridge.signal(SIGTERM);
+  CHECK(bridge.wait() == 0);
+  double largest = 0.0;
+  for (const Frame& frame : device.frames()) largest = std::max(largest, frame.force);
+  CHECK(largest == Approx(0.5).epsilon(1e-3));
+  CHECK(device.frames().back().force == 0.0);
+}

@@ -36,6 +36,7 @@ namespace {
 constexpr double kLockingPoissonRatio = 0.45;
 constexpr double kMaxDecayLeft = 0.01;
 constexpr double kMaxForceError = 0.05;
+constexpr std::size_t kManyNodes = 2500;  // whose modes take minutes
 
 void warn(const std::string& text) {
   std::cerr << "irdm-precompute: warning: " << text << std::endl;
@@ -171,7 +172,14 @@ bool shares_modes(const PrecomputeConfig& config) {
 ModalResponse modes_of(const PrecomputeConfig& config, const TetMesh& mesh,
                        const std::vector<int>& clamped, const Model& model, int threads,
                        const Ranks& ranks, const Console& console) {
-  if (config.modes.all()) return compute_modes(mesh, clamped, model, console);
+  if (config.modes.all()) {
+    const std::size_t moving = static_cast<std::size_t>(mesh.node_count()) - clamped.size();
+    if (config.response.storage == Storage::kModal && moving >= kManyNodes) {
+      console.line("some modes and the residual of the others take minutes less: add to " +
+                   config.name + " the two lines `[modes]` and `error = 0.01`");
+    }
+    return compute_modes(mesh, clamped, model, console);
+  }
   if (!shares_modes(config)) {
     return compute_reduced_modes(mesh, clamped, model, config.modes, threads, console);
   }

@@ -51,6 +51,47 @@ std::string progress_text(const std::string& title, double fraction, double elap
   return text;
 }
 
+std::string elapsed_text(const std::string& title, double elapsed_s, double expected_s) {
+  std::string text = title + "  " + format_duration(elapsed_s);
+  if (elapsed_s < expected_s)
+    text += ", about " + format_duration(expected_s - elapsed_s) + " left";
+  return text;
+}
+
+ElapsedTime::ElapsedTime(const Console& console, std::string title, double expected_s)
+    : console_(console),
+      title_(std::move(title)),
+      expected_s_(expected_s),
+      thread_([this] { tell(); }) {}
+
+ElapsedTime::~ElapsedTime() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    over_ = true;
+  }
+  changed_.notify_one();
+  thread_.join();
+  const std::string text = title_ + "  " + format_duration(seconds_between(start_, Clock::now()));
+  console_.line(console_.terminal ? '\r' + text + "\x1b[K" : text);
+}
+
+void ElapsedTime::tell() {
+  constexpr auto kFirst = std::chrono::seconds(10);
+  constexpr auto kOnTerminal = std::chrono::seconds(1);
+  Clock::duration pause = console_.terminal ? kOnTerminal : kFirst;
+  std::unique_lock<std::mutex> lock(mutex_);
+  while (!changed_.wait_for(lock, pause, [this] { return over_; })) {
+    const double elapsed_s = seconds_between(start_, Clock::now());
+    const std::string text = elapsed_text(title_, elapsed_s, expected_s_);
+    if (console_.terminal) {
+      console_.out << '\r' << text << "\x1b[K" << std::flush;
+    } else {
+      console_.line(text);
+      pause = Clock::now() - start_;
+    }
+  }
+}
+
 Progress::Progress(const Console& console, std::string title, int total)
     : console_(console),
       title_(std::move(title)),

@@ -1,5 +1,7 @@
 #include "precompute/modal/modal_method.hpp"
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "precompute/columns/compute_columns.hpp"
@@ -7,6 +9,7 @@
 #include "precompute/modal/dense_columns.hpp"
 #include "precompute/modal/elastic_modes.hpp"
 #include "precompute/modal/elastic_statics.hpp"
+#include "precompute/modal/lowest_modes.hpp"
 
 namespace irdm::precompute {
 namespace {
@@ -48,17 +51,34 @@ void write_dense(ModelFileWriter& writer, const ModalResponse& response, const M
 
 }  // namespace
 
+// A small problem says how fast the machine is now.
+double all_modes_seconds(int unknowns) {
+  constexpr int kSample = 600;
+  constexpr double kLarge = 0.6;  // seconds per cube of a large problem's size over a small one's
+  const int size = std::min(unknowns, kSample);
+  const Eigen::MatrixXd sample = Eigen::MatrixXd::NullaryExpr(
+      size, size,
+      [](Eigen::Index i, Eigen::Index j) { return std::sin(static_cast<double>(i * j + i + j)); });
+  const auto begin = std::chrono::steady_clock::now();
+  symmetric_eigen(sample);
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+  return unknowns > size ? kLarge * taken.count() * std::pow(unknowns / double(size), 3)
+                         : taken.count();
+}
+
 ModalResponse compute_modes(const TetMesh& mesh, const std::vector<int>& clamped,
                             const Model& model, const Console& console) {
   const SparseMatrix stiffness = assemble_stiffness(mesh, model.material);
-  // Measured: 26 s for 4080 unknowns on two cores.
-  const auto unknowns = 3 * (static_cast<std::size_t>(mesh.node_count()) - clamped.size());
-  const double estimate = 26.0 * std::pow(static_cast<double>(unknowns) / 4080.0, 3);
+  const auto unknowns = 3 * (mesh.node_count() - static_cast<int>(clamped.size()));
+  const double expected_s = all_modes_seconds(unknowns);
   console.line("modes: " + std::to_string(unknowns) + " unknowns, all modes by LAPACK; about " +
-               format_duration(estimate) + " on two cores");
-  const ElasticModes modes = model.body.support == Support::kFixed
-                                 ? fixed_modes(stiffness, model.mesh.node_mass, clamped)
-                                 : elastic_modes(stiffness, model.mesh.nodes, model.mesh.node_mass);
+               format_duration(expected_s) + " on this machine");
+  const ElasticModes modes = [&] {
+    const ElapsedTime elapsed(console, "all modes", expected_s);
+    return model.body.support == Support::kFixed
+               ? fixed_modes(stiffness, model.mesh.node_mass, clamped)
+               : elastic_modes(stiffness, model.mesh.nodes, model.mesh.node_mass);
+  }();
   ModalResponse response = modal_response(modes, model.mesh.surface_nodes, model.material);
   add_body_loads(modes, model, response);
   return response;

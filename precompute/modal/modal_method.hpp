@@ -12,8 +12,11 @@
 /// Method "modal": R from all elastic modes of the finite elements.
 namespace irdm::precompute {
 
+/// How long all modes will take on this machine, with what else it does now [s].
+double all_modes_seconds(int unknowns);
+
 /// All modes of the model, at its surface, in double precision, and what loads on the whole body
-/// do to them; says on the console how long it may take. Throws Error.
+/// do to them; says on the console how long it may take and takes. Throws Error.
 /// @param clamped nodes of a fixed body
 ModalResponse compute_modes(const TetMesh& mesh, const std::vector<int>& clamped,
                             const Model& model, const Console& console);

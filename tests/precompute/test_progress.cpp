@@ -35,6 +35,14 @@ TEST_CASE("progress draws one line anew on a terminal and whole lines elsewhere"
   }
 }
 
+TEST_CASE("work whose share cannot be told says how long it takes and how long it may still take") {
+  CHECK(elapsed_text("modes", 12.0, 26.0) == "modes  12 s, about 14 s left");
+  CHECK(elapsed_text("modes", 30.0, 26.0) == "modes  30 s");
+  std::ostringstream out;
+  { const ElapsedTime elapsed(Console{out, false}, "modes", 0.0); }
+  CHECK(out.str() == "modes  0.0 s\n");
+}
+
 TEST_CASE("summary gives sizes and times per degree of freedom") {
   Summary summary;
   summary.free_nodes = 100;

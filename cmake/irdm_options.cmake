@@ -20,10 +20,10 @@ if(IRDM_SANITIZE)
   # Half the time to compile of -O2 -g, and reports still name functions and lines.
   target_compile_options(irdm_options INTERFACE
     -O1 -g1 -fsanitize=${IRDM_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
-  # Sources of tests, most of what is compiled, in half the time; what they test is optimised. Not with the thread
-  # sanitizer, which is slower.
+  # Sources of tests, most of what is compiled, and of servers of sockets in half the time; what computes is optimised.
+  # Not with the thread sanitizer, which is slower.
   if(IRDM_SANITIZE MATCHES "address")
-    target_compile_options(irdm_options INTERFACE $<$<BOOL:$<TARGET_PROPERTY:IRDM_TEST_SOURCES>>:-O0>)
+    target_compile_options(irdm_options INTERFACE $<$<BOOL:$<TARGET_PROPERTY:IRDM_UNOPTIMISED>>:-O0>)
   endif()
   target_link_options(irdm_options INTERFACE -fsanitize=${IRDM_SANITIZE})
   if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")

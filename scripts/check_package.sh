@@ -87,7 +87,7 @@ for program in irdm-precompute irdm-server irdm-bridge irdm-replay irdm-ros-brid
 done
 
 say "playing the demonstration from the installed files, as nobody, in real time"
-as_nobody sh -c 'cd /tmp && irdm-play paper-cube --out /tmp/play' | sed 's/^/  /' || fail "the demonstration failed"
+as_nobody sh -c 'cd /tmp && irdm-play paper-cube --once --out /tmp/play' | sed 's/^/  /' || fail "the demonstration failed"
 as_nobody irdm-replay /tmp/play/paper-cube/trace.h5 --rate 10 --csv /tmp/play/run.csv >/dev/null
 echo "  replayed: $(wc -l <"$root/tmp/play/run.csv") lines"
 

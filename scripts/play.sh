@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Builds what irdm-play (beside this file) needs, and plays a scene of configs/scenes with it, in out/SCENE.
-#   scripts/play.sh SCENE [--lockstep] [--out FOLDER] [--preset PRESET]    without SCENE: lists them
+#   scripts/play.sh SCENE [--lockstep] [--once] [--out FOLDER] [--preset PRESET]    without SCENE: lists them
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -17,7 +17,7 @@ while [ $# -gt 0 ]; do
 done
 export IRDM_PROGRAMS=$PWD/build/$preset/bin IRDM_DATA=$PWD
 if [ $plays = yes ]; then
-  scripts/build.sh "$preset" irdm-precompute irdm-server irdm-bridge ||
+  scripts/build.sh "$preset" irdm-precompute irdm-server irdm-bridge irdm-replay ||
     { echo "play: the build failed; see scripts/setup.sh" >&2; exit 1; }
 fi
 exec scripts/irdm-play "${arguments[@]}"

@@ -53,6 +53,14 @@ function(irdm_precompile name)
   endif()
 endfunction()
 
+# irdm_optimise_more(SOURCES...) compiles these with -O3, each by itself; the presets build all else with -O2.
+function(irdm_optimise_more)
+  if(NOT IRDM_SANITIZE)
+    set_source_files_properties(${ARGN} PROPERTIES
+      COMPILE_OPTIONS $<$<CONFIG:Release>:-O3> SKIP_PRECOMPILE_HEADERS ON SKIP_UNITY_BUILD_INCLUSION ON)
+  endif()
+endfunction()
+
 # irdm_add_library(NAME SOURCES... ) makes one static library target for a folder. The Python module and the C library
 # are made of them; none of their functions is replaced from outside.
 function(irdm_add_library name)

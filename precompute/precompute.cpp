@@ -175,8 +175,10 @@ ModalResponse modes_of(const PrecomputeConfig& config, const TetMesh& mesh,
   if (config.modes.all()) {
     const std::size_t moving = static_cast<std::size_t>(mesh.node_count()) - clamped.size();
     if (config.response.storage == Storage::kModal && moving >= kManyNodes) {
-      console.line("some modes and the residual of the others take minutes less: add to " +
-                   config.name + " the two lines `[modes]` and `error = 0.01`");
+      console.line(
+          "modes: some of them, within 1 %, save minutes: add the two lines `[modes]` and "
+          "`error = 0.01` to " +
+          config.name);
     }
     return compute_modes(mesh, clamped, model, console);
   }

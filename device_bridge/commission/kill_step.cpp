@@ -9,7 +9,7 @@ namespace irdm::commission {
 
 namespace {
 
-constexpr double kMoment = 0.2;  // for a process that is about to end [s]
+constexpr double kMoment = 0.2;  // that a process which is about to end is given [s]
 
 }  // namespace
 

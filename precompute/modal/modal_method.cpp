@@ -54,7 +54,8 @@ void write_dense(ModelFileWriter& writer, const ModalResponse& response, const M
 // A small problem says how fast the machine is now.
 double all_modes_seconds(int unknowns) {
   constexpr int kSample = 600;
-  constexpr double kLarge = 0.6;  // seconds per cube of a large problem's size over a small one's
+  constexpr double kLarge =
+      0.6;  // measured: a large problem takes so much of what the cube of its size says
   const int size = std::min(unknowns, kSample);
   const Eigen::MatrixXd sample = Eigen::MatrixXd::NullaryExpr(
       size, size,

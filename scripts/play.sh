@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Builds what irdm-play (beside this file) needs, and plays a scene of configs/scenes with it, in out/SCENE.
-#   scripts/play.sh SCENE [--lockstep] [--once] [--out FOLDER] [--preset PRESET]    without SCENE: lists them
+#   scripts/play.sh SCENE [--lockstep] [--once] [--no-frames] [--out FOLDER] [--preset PRESET]  none: a list
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

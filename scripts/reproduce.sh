@@ -62,7 +62,7 @@ scene() {
   cp "configs/bridges/$2.toml" "$work/configs/bridges/$1.toml"
 }
 play() { # NAME
-  IRDM_DATA=$work scripts/irdm-play "$1" --lockstep --out "$work" \
+  IRDM_DATA=$work scripts/irdm-play "$1" --lockstep --once --no-frames --out "$work" \
     >"$work/$1.log" 2>&1 || fail "playing $1 failed" "$work/$1.log"
   replay "$1" run
 }

@@ -127,6 +127,7 @@ RestSurface::RestSurface(const ModelMesh& mesh) : tree_(mesh), topology_(mesh) {
     }
   }
   for (Vector3& normal : normals_) normal.normalize();
+  for (const Vector3& p : positions_) bounding_radius_ = std::max(bounding_radius_, p.norm());
   mean_square_edge_ /= static_cast<double>(3 * mesh.triangles.rows());
   mean_edge_ = edges / static_cast<double>(3 * mesh.triangles.rows());
 }

@@ -76,6 +76,8 @@ class RestSurface {
   Vector3 smooth_normal(const SurfacePoint& point) const noexcept;
   int node_count() const noexcept { return static_cast<int>(positions_.size()); }
   int triangle_count() const noexcept { return static_cast<int>(planes_.size()); }
+  /// Of the ball about the centre of mass that has all nodes in it [m].
+  double bounding_radius() const noexcept { return bounding_radius_; }
   /// Mean length of the triangles' edges [m].
   double mean_edge() const noexcept { return mean_edge_; }
   /// Mean square of the same [m^2].
@@ -90,6 +92,7 @@ class RestSurface {
   std::vector<Vector3> positions_;
   std::vector<Vector3> normals_;  ///< of the nodes
   std::vector<Plane> planes_;     ///< of the triangles
+  double bounding_radius_ = 0.0;
   double mean_edge_ = 0.0;
   double mean_square_edge_ = 0.0;
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 
@@ -31,6 +32,13 @@ struct ContactPatch {
     ++count;
   }
 };
+
+/// Same nodes and weights in the same order.
+inline bool operator==(const ContactPatch& a, const ContactPatch& b) noexcept {
+  return a.count == b.count &&
+         std::equal(a.nodes.begin(), a.nodes.begin() + a.count, b.nodes.begin()) &&
+         std::equal(a.weights.begin(), a.weights.begin() + a.count, b.weights.begin());
+}
 
 /// The weighted mean over a patch of a quantity that is known at nodes.
 template <typename NodeValue>

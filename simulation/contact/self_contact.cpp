@@ -24,14 +24,6 @@ const double kBothWays = 2.0 * std::sqrt(3.0);
 // Share of a distance that is relied on: a walk may have ended before the nearest point.
 constexpr double kReliable = 0.5;
 
-double radius_of(const RestSurface& surface) {
-  double largest = 0.0;
-  for (int i = 0; i < surface.node_count(); ++i) {
-    largest = std::max(largest, surface.node(i).norm());
-  }
-  return largest;
-}
-
 bool share_node(const SurfacePatch& patch, const std::array<int, 3>& corners) {
   return std::any_of(corners.begin(), corners.end(), [&](int corner) {
     return std::find(patch.nodes.begin(), patch.nodes.end(), corner) != patch.nodes.end();
@@ -75,7 +67,7 @@ SelfReach::SelfReach(const RestSurface& surface, const ContactSampling& sampling
       nearest_(rows_.size(), 0),
       gaps_(rows_.size(), std::numeric_limits<double>::infinity()),
       least_gap_(std::numeric_limits<double>::infinity()) {
-  const double reach = radius_of(surface);
+  const double reach = surface.bounding_radius();
   std::vector<View> views;
   Matrix3 facings = Matrix3::Zero();
   for (int s = 0; s < sample_count(); ++s) {

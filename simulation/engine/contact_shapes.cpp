@@ -5,16 +5,11 @@
 namespace irdm {
 namespace {
 
-constexpr std::size_t kSlice = 512;  // modes whose shapes under a contact fill a part of the cache
+constexpr std::size_t kShapeSlice =
+    512;  // modes whose shapes under a contact fill a part of the cache
 
 Eigen::Index at(std::size_t a) noexcept {
   return static_cast<Eigen::Index>(3 * a);
-}
-
-bool same(const ContactPatch& a, const ContactPatch& b) noexcept {
-  return a.count == b.count &&
-         std::equal(a.nodes.begin(), a.nodes.begin() + a.count, b.nodes.begin()) &&
-         std::equal(a.weights.begin(), a.weights.begin() + a.count, b.weights.begin());
 }
 
 }  // namespace
@@ -52,7 +47,7 @@ void ContactShapes<Scalar>::mean_shape(const ContactPatch& patch, int axis, cons
 template <typename Scalar>
 void ContactShapes<Scalar>::keep(std::span<const ContactPatch> patches) noexcept {
   for (std::size_t a = 0; a < patches.size(); ++a) {
-    stays_[a] = a < count_ && same(patches_[a], patches[a]);
+    stays_[a] = a < count_ && patches_[a] == patches[a];
     if (stays_[a]) continue;
     patches_[a] = patches[a];
     compliance_.template middleRows<3>(at(a)).setZero();
@@ -68,8 +63,8 @@ void ContactShapes<Scalar>::predict(std::span<const ContactPatch> patches, const
                                     std::span<Vector3> h, ContactMatrix& compliance) noexcept {
   keep(patches);
   std::fill_n(h.begin(), count_, Vector3::Zero());
-  for (std::size_t first = 0; first < modes_; first += kSlice) {
-    add_slice({first, std::min(kSlice, modes_ - first)}, modes, h);
+  for (std::size_t first = 0; first < modes_; first += kShapeSlice) {
+    add_slice({first, std::min(kShapeSlice, modes_ - first)}, modes, h);
   }
   compliance = compliance_.topLeftCorner(at(count_), at(count_));
 }

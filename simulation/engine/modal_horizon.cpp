@@ -5,17 +5,11 @@
 namespace irdm {
 namespace {
 
-bool same(const ContactPatch& a, const ContactPatch& b) noexcept {
-  return a.count == b.count &&
-         std::equal(a.nodes.begin(), a.nodes.begin() + a.count, b.nodes.begin()) &&
-         std::equal(a.weights.begin(), a.weights.begin() + a.count, b.weights.begin());
-}
-
 template <typename Contacts>
 auto find_patch(Contacts& contacts, const ContactPatch& patch) noexcept
     -> decltype(contacts.data()) {
   const auto found = std::find_if(contacts.begin(), contacts.end(),
-                                  [&](const auto& c) { return same(c.patch, patch); });
+                                  [&](const auto& c) { return c.patch == patch; });
   return found == contacts.end() ? nullptr : &*found;
 }
 

@@ -10,7 +10,7 @@ namespace {
 
 // In which the velocity of another tip is expected to die away [s]. What a hand does later nobody
 // knows; a tip that is said to go on at its velocity feeds energy into a pinch across a delay.
-constexpr double kVelocityTime = 0.01;
+constexpr double kOthersVelocityTime = 0.01;
 
 }  // namespace
 
@@ -67,7 +67,7 @@ void AssemblyHorizon::find_changes(const Contact& other, const ContactModel& mod
     motion = end_of_step(body, model.free_forces, free, free.halfway * model.other_force,
                          free.halfway * model.other_torque);
     const double time = model.dt * static_cast<double>(n + 1);
-    const double lasting = kVelocityTime * (1.0 - std::exp(-time / kVelocityTime));
+    const double lasting = kOthersVelocityTime * (1.0 - std::exp(-time / kOthersVelocityTime));
     const Vector3 tip = other.tip + lasting * other.velocity;
     by_force += shared_[n].transpose() * force;
     Vector3 gap = motion.orientation.conjugate() * (tip - motion.position) -

@@ -16,7 +16,7 @@ constexpr double kNearBody = 1e-4;
 constexpr double kBoundShare = 0.25;
 // How far beyond a way distances are seen, by that depth, and what of them is relied on.
 constexpr double kSightDepths = 2.0;
-constexpr double kReliable = 1.0 - 1e-9;
+constexpr double kCertain = 1.0 - 1e-9;
 // An edge whose face is turned to the other's by a smaller angle than this lies flat: the samples
 // of the face touch. Cosine, 3 degrees.
 constexpr double kFlush = 0.9986;
@@ -171,7 +171,7 @@ bool BodyContacts::is_clear(int sample, const Sighting& seen) noexcept {
   if (other_body_ != nullptr) change += other_body_->surface.change_since(seen.other);
   const Way way = way_of(sample, seen.place);
   const double moved = (way.middle() - seen.middle).norm() + std::sqrt(3.0) * change;
-  if (!(kReliable * seen.distance - moved > 0.5 * way.length())) return false;
+  if (!(kCertain * seen.distance - moved > 0.5 * way.length())) return false;
   body_.surface.keep();
   if (other_body_ != nullptr) other_body_->surface.keep();
   displaced_ = std::max(displaced_, seen.displaced);

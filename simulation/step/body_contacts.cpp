@@ -19,12 +19,6 @@ constexpr double kDepth = 0.5;
 // its anchor [s].
 constexpr double kInsetTime = 0.05;
 
-double ball_radius(const RestSurface& rest) noexcept {
-  double largest = 0.0;
-  for (int i = 0; i < rest.node_count(); ++i) largest = std::max(largest, rest.node(i).norm());
-  return largest;
-}
-
 }  // namespace
 
 BodyContacts::BodyContacts(int object, const ContactBody& body, int other,
@@ -33,8 +27,8 @@ BodyContacts::BodyContacts(int object, const ContactBody& body, int other,
       other_(other),
       body_(body),
       other_body_(&other_body),
-      radius_(ball_radius(body.rest)),
-      other_radius_(ball_radius(other_body.rest)),
+      radius_(body.rest.bounding_radius()),
+      other_radius_(other_body.rest.bounding_radius()),
       inset_left_(std::max(0.0, 1.0 - dt / kInsetTime)),
       depth_(kDepth * std::min(body.sampling.spacing(), other_body.sampling.spacing())),
       first_sample_(first_sample),
@@ -49,7 +43,7 @@ BodyContacts::BodyContacts(int object, const ContactBody& body, int scenery,
       other_(-1 - scenery),
       body_(body),
       scenery_(&there),
-      radius_(ball_radius(body.rest)),
+      radius_(body.rest.bounding_radius()),
       other_radius_(bounding_radius(there.now.shape)),
       inset_left_(std::max(0.0, 1.0 - dt / kInsetTime)),
       depth_(kDepth * body.sampling.spacing()),

@@ -27,12 +27,6 @@ std::array<int, 4> far_apart(const RestSurface& rest) noexcept {
   return nodes;
 }
 
-double radius_of(const RestSurface& rest) noexcept {
-  double largest = 0.0;
-  for (int i = 0; i < rest.node_count(); ++i) largest = std::max(largest, rest.node(i).norm());
-  return largest;
-}
-
 }  // namespace
 
 Sleep::Sleep(const SimulationConfig& config,
@@ -44,7 +38,7 @@ Sleep::Sleep(const SimulationConfig& config,
       leader_(objects.size(), 0) {
   for (std::size_t i = 0; i < objects.size(); ++i) {
     bodies_[i].object = objects[i].get();
-    bodies_[i].radius = radius_of(objects[i]->surface());
+    bodies_[i].radius = objects[i]->surface().bounding_radius();
     bodies_[i].probes = far_apart(objects[i]->surface());
   }
   for (const SimulationStylus& stylus : config.styluses) {

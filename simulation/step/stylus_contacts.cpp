@@ -58,7 +58,7 @@ StylusContacts::StylusContacts(const SimulationConfig& config, double dt, int ob
     }
     styluses_.push_back({tip, PressureMask(rest, tip.radius), SmoothedSurface(rest, tip.radius)});
   }
-  for (int i = 0; i < rest.node_count(); ++i) size_ = std::max(size_, rest.node(i).norm());
+  size_ = rest.bounding_radius();
 }
 
 void StylusContacts::reset() noexcept {

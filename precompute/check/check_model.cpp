@@ -6,10 +6,10 @@
 
 #include "common/error.hpp"
 #include "common/model/model_file.hpp"
+#include "common/stability/transfer.hpp"
 #include "precompute/blas.hpp"
 #include "precompute/check/lines.hpp"
 #include "precompute/check/static_reference.hpp"
-#include "precompute/check/transfer.hpp"
 #include "precompute/modal/elastic_statics.hpp"
 
 namespace irdm::precompute {

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "precompute/check/coupling_limit.hpp"
+#include "common/stability/coupling_limit.hpp"
 #include "precompute/check/report.hpp"
 #include "precompute/progress.hpp"
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "common/model/model.hpp"
-#include "precompute/check/transfer.hpp"
+#include "common/stability/transfer.hpp"
 
 namespace irdm::precompute {
 

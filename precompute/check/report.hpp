@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "precompute/check/coupling_limit.hpp"
+#include "common/stability/coupling_limit.hpp"
 #include "precompute/check/reciprocity.hpp"
 
 namespace irdm::precompute {
@@ -19,10 +19,6 @@ struct NodeFindings {
   double coupling = 0.0;           ///< largest stable virtual coupling [N/m]
   double left = 0.0;               ///< largest |R_ii| in the last tenth of the record over its peak
 };
-
-/// Growth that nobody feels: a body that hangs loosely on a spring hardly decays, and rounding must
-/// not decide whether it does [1/s].
-inline constexpr double kSlowestGrowth = 0.05;
 
 struct NodeConditions {
   HandLoop loop;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "precompute/check/transfer.hpp"
+#include "common/stability/transfer.hpp"
 
 namespace irdm::test {
 

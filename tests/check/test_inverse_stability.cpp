@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "precompute/check/coupling_limit.hpp"
+#include "common/stability/coupling_limit.hpp"
 #include "tests/check/oscillators.hpp"
 
 using namespace irdm;

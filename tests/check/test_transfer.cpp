@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "precompute/check/transfer.hpp"
+#include "common/stability/transfer.hpp"
 #include "tests/check/oscillators.hpp"
 
 using namespace irdm;

@@ -1,4 +1,4 @@
-#include "precompute/check/coupling_limit.hpp"
+#include "common/stability/coupling_limit.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include "common/response/modal_response.hpp"
 
-namespace irdm::precompute {
+namespace irdm {
 namespace {
 
 // Where the zeros are looked for, as logarithms of the radius beyond the circle that counts: a mode
@@ -126,4 +126,4 @@ double largest_coupling(const DrivingPoint& record, const Matrix3& rigid, const 
   return stable;
 }
 
-}  // namespace irdm::precompute
+}  // namespace irdm

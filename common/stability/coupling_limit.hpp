@@ -1,8 +1,8 @@
 #pragma once
 
-#include "precompute/check/transfer.hpp"
+#include "common/stability/transfer.hpp"
 
-namespace irdm::precompute {
+namespace irdm {
 
 struct InverseStability {
   int growing = 0;               ///< modes of the force that grow
@@ -58,7 +58,11 @@ std::complex<double> hand_transfer(const Hand& hand, double dt, std::complex<dou
 double largest_coupling(const DrivingPoint& record, const Matrix3& rigid, const HandLoop& loop,
                         double radius);
 
+/// Growth that nobody feels: a body that hangs loosely on a spring hardly decays, and rounding must
+/// not decide whether it does [1/s].
+inline constexpr double kSlowestGrowth = 0.05;
+
 inline constexpr double kSoftestCoupling = 1.0;
 inline constexpr double kStiffestCoupling = 1e7;
 
-}  // namespace irdm::precompute
+}  // namespace irdm

@@ -11,7 +11,7 @@
 /// The z-transform of a node's own response on circles about the origin, and what can be read from
 /// it. w = 1/z throughout: X(w) = sum_s x[s] w^s is analytic inside the unit circle, and a pole or
 /// a zero there, |w| < 1, is one that grows by 1/|w| a step.
-namespace irdm::precompute {
+namespace irdm {
 
 /// Values of a function of w at w_j = radius exp(-i pi j / half), j = 0..half: half a circle, the
 /// other half is its complex conjugate.
@@ -46,4 +46,4 @@ struct RecordLength {
 RecordLength record_length(const ModalResponse& response, double dt);
 RecordLength record_length(const CompressedResponse& response);
 
-}  // namespace irdm::precompute
+}  // namespace irdm

@@ -1,4 +1,4 @@
-#include "precompute/check/transfer.hpp"
+#include "common/stability/transfer.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <numbers>
 #include <unsupported/Eigen/FFT>
 
-namespace irdm::precompute {
+namespace irdm {
 namespace {
 
 constexpr double kSmallChange = 0.7;  // of a value, relative to it
@@ -137,4 +137,4 @@ RecordLength record_length(const CompressedResponse& response) {
   return length;
 }
 
-}  // namespace irdm::precompute
+}  // namespace irdm

@@ -15,6 +15,7 @@
 #include "common/model/model_file.hpp"
 #include "scene/common_keys.hpp"
 #include "scene/scenery_keys.hpp"
+#include "simulation/step/default_fingertip.hpp"
 #include "simulation/step/settings.hpp"
 
 namespace irdm {
@@ -54,9 +55,11 @@ std::string read_token(TomlTable& table, const std::string& key) {
   return token;
 }
 
-void read_viewer_stylus(TomlTable table, double radius, ViewerConfig& config) {
+// @param radius of the first [[stylus]]; none: it names none
+void read_viewer_stylus(TomlTable table, std::optional<double> radius, ViewerConfig& config) {
   SimulationStylus& stylus = config.stylus;
-  stylus.radius = table.number("radius", lab::kTipLength, radius);
+  config.default_radius = !radius && !table.has("radius");
+  stylus.radius = table.number("radius", lab::kTipLength, radius.value_or(0.0));
   stylus.coupling_stiffness =
       table.number("coupling_stiffness", between(1.0, 1e5), stylus.coupling_stiffness);
   stylus.reach = table.number("reach", lab::kTipLength, stylus.reach);
@@ -64,8 +67,8 @@ void read_viewer_stylus(TomlTable table, double radius, ViewerConfig& config) {
   table.finish();
 }
 
-// Needs the styluses of the scene.
-ViewerConfig read_viewer(TomlTable table, const std::vector<SimulationStylus>& styluses) {
+// @param radius as in read_viewer_stylus()
+ViewerConfig read_viewer(TomlTable table, std::optional<double> radius) {
   ViewerConfig config;
   config.enabled = table.boolean("enabled", config.enabled);
   config.address = table.text("address", config.address);
@@ -80,7 +83,7 @@ ViewerConfig read_viewer(TomlTable table, const std::vector<SimulationStylus>& s
   }
   if (table.has("recordings")) config.recordings = table.path("recordings");
   config.mouse = table.boolean("mouse", config.mouse);
-  read_viewer_stylus(table.table("stylus"), styluses.front().radius, config);
+  read_viewer_stylus(table.table("stylus"), radius, config);
   table.finish();
   return config;
 }
@@ -234,7 +237,14 @@ SceneConfig read_scene(TomlTable file) {
   }
   scene.styluses.resize(static_cast<std::size_t>(scene.server.styluses),
                         {0.0, scene.contact.coupling_stiffness, 0.0});
-  scene.viewer = read_viewer(file.table("viewer"), scene.styluses);
+  for (std::size_t s = 0; s < scene.styluses.size(); ++s) {
+    const bool named =
+        s < styluses.size() && (styluses[s].has("radius") || styluses[s].has("tool"));
+    if (!named) scene.default_radius.push_back(s);
+  }
+  const bool named = !styluses.empty() && styluses.front().has("radius");
+  scene.viewer = read_viewer(file.table("viewer"),
+                             named ? std::optional(scene.styluses.front().radius) : std::nullopt);
   std::set<std::string> names;
   for (TomlTable& object : file.tables("object")) {
     scene.objects.push_back(read_object(object));
@@ -349,6 +359,19 @@ bool recorded_viewer_stylus(const SceneConfig& scene, int stylus_count, const st
               "give the scene that it was recorded with");
 }
 
+namespace {
+
+// Of the styluses that name none.
+void set_default_radius(const SceneConfig& scene, bool viewer_stylus, SimulationConfig& config) {
+  const bool of_viewer = viewer_stylus && scene.viewer.default_radius;
+  if (scene.default_radius.empty() && !of_viewer) return;
+  const double radius = default_fingertip(config);
+  for (const std::size_t s : scene.default_radius) config.styluses[s].radius = radius;
+  if (of_viewer) config.styluses.back().radius = radius;
+}
+
+}  // namespace
+
 SimulationConfig simulation_config(const SceneConfig& scene, bool viewer_stylus,
                                    SceneColumns* columns) {
   Models models(columns);
@@ -361,6 +384,7 @@ SimulationConfig simulation_config(const SceneConfig& scene, bool viewer_stylus,
   }
   config.styluses = scene.styluses;
   if (viewer_stylus) config.styluses.push_back(scene.viewer.stylus);
+  set_default_radius(scene, viewer_stylus, config);
   config.floor = scene.floor;
   config.release_time = scene.contact.release_time;
   config.scenery = whole_scenery(scene);

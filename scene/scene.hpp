@@ -44,6 +44,7 @@ struct ViewerConfig {
   /// stylus = { radius, coupling_stiffness, reach }: that one; radius by default that of the first
   /// [[stylus]]
   SimulationStylus stylus{0.0, 300.0, 0.01};
+  bool default_radius = true;  ///< it names none, and neither does the first [[stylus]]
   double max_force = 3.3;  ///< stylus = { max_force }: it pushes with at most this [N], 0.1..100
 };
 
@@ -89,6 +90,7 @@ struct SceneConfig {
   WorldConfig world;
   ContactConfig contact;
   std::vector<SimulationStylus> styluses;             ///< [[stylus]], one for every slot
+  std::vector<std::size_t> default_radius;            ///< those of them that name no radius
   std::vector<ObjectConfig> objects;                  ///< 1..kMaxObjects
   std::vector<SceneryConfig> scenery;                 ///< [[scenery]], at most kMaxScenery
   std::vector<std::filesystem::path> scenery_models;  ///< of each; empty: it is no mesh
@@ -107,7 +109,8 @@ bool has_viewer_stylus(const SceneConfig& scene, bool lockstep);
 /// when it is not of this scene.
 bool recorded_viewer_stylus(const SceneConfig& scene, int stylus_count, const std::string& trace);
 
-/// What a scene asks to simulate, with its models read. Throws Error.
+/// What a scene asks to simulate, with its models read; styluses without a radius have that of
+/// default_fingertip(). Throws Error.
 /// @param columns of models with a memory_budget, to be started then; null: they are read whole
 SimulationConfig simulation_config(const SceneConfig& scene, bool viewer_stylus,
                                    SceneColumns* columns = nullptr);

@@ -18,6 +18,7 @@
 #include "common/realtime/scheduling.hpp"
 #include "scene/scene.hpp"
 #include "server/blackbox/step_log.hpp"
+#include "server/stylus_notes.hpp"
 #include "server/threads/deformation_thread.hpp"
 #include "server/threads/force_thread.hpp"
 #include "server/threads/recorder_thread.hpp"
@@ -200,6 +201,16 @@ void warn_of_missing_sag(const SceneConfig& scene, const SimulationConfig& confi
   }
 }
 
+void say_how_styluses_touch(const SceneConfig& scene, const SimulationConfig& config,
+                            bool viewer_stylus, const std::string& name) {
+  const std::string note = default_fingertip_note(scene, config, viewer_stylus);
+  if (!note.empty()) std::cout << note + "\n" << std::flush;
+  for (const std::string& warning :
+       {point_warning(scene, config, viewer_stylus), coupling_warning(scene, config)}) {
+    if (!warning.empty()) std::cerr << "irdm-server: warning: " + name + ": " + warning + "\n";
+  }
+}
+
 // In lockstep nobody waits for the machine's clock.
 RealTimeScheduling scheduling(const SceneConfig& scene, const ServerOptions& options) {
   return options.lockstep ? RealTimeScheduling::kIgnore : scene.server.realtime;
@@ -352,6 +363,7 @@ int run_server(const ServerOptions& options) {
   Simulation simulation(config);
   const double dt = simulation.dt();
   warn_of_missing_sag(scene, config, options.scene.string());
+  say_how_styluses_touch(scene, config, viewer_stylus, options.scene.string());
   warn_of_long_steps(dt, options.lockstep, options.scene.string());
   ServerBlackBox black_box(scene.server.black_box, options.lockstep);
   NetworkServer network(network_settings(scene, options, dt, black_box.frames()));

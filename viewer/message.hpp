@@ -63,12 +63,13 @@ struct SceneRegions {
 
 /// One object of a Scene.
 struct SceneObject {
-  std::string name;                    ///< UTF-8, cut to kMaxNameLength bytes
-  Points rest;                         ///< X (n, 3) [m], B; single precision on the wire
-  Triangles triangles;                 ///< (t, 3), outward
-  float mass = 0;                      ///< [kg]
-  float stiffness = 0;                 ///< Young's modulus [Pa]
-  std::vector<float> compliance = {};  ///< static, along the normal, per node [m/N]; NaN: not known
+  std::string name;     ///< UTF-8, cut to kMaxNameLength bytes
+  Points rest;          ///< X (n, 3) [m], B; single precision on the wire
+  Triangles triangles;  ///< (t, 3), outward
+  float mass = 0;       ///< [kg]
+  float stiffness = 0;  ///< Young's modulus [Pa]
+  /// Static, along the normal, per node as the middle of a fingertip [m/N]; NaN: not known.
+  std::vector<float> compliance = {};
   SceneRegions regions = {};
 };
 

@@ -3,23 +3,30 @@
 #include <cmath>
 
 #include "common/response/stored_response.hpp"
-#include "simulation/collision/rest_surface.hpp"
+#include "simulation/contact/fingertip_loads.hpp"
+#include "simulation/step/default_fingertip.hpp"
 #include "viewer/message_parts.hpp"
 #include "viewer/scene_regions.hpp"
 
 namespace irdm {
 namespace {
 
-std::vector<float> normal_compliance(const Model& model) {
-  const RestSurface surface(model.mesh);
-  std::vector<Vector3> normals;
-  for (int node = 0; node < model.mesh.surface_node_count(); ++node) {
-    normals.push_back(surface.smooth_normal({{node, node, node}, {1.0, 0.0, 0.0}}));
+// The first fingertip of the scene, else the one that a stylus has by default.
+double felt_radius(const SimulationConfig& config) {
+  for (const SimulationStylus& stylus : config.styluses) {
+    if (!stylus.tool && stylus.radius > 0) return stylus.radius;
   }
-  return static_compliance(model, normals);
+  return default_fingertip(config);
 }
 
-viewer::SceneObject viewer_object(const std::string& name, const Model& model) {
+std::vector<float> felt_compliance(const Model& model, double radius) {
+  const RestSurface surface(model.mesh);
+  const Eigen::VectorXf values =
+      static_compliance(model, fingertip_loads(surface, radius)).cast<float>();
+  return {values.begin(), values.end()};
+}
+
+viewer::SceneObject viewer_object(const std::string& name, const Model& model, double radius) {
   viewer::SceneObject object;
   object.name = name;
   object.rest.resize(model.mesh.surface_node_count(), 3);
@@ -29,7 +36,7 @@ viewer::SceneObject viewer_object(const std::string& name, const Model& model) {
   object.triangles = model.mesh.triangles;
   object.mass = static_cast<float>(model.body.mass);
   object.stiffness = static_cast<float>(model.material.youngs_modulus);
-  object.compliance = normal_compliance(model);
+  object.compliance = felt_compliance(model, radius);
   object.regions = viewer::scene_regions(model);
   return object;
 }
@@ -42,8 +49,9 @@ viewer::Scene viewer_scene(const std::vector<std::string>& names, const Simulati
   seen.floor = config.floor;
   seen.scenery = config.scenery;
   seen.styluses = config.styluses;
+  const double radius = felt_radius(config);
   for (std::size_t i = 0; i < config.objects.size(); ++i) {
-    seen.objects.push_back(viewer_object(names.at(i), *config.objects[i].model));
+    seen.objects.push_back(viewer_object(names.at(i), *config.objects[i].model, radius));
   }
   return seen;
 }

@@ -48,12 +48,19 @@ class ModalStored final : public StoredResponse {
     return in_double(shapes_) * settled + residual(b);
   }
 
-  Matrix3 static_block(int node) const override {
-    const RowMatrix<double> rows = in_double(shapes_.middleRows(3 * node, 3).eval());
-    const RowMatrix<double> settled =
-        rows.array().rowwise() / response_.angular_frequency.transpose().array().square();
-    const Matrix3 block = settled * rows.transpose();
-    return response_.residual.empty() ? block : Matrix3(block + response_.residual.diagonal(node));
+  Eigen::VectorXd static_compliance(const Eigen::SparseMatrix<double>& loads) const override {
+    Eigen::VectorXd values(loads.cols());
+    Eigen::VectorXd load(loads.rows());
+    for (Eigen::Index a = 0; a < loads.cols(); ++a) {
+      Eigen::VectorXd driven = Eigen::VectorXd::Zero(shapes_.cols());
+      for (Eigen::SparseMatrix<double>::InnerIterator it(loads, a); it; ++it) {
+        driven += it.value() * row(static_cast<int>(it.row()));
+      }
+      load = loads.col(a);
+      values(a) = driven.cwiseQuotient(response_.angular_frequency).squaredNorm() +
+                  residual_work(loads, a, load);
+    }
+    return values;
   }
 
   std::vector<DrivingPoint> driving_points(int first, int count, int steps) const override {
@@ -105,6 +112,23 @@ class ModalStored final : public StoredResponse {
     return u;
   }
 
+  // Of load a, which is `load` as well, with itself [m/N].
+  double residual_work(const Eigen::SparseMatrix<double>& loads, Eigen::Index a,
+                       const Eigen::VectorXd& load) const {
+    const ResidualCompliance& g = response_.residual;
+    if (g.empty()) return 0.0;
+    double work = 0.0;
+    for (Eigen::SparseMatrix<double>::InnerIterator it(loads, a); it; ++it) {
+      const auto b = static_cast<int>(it.row());
+      for (int k = g.begin_of(b / 3); k < g.end_of(b / 3); ++k) {
+        const int other = g.nodes[static_cast<std::size_t>(k)];
+        work += it.value() *
+                g.block(k).row(b % 3).template cast<double>().dot(load.segment<3>(3 * other));
+      }
+    }
+    return work;
+  }
+
   const ModalResponse& response_;
   const RowMatrix<Scalar>& shapes_;
   double dt_;
@@ -122,16 +146,6 @@ class DenseStored final : public StoredResponse {
   }
   Eigen::VectorXd static_column(int b) const override {
     return values_.middleRows(b * dof_, dof_).template cast<double>().rowwise().sum();
-  }
-  Matrix3 static_block(int node) const override {
-    Matrix3 block;
-    for (int b = 0; b < 3; ++b) {
-      block.col(b) = values_.template middleRows<3>((3 * node + b) * dof_ + 3 * node)
-                         .template cast<double>()
-                         .rowwise()
-                         .sum();
-    }
-    return block;
   }
   Eigen::MatrixXd zero_lag() const override {
     return values_.col(0).template cast<double>().reshaped(dof_, dof_);
@@ -158,10 +172,6 @@ class StreamedStored final : public StoredResponse {
   }
   Eigen::VectorXd static_column(int b) const override {
     return first_.col(b).template cast<double>() + rest_.col(b).template cast<double>();
-  }
-  Matrix3 static_block(int node) const override {
-    return first_.template block<3, 3>(3 * node, 3 * node).template cast<double>() +
-           rest_.template block<3, 3>(3 * node, 3 * node).template cast<double>();
   }
   Eigen::MatrixXd zero_lag() const override { return first_.template cast<double>(); }
 
@@ -197,12 +207,6 @@ class CompressedStored final : public StoredResponse {
   Eigen::VectorXd static_column(int b) const override {
     return column(b, response_.fir_steps).colwise().sum().transpose() +
            response_.shapes.cast<double>() * row(b).cwiseProduct(settled_);
-  }
-
-  Matrix3 static_block(int node) const override {
-    const RowMatrix<double> rows = response_.shapes.middleRows(3 * node, 3).cast<double>();
-    return fir_blocks(node).rowwise().sum().reshaped(3, 3) +
-           rows * settled_.asDiagonal() * rows.transpose();
   }
 
   std::vector<DrivingPoint> driving_points(int first, int count, int steps) const override {
@@ -257,7 +261,6 @@ class ZeroStored final : public StoredResponse {
     return RowMatrix<double>::Zero(steps, dof_);
   }
   Eigen::VectorXd static_column(int) const override { return Eigen::VectorXd::Zero(dof_); }
-  Matrix3 static_block(int) const override { return Matrix3::Zero(); }
   Eigen::MatrixXd zero_lag() const override { return Eigen::MatrixXd::Zero(dof_, dof_); }
 
  private:
@@ -304,10 +307,17 @@ void transposed_product(const RowMatrix<double>& a, const RowMatrix<double>& b,
   c.noalias() = a * b.transpose();
 }
 
-Matrix3 StoredResponse::static_block(int node) const {
-  Matrix3 block;
-  for (int b = 0; b < 3; ++b) block.col(b) = static_column(3 * node + b).segment<3>(3 * node);
-  return block;
+// Each column is summed up once, whatever loads it belongs to.
+Eigen::VectorXd StoredResponse::static_compliance(const Eigen::SparseMatrix<double>& loads) const {
+  const Eigen::SparseMatrix<double, Eigen::RowMajor> by_row = loads;
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(loads.cols());
+  for (Eigen::Index b = 0; b < by_row.rows(); ++b) {
+    Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator it(by_row, b);
+    if (!it) continue;
+    const Eigen::VectorXd column = static_column(static_cast<int>(b));
+    for (; it; ++it) values(it.col()) += it.value() * loads.col(it.col()).dot(column);
+  }
+  return values;
 }
 
 std::vector<DrivingPoint> StoredResponse::driving_points(int first, int count, int steps) const {
@@ -363,18 +373,11 @@ std::unique_ptr<StoredResponse> stored_response(const Model& model, TransposedPr
       streamed.first);
 }
 
-std::vector<float> static_compliance(const Model& model, const std::vector<Vector3>& directions) {
-  std::vector<float> values;
+Eigen::VectorXd static_compliance(const Model& model, const Eigen::SparseMatrix<double>& loads) {
   if (std::holds_alternative<std::monostate>(model.response)) {
-    values.resize(directions.size(), std::numeric_limits<float>::quiet_NaN());
-    return values;
+    return Eigen::VectorXd::Constant(loads.cols(), std::numeric_limits<double>::quiet_NaN());
   }
-  const std::unique_ptr<StoredResponse> response = stored_response(model);
-  for (std::size_t node = 0; node < directions.size(); ++node) {
-    const Vector3& d = directions[node];
-    values.push_back(static_cast<float>(d.dot(response->static_block(static_cast<int>(node)) * d)));
-  }
-  return values;
+  return stored_response(model)->static_compliance(loads);
 }
 
 }  // namespace irdm

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/SparseCore>
 #include <filesystem>
 #include <memory>
 #include <vector>
@@ -32,8 +33,9 @@ class StoredResponse {
   /// The static limit of a column: displacement under a force of 1 N on b that stays, sum_s R[s](:,
   /// b), (3n) [m/N]. For all time; of a dense response as far as it was recorded.
   virtual Eigen::VectorXd static_column(int b) const = 0;
-  /// The static limit of a node's own block, sum_s R_ii[s] [m/N].
-  virtual Matrix3 static_block(int node) const;
+  /// How far each load yields to itself when it stays, l^T (sum_s R[s]) l [m/N].
+  /// @param loads (3n, loads): column by column what each degree of freedom takes of 1 N
+  virtual Eigen::VectorXd static_compliance(const Eigen::SparseMatrix<double>& loads) const;
   /// R_ii[0 .. steps-1] of the nodes first .. first+count-1.
   virtual std::vector<DrivingPoint> driving_points(int first, int count, int steps) const;
   /// R[0], the displacement within the step of all nodes per force on each: (3n, 3n) [m/N].
@@ -61,9 +63,8 @@ std::unique_ptr<StoredResponse> stored_response(const CompressedResponse& respon
 std::unique_ptr<StoredResponse> stored_response(const std::filesystem::path& path,
                                                 int degrees_of_freedom, int steps);
 
-/// How far each surface node yields along a direction of its own to a force along it that stays,
-/// without rigid motion [m/N]: d^T (sum_s R_ii[s]) d. NaN where the model holds no response.
-/// @param directions unit vectors, one a surface node, B
-std::vector<float> static_compliance(const Model& model, const std::vector<Vector3>& directions);
+/// StoredResponse::static_compliance() of a model, without rigid motion. NaN where the model holds
+/// no response.
+Eigen::VectorXd static_compliance(const Model& model, const Eigen::SparseMatrix<double>& loads);
 
 }  // namespace irdm

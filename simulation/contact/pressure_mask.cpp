@@ -8,7 +8,7 @@ namespace irdm {
 namespace {
 
 constexpr int kFewestRings = 4;
-constexpr int kMostRings = 8;
+constexpr int kMostRings = 9;
 constexpr double kLeastRings = 0.6;  // share of the radius that they cover at least
 
 // Direction from which the rings start, in B; parallel to the normal of hardly any surface.

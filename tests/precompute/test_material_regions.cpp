@@ -18,6 +18,7 @@
 #include "precompute/precompute.hpp"
 #include "tests/precompute/discrete.hpp"
 #include "tests/precompute/meshes.hpp"
+#include "tests/support/point_loads.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using Catch::Matchers::Contains;
@@ -243,10 +244,9 @@ const std::string kStiffBall =
     "[[region]]\nball = { centre = [0.03, 0.03, 0.045], radius = 0.012 }\nyoungs_modulus = 6e4\n";
 
 // Of each surface node along the box's height [m/N].
-std::vector<float> compliance(const Model& model) {
-  return static_compliance(
-      model, std::vector<Vector3>(static_cast<std::size_t>(model.mesh.surface_node_count()),
-                                  Vector3::UnitZ()));
+Eigen::VectorXd compliance(const Model& model) {
+  const auto nodes = static_cast<std::size_t>(model.mesh.surface_node_count());
+  return static_compliance(model, test::point_loads({nodes, Vector3::UnitZ()}));
 }
 
 }  // namespace
@@ -260,15 +260,14 @@ TEST_CASE("a stiff ball under the surface is felt above it, and not far from it"
         Approx(4.0 / 3.0 * std::numbers::pi * std::pow(0.012, 3)).epsilon(0.25));
   const Model plain = made.model("plain");
   const Model ball = made.model("ball");
-  const std::vector<float> before = compliance(plain);
-  const std::vector<float> after = compliance(ball);
+  const Eigen::VectorXd before = compliance(plain);
+  const Eigen::VectorXd after = compliance(ball);
   double above = 1.0;
   double far = 1.0;
   for (int i = 0; i < plain.mesh.surface_node_count(); ++i) {
     const Vector3 x = plain.mesh.rest_position(i) + plain.mesh.com_offset;
     if (x.z() < 1e-9) continue;  // clamped
-    const double ratio = static_cast<double>(after[static_cast<std::size_t>(i)]) /
-                         static_cast<double>(before[static_cast<std::size_t>(i)]);
+    const double ratio = after(i) / before(i);
     // What is made stiffer somewhere yields nowhere more.
     CHECK(ratio < 1.0 + 1e-5);
     if (x.z() < 0.06 - 1e-9) continue;

@@ -75,8 +75,8 @@ TEST_CASE("every key of a scene arrives where it belongs") {
   CHECK(read.styluses[0].radius == 0.01);
   CHECK(read.styluses[0].coupling_stiffness == 800.0);
   CHECK(read.styluses[0].reach == 0.02);
+  CHECK(read.default_radius == std::vector<std::size_t>{1, 2});
   for (std::size_t s = 1; s < 3; ++s) {  // described by an empty table, and not at all
-    CHECK(read.styluses[s].radius == 0.0);
     CHECK(read.styluses[s].coupling_stiffness == 1500.0);
     CHECK(read.styluses[s].reach == 0.0);
   }
@@ -117,7 +117,7 @@ TEST_CASE("a scene needs only a model, the rest has defaults") {
   CHECK(read.contact.sleep_time == 0.5);
   CHECK_FALSE(read.floor);
   REQUIRE(read.styluses.size() == 1);
-  CHECK(read.styluses[0].radius == 0.0);
+  CHECK(read.default_radius == std::vector<std::size_t>{0});
   CHECK(read.styluses[0].reach == 0.0);
 }
 

@@ -1,0 +1,54 @@
+"""The pages that are run: what stands for what in them, and what has to be there in the end."""
+
+from dataclasses import dataclass, field
+from typing import Callable
+
+from outcomes import check_embedding, check_first_session, check_tutorial
+
+SCENE = """
+[[object]]
+name = "cube"
+model = "cube.h5"
+[[stylus]]
+radius = 0.02
+coupling_stiffness = 500
+"""
+
+
+@dataclass
+class Page:
+    file: str
+    check: Callable  # of (terminal, printed): raises when something lacks
+    section: str = None  # from this line to the next heading; None: all
+    left_out: tuple = ()  # groups or commands with these texts
+    quick: dict = field(default_factory=dict)  # texts of pages and files and what is in their place in a quick run
+    instead: dict = field(default_factory=dict)  # texts of commands and what is in their place
+    files: dict = field(default_factory=dict)  # that a reader has, by name; None: the gallery's
+    servers: dict = field(default_factory=dict)  # text of a group and the server that it needs
+    python: str = ""  # what a reader has before the first line of Python
+
+
+PAGES = {
+    "tutorial": Page(
+        "docs/tutorial.md",
+        check_tutorial,
+        left_out=('type = "openhaptics"',),
+        # A fortieth of the time to compute.
+        quick={"order = 2": "order = 1"},
+    ),
+    "readme": Page(
+        "README.md",
+        check_first_session,
+        section="The same by hand:",
+        left_out=("scripts/setup.sh", "scripts/build.sh"),
+        quick={"cells = [12, 12, 12]": "cells = [4, 4, 4]"},
+    ),
+    "embedding": Page(
+        "docs/embedding.md",
+        check_embedding,
+        instead={"MODEL.h5": "cube.h5"},
+        files={"cube.toml": "configs/models/soft-cube.toml", "scene.toml": SCENE},
+        servers={"localhost:4321": "irdm-server scene.toml --port 4321"},
+        python="import irdm\ntips = [[[0.0, 0.05, 0.0]]] * 10\n",
+    ),
+}

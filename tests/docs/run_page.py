@@ -1,0 +1,151 @@
+"""Runs the commands of a page in a fresh folder, in their order, and compares what the page shows with what they print.
+
+usage: run_page.py PAGE clone SOURCES BUILD [OPTIONS]     a clone, and the folder of its build
+       run_page.py PAGE installed TREE [OPTIONS]          what was installed
+  PAGE: a name of pages.py
+  --quick: with smaller models; numbers are not compared
+  --real-time: servers are not in lockstep; numbers are not compared
+"""
+
+import pathlib
+import shutil
+import sys
+import tempfile
+
+from code_groups import code_groups
+from pages import PAGES
+from shown_output import difference
+from terminal import Terminal
+
+PYTHON = "/usr/bin/python3 -B"
+
+
+class Place:
+    """Where a reader has pages, data and programs."""
+
+    def __init__(self, kind, folders):
+        folders = [pathlib.Path(folder).resolve() for folder in folders]
+        if kind == "clone":
+            self.pages = self.data = folders[0]
+            self.programs, self.python = folders[1] / "bin", folders[1] / "python"
+            self.tree = None
+        else:
+            self.tree = folders[0]
+            self.pages, self.data = self.tree / "share/doc/irdm", self.tree / "share/irdm"
+            self.programs, self.python = self.tree / "bin", self.tree / "lib/python3/dist-packages"
+
+    def environment(self, path):
+        found = {"PATH": f"{self.programs}:{path}", "PYTHONPATH": str(self.python), "PYTHONDONTWRITEBYTECODE": "1"}
+        return found | ({"CMAKE_PREFIX_PATH": str(self.tree)} if self.tree else {})
+
+
+class Reader:
+    """Does what a page says, group by group."""
+
+    def __init__(self, page, place, folder, quick, real_time):
+        self.page, self.place, self.folder, self.quick = page, place, folder, quick
+        self.compares = not (quick or real_time)
+        self.printed = ""  # by all commands
+        self.last = ""  # by those of the last group
+        self.seen = 0  # groups that were compared or run
+
+    def prepare(self):
+        """The folder looks like a clone, with what the page takes for granted."""
+        for name in ("configs", "scripts", "examples"):
+            shutil.copytree(self.place.data / name, self.folder / name, ignore=shutil.ignore_patterns("*.h5"))
+        for file in [*self.folder.glob("configs/*/*.toml"), *self.folder.glob("examples/tutorial/*")]:
+            file.write_text(self.shortened(file.read_text()))
+        (self.folder / "build/release").mkdir(parents=True)
+        (self.folder / "build/release/bin").symlink_to(self.place.programs)
+        (self.folder / "build/release/python").symlink_to(self.place.python)
+        for name, content in self.page.files.items():
+            given = self.folder / content if "\n" not in content else None
+            (self.folder / name).write_text(given.read_text() if given else content)
+
+    def shortened(self, text):
+        for old, new in self.page.quick.items() if self.quick else ():
+            text = text.replace(old, new)
+        return text
+
+    def read(self, terminal):
+        text = self.shortened((self.place.pages / self.page.file).read_text())
+        for group in code_groups(text, self.page.section):
+            where = f"{self.page.file}:{group.number}: "
+            if any(words in group.text for words in self.page.left_out) and group.language == "toml":
+                print(f"left {where}{group.lines[0]} ...", flush=True)
+                continue
+            for words, server in self.page.servers.items():
+                if words in group.text:
+                    terminal.run(server)
+            try:
+                self.take(terminal, group)
+            except RuntimeError as error:
+                raise RuntimeError(where + str(error)) from error
+            self.seen += 1
+            print(f"ok   {where}{group.lines[0]}{' ...' * (len(group.lines) > 1)}", flush=True)
+        self.end_server(terminal)
+
+    def take(self, terminal, group):
+        if group.language == "python":
+            self.keep(terminal.run(f"{PYTHON} - <<'END'\n{self.page.python}{terminal.with_ports(group.text)}\nEND"))
+        elif group.language in ("toml", "cmake"):
+            self.find(terminal, group)
+        elif self.is_command(group.lines[0]):
+            self.keep("".join(self.command(terminal, line) for line in group.lines))
+        else:
+            wrong = difference(group.lines, self.last, self.compares)
+            if wrong:
+                raise RuntimeError(wrong)
+
+    def keep(self, printed):
+        self.last = printed
+        self.printed += printed
+
+    def is_command(self, line):
+        program = line.split()[0]
+        return "/" in program or shutil.which(program, path=f"{self.place.programs}:/usr/bin:/bin") is not None
+
+    def command(self, terminal, line):
+        if any(words in line for words in self.page.left_out):
+            print(f"left {line}", flush=True)
+            return ""
+        for written, mine in ({"/usr/share/irdm": str(self.folder)} | self.page.instead).items():
+            line = line.replace(written, mine)
+        return terminal.run(line)
+
+    def find(self, terminal, group):
+        """A part of a file that is there: its lines, in their order."""
+        files = [pathlib.Path(terminal.folder) / word for word in group.before.split("`")[1::2]]
+        files += self.folder.glob("examples/*/CMakeLists.txt") if group.language == "cmake" else []
+        for file in files:
+            rest = iter(file.read_text().splitlines()) if file.is_file() else iter(())
+            if all(line in rest for line in group.lines if line):
+                return
+        raise RuntimeError(f"no file of {[str(file) for file in files]} has these lines")
+
+    def end_server(self, terminal):
+        self.printed += terminal.end_server()
+
+
+def main():
+    options = {word for word in sys.argv[1:] if word.startswith("--")}
+    words = [word for word in sys.argv[1:] if not word.startswith("--")]
+    if len(words) < 3 or words[0] not in PAGES or words[1] not in ("clone", "installed"):
+        sys.exit(__doc__)
+    page, place = PAGES[words[0]], Place(words[1], words[2:])
+    real_time = "--real-time" in options
+    with tempfile.TemporaryDirectory(prefix="irdm-docs-") as name:
+        folder = pathlib.Path(name)
+        reader = Reader(page, place, folder, "--quick" in options, real_time)
+        reader.prepare()
+        try:
+            with Terminal(folder, place.environment("/usr/bin:/bin"), not real_time) as terminal:
+                reader.read(terminal)
+                page.check(terminal, reader.printed)
+        except RuntimeError as error:
+            sys.exit(f"FAIL {error}")
+        print(f"run_page: {reader.seen} groups of {page.file}")
+    sys.exit(0 if reader.seen else 1)
+
+
+main()

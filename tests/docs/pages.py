@@ -20,10 +20,12 @@ class Page:
     file: str
     check: Callable  # of (terminal, printed): raises when something lacks
     section: str = None  # from this line to the next heading; None: all
-    left_out: tuple = ()  # groups or commands with these texts
-    quick: dict = field(default_factory=dict)  # texts of pages and files and what is in their place in a quick run
+    left_out: tuple = ()  # configurations and commands with these texts
+    installed: tuple = ()  # groups with these texts, which need what is installed
+    needs: tuple = ()  # programs of others
+    quick: dict = field(default_factory=dict)  # texts of pages and files, and what is in their place but with --numbers
     instead: dict = field(default_factory=dict)  # texts of commands and what is in their place
-    files: dict = field(default_factory=dict)  # that a reader has, by name; None: the gallery's
+    files: dict = field(default_factory=dict)  # that a reader has: their text, or a file of the clone
     servers: dict = field(default_factory=dict)  # text of a group and the server that it needs
     python: str = ""  # what a reader has before the first line of Python
 
@@ -33,6 +35,7 @@ PAGES = {
         "docs/tutorial.md",
         check_tutorial,
         left_out=('type = "openhaptics"',),
+        needs=("gmsh",),
         # A fortieth of the time to compute.
         quick={"order = 2": "order = 1"},
     ),
@@ -46,6 +49,7 @@ PAGES = {
     "embedding": Page(
         "docs/embedding.md",
         check_embedding,
+        installed=("examples/embed",),
         instead={"MODEL.h5": "cube.h5"},
         files={"cube.toml": "configs/models/soft-cube.toml", "scene.toml": SCENE},
         servers={"localhost:4321": "irdm-server scene.toml --port 4321"},

@@ -3,8 +3,10 @@
 usage: run_page.py PAGE clone SOURCES BUILD [OPTIONS]     a clone, and the folder of its build
        run_page.py PAGE installed TREE [OPTIONS]          what was installed
   PAGE: a name of pages.py
-  --quick: with smaller models; numbers are not compared
-  --real-time: servers are not in lockstep; numbers are not compared
+One of:
+  --quick: with smaller models; only the words are compared
+  --numbers: with the models of the page; numbers are compared too
+  --real-time: as --quick, with servers that are not in lockstep
 """
 
 import pathlib
@@ -42,9 +44,8 @@ class Place:
 class Reader:
     """Does what a page says, group by group."""
 
-    def __init__(self, page, place, folder, quick, real_time):
-        self.page, self.place, self.folder, self.quick = page, place, folder, quick
-        self.compares = not (quick or real_time)
+    def __init__(self, page, place, folder, numbers):
+        self.page, self.place, self.folder, self.numbers = page, place, folder, numbers
         self.printed = ""  # by all commands
         self.last = ""  # by those of the last group
         self.seen = 0  # groups that were compared or run
@@ -63,7 +64,7 @@ class Reader:
             (self.folder / name).write_text(given.read_text() if given else content)
 
     def shortened(self, text):
-        for old, new in self.page.quick.items() if self.quick else ():
+        for old, new in self.page.quick.items() if not self.numbers else ():
             text = text.replace(old, new)
         return text
 
@@ -71,7 +72,7 @@ class Reader:
         text = self.shortened((self.place.pages / self.page.file).read_text())
         for group in code_groups(text, self.page.section):
             where = f"{self.page.file}:{group.number}: "
-            if any(words in group.text for words in self.page.left_out) and group.language == "toml":
+            if self.leaves_out(group):
                 print(f"left {where}{group.lines[0]} ...", flush=True)
                 continue
             for words, server in self.page.servers.items():
@@ -85,15 +86,20 @@ class Reader:
             print(f"ok   {where}{group.lines[0]}{' ...' * (len(group.lines) > 1)}", flush=True)
         self.end_server(terminal)
 
+    def leaves_out(self, group):
+        words = () if self.place.tree else self.page.installed
+        words += self.page.left_out if group.language == "toml" else ()
+        return any(word in group.text for word in words)
+
     def take(self, terminal, group):
         if group.language == "python":
-            self.keep(terminal.run(f"{PYTHON} - <<'END'\n{self.page.python}{terminal.with_ports(group.text)}\nEND"))
+            self.keep(terminal.run(f"{PYTHON} - <<'END'\n{self.page.python}{group.text}\nEND", beside=True))
         elif group.language in ("toml", "cmake"):
             self.find(terminal, group)
         elif self.is_command(group.lines[0]):
             self.keep("".join(self.command(terminal, line) for line in group.lines))
         else:
-            wrong = difference(group.lines, self.last, self.compares)
+            wrong = difference(group.lines, self.last, self.numbers)
             if wrong:
                 raise RuntimeError(wrong)
 
@@ -128,24 +134,25 @@ class Reader:
 
 
 def main():
-    options = {word for word in sys.argv[1:] if word.startswith("--")}
-    words = [word for word in sys.argv[1:] if not word.startswith("--")]
-    if len(words) < 3 or words[0] not in PAGES or words[1] not in ("clone", "installed"):
+    if len(sys.argv) < 5 or sys.argv[1] not in PAGES or sys.argv[-1] not in ("--quick", "--numbers", "--real-time"):
         sys.exit(__doc__)
-    page, place = PAGES[words[0]], Place(words[1], words[2:])
-    real_time = "--real-time" in options
+    page, place, option = PAGES[sys.argv[1]], Place(sys.argv[2], sys.argv[3:-1]), sys.argv[-1]
+    for program in page.needs:
+        if not shutil.which(program):
+            print(f"test left out: no {program}")
+            return
     with tempfile.TemporaryDirectory(prefix="irdm-docs-") as name:
         folder = pathlib.Path(name)
-        reader = Reader(page, place, folder, "--quick" in options, real_time)
+        reader = Reader(page, place, folder, option == "--numbers")
         reader.prepare()
         try:
-            with Terminal(folder, place.environment("/usr/bin:/bin"), not real_time) as terminal:
+            with Terminal(folder, place.environment("/usr/bin:/bin"), option != "--real-time") as terminal:
                 reader.read(terminal)
                 page.check(terminal, reader.printed)
         except RuntimeError as error:
             sys.exit(f"FAIL {error}")
         print(f"run_page: {reader.seen} groups of {page.file}")
-    sys.exit(0 if reader.seen else 1)
+    sys.exit(0 if reader.seen else "FAIL: there was nothing to run")
 
 
 main()

@@ -28,17 +28,17 @@ class Terminal:
             self.server.kill()
             self.server.wait()
 
-    def run(self, command):
-        """What it printed."""
+    def run(self, command, beside=False):
+        """What it printed; beside the server, if one runs."""
         if SERVER.match(command):
             self.end_server()
             return self.start_server(command)
-        printed = "" if BRIDGE.match(command) else self.end_server()
+        printed = "" if beside or BRIDGE.match(command) else self.end_server()
         return printed + self.run_to_end(self.with_ports(command))
 
     def run_to_end(self, command):
         """A change of the folder stays for the next command."""
-        script = f"set -eo pipefail\n{command}\npwd >&3"
+        script = f"set -o pipefail\n{command}\nstatus=$?\npwd >&3\nexit $status"
         read, write = os.pipe()
         with open(read) as folder:
             done = subprocess.run(["bash", "-c", f"exec 3>&{write}\n{script}"], cwd=self.folder, env=self.environment,

@@ -10,6 +10,12 @@ SERVER = re.compile(r"^(?:\S*/)?irdm-server ")
 BRIDGE = re.compile(r"^(?:\S*/)?irdm-bridge ")
 
 
+class CommandFailed(RuntimeError):
+    def __init__(self, command, status, printed):
+        super().__init__(f"{command}: exit status {status}\n{printed}")
+        self.status, self.printed = status, printed
+
+
 class Terminal:
     """A server runs until another command than irdm-bridge comes; it gets a port of its own, by which the commands after
     it know it. In lockstep a server that records does so in lockstep, and ends with its bridge."""
@@ -46,7 +52,7 @@ class Terminal:
                                   timeout=DEADLINE, check=False)
             os.close(write)
             if done.returncode != 0:
-                raise RuntimeError(f"{command}: exit status {done.returncode}\n{done.stdout}")
+                raise CommandFailed(command, done.returncode, done.stdout)
             self.folder = folder.read().strip()
         return done.stdout
 
@@ -83,7 +89,7 @@ class Terminal:
         printed, _ = self.server.communicate(timeout=DEADLINE)
         status, self.server = self.server.returncode, None
         if status != 0:
-            raise RuntimeError(f"the server ended with exit status {status}:\n{printed}")
+            raise CommandFailed("irdm-server", status, printed)
         return printed
 
 

@@ -1,14 +1,14 @@
 """Runs the commands of a page in a fresh folder, in their order, and compares what the page shows with what they print.
 
-usage: run_page.py PAGE clone SOURCES BUILD [OPTIONS]     a clone, and the folder of its build
-       run_page.py PAGE installed TREE [OPTIONS]          what was installed
+usage: run_page.py PAGE clone SOURCES BUILD OPTION     a clone, and the folder of its build
+       run_page.py PAGE installed TREE OPTION          what was installed
   PAGE: a name of pages.py
-One of:
   --quick: with smaller models; only the words are compared
   --numbers: with the models of the page; numbers are compared too
   --real-time: as --quick, with servers that are not in lockstep
 """
 
+import os
 import pathlib
 import shutil
 import sys
@@ -36,8 +36,13 @@ class Place:
             self.pages, self.data = self.tree / "share/doc/irdm", self.tree / "share/irdm"
             self.programs, self.python = self.tree / "bin", self.tree / "lib/python3/dist-packages"
 
-    def environment(self, path):
-        found = {"PATH": f"{self.programs}:{path}", "PYTHONPATH": str(self.python), "PYTHONDONTWRITEBYTECODE": "1"}
+    @property
+    def path(self):
+        return f"{self.programs}:{os.environ['PATH']}"
+
+    @property
+    def environment(self):
+        found = {"PATH": self.path, "PYTHONPATH": str(self.python), "PYTHONDONTWRITEBYTECODE": "1"}
         return found | ({"CMAKE_PREFIX_PATH": str(self.tree)} if self.tree else {})
 
 
@@ -84,7 +89,7 @@ class Reader:
                 raise RuntimeError(where + str(error)) from error
             self.seen += 1
             print(f"ok   {where}{group.lines[0]}{' ...' * (len(group.lines) > 1)}", flush=True)
-        self.end_server(terminal)
+        self.printed += terminal.end_server()
 
     def leaves_out(self, group):
         words = () if self.place.tree else self.page.installed
@@ -109,7 +114,7 @@ class Reader:
 
     def is_command(self, line):
         program = line.split()[0]
-        return "/" in program or shutil.which(program, path=f"{self.place.programs}:/usr/bin:/bin") is not None
+        return "/" in program or shutil.which(program, path=self.place.path) is not None
 
     def command(self, terminal, line):
         if any(words in line for words in self.page.left_out):
@@ -129,9 +134,6 @@ class Reader:
                 return
         raise RuntimeError(f"no file of {[str(file) for file in files]} has these lines")
 
-    def end_server(self, terminal):
-        self.printed += terminal.end_server()
-
 
 def main():
     if len(sys.argv) < 5 or sys.argv[1] not in PAGES or sys.argv[-1] not in ("--quick", "--numbers", "--real-time"):
@@ -146,7 +148,7 @@ def main():
         reader = Reader(page, place, folder, option == "--numbers")
         reader.prepare()
         try:
-            with Terminal(folder, place.environment("/usr/bin:/bin"), option != "--real-time") as terminal:
+            with Terminal(folder, place.environment, option != "--real-time") as terminal:
                 reader.read(terminal)
                 page.check(terminal, reader.printed)
         except RuntimeError as error:

@@ -4,6 +4,7 @@ refused in one line, and mended as that line says. Prints the time of each step.
 usage: check_shapes.py SOURCES PROGRAMS [--all]      --all: every shape of make_shapes.py; otherwise a coarse kidney
 """
 
+import os
 import pathlib
 import re
 import sys
@@ -112,7 +113,7 @@ def main():
     if len(sys.argv) not in (3, 4):
         sys.exit(__doc__)
     sources, programs = (pathlib.Path(word).resolve() for word in sys.argv[1:3])
-    environment = {"PATH": f"{programs}:/usr/bin:/bin"}
+    environment = {"PATH": f"{programs}:{os.environ['PATH']}"}
     for name in EDGES if "--all" in sys.argv else ["kidney"]:
         with tempfile.TemporaryDirectory(prefix="irdm-shape-") as folder, Terminal(folder, environment, True) as terminal:
             coarse = "--all" not in sys.argv

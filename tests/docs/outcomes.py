@@ -64,3 +64,13 @@ def check_embedding(terminal, printed):
                             "irdm-replay turning.h5 --from inputs --rate 10 --csv turning.csv")
     expect("500 steps" in replayed and "velocity 0 m/s, angular velocity 0 rad/s" in re.sub(r"\s+", " ", replayed),
            "build/scene: its trace is replayed to the bit")
+
+
+def check_liver(_, printed):
+    """In real time: the pace of the machine is not asked for."""
+    expect(re.search(r"^session: .* sessions [1-9]", printed, re.MULTILINE), "irdm-bridge had a session, and ended")
+
+
+def check_comparison(terminal, printed):
+    expect("force" in printed and (pathlib.Path(terminal.folder) / "apart.png").stat().st_size > 0,
+           "the runs are compared, and drawn")

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from typing import Callable
 
-from outcomes import check_embedding, check_first_session, check_tutorial
+from outcomes import check_comparison, check_embedding, check_first_session, check_liver, check_tutorial
 
 SCENE = """
 [[object]]
@@ -26,6 +26,7 @@ class Page:
     quick: dict = field(default_factory=dict)  # texts of pages and files, and what is in their place but with --numbers
     instead: dict = field(default_factory=dict)  # texts of commands and what is in their place
     files: dict = field(default_factory=dict)  # that a reader has: their text, or a file of the clone
+    first: tuple = ()  # commands that a reader has given before
     servers: dict = field(default_factory=dict)  # text of a group and the server that it needs
     python: str = ""  # what a reader has before the first line of Python
 
@@ -54,5 +55,16 @@ PAGES = {
         files={"cube.toml": "configs/models/soft-cube.toml", "scene.toml": SCENE},
         servers={"localhost:4321": "irdm-server scene.toml --port 4321"},
         python="import irdm\ntips = [[[0.0, 0.05, 0.0]]] * 10\n",
+    ),
+    "meshes": Page("docs/meshes.md", check_liver, section="## The liver", needs=("gmsh",)),
+    "replay": Page(
+        "docs/replay.md",
+        check_comparison,
+        files={"cube.toml": "configs/models/soft-cube.toml", "scene.toml": SCENE},
+        first=(
+            "irdm-precompute cube.toml -o cube.h5",
+            "irdm-server scene.toml --port 47000 --record trace.h5",
+            "irdm-bridge configs/bridges/tap.toml --server 127.0.0.1:47000",
+        ),
     ),
 }

@@ -74,6 +74,8 @@ class Reader:
         return text
 
     def read(self, terminal):
+        for command in self.page.first:
+            terminal.run(command)
         text = self.shortened((self.place.pages / self.page.file).read_text())
         for group in code_groups(text, self.page.section):
             where = f"{self.page.file}:{group.number}: "

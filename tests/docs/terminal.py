@@ -25,6 +25,7 @@ class Terminal:
         self.server = None
         self.server_ends = False  # by itself
         self.ports = {}  # as written to as it is
+        self.address = ""  # of the last server
 
     def __enter__(self):
         return self
@@ -59,7 +60,7 @@ class Terminal:
     def with_ports(self, text):
         for written, port in self.ports.items():
             text = text.replace(f":{written}", f":{port}")
-        return text
+        return text.replace("HOST:PORT", self.address)
 
     def start_server(self, command):
         """What it printed until it listens."""
@@ -75,8 +76,9 @@ class Terminal:
         for line in self.server.stdout:
             printed += line
             if line.startswith("listening on http"):
+                self.address = re.search(r"listening on ([\d.]+:\d+)", printed)[1]
                 if written:
-                    self.ports[written[1]] = re.search(r"listening on [\d.]+:(\d+)", printed)[1]
+                    self.ports[written[1]] = self.address.rpartition(":")[2]
                 return printed
         raise RuntimeError(f"{command} did not begin:\n{printed}")
 

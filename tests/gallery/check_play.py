@@ -91,9 +91,9 @@ def give_up(*_):
     raise TimeoutError(f"not at its end after {DEADLINE} s")
 
 
-def expect(status, play, words):
-    check(status == 0, f"{words}: exit status {status}")
-    if status != 0:
+def expect(status, play, words, wanted=0):
+    check(status == wanted, f"{words}: exit status {status}")
+    if status != wanted:
         print("".join(play.printed))
     check(not play.signal_group(signal.SIGKILL), f"{words}: no process is left")
 
@@ -135,6 +135,17 @@ def play_until(play, end, words, page_built):
     check(not any("drawing the object" in text for text in play.printed), f"{words}: draws no frames")
 
 
+def interrupt(play, number, words):
+    """While it plays: it ends by the signal, after all that it started. SIGINT goes to all, as from a terminal."""
+    with play:
+        check(play.line("in real time"), f"{words}: plays")
+        if number == signal.SIGINT:
+            play.signal_group(number)
+        else:
+            play.process.send_signal(number)
+        expect(play.end(), play, words, -number)
+
+
 def main():
     sources, programs, page_built = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), sys.argv[3] == "page"
     signal.signal(signal.SIGALRM, give_up)
@@ -157,6 +168,9 @@ def main():
 
         play = start("--lockstep", "--no-frames")
         play_until(play, play.process.terminate, "in lockstep, SIGTERM", page_built)
+
+        for number in (signal.SIGINT, signal.SIGTERM):
+            interrupt(start("--no-frames"), number, f"while it plays, {signal.Signals(number).name}")
     sys.exit(f"{len(failures)} checks failed" if failures else 0)
 
 

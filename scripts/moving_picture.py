@@ -18,7 +18,7 @@ def save(frames, path, kilobytes):
     """In the best quality that fits."""
     durations = [INTERVAL_MS] * (len(frames) - 1) + [LAST_MS]
     for quality in QUALITIES:
-        frames[0].save(path, save_all=True, append_images=frames[1:], duration=durations, loop=0, quality=quality, method=4)
+        frames[0].save(path, save_all=True, append_images=frames[1:], duration=durations, loop=0, quality=quality)
         size = path.stat().st_size
         if size <= 1000 * kilobytes:
             print(f"picture  {path}, {len(frames)} frames, {size / 1000:.0f} kB, quality {quality}")

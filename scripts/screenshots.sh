@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Makes the README's pictures in docs/images: irdm-server and irdm-bridge with a scripted stylus, the page in headless
-# Chromium, light and dark; the cube's run as a moving picture. Best on a machine that has nothing else to do: it draws in
-# software, several minutes.
+# Chromium, light and dark; the cube's run as a moving picture. Best on a machine that has nothing else to do: it draws
+# in software, for several minutes.
 #   scripts/screenshots.sh [PRESET]    release unless given
 set -euo pipefail
 cd "$(dirname "$0")/.."

@@ -2,7 +2,6 @@
 
 import pathlib
 import re
-import subprocess
 
 import h5py
 import numpy as np
@@ -59,7 +58,8 @@ def check_embedding(terminal, printed):
     impulse, momentum = float(found[1]), float(found[2])
     expect(impulse < -1e-3 and abs(impulse - momentum) < 1e-6 * abs(impulse), f"build/embed: {found[0]}")
     scene = pathlib.Path(terminal.folder) / "turning.toml"
-    scene.write_text(scene.with_name("scene.toml").read_text().replace("[[stylus]]", "angular_velocity = [1, 2, 3]\n[[stylus]]"))
+    turning = "angular_velocity = [1, 2, 3]\n[[stylus]]"
+    scene.write_text(scene.with_name("scene.toml").read_text().replace("[[stylus]]", turning))
     replayed = terminal.run("build/scene turning.toml turning.h5 && "
                             "irdm-replay turning.h5 --from inputs --rate 10 --csv turning.csv")
     expect("500 steps" in replayed and "velocity 0 m/s, angular velocity 0 rad/s" in re.sub(r"\s+", " ", replayed),

@@ -1,5 +1,5 @@
-// Makes the frames of the README's moving picture: a recorded run on irdm-server's page in headless Chromium, slowed down,
-// light and dark.
+// Makes the frames of the README's moving picture: a recorded run on irdm-server's page in headless Chromium, slowed
+// down, light and dark.
 //   node moving_picture.mjs SCENE TRACE OUT      OUT/light-NNN.png, OUT/dark-NNN.png; programs: IRDM_SERVER, CHROMIUM
 import { mkdirSync } from "node:fs";
 import path from "node:path";

@@ -216,6 +216,9 @@ Workspace read_workspace(TomlTable table) {
 ServerAddress parse_server_address(const std::string& text, const std::string& where) {
   const std::string remedy = "give HOST:PORT with a port from 1 to 65535";
   const std::size_t colon = text.rfind(':');
+  if (text.find("://") != std::string::npos) {
+    throw Error(where, in_quotes(text) + " is the address of a page", "give HOST:PORT for bridges");
+  }
   if (colon == std::string::npos) throw Error(where, in_quotes(text) + " has no port", remedy);
   ServerAddress address;
   address.host = text.substr(0, colon);

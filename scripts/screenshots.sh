@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Makes the README's pictures in docs/images: irdm-server and irdm-bridge with a scripted stylus, the page in headless
-# Chromium, light and dark. Best on a machine that has nothing else to do: it draws in software.
+# Chromium, light and dark; the cube's run as a moving picture. Best on a machine that has nothing else to do: it draws
+# in software, for several minutes.
 #   scripts/screenshots.sh [PRESET]    release unless given
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -9,13 +10,13 @@ preset=${1:-release}
 bin=build/$preset/bin
 models=out/models
 kilobytes=150 # that a picture may have
+moving_kilobytes=2000
 mkdir -p "$models" docs/images
 scripts/setup.sh
 scripts/build.sh "$preset" irdm-precompute irdm-server irdm-bridge
-for name in paper-cube liver; do
-  config=configs/models/$name.toml
-  [ "$models/$name.h5" -nt "$config" ] || "$bin/irdm-precompute" "$config" -o "$models/$name.h5" >"$models/$name.log"
-done
+config=configs/models/liver.toml
+[ "$models/liver.h5" -nt "$config" ] || "$bin/irdm-precompute" "$config" -o "$models/liver.h5" >"$models/liver.log"
+IRDM_PROGRAMS=$bin IRDM_DATA=$PWD scripts/irdm-play paper-cube --lockstep --once --no-frames
 pictures=$(mktemp -d)
 trap 'rm -rf "$pictures"' EXIT
 IRDM_SERVER=$bin/irdm-server IRDM_BRIDGE=$bin/irdm-bridge CHROMIUM=$(command -v chromium) \
@@ -34,3 +35,8 @@ for path in sorted(source.glob("*.png")):
     if size > 1000 * kilobytes:
         sys.exit(f"screenshots: {path.name} is too large")
 END
+
+echo "screenshots: the moving picture"
+IRDM_SERVER=$bin/irdm-server CHROMIUM=$(command -v chromium) \
+  node viewer/page/browser/moving_picture.mjs out/paper-cube/scene.toml out/paper-cube/trace.h5 "$pictures/moving"
+/usr/bin/python3 scripts/moving_picture.py "$pictures/moving" docs/images/cube-moving $moving_kilobytes

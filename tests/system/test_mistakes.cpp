@@ -2,9 +2,12 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <vector>
 
+#include "tests/support/child_process.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "tests/system/stage.hpp"
 
 using Catch::Matchers::Contains;
@@ -123,7 +126,21 @@ TEST_CASE("mistakes: a model") {
        {"part.obj", "", "", "part.obj: is empty", "write the mesh again"},
        {"part.obj", "f 2 8 4\n", "", "part.obj: ", "close"},
        {"part.obj", "f 2 8 4", "f 2 8 44", "part.obj:21: vertex '44'", ""},
-       {"model.toml", "steps = 100", "support = \"fixed\"", "support is missing", "add"}});
+       {"model.toml", "steps = 100", "support = \"fixed\"", "support is missing", "add"},
+       {"", "", "", "mesh is missing", "add it", {"@scene.toml", "-o", "@m.h5"}},
+       {"", "", "", "note.txt: is not a complete HDF5 file", "make it", {"check", "@note.txt"}},
+       {"",
+        "",
+        "",
+        "is the input itself",
+        "another name",
+        {"compress", "@cube.h5", "-o", "@cube.h5"}},
+       {"",
+        "",
+        "",
+        "cube.h5: is not a part of R",
+        "--columns",
+        {"merge", "@cube.h5", "-o", "@m.h5"}}});
 }
 
 TEST_CASE("mistakes: a scene") {
@@ -147,7 +164,39 @@ TEST_CASE("mistakes: a scene") {
           "",
           "cannot be created",
           "check that the folder exists",
-          {"@scene.toml", "--record", "@no/trace.h5", "--duration", "0.1"}}});
+          {"@scene.toml", "--record", "@no/trace.h5", "--duration", "0.1"}},
+         {"", "", "", "exists already", "another name", {"@scene.toml", "--record", "@note.txt"}},
+         {"", "", "", "cube.h5: is not a trace", "--record", {"@scene.toml", "--play", "@cube.h5"}},
+         {"", "", "", "object is missing", "add [[object]]", {"@bridge.toml"}},
+         {"scene.toml", "\"cube\"", "\"a/b\"", "name cannot name a group", "without '/'"},
+         {"scene.toml", "0.01", "0.5", "is too large for an object", "a coarser mesh"},
+         {"scene.toml", "port = 0", "address = \"0.0.0.0\"", "from other machines", "key_file"},
+         {"scene.toml", "port = 0", "key_file = \"no.key\"", "there is no such file",
+          "make one with"},
+         {"scene.toml", "[server]", "[viewer]\ntoken = \"1\"\n[server]",
+          "viewer.token is not 16 to", "openssl rand"}});
+}
+
+TEST_CASE("mistakes: two objects") {
+  // Beside the cube of scene.toml.
+  const auto second = [](const std::string& rest) {
+    return "[[object]]\n" + rest + "\n[[object]]\nname = \"cube\"";
+  };
+  const std::string first = "[[object]]\nname = \"cube\"";
+  const TemporaryFolder folder("irdm-mistakes");
+  const std::string config = (folder.path() / "fast.toml").string();
+  const std::string model = (folder.path() / "fast.h5").string();
+  std::string text = file_content(IRDM_SOURCE_DIR "/tests/system/cube.toml");
+  text.replace(text.find("dt = 0.002"), 10, "dt = 0.001");
+  std::ofstream(config) << text;
+  REQUIRE(run_to_end({IRDM_PRECOMPUTE, config, "-o", model}).status == 0);
+  check(IRDM_SERVER,
+        {{"scene.toml", first, second("model = \"" + model + "\"\nposition = [1, 0, 0]"),
+          "models of different dt", "the same response.dt"},
+         {"scene.toml", first, second("name = \"cube\"\nmodel = \"cube.h5\""), "appears twice",
+          "a name of its own"},
+         {"scene.toml", first, second("model = \"cube.h5\"\nposition = [0.1, 0, 0]"),
+          "inside one another", "move them apart"}});
 }
 
 TEST_CASE("mistakes: a bridge") {
@@ -165,13 +214,42 @@ TEST_CASE("mistakes: a bridge") {
          {"bridge.toml", "script.csv", "scirpt.csv", "scirpt.csv: no such stylus script", ""},
          {"bridge.toml", "mass", "maas", "hand.maas is not a known key", "did you mean 'mass'?"},
          {"bridge.toml", "0.12", "0", "mass is 0", "give a finite number >= 0.001"},
-         {"script.csv", "time,", "t,", "script.csv:1: ", "time,x,y,z"}});
+         {"script.csv", "time,", "t,", "script.csv:1: ", "time,x,y,z"},
+         {"script.csv", "0.1,", "9,", "does not come after the row before", "sort the rows"},
+         {"script.csv", "0,0.01,", "0;0.01;", "script.csv:2: has ", "as the header says"},
+         {"bridge.toml", "script = \"script.csv\"", "", "has no script", "--script FILE.csv"},
+         {"",
+          "",
+          "",
+          "is not a known key",
+          "correct its name",
+          {"@scene.toml", "--server", "localhost:1"}},
+         {"",
+          "",
+          "",
+          "is the address of a page",
+          "HOST:PORT for bridges",
+          {"@bridge.toml", "--server", "http://127.0.0.1:1"}},
+         {"",
+          "",
+          "",
+          "is not a server",
+          "1 to 65535",
+          {"@bridge.toml", "--server", "localhost:99999"}},
+         {"",
+          "",
+          "",
+          "there is no key",
+          "key_file",
+          {"@bridge.toml", "--server", "192.0.2.1:4000"}}});
 }
 
 TEST_CASE("mistakes: a replay") {
-  check(IRDM_REPLAY,
-        {{"", "", "", "trace.h5: no such file", "check the path"},
-         {"", "", "", "folder: is a folder", "give the path of a file", {"@folder"}},
-         {"", "", "", "cube.h5: is not a trace", "", {"@cube.h5"}},
-         {"", "", "", "note.txt: is not a complete HDF5 file", "make it again", {"@note.txt"}}});
+  check(
+      IRDM_REPLAY,
+      {{"", "", "", "trace.h5: no such file", "check the path"},
+       {"", "", "", "folder: is a folder", "give the path of a file", {"@folder"}},
+       {"", "", "", "cube.h5: is not a trace", "", {"@cube.h5"}},
+       {"", "", "", "note.txt: is not a complete HDF5 file", "make it again", {"@note.txt"}},
+       {"", "", "", "is not a run file", "--output RUN.h5", {"compare", "@cube.h5", "@cube.h5"}}});
 }

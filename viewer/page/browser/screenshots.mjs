@@ -1,33 +1,16 @@
 // Makes the pictures of the README: real irdm-server and irdm-bridge, the page in headless Chromium, light and dark.
 //   node screenshots.mjs CONFIGS MODELS OUT      folders; MODELS has SCENE.h5; programs: IRDM_SERVER, IRDM_BRIDGE, CHROMIUM
-import { spawn } from "node:child_process";
 import { copyFileSync, mkdtempSync, rmSync, symlinkSync } from "node:fs";
 import { tmpdir } from "node:os";
 import path from "node:path";
-import { chromium } from "playwright-core";
+import { DEADLINE_MS, launch, listening, start } from "./programs.mjs";
 
 const { IRDM_SERVER, IRDM_BRIDGE, CHROMIUM } = process.env;
 const [configs, models, out] = process.argv.slice(2).map((name) => path.resolve(name));
-const DEADLINE_MS = 60_000;
 const SIZE = { width: 1200, height: 750 };
 
 // `when` says in the page whether what it shows is worth a picture.
 const PICTURES = [
-  {
-    name: "cube",
-    scene: "paper-cube",
-    bridge: "demo",
-    when: () => {
-      const { time, styluses } = window.irdm.frame();
-      if (styluses[0].contact !== 2) return false;
-      window.heldSince ??= time;
-      return time > window.heldSince + 1.5 && Math.hypot(...styluses[0].force) > 0.3;
-    },
-    prepare: async (page) => {
-      await page.locator("#rigid").check();
-      await page.locator("#exaggeration").fill("3");
-    },
-  },
   {
     name: "liver",
     scene: "liver",
@@ -40,21 +23,6 @@ const PICTURES = [
   },
 ];
 
-function start(program, ...words) {
-  const child = spawn(program, words, { stdio: ["ignore", "pipe", "inherit"] });
-  child.output = "";
-  child.stdout.on("data", (data) => (child.output += data));
-  return child;
-}
-
-async function until(condition, what) {
-  const deadline = Date.now() + DEADLINE_MS;
-  while (!condition()) {
-    if (Date.now() > deadline) throw new Error(`not in time: ${what}`);
-    await new Promise((resolve) => setTimeout(resolve, 20));
-  }
-}
-
 async function take(browser, { name, scene, bridge, when, prepare }) {
   const folder = mkdtempSync(path.join(tmpdir(), "irdm-screenshots-"));
   const children = [];
@@ -63,13 +31,12 @@ async function take(browser, { name, scene, bridge, when, prepare }) {
     symlinkSync(path.join(models, `${scene}.h5`), path.join(folder, `${scene}.h5`));
     const server = start(IRDM_SERVER, path.join(folder, "scene.toml"));
     children.push(server);
-    await until(() => /on http\S+\n/.test(server.output), "the server listens");
+    const addresses = await listening(server);
     const page = await browser.newPage({ viewport: SIZE });
-    await page.goto(/listening on (http\S+)/.exec(server.output)[1]);
+    await page.goto(addresses.page);
     await page.waitForFunction(() => window.irdm?.frame() != null, null, { timeout: DEADLINE_MS });
     await prepare(page);
-    const address = /listening on (\d\S+)/.exec(server.output)[1];
-    children.push(start(IRDM_BRIDGE, path.join(configs, "bridges", `${bridge}.toml`), "--server", address));
+    children.push(start(IRDM_BRIDGE, path.join(configs, "bridges", `${bridge}.toml`), "--server", addresses.bridges));
     // The server stands still while the picture is taken, so that light and dark show the same.
     await page.waitForFunction(when, null, { timeout: DEADLINE_MS, polling: 20 });
     server.kill("SIGSTOP");
@@ -89,10 +56,7 @@ async function take(browser, { name, scene, bridge, when, prepare }) {
   }
 }
 
-const browser = await chromium.launch({
-  executablePath: CHROMIUM,
-  args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
-});
+const browser = await launch(CHROMIUM);
 try {
   for (const picture of PICTURES) {
     console.log(`screenshots: ${picture.name}`);

@@ -201,15 +201,25 @@ void warn_of_missing_sag(const SceneConfig& scene, const SimulationConfig& confi
   }
 }
 
-void say_how_styluses_touch(const SceneConfig& scene, const SimulationConfig& config,
-                            bool viewer_stylus, const std::string& name) {
-  const std::string note = default_fingertip_note(scene, config, viewer_stylus);
-  if (!note.empty()) std::cout << note + "\n" << std::flush;
-  for (const std::string& warning :
-       {point_warning(scene, config, viewer_stylus), coupling_warning(scene, config)}) {
-    if (!warning.empty()) std::cerr << "irdm-server: warning: " + name + ": " + warning + "\n";
+/// How styluses touch: found before the run, said when it starts.
+class TouchNotes {
+ public:
+  TouchNotes(const SceneConfig& scene, const SimulationConfig& config, bool viewer_stylus,
+             const std::string& name)
+      : note_(default_fingertip_note(scene, config, viewer_stylus)) {
+    for (const std::string& warning :
+         {point_warning(scene, config, viewer_stylus), coupling_warning(scene, config)}) {
+      if (!warning.empty()) warnings_ += "irdm-server: warning: " + name + ": " + warning + "\n";
+    }
   }
-}
+  void say() const {
+    if (!note_.empty()) std::cout << note_ + "\n" << std::flush;
+    std::cerr << warnings_;
+  }
+
+ private:
+  std::string note_, warnings_;
+};
 
 // In lockstep nobody waits for the machine's clock.
 RealTimeScheduling scheduling(const SceneConfig& scene, const ServerOptions& options) {
@@ -363,7 +373,7 @@ int run_server(const ServerOptions& options) {
   Simulation simulation(config);
   const double dt = simulation.dt();
   warn_of_missing_sag(scene, config, options.scene.string());
-  say_how_styluses_touch(scene, config, viewer_stylus, options.scene.string());
+  const TouchNotes touch(scene, config, viewer_stylus, options.scene.string());
   warn_of_long_steps(dt, options.lockstep, options.scene.string());
   ServerBlackBox black_box(scene.server.black_box, options.lockstep);
   NetworkServer network(network_settings(scene, options, dt, black_box.frames()));
@@ -400,6 +410,7 @@ int run_server(const ServerOptions& options) {
   columns.start(scheduling(scene, options) != RealTimeScheduling::kIgnore);
   black_box.start(force);
   options.lockstep ? network.open() : network.start();
+  touch.say();
   say_where(network.endpoint());
   if (viewers) viewers->start();
   if (recorder) recorder->start();

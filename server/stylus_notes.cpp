@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
+#include <limits>
 #include <sstream>
 
 #include "common/error.hpp"
@@ -85,18 +86,20 @@ std::string coupling_warning(const SceneConfig& scene, const SimulationConfig& c
   for (const SimulationStylus& stylus : config.styluses) {
     if (!stylus.tool) stiffest = std::max(stiffest, stylus.coupling_stiffness);
   }
-  std::string lines;
+  double least = std::numeric_limits<double>::infinity();
+  std::size_t worst = 0;
   for (std::size_t i = 0; stiffest > 0 && i < config.objects.size(); ++i) {
     const double limit = sampled_coupling(*config.objects[i].model, kNodes);
-    if (stiffest <= limit) continue;
-    lines += (lines.empty() ? "" : "\n") + std::string("coupling_stiffness ") +
-             rounded(stiffest, 3) + " N/m is too stiff for object " +
-             in_quotes(scene.objects[i].name) + " at its dt of " +
-             rounded(config.objects[i].model->dt, 3) + " s where a bridge holds forces (mode = " +
-             "\"hold\") over a link of one step each way: stable up to " + rounded(limit, 2) +
-             " N/m; lower it, or see irdm-precompute check";
+    if (limit < least) worst = i;
+    least = std::min(least, limit);
   }
-  return lines;
+  if (stiffest <= least) return "";
+  return "coupling_stiffness " + rounded(stiffest, 3) + " N/m is too stiff for object " +
+         in_quotes(scene.objects[worst].name) + " at its dt of " +
+         rounded(config.objects[worst].model->dt, 3) +
+         " s where a bridge holds forces (mode = \"hold\") over a link of one step each way: "
+         "stable up to " +
+         rounded(least, 2) + " N/m; lower it, or see irdm-precompute check";
 }
 
 }  // namespace irdm

@@ -21,8 +21,8 @@ std::string default_fingertip_note(const SceneConfig& scene, const SimulationCon
 std::string point_warning(const SceneConfig& scene, const SimulationConfig& config,
                           bool viewer_stylus);
 
-/// Of couplings that are stiffer than `irdm-precompute check` finds stable over a link on some
-/// nodes (sampled_coupling()); one line an object, empty: none.
+/// Of a coupling stiffer than what `irdm-precompute check` finds stable over a link, on some nodes
+/// (sampled_coupling()) of the object that bears least. Empty: none is.
 std::string coupling_warning(const SceneConfig& scene, const SimulationConfig& config);
 
 }  // namespace irdm

@@ -4,8 +4,6 @@
 
 namespace irdm::test {
 
-using namespace precompute;
-
 /// One mode: h[s] of q'' + 2 sigma q' + omega^2 q = f in closed form, differences of the step
 /// response; sigma < omega may be negative: it grows.
 struct Mode {

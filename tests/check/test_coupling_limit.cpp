@@ -4,7 +4,6 @@
 #include "tests/check/oscillators.hpp"
 
 using namespace irdm;
-using namespace irdm::precompute;
 using irdm::test::damped_modes;
 using irdm::test::driving_point;
 

@@ -4,7 +4,6 @@
 #include "tests/check/oscillators.hpp"
 
 using namespace irdm;
-using namespace irdm::precompute;
 
 namespace {
 

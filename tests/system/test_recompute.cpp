@@ -17,6 +17,9 @@ using namespace irdm::test;
 
 namespace {
 
+// The force on a point is that on the corners of its triangle, as a trace has it.
+const std::string kPoint = "[[stylus]]\nradius = 0\n";
+
 constexpr std::uint8_t kNoContact = 0;
 constexpr double kHeldUntil = 1.0;  // of press_and_swing(), here [s]
 constexpr double kAgain = 1.3;      // when it begins anew [s]
@@ -120,7 +123,7 @@ Trace play(const Stage& stage) {
 
 // Everything that can move it: gravity, an attitude, a spin.
 std::string moving_scene() {
-  return scene_text("[world]\ngravity = [0.01, -0.05, 0.02]\n") +
+  return scene_text("[world]\ngravity = [0.01, -0.05, 0.02]\n" + kPoint) +
          "position = [0.002, 0.001, -0.001]\norientation = [0.98, 0.02, -0.15, 0.03]\n"
          "velocity = [0.01, 0.0, -0.01]\nangular_velocity = [0.1, 0.4, -0.2]\n";
 }
@@ -214,7 +217,8 @@ struct FloorSets {
 // A cube that drops 5 mm onto a floor, and is pressed on it and pushed along.
 void set_on_floor(const Stage& stage) {
   stage.write("scene.toml", scene_text("[world]\ngravity = [0, -9.81, 0]\n[floor]\nheight = "
-                                       "-0.065\nfriction = { static = 0.3, kinetic = 0.2 }\n"));
+                                       "-0.065\nfriction = { static = 0.3, kinetic = 0.2 }\n" +
+                                       kPoint));
   stage.write("script.csv",
               "time,x,y,z,button\n0,0.02,0.07,0.01,0\n0.6,0.02,0.07,0.01,0\n"
               "0.9,0.02,0.045,0.01,0\n1.4,0.05,0.045,0.01,0\n1.6,0.05,0.08,0.01,4\n"

@@ -13,6 +13,7 @@
 #include "precompute/blas.hpp"
 #include "precompute/check/check_model.hpp"
 #include "precompute/columns/assemble.hpp"
+#include "precompute/command/output_check.hpp"
 #include "precompute/compress/compress_model.hpp"
 #include "precompute/precompute.hpp"
 #include "precompute/process/signal_cleanup.hpp"
@@ -90,10 +91,7 @@ std::string text(const CompressionSummary& summary) {
 int compress(const CompressOptions& options) {
   const Console console{std::cout, ::isatty(STDOUT_FILENO) != 0};
   set_blas_threads(options.threads);
-  std::error_code ignored;
-  if (std::filesystem::equivalent(options.input, options.output, ignored)) {
-    throw Error(options.output, "is the input itself", "give the output another name");
-  }
+  check_output(options.output, {options.input});
   const std::filesystem::path temporary = fresh_part_name(options.output);
   const SignalCleanup cleanup({.remove = temporary});
   const CompressionSummary summary =
@@ -158,6 +156,11 @@ int compute(const ComputeOptions& options) {
   if (!options.method.empty()) config.response.method = method_from_word(options.method);
   if (!options.storage.empty()) config.response.storage = storage_from_word(options.storage);
   config.threads = options.threads;
+  std::vector<std::filesystem::path> inputs{options.config};
+  if (const auto* mesh = std::get_if<std::filesystem::path>(&config.mesh.source)) {
+    inputs.push_back(*mesh);
+  }
+  check_output(options.output, inputs);
   set_blas_threads(options.threads);
   std::optional<ColumnRange> slice;
   if (!options.columns.empty()) slice = column_range_from_text(options.columns);
@@ -205,6 +208,7 @@ struct MergeOptions {
 int merge(const MergeOptions& options) {
   const Console console{std::cout, ::isatty(STDOUT_FILENO) != 0};
   const std::vector<std::filesystem::path> parts(options.parts.begin(), options.parts.end());
+  check_output(options.output, parts);
   const std::filesystem::path temporary = fresh_part_name(options.output);
   const SignalCleanup cleanup({.remove = temporary});
   const double left = assemble(parts, options.output, temporary, console);

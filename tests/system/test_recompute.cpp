@@ -357,7 +357,7 @@ TEST_CASE("the touched point's place is recomputed from a trace, inertial loadin
           "[slow]") {
   const std::string kind = GENERATE("modal", "dense");
   const Stage stage;
-  stage.write("scene.toml", scene_text("", kind) +
+  stage.write("scene.toml", scene_text(kPoint, kind) +
                                 "angular_velocity = [0.5, 3.0, -0.2]\ninertial_loading = true\n");
   const Trace trace = play(stage);
   const ObjectConfig object = read_scene(TomlTable::parse_text(trace.scene, "scene")).objects.at(0);

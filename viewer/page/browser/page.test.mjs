@@ -68,10 +68,24 @@ test("a press on the object pushes it along the view, and goes on until it ends"
   assert.deepEqual(page.faults, []);
 });
 
+/** The tools that are lit: with the accent as their ground. */
+const lit = (page) =>
+  page.evaluate(() => {
+    const probe = document.body.appendChild(document.createElement("i"));
+    probe.style.background = "var(--accent)";
+    const { backgroundColor: accent } = getComputedStyle(probe);
+    probe.remove();
+    const inputs = [...document.querySelectorAll("input[name=tool]")];
+    for (const span of document.querySelectorAll(".choice span")) span.style.transition = "none";
+    return inputs.filter((input) => getComputedStyle(input.nextElementSibling).backgroundColor === accent).map(({ value }) => value);
+  });
+
 test("Shift, G and the tool take hold", async (context) => {
   const { page, server } = await stage(context);
   for (const key of ["Shift", "g"]) {
+    assert.deepEqual(await lit(page), ["push"]);
     await page.keyboard.down(key);
+    assert.deepEqual(await lit(page), ["grab"], `${key} lights Grab alone`);
     await press(page);
     await until(() => server.stylus.present && server.stylus.grab, `${key} takes hold`);
     await page.keyboard.up(key);
@@ -116,19 +130,23 @@ test("everything can be touched by keys", async (context) => {
   await until(() => server.stylus.grab, "it takes hold");
   await page.keyboard.press("Space");
   await until(() => !server.stylus.present, "it lets go");
+  await page.keyboard.press("g");
+  await page.keyboard.press("Space");
+  await until(() => server.stylus.present && !server.stylus.grab, "it presses again");
   await page.keyboard.press("Escape");
-  assert.equal(await page.locator("#cross").isVisible(), false);
+  assert.equal(await page.locator("#cross").isVisible(), false, "one Esc ends it");
+  await until(() => !server.stylus.present, "it has let go, too");
 });
 
 test("whoever cannot touch is told why, and sends nothing", async (context) => {
   const { page, server } = await stage(context, { query: "?watch=1" });
   assert.deepEqual(said(server, "hello"), [{ type: "hello", looksOn: 1 }]);
-  assert.match(await page.locator("#modes").innerText(), /only looking on/);
+  assert.match(await page.locator("#modes").innerText(), /view only/);
   for (const button of ["#reset", "#pause", "#step", "#record"]) {
     assert.equal(await page.locator(button).isDisabled(), true, button);
   }
   await press(page);
-  await until(async () => /only look on/.test(await page.locator("#notices").innerText()), "it says so");
+  await until(async () => /view only/.test(await page.locator("#notices").innerText()), "it says so");
   await page.mouse.up();
   await page.keyboard.press("r");
   server.flag("looksOn", false);
@@ -154,7 +172,7 @@ test("the run is paused, stepped, reset and recorded by buttons and keys", async
   const { page, server } = await stage(context);
   await page.keyboard.press("p");
   await until(async () => /paused/.test(await page.locator("#modes").innerText()), "it is paused");
-  assert.match(await page.locator("#pause").innerText(), /^Go on/);
+  assert.match(await page.locator("#pause").innerText(), /^Resume/);
   await page.locator("#step").click();
   await page.keyboard.press(".");
   await until(() => asked(server, 4).length === 2, "two steps");
@@ -220,18 +238,74 @@ test("settings go out whole, and come back without a fight", async (context) => 
   await until(async () => (await slider("Gravity").inputValue()) === "500", "there is gravity");
   server.state.objects[0].changeable = 1;
   server.tell({});
-  await until(() => slider("Its own spin bulges it").isDisabled(), "its spin cannot be chosen");
+  await until(() => slider("Centrifugal loading").isDisabled(), "its spin cannot be chosen");
   assert.match(await page.locator("#settings").innerText(), /has no data for it/);
   assert.deepEqual(page.faults, []);
 });
 
-test("notices are shown until they are sent away", async (context) => {
+test("notices go when they are sent away, and by themselves", async (context) => {
   const { page, server } = await stage(context);
   server.tell({ notice: "The disk is full." });
   await until(async () => /disk is full/.test(await page.locator("#notices").innerText()), "it is shown");
   assert.equal(await page.locator("#notices").getAttribute("aria-live"), "polite");
   await page.getByLabel("Dismiss").click();
   assert.equal(await page.locator("#notices").innerText(), "");
+  await page.mouse.move(10, 10);
+  server.tell({ notice: "The disk is still full." });
+  await until(async () => /still full/.test(await page.locator("#notices").innerText()), "it is shown");
+  await until(async () => (await page.locator("#notices").innerText()) === "", "it has gone");
+});
+
+test("what is drawn is counted beside what is received, and rest is not drawn again", async (context) => {
+  const { page } = await stage(context);
+  const rates = async () => {
+    const text = await page.locator("#rate").innerText();
+    return /^(\d+) drawn\/s, (\d+) surfaces\/s$/.exec(text).slice(1).map(Number);
+  };
+  await until(async () => (await rates())[0] === 0 && (await rates())[1] > 3, "surfaces come in, nothing is drawn");
+  await press(page);
+  // three.js counts for itself.
+  const drawn = () => page.evaluate(() => [window.irdm.world.renderer.info.render.frame, performance.now()]);
+  await page.waitForTimeout(1000);
+  const [before, from] = await drawn();
+  await page.evaluate(() => window.irdm.world.move(0.01, 0, 1));
+  for (let i = 0; i < 8; ++i) {
+    await page.keyboard.press("ArrowLeft");
+    await page.waitForTimeout(150);
+  }
+  await page.waitForTimeout(50);
+  const shown = (await rates())[0];
+  const [after, to] = await drawn();
+  const rate = (1000 * (after - before)) / (to - from);
+  assert.ok(shown >= 3 && Math.abs(shown - rate) < 4 + 0.5 * rate, `${shown} shown, ${rate.toFixed(1)} drawn a second`);
+  await page.mouse.up();
+});
+
+test("help is open on the first visit, and not on the next; the wheel's direction is said", async (context) => {
+  const { page } = await stage(context);
+  assert.match(await page.locator("#help").innerText(), /deeper when turned up/);
+  assert.match(await page.locator("#hint").innerText(), /wheel up goes deeper, down comes back/);
+  await page.reload();
+  await frames(page);
+  assert.equal(await page.getByText("What you see.").isVisible(), false);
+});
+
+test("the cursor says what can be touched, and how", async (context) => {
+  const { page, server } = await stage(context);
+  const cursor = () => page.evaluate(() => getComputedStyle(window.irdm.world.canvas).cursor);
+  const { x, y } = await onScreen(page, TOP);
+  await page.mouse.move(x, y);
+  await until(async () => (await cursor()) === "crosshair", "it is over the object");
+  await page.keyboard.down("Shift");
+  assert.equal(await cursor(), "grab");
+  await page.keyboard.up("Shift");
+  await page.mouse.move(20, 240);
+  await until(async () => (await cursor()) === "auto", "it is beside it");
+  server.flag("paused", true);
+  await until(() => page.evaluate(() => window.irdm.state().paused), "it is paused");
+  await page.mouse.move(x, y);
+  await page.waitForTimeout(300);
+  assert.equal(await cursor(), "auto", "paused, nothing can be touched");
 });
 
 test("health shows the bridges' times, the view its compliance", async (context) => {

@@ -16,7 +16,7 @@ export class ForcePanel {
   private asked = false;
 
   constructor() {
-    element("hold").onclick = () => this.toggleHold();
+    element("freeze").onclick = () => this.toggleFreeze();
     element("csv").onclick = () => download("irdm-force.csv", new Blob([this.log.csv()], { type: "text/csv" }));
     element("png").onclick = async () => {
       const picture = await this.plot.picture();
@@ -24,7 +24,7 @@ export class ForcePanel {
     };
     // A zoom into curves that run away is none.
     element("plot").addEventListener("pointerdown", () => {
-      if (!this.plot.paused) this.toggleHold();
+      if (!this.plot.frozen) this.toggleFreeze();
     });
   }
 
@@ -53,9 +53,9 @@ export class ForcePanel {
     this.styluses.chooseLast();
   }
 
-  toggleHold(): void {
-    this.plot.paused = !this.plot.paused;
-    element("hold").setAttribute("aria-pressed", String(this.plot.paused));
+  toggleFreeze(): void {
+    this.plot.frozen = !this.plot.frozen;
+    element("freeze").setAttribute("aria-pressed", String(this.plot.frozen));
     this.askToDraw();
   }
 

@@ -5,9 +5,9 @@ import type { Theme } from "./theme";
 const WINDOW_SECONDS = 5;
 const NAMES = ["x", "y", "z", "|F|"];
 
-/** Curves of the last seconds; paused, they stay and can be zoomed by dragging. */
+/** Curves of the last seconds; frozen, they stay and can be zoomed by dragging. */
 export class ForcePlot {
-  paused = false;
+  frozen = false;
   private plot: uPlot | null = null;
   private data: uPlot.AlignedData = [[], [], [], [], []];
 
@@ -20,7 +20,7 @@ export class ForcePlot {
   }
 
   show(log: ForceLog, stylus: number, now: number): void {
-    if (this.paused) return;
+    if (this.frozen) return;
     this.data = log.since(now - WINDOW_SECONDS, stylus) as uPlot.AlignedData;
     this.plot?.setData(this.data, false);
     // The legend says the newest, unless it is asked for another time.

@@ -17,7 +17,9 @@ import { currentTheme, onThemeChange } from "./theme";
 import { Touch } from "./touch";
 import { TouchKeys } from "./touch_keys";
 import { TouchPointer } from "./touch_pointer";
+import { ToolChoice } from "./tool_choice";
 import { ViewControls } from "./view_controls";
+import { remember, remembered } from "./visits";
 import { World } from "./world";
 
 function tryWorld(): World | null {
@@ -43,6 +45,7 @@ const view = new ViewControls(world);
 const forces = new ForcePanel();
 const health = new HealthPanel(element("health"), element("counts"));
 const status = new StatusLine();
+world?.onDraw.push(() => status.drawn());
 const notices = new Notices(element("notices"));
 const run = new RunControls(ask);
 const playback = new PlaybackBar(ask);
@@ -70,10 +73,10 @@ function makeHand(world: World): { touch: Touch; felt: FeltForce; keys: TouchKey
       felt.hide();
     },
   });
-  const grabs = (): boolean => document.querySelector<HTMLInputElement>("input[name=tool][value=grab]")!.checked;
+  const tool = new ToolChoice();
   const felt = new FeltForce(element("felt"), world, touch);
-  const pointer = new TouchPointer(world.canvas, touch, world.controls, grabs);
-  const keys = new TouchKeys(world.canvas, element("cross"), touch, element<HTMLButtonElement>("touch-keys"), grabs);
+  const pointer = new TouchPointer(world.canvas, touch, world.controls, tool);
+  const keys = new TouchKeys(world.canvas, element("cross"), touch, element<HTMLButtonElement>("touch-keys"), tool);
   return { touch, felt, keys };
 }
 
@@ -137,11 +140,15 @@ function showLink(link: LinkState, detail: string): void {
 
 // Controls
 
+const help = element<HTMLDetailsElement>("help");
+help.open = remembered("visited") === null;
+remember("visited", "yes");
+
 async function share(): Promise<void> {
   const link = onlookerLink(location.href);
   if (!(await copy(link))) notices.tell(link);
-  else if (token === "") notices.hint("Copied: a link by which one looks on and touches nothing.");
-  else notices.tell("Copied. It has your token in it: whoever takes watch=1 out can touch, too. The scene can have a token for onlookers.");
+  else if (token === "") notices.hint("Copied: a view-only link.");
+  else notices.tell("Copied. It has your token in it: whoever takes watch=1 out can touch, too. The scene can have a token for view-only links (viewer.onlooker_token).");
 }
 element("share").onclick = () => void share();
 
@@ -157,7 +164,11 @@ listenForShortcuts(
     c: () => view.nextColour(),
     "[": () => view.exaggerate(false),
     "]": () => view.exaggerate(true),
-    " ": () => forces.toggleHold(),
+    " ": () => forces.toggleFreeze(),
+    escape: () => {
+      hand?.touch.release();
+      hand?.keys.set(false);
+    },
     t: () => {
       if (!element("tools").hidden) hand?.keys.set(!hand.keys.on);
     },

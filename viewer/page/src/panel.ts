@@ -21,7 +21,7 @@ export class StylusList {
       button.type = "button";
       const [state, force] = [make("span", "absent", "state"), make("span", "", "force")];
       const isViewers = scene.viewersStylus && s === scene.styluses.length - 1;
-      button.append(make("span", isViewers ? "Viewers’ hand" : `Stylus ${s + 1}`), state, force);
+      button.append(make("span", isViewers ? "Mouse stylus" : `Stylus ${s + 1}`), state, force);
       button.onclick = () => this.choose(s);
       return { button, state, force };
     });

@@ -579,7 +579,7 @@ export function encodeHello(token: string, onlyLooksOn = false): ArrayBuffer {
 export const enum Command {
   Reset = 1,
   Pause = 2,
-  GoOn = 3,
+  Resume = 3,
   Step = 4,
   BeginRecording = 5,
   EndRecording = 6,

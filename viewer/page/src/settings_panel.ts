@@ -29,7 +29,7 @@ const SLIDERS: Record<NumberKey, SliderKind> = {
 
 const FIXED: Record<keyof Changeable, string> = {
   dampingFactor: "The damping of the material is fixed in this model.",
-  inertia: "This model has no data for it, or does not spin.",
+  inertia: "This model has no data for centrifugal loading.",
 };
 
 class Slider {
@@ -143,7 +143,7 @@ export class SettingsPanel {
     this.inertia.type = "checkbox";
     this.inertia.id = "set-inertia";
     this.inertia.onchange = () => this.change("inertia", this.inertia.checked);
-    label.append(this.inertia, make("span", "Its own spin bulges it"));
+    label.append(this.inertia, make("span", "Centrifugal loading"));
     row.append(label);
     return row;
   }
@@ -193,7 +193,7 @@ export class SettingsPanel {
 
   private whyNot(): string | null {
     if (this.state === null || this.draft === null) return "There is no connection to the server.";
-    if (this.state.onlyLooksOn) return "This viewer only looks on.";
+    if (this.state.onlyLooksOn) return "This link is view only.";
     if (this.state.playback !== null) return "A recorded run is shown, as it was.";
     return null;
   }

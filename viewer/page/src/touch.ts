@@ -19,11 +19,11 @@ export interface TouchListener {
 /** Why this viewer cannot touch now, for a person; null: it can. Pure. */
 export function refusal(scene: Scene | null, state: State | null): string | null {
   if (scene === null || state === null) return "There is no connection to the server.";
-  if (state.onlyLooksOn) return "You only look on: this link does not let you touch.";
+  if (state.onlyLooksOn) return "This link is view only: it does not let you touch.";
   if (state.playback !== null) return "A recorded run is shown: it can be seen, not touched.";
   if (!scene.viewersStylus) return "This run has no stylus for viewers: it can be seen, not touched.";
   if (!state.stylusFree && !state.stylusMine) return "Another viewer has the stylus. Wait until it is free.";
-  if (state.paused && !scene.lockstep) return "The run is paused: let it go on to touch.";
+  if (state.paused && !scene.lockstep) return "The run is paused: resume to touch.";
   return null;
 }
 

@@ -29,7 +29,7 @@ export class ViewControls {
     element("fit").onclick = () => world?.fit();
     document.querySelector<HTMLElement>("#legend .ramp")!.style.background = cssRamp(VIRIDIS);
     document.querySelector<HTMLElement>("#pressure .ramp")!.style.background = cssRamp(PLASMA);
-    if (world !== null) world.onDraw = () => this.showScale();
+    world?.onDraw.push(() => this.showScale());
     this.apply();
   }
 

@@ -1,6 +1,7 @@
 import * as THREE from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { ContactMarks } from "./contact_marks";
+import { looksTheSame } from "./frame_changes";
 import { Contact, type Frame, type Scene } from "./protocol";
 import { SceneryBody } from "./scenery_body";
 import { SoftObject, type ColourRange, type Colouring } from "./soft_object";
@@ -29,7 +30,8 @@ export class World {
   colours: ColourRange = { low: 0, high: 0 };
   /** a hand is on the objects: the camera stays where it is */
   held = false;
-  onDraw: () => void = () => {};
+  /** called after each drawing */
+  readonly onDraw: (() => void)[] = [];
 
   private readonly renderer: THREE.WebGLRenderer;
   private readonly three = new THREE.Scene();
@@ -55,6 +57,7 @@ export class World {
     this.renderer.toneMapping = THREE.NeutralToneMapping;
     this.three.add(this.surroundings.group, this.contacts.group);
     this.controls = new OrbitControls(this.camera, canvas);
+    canvas.style.removeProperty("cursor"); // which OrbitControls sets over the style sheet's
     this.controls.addEventListener("change", () => this.invalidate());
     canvas.addEventListener("webglcontextrestored", () => this.invalidate());
     new ResizeObserver(() => this.resize()).observe(canvas);
@@ -83,16 +86,20 @@ export class World {
   private fitPending = false;
 
   follow(frame: Frame): void {
+    const rests = this.frame !== null && looksTheSame(this.frame, frame);
     this.frame = frame;
     frame.objects.forEach((state, i) => this.objects[i]!.follow(state, frame.time, this.look.colouring));
     frame.styluses.forEach((state, s) => this.styluses[s]!.follow(state));
-    this.contacts.follow(frame.contacts);
+    if (!rests) this.contacts.follow(frame.contacts);
     this.markStyluses(frame);
-    this.followColours();
+    if (!rests || this.colours.high === 0) this.followColours();
     if (this.fitPending) this.fit();
     else if (this.look.follow && !this.held) this.goAlong(frame);
-    this.invalidate();
+    // Once more when it comes to rest: speeds are then zero.
+    if (!rests || !this.rested) this.invalidate();
+    this.rested = rests;
   }
+  private rested = false;
 
   private markStyluses(frame: Frame): void {
     this.objects.forEach((object, i) => {
@@ -233,7 +240,9 @@ export class World {
   /** Where this viewer's hand wants the tip of the viewers' stylus; null: nowhere. [m], W */
   showHand(asked: THREE.Vector3 | null): void {
     const stylus = this.styluses.at(-1);
-    if (stylus !== undefined) stylus.asked = asked;
+    if (stylus === undefined) return;
+    if (asked === null || stylus.asked?.equals(asked) !== true) this.rested = false;
+    stylus.asked = asked;
   }
 
   private bounds(): THREE.Sphere {
@@ -272,7 +281,7 @@ export class World {
     const { exaggeration, colouring } = this.look;
     for (const object of this.objects) object.draw(exaggeration, colouring, this.colours);
     this.renderer.render(this.three, this.camera);
-    this.onDraw();
+    for (const call of this.onDraw) call();
   }
 }
 

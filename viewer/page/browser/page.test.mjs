@@ -2,6 +2,7 @@
 // PAGE names the folder of the built page, CHROMIUM the browser.
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { accessibilityFaults, contrastsOverPicture } from "./accessibility.mjs";
 import { frames, newContext, onScreen, until, visit } from "./browser.mjs";
 import { FakeServer } from "./fake_server.mjs";
 
@@ -394,6 +395,27 @@ test("regions of which a face has no such node are refused, and the page says so
   await visit(page, server.address);
   await until(async () => /has a node that is not there/.test(await page.locator("#link").innerText()), "it says so");
   assert.equal(await page.evaluate(() => window.irdm.scene()), null);
+});
+
+test("axe-core finds nothing, in light and in dark, live and recorded", async (context) => {
+  const changes = { scene: { radii: [0, 0.006, 0.006], scenery: SCENERY }, inclusions: {}, state: { recordings: [{ number: 0, name: "a run" }] } };
+  const { page, server } = await stage(context, changes);
+  await page.evaluate(() => document.querySelectorAll("details").forEach((details) => (details.open = true)));
+  await page.locator("#colour").selectOption("modulus");
+  server.contacts = [PUSHED];
+  const overPicture = ["h1", "#link span", "#hint .fine", "#touch-keys", ".choice span", "#legend figcaption", "#legend-max", "#materials span", "#scale span"];
+  for (const colorScheme of ["light", "dark"]) {
+    await page.emulateMedia({ colorScheme, reducedMotion: "reduce" });
+    server.tell({ notice: `A notice in ${colorScheme}.` });
+    assert.deepEqual(await accessibilityFaults(page), [], colorScheme);
+    for (const [selector, contrast] of await contrastsOverPicture(page, overPicture)) {
+      assert.ok(contrast >= 4.5, `${selector} in ${colorScheme}: ${contrast.toFixed(2)}`);
+    }
+  }
+  await page.getByLabel("Show the recording").click();
+  server.flag("playing", true);
+  await until(() => page.locator("#playback").isVisible(), "the bar is there");
+  assert.deepEqual(await accessibilityFaults(page), []);
 });
 
 test("at 360 pixels nothing sticks out", async (context) => {

@@ -94,7 +94,7 @@ export class RunControls {
         const play = make("button", number === shown ? "Shown" : "Show") as HTMLButtonElement;
         play.type = "button";
         play.disabled = !may || number === shown;
-        play.setAttribute("aria-label", `Show the recording ${name}`);
+        play.setAttribute("aria-label", number === shown ? `Shown: the recording ${name}` : `Show the recording ${name}`);
         play.onclick = () => this.ask(Command.ShowRecording, number);
         row.append(make("span", name), play);
         return row;

@@ -240,7 +240,7 @@ test("settings go out whole, and come back without a fight", async (context) => 
   server.state.objects[0].changeable = 1;
   server.tell({});
   await until(() => slider("Centrifugal loading").isDisabled(), "its spin cannot be chosen");
-  assert.match(await page.locator("#settings").innerText(), /has no data for it/);
+  assert.match(await page.locator("#settings").innerText(), /no data for centrifugal loading/);
   assert.deepEqual(page.faults, []);
 });
 
@@ -329,6 +329,7 @@ test("bodies of one material have no colours of the material, and the page says 
   assert.equal(await page.locator("#materials").isVisible(), false);
 });
 
+const different = (a, b) => Math.max(...a.map((part, i) => Math.abs(part - b[i]))) > 30;
 const saturated = ([red, green, blue]) => Math.max(red, green, blue) - Math.min(red, green, blue) > 60;
 const MIDDLE = [0.13, 0, 0]; // of the second object
 const FRONT = [0.12, 0.03, 0.05]; // on its surface, before nothing
@@ -487,15 +488,42 @@ test("contacts between bodies are drawn with a legend, and can be left out", asy
   await until(() => page.locator("#pressure").isVisible(), "there is a legend");
   assert.match(await page.locator("#pressure").innerText(), /Contact pressure\s+0\s*2\.50 kPa/);
 
-  const box = page.getByLabel("Contact forces");
+  const box = page.getByLabel("Forces", { exact: true });
   assert.equal(await box.isChecked(), true);
   await box.focus();
   await page.keyboard.press("Space");
   assert.equal(await box.isChecked(), false);
-  assert.equal(await page.locator("#pressure").isVisible(), false);
+  assert.equal(await page.locator("#force-scale").isVisible(), false);
   assert.deepEqual(await pixel(page, shaft), before);
   await box.check();
   assert.equal(inked(await pixel(page, shaft)), true);
+
+  // The patch: in the colour of its pressure, in another one when the range is set, plain, not at all.
+  const patch = [0.008, -0.05, 0.035];
+  const coloured = await pixel(page, patch);
+  await page.getByLabel("Pressure up to").fill("25");
+  await until(async () => /25\.0 kPa/.test(await page.locator("#pressure").innerText()), "the legend has the range");
+  const lower = await pixel(page, patch);
+  assert.notDeepEqual(lower, coloured, "a tenth of the range has another colour");
+  await page.getByLabel("Pressure", { exact: true }).uncheck();
+  assert.equal(await page.locator("#pressure").isVisible(), false);
+  const plain = await pixel(page, patch);
+  assert.ok(plain[0] < plain[2] && plain[1] > 60, `the patch is plain: ${plain}`);
+  await page.getByLabel("Contacts", { exact: true }).uncheck();
+  assert.ok(different(await pixel(page, patch), plain), "it is not drawn");
+
+  // Longer arrows, with their scale.
+  const above = [0, 0.02, 0.03];
+  const short = await page.locator("#force-scale i").evaluate((bar) => bar.clientWidth);
+  const newtons = Number.parseFloat(await page.locator("#force-scale").innerText());
+  assert.equal(inked(await pixel(page, above)), false);
+  await page.getByLabel("Arrow length").fill("1");
+  assert.equal(inked(await pixel(page, above)), true, "twice as long it comes here");
+  await until(async () => {
+    const width = await page.locator("#force-scale i").evaluate((bar) => bar.clientWidth);
+    const now = Number.parseFloat(await page.locator("#force-scale").innerText());
+    return Math.abs(width / now / (short / newtons) - 2) < 0.2;
+  }, "the scale says so");
   server.contacts = [];
   await until(() => page.evaluate(() => window.irdm.world.contacts.shafts.count === 0), "they end");
   assert.deepEqual(page.faults, []);

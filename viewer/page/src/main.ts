@@ -1,5 +1,6 @@
 import "uplot/dist/uPlot.min.css";
 import "./style.css";
+import { rememberedView, rememberView } from "./camera_memory";
 import { Connection, type LinkState } from "./connection";
 import { element } from "./elements";
 import { FeltForce } from "./felt_force";
@@ -45,7 +46,10 @@ const view = new ViewControls(world);
 const forces = new ForcePanel();
 const health = new HealthPanel(element("health"), element("counts"));
 const status = new StatusLine();
-world?.onDraw.push(() => status.drawn());
+if (world !== null) {
+  world.onDraw.push(() => status.drawn());
+  world.onCamera = (view) => rememberView(scene!, view);
+}
 const notices = new Notices(element("notices"));
 const run = new RunControls(ask);
 const playback = new PlaybackBar(ask);
@@ -86,7 +90,7 @@ function showScene(next: Scene): void {
   scene = next;
   state = null;
   newest = null;
-  world?.show(next);
+  world?.show(next, rememberedView(next));
   view.show(next);
   forces.show(next);
   playback.show(next);
@@ -103,6 +107,7 @@ function showState(next: State): void {
   status.showState(scene!, next);
   run.showState(next);
   playback.showState(next);
+  view.showState(next);
   settings.showState(next);
   forces.showState(next);
   hand?.touch.showState(next);
@@ -160,6 +165,9 @@ listenForShortcuts(
     p: () => run.togglePause(),
     ".": () => run.step(),
     f: () => world?.fit(),
+    "1": () => world?.fit("front"),
+    "2": () => world?.fit("side"),
+    "3": () => world?.fit("top"),
     w: () => view.toggleRigid(),
     c: () => view.nextColour(),
     "[": () => view.exaggerate(false),

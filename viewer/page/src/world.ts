@@ -1,8 +1,12 @@
 import * as THREE from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import { ArrowScale } from "./arrow_scale";
+import { PRESETS, type CameraView, type Preset } from "./camera_memory";
+import { AUTOMATIC, rangeAsSet, type SetRange } from "./colour_range";
 import { ContactMarks } from "./contact_marks";
 import { looksTheSame } from "./frame_changes";
-import { Contact, type Frame, type Scene } from "./protocol";
+import { ALL_OVERLAYS, type Overlays } from "./overlays";
+import { Contact, type BodyContact, type Frame, type Scene } from "./protocol";
 import { SceneryBody } from "./scenery_body";
 import { SoftObject, type ColourRange, type Colouring } from "./soft_object";
 import { Stylus } from "./stylus";
@@ -10,14 +14,14 @@ import { Surroundings } from "./surroundings";
 import type { Theme } from "./theme";
 
 const FIELD_OF_VIEW = 32;
-const VIEW_FROM = new THREE.Vector3(0.55, 0.42, 1).normalize();
 
 export interface Look {
   exaggeration: number;
   colouring: Colouring;
+  /** of the colours, not of Young's modulus */
+  range: SetRange;
   rigid: boolean;
-  /** forces and pressures of contacts between bodies are drawn */
-  contacts: boolean;
+  overlays: Overlays;
   /** the camera goes along with objects that leave the middle of the picture */
   follow: boolean;
 }
@@ -26,12 +30,14 @@ export interface Look {
 export class World {
   readonly camera = new THREE.PerspectiveCamera(FIELD_OF_VIEW, 1, 0.005, 50);
   objects: SoftObject[] = [];
-  look: Look = { exaggeration: 1, colouring: "none", rigid: false, contacts: true, follow: true };
+  look: Look = { exaggeration: 1, colouring: "none", range: AUTOMATIC, rigid: false, overlays: ALL_OVERLAYS, follow: true };
   colours: ColourRange = { low: 0, high: 0 };
   /** a hand is on the objects: the camera stays where it is */
   held = false;
   /** called after each drawing */
   readonly onDraw: (() => void)[] = [];
+  /** called when a person has moved the camera */
+  onCamera: (view: CameraView) => void = () => {};
 
   private readonly renderer: THREE.WebGLRenderer;
   private readonly three = new THREE.Scene();
@@ -39,6 +45,7 @@ export class World {
   private readonly surroundings = new Surroundings();
   readonly contacts = new ContactMarks();
   private scenery: SceneryBody[] = [];
+  private arrows = new ArrowScale();
   private styluses: Stylus[] = [];
   private scene: Scene | null = null;
   private frame: Frame | null = null;
@@ -57,6 +64,7 @@ export class World {
     this.renderer.toneMapping = THREE.NeutralToneMapping;
     this.three.add(this.surroundings.group, this.contacts.group);
     this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.addEventListener("end", () => this.tellCamera());
     canvas.style.removeProperty("cursor"); // which OrbitControls sets over the style sheet's
     this.controls.addEventListener("change", () => this.invalidate());
     canvas.addEventListener("webglcontextrestored", () => this.invalidate());
@@ -64,8 +72,11 @@ export class World {
     this.resize();
   }
 
-  /** Replaces everything that is shown. The camera stays where it is when the scene is one of before. */
-  show(scene: Scene): void {
+  /**
+   * Replaces everything that is shown. The camera stays where it is when the scene is one of before.
+   * @param view to begin with; null: everything
+   */
+  show(scene: Scene, view: CameraView | null = null): void {
     const first = this.scene === null;
     for (const thing of [...this.objects, ...this.styluses, ...this.scenery]) {
       this.three.remove(thing.group);
@@ -74,6 +85,7 @@ export class World {
     this.scene = scene;
     this.frame = null;
     this.colours = { low: 0, high: 0 };
+    this.largestOfLate = 0;
     this.objects = scene.objects.map((object) => new SoftObject(object));
     this.styluses = scene.styluses.map((stylus) => new Stylus(stylus));
     this.scenery = scene.scenery.map((body) => new SceneryBody(body));
@@ -81,19 +93,19 @@ export class World {
     for (const thing of [...this.objects, ...this.styluses, ...this.scenery]) this.three.add(thing.group);
     this.applyTheme(this.theme);
     this.applyLook();
-    if (first) this.fitPending = true;
+    this.arrows = new ArrowScale(this.bounds().radius);
+    if (!first) return;
+    this.fitPending = true;
+    this.firstView = view;
   }
   private fitPending = false;
+  private firstView: CameraView | null = null;
 
   follow(frame: Frame): void {
     const rests = this.frame !== null && looksTheSame(this.frame, frame);
     this.frame = frame;
-    frame.objects.forEach((state, i) => this.objects[i]!.follow(state, frame.time, this.look.colouring));
-    frame.styluses.forEach((state, s) => this.styluses[s]!.follow(state));
-    if (!rests) this.contacts.follow(frame.contacts);
-    this.markStyluses(frame);
-    if (!rests || this.colours.high === 0) this.followColours();
-    if (this.fitPending) this.fit();
+    this.showFrame(frame, rests);
+    if (this.fitPending) this.begin();
     else if (this.look.follow && !this.held) this.goAlong(frame);
     // Once more when it comes to rest: speeds are then zero.
     if (!rests || !this.rested) this.invalidate();
@@ -101,18 +113,48 @@ export class World {
   }
   private rested = false;
 
+  /** @param rests it looks like the frame before: what changes by and by stays as it is */
+  private showFrame(frame: Frame, rests: boolean): void {
+    frame.objects.forEach((state, i) => this.objects[i]!.follow(state, frame.time, this.look.colouring));
+    this.markStyluses(frame);
+    if (!rests) this.arrows.follow(largestForce(frame), frame.time);
+    const { overlays } = this.look;
+    frame.styluses.forEach((state, s) => {
+      const touched = state.contact === Contact.Free ? undefined : this.objects[state.object];
+      const shift = touched?.shiftOfStylus(s, state.middle) ?? new THREE.Vector3();
+      this.styluses[s]!.follow(state, overlays, this.metresPerNewton, shift);
+    });
+    if (rests) return;
+    this.contacts.follow(frame.contacts.map((contact) => this.shifted(contact)), overlays, this.metresPerNewton);
+    this.followColours();
+  }
+
+  /** Where the object that it acts on is drawn. */
+  private shifted(contact: BodyContact): BodyContact {
+    const shift = this.objects[contact.object]!.shiftAt(contact.position);
+    return { ...contact, position: shift.add(new THREE.Vector3(...contact.position)).toArray() };
+  }
+
+  /** Of the arrows as they are drawn. */
+  get metresPerNewton(): number {
+    return this.arrows.metresPerNewton * this.look.overlays.arrowLength;
+  }
+
   private markStyluses(frame: Frame): void {
     this.objects.forEach((object, i) => {
       const touching = frame.styluses.map((state, s) => ({ state, radius: this.scene!.styluses[s]!.radius }));
       const here = touching.filter(({ state }) => state.present && state.contact !== Contact.Free && state.object === i);
-      object.marks.show(here.map(({ state, radius }) => ({ middle: state.middle, radius })));
+      const patches = here.map(({ state, radius }) => ({ middle: state.middle, radius }));
+      object.marks.show(this.look.overlays.contacts ? patches : []);
+      object.showHeld(patches.filter((_, p) => here[p]!.state.contact === Contact.Held && !Number.isNaN(patches[p]!.middle[0])));
     });
   }
 
   /** The ramp's end follows upwards at once and downwards slowly, so that colours can be compared. */
   private followColours(): void {
     if (this.look.colouring === "compliance") {
-      this.colours = rangeOfAll(this.objects.flatMap((object) => object.complianceRange ?? []));
+      const range = rangeOfAll(this.objects.flatMap((object) => object.complianceRange ?? []));
+      this.colours = rangeAsSet(range, this.look.range);
       return;
     }
     if (this.look.colouring === "modulus") {
@@ -120,8 +162,11 @@ export class World {
       return;
     }
     const largest = Math.max(...this.objects.map((object) => object.largest));
-    this.colours = { low: 0, high: Math.max(largest, this.colours.high * 0.995) };
+    this.largestOfLate = Math.max(largest, this.largestOfLate * 0.995);
+    this.colours = rangeAsSet({ low: 0, high: this.largestOfLate }, this.look.range);
   }
+
+  private largestOfLate = 0;
 
   /** Of all objects that are soft [Pa]. */
   get modulusRange(): ColourRange {
@@ -147,9 +192,10 @@ export class World {
   applyLook(): void {
     const inside = this.look.colouring === "modulus" ? this.modulusRange : null;
     for (const object of this.objects) object.showThrough(this.look.rigid, inside);
-    this.contacts.group.visible = this.look.contacts;
+    for (const object of this.objects) object.drawn.exaggeration = this.look.exaggeration;
     this.colours = { low: 0, high: 0 };
-    if (this.frame !== null) this.follow(this.frame);
+    this.largestOfLate = 0;
+    if (this.frame !== null) this.showFrame(this.frame, false);
     this.invalidate();
   }
 
@@ -162,16 +208,33 @@ export class World {
     this.invalidate();
   }
 
-  /** Everything in the picture with room to move, seen from the front, right and above. */
-  fit(): void {
-    if (this.scene === null) return;
+  private begin(): void {
     this.fitPending = false;
+    this.place("fit");
+    if (this.firstView === null) return;
+    this.controls.target.set(...this.firstView.target);
+    this.camera.position.set(...this.firstView.position);
+    this.controls.update();
+  }
+
+  /** Everything in the picture with room to move; "fit": seen from the front, right and above. */
+  fit(from: Preset = "fit"): void {
+    if (this.scene === null || this.fitPending) return;
+    this.place(from);
+    this.tellCamera();
+  }
+
+  private tellCamera(): void {
+    this.onCamera({ position: this.camera.position.toArray(), target: this.controls.target.toArray() });
+  }
+
+  private place(from: Preset): void {
     const { center, radius } = this.bounds();
     this.radius = radius;
     const narrow = Math.min(1, this.camera.aspect);
     const distance = (1.6 * radius) / Math.sin((FIELD_OF_VIEW * Math.PI) / 360) / narrow;
     this.controls.target.copy(center);
-    this.camera.position.copy(center).addScaledVector(VIEW_FROM, distance);
+    this.camera.position.copy(center).addScaledVector(new THREE.Vector3(...PRESETS[from]).normalize(), distance);
     this.camera.near = distance / 100;
     this.camera.far = distance * 20;
     this.camera.updateProjectionMatrix();
@@ -199,6 +262,7 @@ export class World {
     way.radius = Math.min(Math.max(way.radius / zoom, this.controls.minDistance), this.controls.maxDistance);
     this.camera.position.copy(this.controls.target).add(arm.setFromSpherical(way.makeSafe()));
     this.controls.update();
+    this.tellCamera();
     this.invalidate();
   }
 
@@ -235,6 +299,11 @@ export class World {
     this.camera.updateMatrixWorld();
     const { x, y } = point.clone().project(this.camera);
     return { x: ((x + 1) / 2) * clientWidth, y: ((1 - y) / 2) * clientHeight };
+  }
+
+  /** How far the viewers' stylus is drawn from its true place [m], W. */
+  shiftOfHand(): THREE.Vector3 {
+    return this.styluses.at(-1)?.group.position ?? new THREE.Vector3();
   }
 
   /** Where this viewer's hand wants the tip of the viewers' stylus; null: nowhere. [m], W */
@@ -278,11 +347,16 @@ export class World {
   }
 
   drawNow(): void {
-    const { exaggeration, colouring } = this.look;
-    for (const object of this.objects) object.draw(exaggeration, colouring, this.colours);
+    for (const object of this.objects) object.draw(this.look.colouring, this.colours);
     this.renderer.render(this.three, this.camera);
     for (const call of this.onDraw) call();
   }
+}
+
+/** Of what has an arrow [N]. */
+function largestForce({ styluses, contacts }: Frame): number {
+  const forces = [...styluses.filter(({ present }) => present), ...contacts].map(({ force }) => Math.hypot(...force));
+  return Math.max(0, ...forces);
 }
 
 function rangeOfAll(ranges: ColourRange[]): ColourRange {

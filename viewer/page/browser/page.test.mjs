@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { accessibilityFaults, contrastsOverPicture } from "./accessibility.mjs";
 import { frames, newContext, onScreen, until, visit } from "./browser.mjs";
-import { FakeServer } from "./fake_server.mjs";
+import { FakeServer, loadMessages } from "./fake_server.mjs";
 
 const SMALL = { viewport: { width: 720, height: 420 }, deviceScaleFactor: 0.5 };
 const TOP = [0, 0.05, 0]; // of the cube, B
@@ -501,7 +501,7 @@ test("contacts between bodies are drawn with a legend, and can be left out", asy
   // The patch: in the colour of its pressure, in another one when the range is set, plain, not at all.
   const patch = [0.008, -0.05, 0.035];
   const coloured = await pixel(page, patch);
-  await page.getByLabel("Pressure up to").fill("25");
+  await page.getByLabel("Pressure max").fill("25");
   await until(async () => /25\.0 kPa/.test(await page.locator("#pressure").innerText()), "the legend has the range");
   const lower = await pixel(page, patch);
   assert.notDeepEqual(lower, coloured, "a tenth of the range has another colour");
@@ -527,4 +527,188 @@ test("contacts between bodies are drawn with a legend, and can be left out", asy
   server.contacts = [];
   await until(() => page.evaluate(() => window.irdm.world.contacts.shafts.count === 0), "they end");
   assert.deepEqual(page.faults, []);
+});
+
+const LARGE = { viewport: { width: 1000, height: 700 }, deviceScaleFactor: 1 };
+/** In the colour of a mark, not of the object. */
+const marked = ([red, green, blue, alpha]) => alpha === 255 && Math.max(red, green, blue) - Math.min(red, green, blue) > 36;
+
+test("arrows adapt to the forces, and their scale says how long they are", async (context) => {
+  const { page, server } = await stage(context, { options: LARGE, scene: { largestForce: 0 } });
+  const scale = async () => {
+    const width = await page.locator("#force-scale i").evaluate((bar) => bar.getBoundingClientRect().width);
+    return width / Number.parseFloat(await page.locator("#force-scale").innerText());
+  };
+  assert.match(await page.locator("#force-scale").innerText(), /^[0-9.]+ N$/);
+  const before = await scale();
+  server.stiffness = 5000; // some 40 N
+  await press(page);
+  await until(async () => (await scale()) < before / 5, "the arrows are shorter, and the scale says so");
+  const force = await page.evaluate(() => Math.hypot(...window.irdm.frame().styluses.at(-1).force));
+  const [low, high] = [await onScreen(page, [0, -0.05, 0]), await onScreen(page, [0, 0.05, 0])];
+  const pixels = force * (await scale());
+  assert.ok(pixels < 1.2 * (low.y - high.y), `${force.toFixed(1)} N have an arrow of ${pixels.toFixed(0)} pixels`);
+  assert.ok(pixels > 20);
+  await page.mouse.up();
+});
+
+test("with exaggeration the stylus stays on the surface as it is drawn", async (context) => {
+  const { page, server } = await stage(context, { options: LARGE });
+  await page.getByLabel("Forces", { exact: true }).uncheck(); // the arrow would cross the places that are looked at
+  await press(page);
+  await page.mouse.wheel(0, -1200);
+  await until(() => page.evaluate(() => window.irdm.frame().styluses.at(-1).force[1] > 1.5), "it presses");
+  await page.waitForTimeout(500);
+  const proxy = server.stylus.tip.map((part, i) => (i === 1 ? 0.05 - 0.5 * (0.05 - part) : part));
+  const down = 0.05 - proxy[1]; // of the surface there
+  assert.ok(down > 0.002);
+  assert.equal(marked(await pixel(page, proxy)), true, "the proxy is on the surface");
+  await page.locator("#exaggeration").fill("4");
+  const drawn = [proxy[0], 0.05 - 4 * down, proxy[2]];
+  assert.equal(marked(await pixel(page, drawn)), true, "it has moved with the surface");
+  await page.screenshot({ path: "/tmp/shot24.png" });
+  assert.equal(marked(await pixel(page, proxy)), false, "it is not where the surface would be");
+  await page.mouse.up();
+});
+
+test("a grab pulls out a patch and no spike", async (context) => {
+  const { page, server } = await stage(context, { options: LARGE });
+  server.dent = { width: 0.008, out: 0.032 };
+  for (const label of ["Contacts", "Forces"]) await page.getByLabel(label, { exact: true }).uncheck();
+  await page.keyboard.down("Shift");
+  await press(page);
+  await until(() => page.evaluate(() => window.irdm.frame().styluses.at(-1).contact === 2), "it holds");
+  await until(() => page.evaluate(() => Math.max(...window.irdm.world.objects[0].displacement) > 0.02), "a node is far out");
+  await page.keyboard.press("1"); // from the front
+  await page.waitForTimeout(300);
+  assert.equal((await pixel(page, [0, 0.075, 0]))[3], 0, "there is no spike");
+  assert.equal((await pixel(page, [0, 0.0575, 0]))[3], 255, "the patch is raised");
+  assert.equal((await pixel(page, [0.04, 0.0575, 0]))[3], 0, "and nothing else");
+  await page.mouse.up();
+  await page.keyboard.up("Shift");
+});
+
+test("an edge that ends in the middle of a surface is not seen", async (context) => {
+  const { cube } = await loadMessages();
+  const tent = cube(0.1, 12);
+  const apex = tent.rest.findIndex((part, i) => i % 3 === 0 && part === 0 && tent.rest[i + 1] === 0 && tent.rest[i + 2] === 0.05);
+  tent.rest[apex + 2] += 0.0045;
+  const { page } = await stage(context, { options: LARGE, scene: { objects: [tent] } });
+  await page.keyboard.press("1");
+  // Across a ridge of a low tent on the front, beside its top: no step from one triangle to the next.
+  const cell = 0.1 / 12;
+  const row = [];
+  for (let i = -4; i <= 4; ++i) row.push((await pixel(page, [0.3 * cell, 0.0001 * i * 4, 0.05 + 0.7 * 0.0045]))[0]);
+  const steps = row.slice(1).map((value, i) => Math.abs(value - row[i]));
+  assert.ok(Math.max(...steps) < 8, `steps of ${steps}`);
+  // The cube's own edges stay.
+  await page.keyboard.press("f");
+  const [front, right] = [await pixel(page, [0.0485, 0.01, 0.05]), await pixel(page, [0.05, 0.01, 0.0485])];
+  assert.ok(Math.abs(front[0] - right[0]) > 15, `${front} before the edge, ${right} behind`);
+  assert.deepEqual(page.faults, []);
+});
+
+test("colours of the compliance have a range that can be set", async (context) => {
+  const { page } = await stage(context, { options: LARGE });
+  assert.equal(await page.locator("#range").isVisible(), false);
+  await page.locator("#colour").selectOption("compliance");
+  const high = page.getByLabel("Upper end of the colours’ range");
+  const place = [0.045, 0.05, 0.045];
+  const before = await pixel(page, place);
+  await high.fill("50");
+  await until(async () => /50\.0 mm\/N/.test(await page.locator("#legend").innerText()), "the legend has it");
+  assert.ok(different(await pixel(page, place), before), "the colours, too");
+  await page.locator("#colour").selectOption("displacement");
+  assert.equal(await high.inputValue(), "", "another quantity has another range");
+  await page.locator("#colour").selectOption("compliance");
+  assert.equal(await high.inputValue(), "50");
+  await page.getByLabel("Lower end of the colours’ range").fill("60");
+  assert.equal(await high.getAttribute("aria-invalid"), "true");
+  await high.fill("");
+  await page.getByLabel("Lower end of the colours’ range").fill("");
+  assert.deepEqual(await pixel(page, place), before, "automatic again");
+});
+
+test("the camera has presets, and is where it was at the next visit", async (context) => {
+  const { page } = await stage(context, { options: LARGE });
+  const at = (point) => onScreen(page, point);
+  await page.getByRole("button", { name: "Top" }).click();
+  const [top, left, right, front] = [await at([0, 0.05, 0]), await at([-0.05, 0.05, 0]), await at([0.05, 0.05, 0]), await at([0, 0.05, 0.05])];
+  assert.ok(Math.abs(left.y - right.y) < 2 && Math.abs(top.x - front.x) < 2 && front.y > top.y + 20, "from above");
+  await page.keyboard.press("2");
+  const [near, far] = [await at([0, 0, 0.05]), await at([0, 0, -0.05])];
+  assert.ok(near.x < far.x - 20 && Math.abs(near.y - far.y) < 2, "from the side");
+  await page.keyboard.press("1");
+  await page.locator("#scene").focus();
+  for (let i = 0; i < 3; ++i) await page.keyboard.press("ArrowRight");
+  await page.keyboard.press("+");
+  const corner = await at([0.05, 0.05, 0.05]);
+  await page.reload();
+  await frames(page);
+  await page.waitForTimeout(300);
+  const again = await at([0.05, 0.05, 0.05]);
+  assert.ok(Math.hypot(again.x - corner.x, again.y - corner.y) < 1, `${JSON.stringify(corner)}, then ${JSON.stringify(again)}`);
+});
+
+test("what does nothing for a fixed body is disabled, with the reason", async (context) => {
+  const { page, server } = await stage(context);
+  await page.locator("#settings-section summary").click();
+  const idle = ["Damping of motion", "Damping of turning", "Tether", "Tether of turning", "Centrifugal loading"];
+  for (const name of idle) assert.equal(await page.getByLabel(name, { exact: true }).isDisabled(), false, name);
+  server.state.objects[0].changeable = 1 | 4; // fixed
+  server.tell({});
+  await until(() => page.getByLabel("Tether", { exact: true }).isDisabled(), "it is fixed");
+  for (const name of idle) assert.equal(await page.getByLabel(name, { exact: true }).isDisabled(), true, name);
+  assert.equal(await page.getByLabel("Friction", { exact: true }).isDisabled(), false);
+  assert.match(await page.locator("#settings").innerText(), /This body is fixed/);
+  assert.equal(await page.getByLabel("Follow object").isDisabled(), true);
+  assert.match(await page.locator("#follow-reason").innerText(), /Every body is fixed/);
+});
+
+test("two styluses are side by side in the plot, with the same axes", async (context) => {
+  const options = { viewport: { width: 1200, height: 800 }, deviceScaleFactor: 1 };
+  const { page, server } = await stage(context, { options, scene: { radii: [0, 0.006, 0.006] } });
+  server.others = [{ present: true, force: [1.5, 0, 0] }, { present: true, force: [0, 4, 0] }];
+  assert.deepEqual(await page.locator("#styluses .line > button:first-child > span:first-child").allInnerTexts(), ["Stylus 1", "Stylus 2", "Mouse stylus"]);
+  assert.equal(await page.locator("#plot-beside").isVisible(), false);
+  await page.getByRole("button", { name: "Beside: plot Stylus 2" }).click();
+  await until(async () => {
+    const [one, other] = await Promise.all(["#plot canvas", "#plot-beside canvas"].map((id) => page.locator(id).boundingBox()));
+    return Math.abs(one.y - other.y) < 2 && other.x >= one.x + one.width;
+  }, "they are side by side");
+  assert.deepEqual(await Promise.all(["#plot-title", "#plot-beside-title"].map((id) => page.locator(id).innerText())), ["Stylus 1", "Stylus 2"]);
+  await until(async () => /1\.500/.test(await page.locator("#plot .u-legend").innerText()), "one has its force");
+  await until(async () => /4\.000/.test(await page.locator("#plot-beside .u-legend").innerText()), "the other one has its own");
+  // The magnitude of 1.5 N is drawn as far below the top as 4 N make it in the other.
+  const highest = (id) =>
+    page.evaluate((id) => {
+      const canvas = document.querySelector(id);
+      const { data } = canvas.getContext("2d").getImageData(60, 0, canvas.width - 60, canvas.height);
+      const dark = (i) => data[i + 3] > 120 && data[i] + data[i + 1] + data[i + 2] < 420;
+      for (let i = 0; i < data.length; i += 4) if (dark(i)) return Math.floor(i / 4 / (canvas.width - 60));
+      return null;
+    }, id);
+  await page.waitForTimeout(500);
+  const [low, high] = [await highest("#plot canvas"), await highest("#plot-beside canvas")];
+  assert.ok(low !== null && high !== null && low > high + 40, `1.5 N at ${low}, 4 N at ${high} pixels from the top`);
+  const [file] = await Promise.all([page.waitForEvent("download"), page.locator("#png").click()]);
+  assert.equal(file.suggestedFilename(), "irdm-force.png");
+  await page.getByRole("button", { name: "Beside: plot Stylus 2" }).click();
+  assert.equal(await page.locator("#plot-beside").isVisible(), false);
+  assert.deepEqual(page.faults, []);
+});
+
+test("the plot is frozen by button and by Space", async (context) => {
+  const { page } = await stage(context);
+  const time = () => page.locator("#plot .u-legend").innerText();
+  const button = page.getByRole("button", { name: "Freeze plot" });
+  await button.click();
+  await page.waitForTimeout(200);
+  const frozen = await time();
+  await page.waitForTimeout(400);
+  assert.equal(await time(), frozen);
+  await page.locator("#scene").focus();
+  await page.keyboard.press("Space");
+  assert.equal(await button.getAttribute("aria-pressed"), "false");
+  await until(async () => (await time()) !== frozen, "it goes on");
 });

@@ -74,7 +74,7 @@ function creases(edges: Edge[], normals: Triple[], degrees: number): Set<Edge> {
 function smoothNeighbours(edges: Edge[], sharp: Set<Edge>): Map<number, [number, number][]> {
   const pairs = new Map<number, [number, number][]>();
   for (const edge of edges) {
-    if (sharp.has(edge)) continue;
+    if (sharp.has(edge) || edge.triangles.length < 2) continue;
     for (const node of edge.nodes) {
       const list = pairs.get(node) ?? [];
       list.push([edge.triangles[0]!, edge.triangles[1]!]);

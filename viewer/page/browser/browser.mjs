@@ -4,7 +4,7 @@ import { after, before } from "node:test";
 import { chromium } from "playwright-core";
 
 /** Generous: it only says when a test that hangs gives up. */
-export const DEADLINE_MS = 15_000;
+export const DEADLINE_MS = 120_000;
 
 let browser;
 before(async () => {

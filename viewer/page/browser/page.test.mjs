@@ -1,6 +1,7 @@
 // The page alone in a real browser, against a server of a few lines (fake_server.mjs): what it shows and what it says.
 // PAGE names the folder of the built page, CHROMIUM the browser.
 import assert from "node:assert/strict";
+import { readFile } from "node:fs/promises";
 import { test } from "node:test";
 import { accessibilityFaults, contrastsOverPicture } from "./accessibility.mjs";
 import { frames, newContext, onScreen, until, visit } from "./browser.mjs";
@@ -566,7 +567,6 @@ test("with exaggeration the stylus stays on the surface as it is drawn", async (
   await page.locator("#exaggeration").fill("4");
   const drawn = [proxy[0], 0.05 - 4 * down, proxy[2]];
   assert.equal(marked(await pixel(page, drawn)), true, "it has moved with the surface");
-  await page.screenshot({ path: "/tmp/shot24.png" });
   assert.equal(marked(await pixel(page, proxy)), false, "it is not where the surface would be");
   await page.mouse.up();
 });
@@ -711,4 +711,52 @@ test("the plot is frozen by button and by Space", async (context) => {
   await page.keyboard.press("Space");
   assert.equal(await button.getAttribute("aria-pressed"), "false");
   await until(async () => (await time()) !== frozen, "it goes on");
+});
+
+test("the picture is filmed, on a ground of its own", async (context) => {
+  const { page } = await stage(context, { options: { ...LARGE, viewport: { width: 800, height: 500 } } });
+  const button = page.getByRole("button", { name: /video/i });
+  await button.click();
+  assert.equal(await button.innerText(), "End video");
+  await page.waitForTimeout(600);
+  for (let i = 0; i < 5; ++i) {
+    await page.keyboard.press("]");
+    await page.waitForTimeout(150);
+  }
+  const [file] = await Promise.all([page.waitForEvent("download"), button.click()]);
+  assert.equal(file.suggestedFilename(), "irdm.webm");
+  assert.equal(await button.innerText(), "Video");
+  const bytes = await readFile(await file.path());
+  const seen = await page.evaluate(async (base64) => {
+    const video = document.createElement("video");
+    video.muted = true;
+    video.src = "data:video/webm;base64," + base64;
+    await new Promise((resolve, reject) => {
+      video.onloadeddata = resolve;
+      video.onerror = () => reject(new Error(video.error.message));
+    });
+    await video.play();
+    await new Promise((resolve) => video.requestVideoFrameCallback(resolve));
+    const flat = document.createElement("canvas").getContext("2d");
+    [flat.canvas.width, flat.canvas.height] = [video.videoWidth, video.videoHeight];
+    flat.drawImage(video, 0, 0);
+    const at = (x, y) => [...flat.getImageData(x * video.videoWidth, y * video.videoHeight, 1, 1).data];
+    return { corner: at(0.02, 0.3), middle: at(0.5, 0.5), width: video.videoWidth, canvas: window.irdm.world.canvas.width };
+  }, bytes.toString("base64"));
+  assert.equal(seen.width, seen.canvas);
+  assert.ok(Math.min(...seen.corner) > 200, `the ground is light, not ${seen.corner}`);
+  assert.ok(different(seen.corner, seen.middle), "the object is in the middle");
+  assert.equal((await pixel(page, [0.2, 0.12, 0]))[3], 0, "the page's own ground is back");
+  assert.deepEqual(page.faults, []);
+});
+
+test("without MediaRecorder there is no video, and the page says why", async (context) => {
+  const browserContext = await newContext(context, SMALL);
+  const server = await FakeServer.start(browserContext, process.env.PAGE);
+  context.after(() => server.stop());
+  const page = await browserContext.newPage();
+  await page.addInitScript(() => delete window.MediaRecorder);
+  await visit(page, server.address);
+  assert.equal(await page.locator("#video").isDisabled(), true);
+  assert.match(await page.locator("#video-reason").innerText(), /cannot record/);
 });

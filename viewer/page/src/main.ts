@@ -20,6 +20,7 @@ import { TouchKeys } from "./touch_keys";
 import { TouchPointer } from "./touch_pointer";
 import { ToolChoice } from "./tool_choice";
 import { ViewControls } from "./view_controls";
+import { VideoButton } from "./video";
 import { remember, remembered } from "./visits";
 import { World } from "./world";
 
@@ -156,6 +157,7 @@ async function share(): Promise<void> {
   else notices.tell("Copied. It has your token in it: whoever takes watch=1 out can touch, too. The scene can have a token for view-only links (viewer.onlooker_token).");
 }
 element("share").onclick = () => void share();
+new VideoButton(world);
 
 const TURN = 0.09; // [rad]
 const NEARER = 1.15;

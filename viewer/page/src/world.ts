@@ -204,6 +204,7 @@ export class World {
     for (const thing of [...this.objects, ...this.styluses, ...this.scenery]) thing.applyTheme(theme);
     this.contacts.applyTheme(theme);
     this.surroundings.applyTheme(theme);
+    this.setOpaque(this.opaque);
     if (!this.fitPending) this.placeSurroundings();
     this.invalidate();
   }
@@ -314,6 +315,15 @@ export class World {
     stylus.asked = asked;
   }
 
+  /** On a ground of its own, not on that of the page. */
+  setOpaque(opaque: boolean): void {
+    this.opaque = opaque;
+    if (opaque) this.renderer.setClearColor(this.theme.ground, 1);
+    else this.renderer.setClearColor(0x000000, 0);
+    this.invalidate();
+  }
+  private opaque = false;
+
   private bounds(): THREE.Sphere {
     const box = new THREE.Box3();
     this.objects.forEach((object, i) => {
@@ -337,7 +347,7 @@ export class World {
     this.invalidate();
   }
 
-  private invalidate(): void {
+  invalidate(): void {
     if (this.asked) return;
     this.asked = true;
     requestAnimationFrame(() => {

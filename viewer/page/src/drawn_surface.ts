@@ -3,7 +3,9 @@ import { meanEdge, withPatches, type Patch } from "./held_patch";
 import type { SceneObject } from "./protocol";
 import { mixed, nearestOnSurface, type SurfacePoint } from "./surface_point";
 
-const PATCH_EDGES = 1.5; // radius of the patch of a point that is held, in edges of triangles
+// Radius of the patch of a point that is held: in edges of triangles, but of a coarse mesh no more than a part of it.
+const PATCH_EDGES = 1.5;
+const PATCH_SHARE = 0.2; // of the object's radius
 
 /**
  * Displacements as they are drawn: those of held patches evened out, all exaggerated; and by how much what touches
@@ -22,7 +24,8 @@ export class DrawnSurface {
     private readonly truly: Float32Array,
   ) {
     this.displacement = Float32Array.from(truly);
-    this.leastPatch = PATCH_EDGES * meanEdge(object.rest, object.triangles);
+    const { rest, triangles } = object;
+    this.leastPatch = Math.min(PATCH_EDGES * meanEdge(rest, triangles), PATCH_SHARE * radiusOf(rest));
   }
 
   follow(held: readonly Patch[]): void {
@@ -65,4 +68,11 @@ export class DrawnSurface {
     }
     return found;
   }
+}
+
+/** About the centre of mass [m]. */
+function radiusOf(rest: Float32Array): number {
+  let most = 0;
+  for (let i = 0; i < rest.length; i += 3) most = Math.max(most, Math.hypot(rest[i]!, rest[i + 1]!, rest[i + 2]!));
+  return most;
 }

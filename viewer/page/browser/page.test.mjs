@@ -404,6 +404,7 @@ test("axe-core finds nothing, in light and in dark, live and recorded", async (c
   const { page, server } = await stage(context, changes);
   await page.evaluate(() => document.querySelectorAll("details").forEach((details) => (details.open = true)));
   await page.locator("#colour").selectOption("modulus");
+  await page.getByRole("button", { name: "Beside: plot Stylus 2" }).click();
   server.contacts = [PUSHED];
   const overPicture = ["h1", "#link span", "#hint .fine", "#touch-keys", ".choice span", "#legend figcaption", "#legend-max", "#materials span", "#scale span"];
   for (const colorScheme of ["light", "dark"]) {

@@ -102,7 +102,8 @@ export class World {
   private firstView: CameraView | null = null;
 
   follow(frame: Frame): void {
-    const rests = this.frame !== null && looksTheSame(this.frame, frame);
+    // The same one once more is for colours to go on, as irdm-replay has it.
+    const rests = this.frame !== null && this.frame !== frame && looksTheSame(this.frame, frame);
     this.frame = frame;
     this.showFrame(frame, rests);
     if (this.fitPending) this.begin();

@@ -447,7 +447,7 @@ const PUSHED = { object: 0, other: -1, normal: [0, 1, 0], position: [0, -0.05, 0
 function pixel(page, place) {
   return page.evaluate((place) => {
     const { world } = window.irdm;
-    const { x, y } = world.onCanvas(world.camera.position.clone().set(...place));
+    const { x, y } = world.view.onCanvas(world.camera.position.clone().set(...place));
     world.drawNow();
     const flat = document.createElement("canvas");
     [flat.width, flat.height] = [world.canvas.width, world.canvas.height];

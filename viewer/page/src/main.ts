@@ -49,7 +49,7 @@ const health = new HealthPanel(element("health"), element("counts"));
 const status = new StatusLine();
 if (world !== null) {
   world.onDraw.push(() => status.drawn());
-  world.onCamera = (view) => rememberView(scene!, view);
+  world.view.onMoved = (view) => rememberView(scene!, view);
 }
 const notices = new Notices(element("notices"));
 const run = new RunControls(ask);

@@ -86,7 +86,7 @@ export class Touch {
 
   private handAt(place: Vector3, ray: Ray): Hand {
     const fingertip = this.scene!.styluses.at(-1)!;
-    return new Hand(place, ray, this.world.forward(), fingertip, this.grabs, performance.now());
+    return new Hand(place, ray, this.world.view.forward(), fingertip, this.grabs, performance.now());
   }
 
   lost(): void {
@@ -96,13 +96,13 @@ export class Touch {
 
   /** @returns whether there is something that can be touched at this point of the canvas [CSS px] */
   isOver(x: number, y: number): boolean {
-    return refusal(this.scene, this.state) === null && this.world.pick(this.world.rayThrough(x, y)) !== null;
+    return refusal(this.scene, this.state) === null && this.world.pick(this.world.view.rayThrough(x, y)) !== null;
   }
 
   /** @returns whether a press has begun at this point of the canvas [CSS px] */
   press(x: number, y: number): boolean {
     if (this.active) return false;
-    const ray = this.world.rayThrough(x, y);
+    const ray = this.world.view.rayThrough(x, y);
     const place = this.world.pick(ray);
     if (place === null) return false;
     const reason = refusal(this.scene, this.state);
@@ -121,7 +121,7 @@ export class Touch {
   }
 
   aim(x: number, y: number): void {
-    this.ray = this.world.rayThrough(x, y);
+    this.ray = this.world.view.rayThrough(x, y);
     this.hand?.aim(this.ray);
   }
 

@@ -5,6 +5,7 @@ import { element } from "./elements";
 import { insideNotes, materialRows, stressText } from "./material_legend";
 import type { Overlays } from "./overlays";
 import type { Scene, State } from "./protocol";
+import { modulusSpan } from "./ramp_range";
 import { forceBar, scaleBar } from "./scale_bar";
 import type { Colouring } from "./soft_object";
 import type { World } from "./world";
@@ -49,7 +50,7 @@ export class ViewControls {
     this.allow("modulus", scene.objects.some((object) => object.regions !== null));
     const option = this.optionOf("modulus");
     option.textContent = option.disabled ? `${MODULUS} (no body has regions)` : MODULUS;
-    if (this.world !== null) element("materials").replaceChildren(...materialRows(scene, this.world.modulusRange));
+    if (this.world !== null) element("materials").replaceChildren(...materialRows(scene, modulusSpan(this.world.objects)));
     element("materials-note").textContent = insideNotes(scene);
     this.apply();
   }
@@ -96,7 +97,7 @@ export class ViewControls {
     element("pressure-max").textContent = `${(end / 1000).toPrecision(3)} kPa`;
     const { colouring } = this.world.look;
     if (colouring === "none") return;
-    const { low, high } = this.world.colours;
+    const { low, high } = this.world.ramp.ends;
     if (colouring === "modulus") {
       element("legend-min").textContent = stressText({ low, high: low });
       element("legend-max").textContent = stressText({ low: high, high });
@@ -147,10 +148,10 @@ export class ViewControls {
   }
 
   private showScale(): void {
-    const force = forceBar(this.world!.metresPerPixel() / this.world!.metresPerNewton);
+    const force = forceBar(this.world!.view.metresPerPixel() / this.world!.metresPerNewton);
     element("force-scale").querySelector("span")!.textContent = `${force.newtons} N`;
     element("force-scale").querySelector("i")!.style.width = `${force.pixels.toFixed(1)}px`;
-    const { centimetres, pixels } = scaleBar(this.world!.metresPerPixel());
+    const { centimetres, pixels } = scaleBar(this.world!.view.metresPerPixel());
     element("scale").querySelector("span")!.textContent = `${centimetres} cm`;
     element("scale").querySelector("i")!.style.width = `${pixels.toFixed(1)}px`;
   }

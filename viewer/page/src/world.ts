@@ -1,19 +1,18 @@
 import * as THREE from "three";
-import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { ArrowScale } from "./arrow_scale";
-import { PRESETS, type CameraView, type Preset } from "./camera_memory";
-import { AUTOMATIC, rangeAsSet, type SetRange } from "./colour_range";
+import type { CameraView, Preset } from "./camera_memory";
+import { AUTOMATIC, type SetRange } from "./colour_range";
 import { ContactMarks } from "./contact_marks";
 import { looksTheSame } from "./frame_changes";
 import { ALL_OVERLAYS, type Overlays } from "./overlays";
 import { Contact, type BodyContact, type Frame, type Scene } from "./protocol";
+import { modulusSpan, RampRange } from "./ramp_range";
 import { SceneryBody } from "./scenery_body";
-import { SoftObject, type ColourRange, type Colouring } from "./soft_object";
+import { SoftObject, type Colouring } from "./soft_object";
 import { Stylus } from "./stylus";
 import { Surroundings } from "./surroundings";
 import type { Theme } from "./theme";
-
-const FIELD_OF_VIEW = 32;
+import { ViewCamera } from "./view_camera";
 
 export interface Look {
   exaggeration: number;
@@ -28,20 +27,17 @@ export interface Look {
 
 /** The three-dimensional picture. It is drawn when something has changed, and not otherwise. */
 export class World {
-  readonly camera = new THREE.PerspectiveCamera(FIELD_OF_VIEW, 1, 0.005, 50);
+  readonly view: ViewCamera;
   objects: SoftObject[] = [];
   look: Look = { exaggeration: 1, colouring: "none", range: AUTOMATIC, rigid: false, overlays: ALL_OVERLAYS, follow: true };
-  colours: ColourRange = { low: 0, high: 0 };
+  readonly ramp = new RampRange();
   /** a hand is on the objects: the camera stays where it is */
   held = false;
   /** called after each drawing */
   readonly onDraw: (() => void)[] = [];
-  /** called when a person has moved the camera */
-  onCamera: (view: CameraView) => void = () => {};
 
   private readonly renderer: THREE.WebGLRenderer;
   private readonly three = new THREE.Scene();
-  readonly controls: OrbitControls;
   private readonly surroundings = new Surroundings();
   readonly contacts = new ContactMarks();
   private scenery: SceneryBody[] = [];
@@ -63,13 +59,18 @@ export class World {
     this.renderer.shadowMap.type = THREE.PCFShadowMap;
     this.renderer.toneMapping = THREE.NeutralToneMapping;
     this.three.add(this.surroundings.group, this.contacts.group);
-    this.controls = new OrbitControls(this.camera, canvas);
-    this.controls.addEventListener("end", () => this.tellCamera());
-    canvas.style.removeProperty("cursor"); // which OrbitControls sets over the style sheet's
-    this.controls.addEventListener("change", () => this.invalidate());
+    this.view = new ViewCamera(canvas, () => this.invalidate());
     canvas.addEventListener("webglcontextrestored", () => this.invalidate());
     new ResizeObserver(() => this.resize()).observe(canvas);
     this.resize();
+  }
+
+  get camera(): THREE.PerspectiveCamera {
+    return this.view.camera;
+  }
+
+  get controls(): ViewCamera["controls"] {
+    return this.view.controls;
   }
 
   /**
@@ -84,8 +85,7 @@ export class World {
     }
     this.scene = scene;
     this.frame = null;
-    this.colours = { low: 0, high: 0 };
-    this.largestOfLate = 0;
+    this.ramp.restart();
     this.objects = scene.objects.map((object) => new SoftObject(object));
     this.styluses = scene.styluses.map((stylus) => new Stylus(stylus));
     this.scenery = scene.scenery.map((body) => new SceneryBody(body));
@@ -127,7 +127,7 @@ export class World {
     });
     if (rests) return;
     this.contacts.follow(frame.contacts.map((contact) => this.shifted(contact)), overlays, this.metresPerNewton);
-    this.followColours();
+    this.ramp.follow(this.objects, this.look.colouring, this.look.range);
   }
 
   /** Where the object that it acts on is drawn. */
@@ -151,51 +151,20 @@ export class World {
     });
   }
 
-  /** The ramp's end follows upwards at once and downwards slowly, so that colours can be compared. */
-  private followColours(): void {
-    if (this.look.colouring === "compliance") {
-      const range = rangeOfAll(this.objects.flatMap((object) => object.complianceRange ?? []));
-      this.colours = rangeAsSet(range, this.look.range);
-      return;
-    }
-    if (this.look.colouring === "modulus") {
-      this.colours = this.modulusRange;
-      return;
-    }
-    const largest = Math.max(...this.objects.map((object) => object.largest));
-    this.largestOfLate = Math.max(largest, this.largestOfLate * 0.995);
-    this.colours = rangeAsSet({ low: 0, high: this.largestOfLate }, this.look.range);
-  }
-
-  private largestOfLate = 0;
-
-  /** Of all objects that are soft [Pa]. */
-  get modulusRange(): ColourRange {
-    return rangeOfAll(this.objects.flatMap((object) => object.modulusRange ?? []));
-  }
-
   /** Moves camera, light and shadow, gently, when the objects' middle is further off than they are large. */
   private goAlong(frame: Frame): void {
     const middle = new THREE.Vector3();
     for (const object of frame.objects) middle.add(new THREE.Vector3(...object.position));
     middle.divideScalar(frame.objects.length);
-    const way = middle.sub(this.controls.target);
-    const excess = 1 - (0.6 * this.radius) / way.length();
-    if (!(excess > 0)) return;
-    way.multiplyScalar(Math.min(1, 0.12 * excess));
-    this.controls.target.add(way);
-    this.camera.position.add(way);
-    this.surroundings.moveBy(way);
-    this.controls.update();
+    const way = this.view.follow(middle);
+    if (way !== null) this.surroundings.moveBy(way);
   }
-  private radius = 0.1;
 
   applyLook(): void {
-    const inside = this.look.colouring === "modulus" ? this.modulusRange : null;
+    const inside = this.look.colouring === "modulus" ? modulusSpan(this.objects) : null;
     for (const object of this.objects) object.showThrough(this.look.rigid, inside);
     for (const object of this.objects) object.drawn.exaggeration = this.look.exaggeration;
-    this.colours = { low: 0, high: 0 };
-    this.largestOfLate = 0;
+    this.ramp.restart();
     if (this.frame !== null) this.showFrame(this.frame, false);
     this.invalidate();
   }
@@ -213,36 +182,18 @@ export class World {
   private begin(): void {
     this.fitPending = false;
     this.place("fit");
-    if (this.firstView === null) return;
-    this.controls.target.set(...this.firstView.target);
-    this.camera.position.set(...this.firstView.position);
-    this.controls.update();
+    if (this.firstView !== null) this.view.restore(this.firstView);
   }
 
   /** Everything in the picture with room to move; "fit": seen from the front, right and above. */
   fit(from: Preset = "fit"): void {
     if (this.scene === null || this.fitPending) return;
     this.place(from);
-    this.tellCamera();
-  }
-
-  private tellCamera(): void {
-    this.onCamera({ position: this.camera.position.toArray(), target: this.controls.target.toArray() });
+    this.view.tell();
   }
 
   private place(from: Preset): void {
-    const { center, radius } = this.bounds();
-    this.radius = radius;
-    const narrow = Math.min(1, this.camera.aspect);
-    const distance = (1.6 * radius) / Math.sin((FIELD_OF_VIEW * Math.PI) / 360) / narrow;
-    this.controls.target.copy(center);
-    this.camera.position.copy(center).addScaledVector(new THREE.Vector3(...PRESETS[from]).normalize(), distance);
-    this.camera.near = distance / 100;
-    this.camera.far = distance * 20;
-    this.camera.updateProjectionMatrix();
-    this.controls.minDistance = radius * 0.3;
-    this.controls.maxDistance = distance * 8;
-    this.controls.update();
+    this.view.showAll(this.bounds(), from);
     this.placeSurroundings();
     this.invalidate();
   }
@@ -257,50 +208,14 @@ export class World {
 
   /** Turns the camera [rad], or brings it nearer (zoom > 1). */
   move(around: number, up: number, zoom: number): void {
-    const arm = this.camera.position.clone().sub(this.controls.target);
-    const way = new THREE.Spherical().setFromVector3(arm);
-    way.theta += around;
-    way.phi += up;
-    way.radius = Math.min(Math.max(way.radius / zoom, this.controls.minDistance), this.controls.maxDistance);
-    this.camera.position.copy(this.controls.target).add(arm.setFromSpherical(way.makeSafe()));
-    this.controls.update();
-    this.tellCamera();
+    this.view.move(around, up, zoom);
     this.invalidate();
-  }
-
-  /** Length of a CSS pixel at the distance of what the camera looks at [m]. */
-  metresPerPixel(): number {
-    const distance = this.camera.position.distanceTo(this.controls.target);
-    return (2 * distance * Math.tan((FIELD_OF_VIEW * Math.PI) / 360)) / Math.max(1, this.canvas.clientHeight);
-  }
-
-  /** From the eye through a point of the canvas [CSS px]; unit direction. W */
-  rayThrough(x: number, y: number): THREE.Ray {
-    const { clientWidth, clientHeight } = this.canvas;
-    const point = new THREE.Vector2((2 * x) / clientWidth - 1, 1 - (2 * y) / clientHeight);
-    this.camera.updateMatrixWorld();
-    const caster = new THREE.Raycaster();
-    caster.setFromCamera(point, this.camera);
-    return caster.ray;
-  }
-
-  /** Unit, W. */
-  forward(): THREE.Vector3 {
-    return this.camera.getWorldDirection(new THREE.Vector3());
   }
 
   /** What of the objects is seen on a ray first: its true place [m], W. */
   pick(ray: THREE.Ray): THREE.Vector3 | null {
     const hits = this.objects.flatMap((object) => object.pick(ray) ?? []);
     return hits.sort((a, b) => a.distance - b.distance)[0]?.point ?? null;
-  }
-
-  /** Where a point of the world is on the canvas [CSS px]. */
-  onCanvas(point: THREE.Vector3): { x: number; y: number } {
-    const { clientWidth, clientHeight } = this.canvas;
-    this.camera.updateMatrixWorld();
-    const { x, y } = point.clone().project(this.camera);
-    return { x: ((x + 1) / 2) * clientWidth, y: ((1 - y) / 2) * clientHeight };
   }
 
   /** How far the viewers' stylus is drawn from its true place [m], W. */
@@ -343,8 +258,7 @@ export class World {
     if (width === 0 || height === 0) return;
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.renderer.setSize(width, height, false);
-    this.camera.aspect = width / height;
-    this.camera.updateProjectionMatrix();
+    this.view.resize(width, height);
     this.invalidate();
   }
 
@@ -358,7 +272,7 @@ export class World {
   }
 
   drawNow(): void {
-    for (const object of this.objects) object.draw(this.look.colouring, this.colours);
+    for (const object of this.objects) object.draw(this.look.colouring, this.ramp.ends);
     this.renderer.render(this.three, this.camera);
     for (const call of this.onDraw) call();
   }
@@ -368,8 +282,4 @@ export class World {
 function largestForce({ styluses, contacts }: Frame): number {
   const forces = [...styluses.filter(({ present }) => present), ...contacts].map(({ force }) => Math.hypot(...force));
   return Math.max(0, ...forces);
-}
-
-function rangeOfAll(ranges: ColourRange[]): ColourRange {
-  return { low: Math.min(...ranges.map(({ low }) => low)), high: Math.max(...ranges.map(({ high }) => high)) };
 }

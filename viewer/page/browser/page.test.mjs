@@ -376,8 +376,7 @@ test("regions at the surface have sharp bounds, and what is left out is said", a
   const inclusions = { flags: 3, surfaceModulus, nodes: [], faces: [], faceModulus: [] };
   const { page } = await stage(context, { options, inclusions });
   await page.locator("#colour").selectOption("modulus");
-  const row = [];
-  for (let i = 0; i < 24; ++i) row.push(await pixel(page, [0.13 - 0.046 + 0.004 * i, 0, 0.05]));
+  const row = await pixels(page, Array.from({ length: 24 }, (_, i) => [0.13 - 0.046 + 0.004 * i, 0, 0.05]));
   const yellow = row.map(([red, , blue]) => red > blue + 60);
   assert.deepEqual(yellow, [...yellow].sort(), "one side is stiff");
   assert.ok(yellow.includes(true) && yellow.includes(false));
@@ -443,20 +442,24 @@ const SCENERY = [
 ];
 const PUSHED = { object: 0, other: -1, normal: [0, 1, 0], position: [0, -0.05, 0.03], force: [0, 1, 0], area: 4e-4 };
 
-/** Of the picture at a place of the world: red, green, blue, alpha. */
-function pixel(page, place) {
-  return page.evaluate((place) => {
+/** Of the picture at places of the world, drawn once: red, green, blue, alpha. */
+function pixels(page, places) {
+  return page.evaluate((places) => {
     const { world } = window.irdm;
-    const { x, y } = world.view.onCanvas(world.camera.position.clone().set(...place));
     world.drawNow();
     const flat = document.createElement("canvas");
     [flat.width, flat.height] = [world.canvas.width, world.canvas.height];
     const context = flat.getContext("2d");
     context.drawImage(world.canvas, 0, 0);
     const ratio = world.canvas.width / world.canvas.clientWidth;
-    return [...context.getImageData(Math.floor(x * ratio), Math.floor(y * ratio), 1, 1).data];
-  }, place);
+    return places.map((place) => {
+      const { x, y } = world.view.onCanvas(world.camera.position.clone().set(...place));
+      return [...context.getImageData(Math.floor(x * ratio), Math.floor(y * ratio), 1, 1).data];
+    });
+  }, places);
 }
+
+const pixel = async (page, place) => (await pixels(page, [place]))[0];
 
 test("scenery is drawn, in light and in dark", async (context) => {
   const options = { ...SMALL, deviceScaleFactor: 1 };
@@ -598,8 +601,8 @@ test("an edge that ends in the middle of a surface is not seen", async (context)
   await page.keyboard.press("1");
   // Across a ridge of a low tent on the front, which runs from its top to a corner of its foot.
   const cell = 0.1 / 12;
-  const row = [];
-  for (let i = -5; i <= 5; ++i) row.push((await pixel(page, [0.35 * cell + 0.0003 * i, 0.35 * cell - 0.0003 * i, 0.05 + 0.65 * 0.0045]))[0]);
+  const across = Array.from({ length: 11 }, (_, i) => [0.35 * cell + 0.0003 * (i - 5), 0.35 * cell - 0.0003 * (i - 5), 0.05 + 0.65 * 0.0045]);
+  const row = (await pixels(page, across)).map(([red]) => red);
   const steps = row.slice(1).map((value, i) => Math.abs(value - row[i]));
   assert.ok(Math.max(...steps) < 12, `no step from one side to the other: ${row}`);
   // The cube's own edges stay.

@@ -61,7 +61,7 @@ export function onScreen(page, point, object = 0) {
       const { group } = world.objects[object];
       group.updateMatrixWorld();
       const place = group.position.clone().set(...point).applyMatrix4(group.matrixWorld);
-      const { x, y } = world.onCanvas(place);
+      const { x, y } = world.view.onCanvas(place);
       const { left, top } = world.canvas.getBoundingClientRect();
       return { x: x + left, y: y + top };
     },

@@ -15,7 +15,7 @@ const ADDRESS = "http://viewer.test/";
 const FLAG = { looksOn: 1, free: 2, mine: 4, paused: 8, recording: 16, playback: 32, playing: 64, canRecord: 128 };
 
 /** The messages that test/server_messages.ts writes. */
-async function loadMessages() {
+export async function loadMessages() {
   const built = await esbuild.build({
     entryPoints: [path.join(here, "../test/server_messages.ts")],
     bundle: true,
@@ -31,6 +31,12 @@ export class FakeServer {
   /** between bodies, in each frame */
   contacts = [];
   stylus = { present: false, grab: false, tip: [0, 0, 0] };
+  /** the other styluses, in each frame: what differs from an absent one */
+  others = [];
+  /** of the dent: width [m]; way out of the surface [m], null: half the depth of the tip inwards */
+  dent = { width: WIDTH, out: null };
+  /** [N/m] */
+  stiffness = STIFFNESS;
   state;
   scene;
   #messages;
@@ -175,12 +181,12 @@ export class FakeServer {
     const deep = EDGE / 2 - Math.abs(tip[axis]);
     if (!present || deep <= 0) return { state, dent: null };
     const side = Math.sign(tip[axis]);
-    const size = Math.min(STIFFNESS * deep, BOUND);
+    const size = Math.min(this.stiffness * deep, this.scene.largestForce || Number.POSITIVE_INFINITY);
     const vector = (value) => tip.map((_, i) => (i === axis ? value : 0));
     const proxy = tip.map((part, i) => (i === axis ? side * (EDGE / 2 - 0.5 * deep) : part));
     const middle = tip.map((part, i) => (i === axis ? (side * EDGE) / 2 : part));
     const touched = { ...state, contact: grab ? 2 : 1, object: 0, proxy, middle, force: vector(side * size), slips: false };
-    return { state: touched, dent: { middle, push: vector(-side * 0.5 * deep) } };
+    return { state: touched, dent: { middle, push: vector(side * (this.dent.out ?? -0.5 * deep)) } };
   }
 
   #frame() {
@@ -192,11 +198,11 @@ export class FakeServer {
         if (dent === null || object > 0) return 0;
         const node = rest.slice(i - (i % 3), i - (i % 3) + 3);
         const away = Math.hypot(...node.map((part, c) => part - dent.middle[c]));
-        return Math.round(1e6 * dent.push[i % 3] * Math.exp(-((away / WIDTH) ** 2)));
+        return Math.round(1e6 * dent.push[i % 3] * Math.exp(-((away / this.dent.width) ** 2)));
       });
       return { position: [0.13 * object, 0, 0], displacement };
     });
-    const styluses = this.scene.radii.map((_, s) => (s === this.scene.radii.length - 1 ? state : ABSENT));
+    const styluses = this.scene.radii.map((_, s) => (s === this.scene.radii.length - 1 ? state : { ...ABSENT, ...this.others[s] }));
     const time = (this.#step + 1) * this.scene.dt;
     this.#send(frameMessage({ step: this.#step, time, styluses, objects, contacts: this.contacts }, 8));
   }

@@ -126,9 +126,9 @@ test("the press of an onlooker does nothing; two viewers see the same", async (c
   const server = await stage.server();
   const page = await ready(context, stage, server);
   const onlooker = await ready(context, stage, server, "?watch=1");
-  assert.match(await mode(onlooker), /only looking on/);
+  assert.match(await mode(onlooker), /view only/);
   await press(onlooker);
-  await says(onlooker, /only look on/);
+  await says(onlooker, /view only/);
   await onlooker.waitForTimeout(500);
   assert.equal(await onlooker.evaluate(() => window.seen.some(({ present }) => present)), false);
   await onlooker.mouse.up();

@@ -18,10 +18,89 @@ function normalOf(points: ArrayLike<number>, triangles: Uint32Array, t: number):
   return [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
 }
 
+/** Two triangles of an edge and its nodes; at a bound of the surface there is one triangle. */
+interface Edge {
+  nodes: readonly [number, number];
+  triangles: number[];
+}
+
+function edgesOf(triangles: Uint32Array): Edge[] {
+  const edges = new Map<string, Edge>();
+  for (let corner = 0; corner < triangles.length; ++corner) {
+    const from = triangles[corner]!;
+    const to = triangles[corner % 3 === 2 ? corner - 2 : corner + 1]!;
+    const nodes = [Math.min(from, to), Math.max(from, to)] as const;
+    const edge = edges.get(nodes.join()) ?? { nodes, triangles: [] };
+    edge.triangles.push(Math.floor(corner / 3));
+    edges.set(nodes.join(), edge);
+  }
+  return [...edges.values()];
+}
+
+/** Without those that lead to an end: what is left are closed lines, and lines between them. */
+function closed(edges: Edge[]): Set<Edge> {
+  const at = new Map<number, Set<Edge>>();
+  for (const edge of edges) {
+    for (const node of edge.nodes) at.set(node, (at.get(node) ?? new Set()).add(edge));
+  }
+  const left = new Set(edges);
+  const ends = [...at.keys()];
+  while (ends.length > 0) {
+    const here = at.get(ends.pop()!)!;
+    if (here.size !== 1) continue;
+    const [edge] = here;
+    left.delete(edge!);
+    for (const node of edge!.nodes) {
+      at.get(node)!.delete(edge!);
+      ends.push(node);
+    }
+  }
+  return left;
+}
+
+/** Edges with an angle, and bounds of the surface, as far as they close. */
+function creases(edges: Edge[], normals: Triple[], degrees: number): Set<Edge> {
+  const least = Math.cos((degrees * Math.PI) / 180);
+  const sharp = edges.filter(({ triangles }) => {
+    if (triangles.length !== 2) return true;
+    const [a, b] = [normals[triangles[0]!]!, normals[triangles[1]!]!];
+    const without = Math.hypot(...a) === 0 || Math.hypot(...b) === 0; // an area
+    return !without && a[0] * b[0] + a[1] * b[1] + a[2] * b[2] < least;
+  });
+  return closed(sharp);
+}
+
+/** For each node: which of its triangles share an edge there that is no crease. */
+function smoothNeighbours(edges: Edge[], sharp: Set<Edge>): Map<number, [number, number][]> {
+  const pairs = new Map<number, [number, number][]>();
+  for (const edge of edges) {
+    if (sharp.has(edge) || edge.triangles.length < 2) continue;
+    for (const node of edge.nodes) {
+      const list = pairs.get(node) ?? [];
+      list.push([edge.triangles[0]!, edge.triangles[1]!]);
+      pairs.set(node, list);
+    }
+  }
+  return pairs;
+}
+
+/** Corners of a node in groups: within one, triangles are connected by pairs. */
+function bundles(corners: number[], pairs: readonly [number, number][]): number[][] {
+  const bundleOf = new Map(corners.map((corner) => [Math.floor(corner / 3), [corner]]));
+  for (const [a, b] of pairs) {
+    const [one, other] = [bundleOf.get(a)!, bundleOf.get(b)!];
+    if (one === other) continue;
+    one.push(...other);
+    for (const corner of other) bundleOf.set(Math.floor(corner / 3), one);
+  }
+  return [...new Set(bundleOf.values())];
+}
+
 /**
  * Gives a node one vertex for each bundle of its triangles that are smooth among themselves: those that can be
- * reached from each other by way of triangles whose normals at rest differ by less than the crease angle. Triangles
- * of different kinds share no vertex, so that each kind can have a colour of its own.
+ * reached from each other over edges that are no creases. An edge is a crease when the normals at rest beside it
+ * differ by more than the crease angle and it belongs to a line of such edges that has no end. Triangles of
+ * different kinds share no vertex, so that each kind can have a colour of its own.
  * @param kinds a number for each triangle; null: all are of one kind
  */
 export function creaseMesh(
@@ -30,36 +109,24 @@ export function creaseMesh(
   creaseDegrees = 35,
   kinds: ArrayLike<number> | null = null,
 ): CreasedMesh {
-  const count = triangles.length / 3;
-  const normals = Array.from({ length: count }, (_, t) => {
+  const normals = Array.from({ length: triangles.length / 3 }, (_, t) => {
     const n = normalOf(rest, triangles, t);
     const length = Math.hypot(...n) || 1;
     return n.map((part) => part / length) as Triple;
   });
+  const edges = edgesOf(triangles);
+  const pairs = smoothNeighbours(edges, creases(edges, normals, creaseDegrees));
   const around = new Map<number, number[]>();
   triangles.forEach((node, corner) => {
     const list = around.get(node) ?? [];
     list.push(corner);
     around.set(node, list);
   });
-  const least = Math.cos((creaseDegrees * Math.PI) / 180);
   const nodeOf: number[] = [];
   const firstOf: number[] = [];
   const index = new Uint32Array(triangles.length);
   for (const [node, corners] of around) {
-    let left = corners;
-    while (left.length > 0) {
-      const bundle = [left[0]!];
-      left = left.slice(1);
-      for (let i = 0; i < bundle.length; ++i) {
-        const mine = normals[Math.floor(bundle[i]! / 3)]!;
-        const smooth = (corner: number): boolean => {
-          const other = normals[Math.floor(corner / 3)]!;
-          return mine[0] * other[0] + mine[1] * other[1] + mine[2] * other[2] >= least;
-        };
-        bundle.push(...left.filter(smooth));
-        left = left.filter((corner) => !smooth(corner));
-      }
+    for (const bundle of bundles(corners, pairs.get(node) ?? [])) {
       const first = nodeOf.length;
       for (const corners of byKind(bundle, kinds)) {
         for (const corner of corners) index[corner] = nodeOf.length;

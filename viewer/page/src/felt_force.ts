@@ -33,7 +33,7 @@ export class FeltForce {
     const [newtons, how] = feltText(force, contact, stylus.slips, bound);
     this.label.children[0]!.textContent = newtons;
     this.label.children[1]!.textContent = how;
-    const { x, y } = this.world.onCanvas(tip);
+    const { x, y } = this.world.view.onCanvas(tip.add(this.world.shiftOfHand()));
     this.label.style.translate = `${x.toFixed(1)}px ${y.toFixed(1)}px`;
   }
 

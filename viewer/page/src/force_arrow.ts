@@ -1,6 +1,5 @@
 import * as THREE from "three";
 
-export const METRES_PER_NEWTON = 0.04;
 export const LEAST_FORCE = 0.005; // below it no arrow [N]
 export const UP = new THREE.Vector3(0, 1, 0);
 

@@ -5,9 +5,8 @@ import type { Theme } from "./theme";
 const WINDOW_SECONDS = 5;
 const NAMES = ["x", "y", "z", "|F|"];
 
-/** Curves of the last seconds; paused, they stay and can be zoomed by dragging. */
+/** Curves of some seconds, which can be zoomed by dragging. */
 export class ForcePlot {
-  paused = false;
   private plot: uPlot | null = null;
   private data: uPlot.AlignedData = [[], [], [], [], []];
 
@@ -19,14 +18,26 @@ export class ForcePlot {
     new ResizeObserver(() => this.plot?.setSize(this.size())).observe(host);
   }
 
-  show(log: ForceLog, stylus: number, now: number): void {
-    if (this.paused) return;
+  /** The forces of the last seconds; they are seen when they are drawn. */
+  take(log: ForceLog, stylus: number, now: number): void {
     this.data = log.since(now - WINDOW_SECONDS, stylus) as uPlot.AlignedData;
+  }
+
+  /** Least and greatest value of the curves. */
+  extent(): Range {
+    const curves = this.data.slice(1) as (number | null)[][];
+    return union(curves.map((curve) => curve.reduce<Range>(([low, high], value) => [Math.min(low, value ?? low), Math.max(high, value ?? high)], [0, 0])));
+  }
+
+  /** @param range of the axis of forces; null: that of the curves */
+  draw(now: number, range: Range | null): void {
+    this.range = range;
     this.plot?.setData(this.data, false);
     // The legend says the newest, unless it is asked for another time.
     if ((this.plot?.cursor.left ?? 0) < 0 && this.data[0].length > 0) this.plot?.setLegend({ idx: this.data[0].length - 1 }, false);
     this.plot?.setScale("x", { min: Math.max(now, WINDOW_SECONDS) - WINDOW_SECONDS, max: Math.max(now, WINDOW_SECONDS) });
   }
+  private range: Range | null = null;
 
   applyTheme(theme: Theme): void {
     this.theme = theme;
@@ -56,7 +67,7 @@ export class ForcePlot {
         legend: { live: true, markers: { width: 0, fill: (_, i) => [...axes, ink][i - 1] ?? "" } },
         scales: {
           x: { time: false },
-          y: { range: (_, low, high) => padded(low, high) },
+          y: { range: (_, low, high) => (this.range === null ? padded(low, high) : padded(...this.range)) },
         },
         axes: [
           { ...axis, size: 30, gap: 6, values: (_, ticks) => ticks.map((tick) => tick + " s") },
@@ -74,18 +85,15 @@ export class ForcePlot {
     );
   }
 
-  /** As it is now, with its ground. */
-  picture(): Promise<Blob | null> {
-    const from = this.plot!.ctx.canvas;
-    const canvas = document.createElement("canvas");
-    canvas.width = from.width;
-    canvas.height = from.height;
-    const context = canvas.getContext("2d")!;
-    context.fillStyle = this.theme.surface;
-    context.fillRect(0, 0, canvas.width, canvas.height);
-    context.drawImage(from, 0, 0);
-    return new Promise((resolve) => canvas.toBlob(resolve, "image/png"));
+  get canvas(): HTMLCanvasElement {
+    return this.plot!.ctx.canvas;
   }
+}
+
+export type Range = [number, number];
+
+export function union(ranges: Range[]): Range {
+  return [Math.min(...ranges.map(([low]) => low)), Math.max(...ranges.map(([, high]) => high))];
 }
 
 /** With room above and below; a force of nothing is a straight line, not noise drawn large. */

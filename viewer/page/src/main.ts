@@ -1,12 +1,13 @@
 import "uplot/dist/uPlot.min.css";
 import "./style.css";
+import { rememberedView, rememberView } from "./camera_memory";
 import { Connection, type LinkState } from "./connection";
 import { element } from "./elements";
 import { FeltForce } from "./felt_force";
 import { ForcePanel } from "./force_panel";
+import { HealthPanel } from "./health_panel";
 import { Notices } from "./notices";
 import { copy, isOnlooker, onlookerLink } from "./onlooker_link";
-import { HealthPanel } from "./panel";
 import { PlaybackBar } from "./playback_bar";
 import { Command, encodeCommand, encodeSettings, encodeStylus, type Frame, type Scene, type ServerMessage, type State } from "./protocol";
 import { RunControls } from "./run_controls";
@@ -17,7 +18,10 @@ import { currentTheme, onThemeChange } from "./theme";
 import { Touch } from "./touch";
 import { TouchKeys } from "./touch_keys";
 import { TouchPointer } from "./touch_pointer";
+import { ToolChoice } from "./tool_choice";
 import { ViewControls } from "./view_controls";
+import { VideoButton } from "./video";
+import { remember, remembered } from "./visits";
 import { World } from "./world";
 
 function tryWorld(): World | null {
@@ -43,6 +47,10 @@ const view = new ViewControls(world);
 const forces = new ForcePanel();
 const health = new HealthPanel(element("health"), element("counts"));
 const status = new StatusLine();
+if (world !== null) {
+  world.onDraw.push(() => status.drawn());
+  world.view.onMoved = (view) => rememberView(scene!, view);
+}
 const notices = new Notices(element("notices"));
 const run = new RunControls(ask);
 const playback = new PlaybackBar(ask);
@@ -70,10 +78,10 @@ function makeHand(world: World): { touch: Touch; felt: FeltForce; keys: TouchKey
       felt.hide();
     },
   });
-  const grabs = (): boolean => document.querySelector<HTMLInputElement>("input[name=tool][value=grab]")!.checked;
+  const tool = new ToolChoice();
   const felt = new FeltForce(element("felt"), world, touch);
-  const pointer = new TouchPointer(world.canvas, touch, world.controls, grabs);
-  const keys = new TouchKeys(world.canvas, element("cross"), touch, element<HTMLButtonElement>("touch-keys"), grabs);
+  const pointer = new TouchPointer(world.canvas, touch, world.controls, tool);
+  const keys = new TouchKeys(world.canvas, element("cross"), touch, element<HTMLButtonElement>("touch-keys"), tool);
   return { touch, felt, keys };
 }
 
@@ -83,7 +91,7 @@ function showScene(next: Scene): void {
   scene = next;
   state = null;
   newest = null;
-  world?.show(next);
+  world?.show(next, rememberedView(next));
   view.show(next);
   forces.show(next);
   playback.show(next);
@@ -100,6 +108,7 @@ function showState(next: State): void {
   status.showState(scene!, next);
   run.showState(next);
   playback.showState(next);
+  view.showState(next);
   settings.showState(next);
   forces.showState(next);
   hand?.touch.showState(next);
@@ -137,13 +146,18 @@ function showLink(link: LinkState, detail: string): void {
 
 // Controls
 
+const help = element<HTMLDetailsElement>("help");
+help.open = remembered("visited") === null;
+remember("visited", "yes");
+
 async function share(): Promise<void> {
   const link = onlookerLink(location.href);
   if (!(await copy(link))) notices.tell(link);
-  else if (token === "") notices.hint("Copied: a link by which one looks on and touches nothing.");
-  else notices.tell("Copied. It has your token in it: whoever takes watch=1 out can touch, too. The scene can have a token for onlookers.");
+  else if (token === "") notices.hint("Copied: a view-only link.");
+  else notices.tell("Copied. It has your token in it: whoever takes watch=1 out can touch, too. The scene can have a token for view-only links (viewer.onlooker_token).");
 }
 element("share").onclick = () => void share();
+new VideoButton(world);
 
 const TURN = 0.09; // [rad]
 const NEARER = 1.15;
@@ -153,11 +167,18 @@ listenForShortcuts(
     p: () => run.togglePause(),
     ".": () => run.step(),
     f: () => world?.fit(),
+    "1": () => world?.fit("front"),
+    "2": () => world?.fit("side"),
+    "3": () => world?.fit("top"),
     w: () => view.toggleRigid(),
     c: () => view.nextColour(),
     "[": () => view.exaggerate(false),
     "]": () => view.exaggerate(true),
-    " ": () => forces.toggleHold(),
+    " ": () => forces.toggleFreeze(),
+    escape: () => {
+      hand?.touch.release();
+      hand?.keys.set(false);
+    },
     t: () => {
       if (!element("tools").hidden) hand?.keys.set(!hand.keys.on);
     },

@@ -1,21 +1,31 @@
 import { make } from "./elements";
 
 const HINT_MS = 5000;
+const TOLD_MS = 12_000;
 
-/** Short messages over the picture, each to be sent away; read out by screen readers. */
+/** Short messages over the picture, which go by themselves; read out by screen readers. */
 export class Notices {
   constructor(private readonly host: HTMLElement) {}
 
-  /** Goes by itself. The same text is shown once at a time. */
+  /** The same text is shown once at a time. */
   hint(text: string): void {
     const note = this.add(text);
     note.classList.add("passing");
     setTimeout(() => note.remove(), HINT_MS);
   }
 
-  /** Stays until somebody has read it. */
+  /** Stays longer, and while the pointer or the focus is on it. */
   tell(text: string): void {
-    this.add(text);
+    const note = this.add(text);
+    let timer = 0;
+    const leave = (): void => {
+      clearTimeout(timer);
+      timer = window.setTimeout(() => note.remove(), TOLD_MS);
+    };
+    const stay = (): void => clearTimeout(timer);
+    for (const begin of ["pointerenter", "focusin"]) note.addEventListener(begin, stay);
+    for (const end of ["pointerleave", "focusout"]) note.addEventListener(end, leave);
+    leave();
   }
 
   private add(text: string): HTMLElement {

@@ -222,6 +222,8 @@ export interface Settings {
 export interface Changeable {
   dampingFactor: boolean;
   inertia: boolean;
+  /** it moves as a whole: damping of motion and tethers do something */
+  motion: boolean;
 }
 
 export interface Recording {
@@ -481,7 +483,7 @@ function readObjectSettings(reader: Reader): [ObjectSettings, Changeable] {
   };
   const bits = reader.u8();
   reader.skip(22);
-  return [settings, { dampingFactor: (bits & 1) !== 0, inertia: (bits & 2) !== 0 }];
+  return [settings, { dampingFactor: (bits & 1) !== 0, inertia: (bits & 2) !== 0, motion: (bits & 4) === 0 }];
 }
 
 function readRecording(reader: Reader): Recording {
@@ -579,7 +581,7 @@ export function encodeHello(token: string, onlyLooksOn = false): ArrayBuffer {
 export const enum Command {
   Reset = 1,
   Pause = 2,
-  GoOn = 3,
+  Resume = 3,
   Step = 4,
   BeginRecording = 5,
   EndRecording = 6,

@@ -25,7 +25,7 @@ export class RunControls {
 
   togglePause(): void {
     if (this.state?.playback) this.ask(this.state.playback.playing ? Command.PausePlayback : Command.Play);
-    else if (!this.pauseButton.disabled) this.ask(this.state!.paused ? Command.GoOn : Command.Pause);
+    else if (!this.pauseButton.disabled) this.ask(this.state!.paused ? Command.Resume : Command.Pause);
   }
 
   step(): void {
@@ -55,16 +55,16 @@ export class RunControls {
     const may = state !== null && !state.onlyLooksOn;
     const live = may && state.playback === null;
     this.resetButton.disabled = !may;
-    this.resetButton.firstChild!.textContent = state?.playback ? "To the start " : "Reset ";
+    this.resetButton.title = state?.playback ? "Recorded run: to its beginning" : "";
     this.pauseButton.disabled = !live;
-    this.pauseButton.firstChild!.textContent = state?.paused ? "Go on " : "Pause ";
+    this.pauseButton.firstChild!.textContent = state?.paused ? "Resume " : "Pause ";
     this.pauseButton.setAttribute("aria-pressed", String(live && state.paused));
     this.stepButton.disabled = !(live && state.paused);
     const recording = state?.recording === true;
     this.recordButton.disabled = !live || !(state.canRecord || recording);
     this.recordButton.setAttribute("aria-pressed", String(recording));
     this.recordButton.querySelector("span")!.textContent = recording ? "End recording" : "Record";
-    this.recordButton.title = recording ? "" : "Puts everything back, then keeps the run in a file beside the server";
+    this.recordButton.title = recording ? "" : "Resets, then keeps the run in a file beside the server";
     const why = this.whyNot();
     this.reason.textContent = why;
     this.reason.hidden = why === "";
@@ -74,7 +74,7 @@ export class RunControls {
   private whyNot(): string {
     const { state } = this;
     if (state === null) return "";
-    if (state.onlyLooksOn) return "This viewer only looks on.";
+    if (state.onlyLooksOn) return "This link is view only.";
     if (state.playback !== null) return "A recorded run is shown; the live run is paused.";
     return state.canRecord || state.recording ? "" : "This server keeps no recordings.";
   }
@@ -94,7 +94,7 @@ export class RunControls {
         const play = make("button", number === shown ? "Shown" : "Show") as HTMLButtonElement;
         play.type = "button";
         play.disabled = !may || number === shown;
-        play.setAttribute("aria-label", `Show the recording ${name}`);
+        play.setAttribute("aria-label", number === shown ? `Shown: the recording ${name}` : `Show the recording ${name}`);
         play.onclick = () => this.ask(Command.ShowRecording, number);
         row.append(make("span", name), play);
         return row;

@@ -27,9 +27,19 @@ const SLIDERS: Record<NumberKey, SliderKind> = {
   dampingFactor: { label: "Damping of the material", unit: "×", help: "Factor of its own damping: how long it wobbles", scale: () => byFactor(0.1, 10) },
 };
 
-const FIXED: Record<keyof Changeable, string> = {
-  dampingFactor: "The damping of the material is fixed in this model.",
-  inertia: "This model has no data for it, or does not spin.",
+const REASONS: Record<keyof Changeable, string> = {
+  dampingFactor: "The damping of the material cannot be changed in this model.",
+  inertia: "This model has no data for centrifugal loading.",
+  motion: "This body is fixed: damping of motion and turning, tethers and centrifugal loading do nothing.",
+};
+
+const NEEDS: Partial<Record<keyof ObjectSettings, readonly (keyof Changeable)[]>> = {
+  damping: ["motion"],
+  angularDamping: ["motion"],
+  tether: ["motion"],
+  angularTether: ["motion"],
+  dampingFactor: ["dampingFactor"],
+  inertia: ["motion", "inertia"],
 };
 
 class Slider {
@@ -98,7 +108,7 @@ export class SettingsPanel {
   ) {
     const kind = { label: "Gravity", unit: "m/s²", help: "On all objects", scale: (v: number) => fromZero(Math.max(MOST_GRAVITY, v), 1) };
     this.gravity = new Slider(kind, "set-gravity", (value) => this.changeGravity(value));
-    this.reasons = { dampingFactor: reasonLine(), inertia: reasonLine() };
+    this.reasons = { dampingFactor: reasonLine(), inertia: reasonLine(), motion: reasonLine() };
     this.chooserRow = labelled("Object", "set-object", this.chooser);
     this.chooser.onchange = () => {
       this.object = Number(this.chooser.value);
@@ -110,7 +120,7 @@ export class SettingsPanel {
       this.sliders.set(key, made);
       host.append(made.row);
     }
-    host.append(this.reasons.dampingFactor, this.inertiaRow(), this.reasons.inertia);
+    host.append(this.reasons.dampingFactor, this.inertiaRow(), this.reasons.inertia, this.reasons.motion);
   }
 
   show(scene: Scene): void {
@@ -143,7 +153,7 @@ export class SettingsPanel {
     this.inertia.type = "checkbox";
     this.inertia.id = "set-inertia";
     this.inertia.onchange = () => this.change("inertia", this.inertia.checked);
-    label.append(this.inertia, make("span", "Its own spin bulges it"));
+    label.append(this.inertia, make("span", "Centrifugal loading"));
     row.append(label);
     return row;
   }
@@ -193,7 +203,7 @@ export class SettingsPanel {
 
   private whyNot(): string | null {
     if (this.state === null || this.draft === null) return "There is no connection to the server.";
-    if (this.state.onlyLooksOn) return "This viewer only looks on.";
+    if (this.state.onlyLooksOn) return "This link is view only.";
     if (this.state.playback !== null) return "A recorded run is shown, as it was.";
     return null;
   }
@@ -203,13 +213,15 @@ export class SettingsPanel {
     this.reason.textContent = why;
     this.reason.hidden = why === null;
     const changeable = this.state?.changeable[this.object];
-    const can = (key: string): boolean => why === null && (!(key in FIXED) || changeable?.[key as keyof Changeable] === true);
+    const lacks = (key: keyof ObjectSettings): (keyof Changeable)[] => (NEEDS[key] ?? []).filter((need) => !changeable?.[need]);
+    const can = (key: keyof ObjectSettings): boolean => why === null && lacks(key).length === 0;
     for (const [key, slider] of this.sliders) slider.input.disabled = !can(key);
     this.gravity.input.disabled = why !== null;
     this.inertia.disabled = !can("inertia");
-    for (const key of Object.keys(FIXED) as (keyof Changeable)[]) {
-      this.reasons[key].textContent = FIXED[key];
-      this.reasons[key].hidden = why !== null || can(key);
+    const missing = new Set((Object.keys(NEEDS) as (keyof ObjectSettings)[]).flatMap((key) => lacks(key)[0] ?? []));
+    for (const need of Object.keys(REASONS) as (keyof Changeable)[]) {
+      this.reasons[need].textContent = REASONS[need];
+      this.reasons[need].hidden = why !== null || !missing.has(need);
     }
     if (this.draft === null || this.scene === null) return;
     // What is under the hand is not moved by what comes back.

@@ -1,5 +1,7 @@
 import * as THREE from "three";
 import { colourAt, linear, logarithmic, VIRIDIS } from "./colour_map";
+import { DrawnSurface } from "./drawn_surface";
+import type { Patch } from "./held_patch";
 import { InsideFaces } from "./inside_faces";
 import { SurfaceMarks } from "./surface_marks";
 import { creaseMesh, vertexNormals, type CreasedMesh } from "./creases";
@@ -21,6 +23,7 @@ export class SoftObject {
   readonly group = new THREE.Group();
   /** u of the last frame [m], B, three numbers a node; never exaggerated */
   readonly displacement: Float32Array;
+  readonly drawn: DrawnSurface;
   /** of the coloured quantity in the last frame: [m] or [m/s] */
   largest = 0;
   readonly marks: SurfaceMarks;
@@ -43,6 +46,7 @@ export class SoftObject {
   constructor(private readonly object: SceneObject) {
     const nodes = object.rest.length / 3;
     this.displacement = new Float32Array(3 * nodes);
+    this.drawn = new DrawnSurface(object, this.displacement);
     this.values = new Float32Array(nodes);
     this.world = new Float32Array(3 * nodes);
     const { regions } = object;
@@ -79,7 +83,7 @@ export class SoftObject {
     this.rigid.visible = false;
     this.group.add(mesh, this.rigid);
     if (this.inside !== null) this.group.add(this.inside.mesh);
-    this.draw(1, "none", { low: 0, high: 0 });
+    this.draw("none", { low: 0, high: 0 });
   }
 
   get name(): string {
@@ -147,13 +151,14 @@ export class SoftObject {
     }
   }
 
-  draw(exaggeration: number, colouring: Colouring, range: ColourRange): void {
+  draw(colouring: Colouring, range: ColourRange): void {
     const positions = this.geometry.getAttribute("position") as THREE.BufferAttribute;
     const normals = this.geometry.getAttribute("normal") as THREE.BufferAttribute;
     const colours = this.geometry.getAttribute("color") as THREE.BufferAttribute;
     const at = positions.array as Float32Array;
     const colour = colours.array as Float32Array;
     const { nodeOf } = this.creased;
+    const { exaggeration, displacement } = this.drawn;
     const coloured = colouring !== "none";
     const ofMaterial = colouring === "modulus";
     const values = ofMaterial ? this.moduli : colouring === "compliance" ? this.object.compliance : this.values;
@@ -161,7 +166,7 @@ export class SoftObject {
     for (let v = 0; v < nodeOf.length; ++v) {
       const node = nodeOf[v]!;
       for (let c = 0; c < 3; ++c) {
-        at[3 * v + c] = this.object.rest[3 * node + c]! + exaggeration * this.displacement[3 * node + c]!;
+        at[3 * v + c] = this.object.rest[3 * node + c]! + exaggeration * displacement[3 * node + c]!;
       }
       if (!coloured) continue;
       const value = values[ofMaterial ? v : node]!;
@@ -179,6 +184,23 @@ export class SoftObject {
       this.material.needsUpdate = true;
     }
     this.material.color.set(coloured ? "#ffffff" : this.plain);
+  }
+
+  /** @param held what styluses hold of it */
+  showHeld(held: readonly Patch[]): void {
+    this.drawn.follow(held);
+  }
+
+  /** How far the surface is drawn from its true place where a stylus touches it at rest. [m], W */
+  shiftOfStylus(stylus: number, middle: readonly [number, number, number]): THREE.Vector3 {
+    return this.drawn.shiftOfStylus(stylus, middle).applyQuaternion(this.group.quaternion);
+  }
+
+  /** The same at a place [m], W. */
+  shiftAt(place: readonly [number, number, number]): THREE.Vector3 {
+    this.group.updateMatrixWorld();
+    const local = this.group.worldToLocal(new THREE.Vector3(...place));
+    return this.drawn.shiftAt(local).applyQuaternion(this.group.quaternion);
   }
 
   /**

@@ -16,14 +16,15 @@ export function modesOf(scene: Scene, state: State): string[] {
   else if (state.paused) modes.push("paused");
   if (state.recording) modes.push("recording");
   if (scene.lockstep) modes.push("lockstep");
-  if (state.onlyLooksOn) modes.push("only looking on");
+  if (state.onlyLooksOn) modes.push("view only");
   return modes;
 }
 
-/** Above the picture: how the connection is; below it: time, frames, bandwidth. */
+/** Above the picture: how the connection is; below it: time, pictures drawn, surfaces received, bandwidth. */
 export class StatusLine {
   private readonly bytes = new RateMeter();
-  private readonly pictures = new RateMeter();
+  private readonly surfaces = new RateMeter();
+  private readonly drawings = new RateMeter();
 
   link(state: LinkState, detail: string): void {
     const link = element("link");
@@ -43,13 +44,18 @@ export class StatusLine {
   received(size: number, isFrame: boolean): void {
     const now = performance.now();
     this.bytes.add(size, now);
-    if (isFrame) this.pictures.add(1, now);
+    if (isFrame) this.surfaces.add(1, now);
+  }
+
+  /** The picture has been drawn. */
+  drawn(): void {
+    this.drawings.add(1, performance.now());
   }
 
   /** Now and then. */
   show(newest: Frame | null): void {
     const now = performance.now();
-    element("rate").textContent = `${this.pictures.perSecond(now)} frames/s`;
+    element("rate").textContent = `${this.drawings.perSecond(now)} drawn/s, ${this.surfaces.perSecond(now)} surfaces/s`;
     element("bandwidth").textContent = `${(this.bytes.perSecond(now) / 1000).toFixed(0)} kB/s`;
     element("clock").textContent = newest === null ? "" : `t = ${newest.time.toFixed(2)} s`;
   }

@@ -1,12 +1,13 @@
 import * as THREE from "three";
-import { headGeometry, LEAST_FORCE, METRES_PER_NEWTON, shaftGeometry, UP } from "./force_arrow";
+import { headGeometry, LEAST_FORCE, shaftGeometry, UP } from "./force_arrow";
+import type { Overlays } from "./overlays";
 import { Contact, type SceneStylus, type StylusState } from "./protocol";
 import { Spring } from "./spring";
 import type { Theme } from "./theme";
 
 const SMALLEST_TIP = 0.0022; // a point must be seen [m]
 
-/** Tip, proxy, the spring between them, and the force on the stylus as an arrow of 4 cm a newton. */
+/** Tip, proxy, the spring between them, and the force on the stylus as an arrow. */
 export class Stylus {
   readonly group = new THREE.Group();
   /** where this viewer's hand wants the tip [m], W; null: it is not this viewer's stylus */
@@ -43,24 +44,27 @@ export class Stylus {
     this.group.visible = false;
   }
 
-  follow(state: StylusState): void {
+  /** @param shift by which the surface that it touches is drawn away from its true place [m], W */
+  follow(state: StylusState, overlays: Overlays, metresPerNewton: number, shift: THREE.Vector3): void {
     this.group.visible = state.present;
+    this.group.position.copy(shift);
     if (!state.present) return;
-    const touches = state.contact !== Contact.Free;
+    const touches = state.contact !== Contact.Free && overlays.contacts;
     this.tip.position.set(...state.tip);
     this.proxy.visible = touches;
     this.proxy.position.set(...state.proxy);
     this.spring.mesh.visible = touches;
     if (touches) this.spring.span(this.asked ?? this.tip.position, this.proxy.position);
-    this.point(new THREE.Vector3(...state.force), state.tip);
+    this.arrow.visible = overlays.forces;
+    if (overlays.forces) this.point(new THREE.Vector3(...state.force), state.tip, metresPerNewton);
   }
 
   /** From where the arrow leaves the tip. */
-  private point(force: THREE.Vector3, tip: readonly [number, number, number]): void {
+  private point(force: THREE.Vector3, tip: readonly [number, number, number], metresPerNewton: number): void {
     const size = force.length();
     this.arrow.visible = size > LEAST_FORCE;
     if (!this.arrow.visible) return;
-    const length = size * METRES_PER_NEWTON;
+    const length = size * metresPerNewton;
     force.divideScalar(size);
     this.arrow.position.set(...tip).addScaledVector(force, this.radius);
     this.arrow.quaternion.setFromUnitVectors(UP, force);

@@ -5,6 +5,8 @@ export interface Theme {
   inkSoft: string;
   line: string;
   surface: string;
+  /** behind the picture */
+  ground: string;
   accent: string;
   object: string;
   scenery: string;
@@ -24,6 +26,7 @@ export function currentTheme(): Theme {
     inkSoft: colour("ink-soft"),
     line: colour("line"),
     surface: colour("surface"),
+    ground: colour("ground"),
     accent: colour("accent"),
     object: colour("object"),
     scenery: colour("scenery"),

@@ -19,11 +19,11 @@ export interface TouchListener {
 /** Why this viewer cannot touch now, for a person; null: it can. Pure. */
 export function refusal(scene: Scene | null, state: State | null): string | null {
   if (scene === null || state === null) return "There is no connection to the server.";
-  if (state.onlyLooksOn) return "You only look on: this link does not let you touch.";
+  if (state.onlyLooksOn) return "This link is view only: it does not let you touch.";
   if (state.playback !== null) return "A recorded run is shown: it can be seen, not touched.";
   if (!scene.viewersStylus) return "This run has no stylus for viewers: it can be seen, not touched.";
   if (!state.stylusFree && !state.stylusMine) return "Another viewer has the stylus. Wait until it is free.";
-  if (state.paused && !scene.lockstep) return "The run is paused: let it go on to touch.";
+  if (state.paused && !scene.lockstep) return "The run is paused: resume to touch.";
   return null;
 }
 
@@ -86,7 +86,7 @@ export class Touch {
 
   private handAt(place: Vector3, ray: Ray): Hand {
     const fingertip = this.scene!.styluses.at(-1)!;
-    return new Hand(place, ray, this.world.forward(), fingertip, this.grabs, performance.now());
+    return new Hand(place, ray, this.world.view.forward(), fingertip, this.grabs, performance.now());
   }
 
   lost(): void {
@@ -96,13 +96,13 @@ export class Touch {
 
   /** @returns whether there is something that can be touched at this point of the canvas [CSS px] */
   isOver(x: number, y: number): boolean {
-    return refusal(this.scene, this.state) === null && this.world.pick(this.world.rayThrough(x, y)) !== null;
+    return refusal(this.scene, this.state) === null && this.world.pick(this.world.view.rayThrough(x, y)) !== null;
   }
 
   /** @returns whether a press has begun at this point of the canvas [CSS px] */
   press(x: number, y: number): boolean {
     if (this.active) return false;
-    const ray = this.world.rayThrough(x, y);
+    const ray = this.world.view.rayThrough(x, y);
     const place = this.world.pick(ray);
     if (place === null) return false;
     const reason = refusal(this.scene, this.state);
@@ -121,7 +121,7 @@ export class Touch {
   }
 
   aim(x: number, y: number): void {
-    this.ray = this.world.rayThrough(x, y);
+    this.ray = this.world.view.rayThrough(x, y);
     this.hand?.aim(this.ray);
   }
 

@@ -1,3 +1,4 @@
+import type { ToolChoice } from "./tool_choice";
 import type { Touch } from "./touch";
 
 const PIXELS_PER_SECOND = 90;
@@ -13,7 +14,7 @@ const DEPTHS: Record<string, number> = { PageUp: 1, PageDown: -1 };
 
 /**
  * The stylus by keys: arrows move a cross over the picture, Space presses there and lets go, page keys go deeper
- * and back, G takes hold, Escape ends it.
+ * and back, G grabs, Escape lets go and ends it.
  */
 export class TouchKeys {
   on = false;
@@ -30,7 +31,7 @@ export class TouchKeys {
     private readonly cross: HTMLElement,
     private readonly touch: Touch,
     private readonly toggle: HTMLButtonElement,
-    private readonly alwaysGrabs: () => boolean,
+    private readonly tool: ToolChoice,
   ) {
     toggle.onclick = () => this.set(!this.on);
     canvas.addEventListener("keydown", (event) => this.key(event), { capture: true });
@@ -47,6 +48,7 @@ export class TouchKeys {
     this.cross.hidden = !on;
     if (!on) {
       this.release();
+      this.grab(false);
       return;
     }
     this.x = this.canvas.clientWidth / 2;
@@ -58,6 +60,7 @@ export class TouchKeys {
   /** The press is over, whatever ended it. */
   ended(): void {
     this.pressed = false;
+    if (this.on) this.tool.grabMeanwhile(this.touch.grabs);
   }
 
   private release(): void {
@@ -73,6 +76,7 @@ export class TouchKeys {
 
   private act(event: KeyboardEvent): boolean {
     this.slow = event.shiftKey;
+    if (event.key === "Shift") return true; // it slows here, and grabs nothing
     if (event.key in ARROWS || event.key in DEPTHS) {
       this.down.add(event.key);
       if (this.down.size === 1 && !event.repeat) this.begin();
@@ -80,8 +84,8 @@ export class TouchKeys {
     }
     if (event.repeat) return event.key === " ";
     if (event.key === " ") this.press();
-    else if (event.key.toLowerCase() === "g") this.touch.grabs = !this.touch.grabs;
-    else if (event.key === "Escape") this.escape();
+    else if (event.key.toLowerCase() === "g") this.grab(!this.touch.grabs);
+    else if (event.key === "Escape") this.set(false);
     else return false;
     return true;
   }
@@ -91,13 +95,13 @@ export class TouchKeys {
       this.touch.release();
       return;
     }
-    this.touch.grabs ||= this.alwaysGrabs();
+    this.grab(this.touch.grabs || this.tool.grabs);
     this.pressed = this.touch.press(this.x, this.y);
   }
 
-  private escape(): void {
-    if (this.pressed) this.touch.release();
-    else this.set(false);
+  private grab(on: boolean): void {
+    this.touch.grabs = on;
+    this.tool.grabMeanwhile(on);
   }
 
   private begin(): void {

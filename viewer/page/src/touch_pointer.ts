@@ -1,3 +1,4 @@
+import type { ToolChoice } from "./tool_choice";
 import type { Touch } from "./touch";
 
 const METRES_PER_NOTCH = 0.001;
@@ -17,7 +18,7 @@ export class TouchPointer {
     private readonly canvas: HTMLCanvasElement,
     private readonly touch: Touch,
     private readonly camera: { enabled: boolean },
-    private readonly alwaysGrabs: () => boolean,
+    private readonly tool: ToolChoice,
   ) {
     // Before the camera hears of them.
     const before = { capture: true };
@@ -34,6 +35,7 @@ export class TouchPointer {
     addEventListener("keyup", (event) => this.key(event, false));
     addEventListener("blur", () => {
       this.keys.clear();
+      this.lightTool();
       this.end();
     });
     document.addEventListener("visibilitychange", () => this.end());
@@ -44,6 +46,7 @@ export class TouchPointer {
     this.pointer = null;
     this.second = null;
     this.camera.enabled = true;
+    this.lightTool();
   }
 
   private down(event: PointerEvent): void {
@@ -100,15 +103,21 @@ export class TouchPointer {
     if (/^(arrow|page| |t$)/.test(name)) this.canvas.classList.remove("by-pointer");
     if (name !== "shift" && name !== "g") return;
     if (down) this.keys.add(name);
-    else this.keys.delete(name);
+    else if (!this.keys.delete(name)) return;
     if (this.pointer !== null) this.decide();
+    else if (!this.touch.active) this.lightTool();
   }
 
   private takesHold(shift: boolean): boolean {
-    return shift || this.keys.size > 0 || this.second !== null || this.alwaysGrabs();
+    return shift || this.keys.size > 0 || this.second !== null || this.tool.grabs;
   }
 
   private decide(): void {
     this.touch.grabs = this.takesHold(false);
+    this.lightTool();
+  }
+
+  private lightTool(): void {
+    this.tool.grabMeanwhile(this.keys.size > 0 || this.second !== null);
   }
 }

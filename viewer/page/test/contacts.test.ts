@@ -3,6 +3,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import * as THREE from "three";
 import { ContactMarks, pressure } from "../src/contact_marks.ts";
+import { ALL_OVERLAYS } from "../src/overlays.ts";
 import { MAX_CONTACTS, type BodyContact, type Quat, type Shape } from "../src/protocol.ts";
 import { SceneryBody } from "../src/scenery_body.ts";
 import type { Theme } from "../src/theme.ts";
@@ -42,9 +43,9 @@ test("pressure is the force along the normal per area, never a pull", () => {
   assert.equal(pressure({ ...CONTACT, area: 0 }), 0);
 });
 
-test("a contact has an arrow of 4 cm a newton and a disc of its area across the normal", () => {
+test("a contact has an arrow of its length a newton and a disc of its area across the normal", () => {
   const marks = new ContactMarks();
-  marks.follow([CONTACT, { ...CONTACT, force: [2, 0, 0], area: 4 * Math.PI, normal: [1, 0, 0] }]);
+  marks.follow([CONTACT, { ...CONTACT, force: [2, 0, 0], area: 4 * Math.PI, normal: [1, 0, 0] }], ALL_OVERLAYS, 0.04);
   assert.deepEqual([marks.shafts.count, marks.heads.count, marks.discs.count], [2, 2, 2]);
   assert.deepEqual(placed(marks.shafts, 0, Y), { position: [1, 2, 3], scale: [1, 0.02, 1], axis: [0, 1, 0] });
   assert.deepEqual(placed(marks.shafts, 1, Y), { position: [1, 2, 3], scale: [1, 0.08, 1], axis: [1, 0, 0] });
@@ -58,7 +59,7 @@ test("a short arrow is small, and a force that is next to none has none", () => 
   marks.follow([
     { ...CONTACT, force: [0, 0.001, 0] },
     { ...CONTACT, force: [0, 0.175, 0] },
-  ]);
+  ], ALL_OVERLAYS, 0.04);
   assert.deepEqual([marks.shafts.count, marks.discs.count], [1, 2]);
   assert.deepEqual(placed(marks.heads, 0, Y).scale, [0.5, 0.5, 0.5]);
   assert.deepEqual(placed(marks.shafts, 0, Y).scale, [0.5, 0.007, 0.5]);
@@ -66,23 +67,25 @@ test("a short arrow is small, and a force that is next to none has none", () => 
 
 test("the colours go from no pressure to the largest one, which falls slowly while something touches", () => {
   const marks = new ContactMarks();
-  assert.equal(marks.largest, 0);
+  assert.equal(marks.end, 0);
   const area = 0.001;
-  marks.follow([{ ...CONTACT, area, force: [1, 0, 0] }, { ...CONTACT, area, force: [0, 2, 0] }]);
-  assert.equal(marks.largest, 2000);
+  marks.follow([{ ...CONTACT, area, force: [1, 0, 0] }, { ...CONTACT, area, force: [0, 2, 0] }], ALL_OVERLAYS, 0.04);
+  assert.equal(marks.end, 2000);
   assert.deepEqual([colourOf(marks.discs, 0), colourOf(marks.discs, 1)], ["0d0887", "f0f921"]);
-  marks.follow([{ ...CONTACT, area, force: [0, 1, 0] }]);
-  assert.equal(marks.largest, 1990);
-  marks.follow([]);
-  assert.equal(marks.largest, 1990);
+  marks.follow([{ ...CONTACT, area, force: [0, 1, 0] }], ALL_OVERLAYS, 0.04);
+  assert.equal(marks.end, 1990);
+  marks.follow([], ALL_OVERLAYS, 0.04);
+  assert.equal(marks.end, 1990);
   assert.deepEqual([marks.shafts.count, marks.heads.count, marks.discs.count], [0, 0, 0]);
+  marks.follow([{ ...CONTACT, area, force: [0, 1, 0] }], { ...ALL_OVERLAYS, pressureEnd: 5000 }, 0.04);
+  assert.equal(marks.end, 5000);
   marks.clear();
-  assert.equal(marks.largest, 0);
+  assert.equal(marks.end, 0);
 });
 
 test("as many contacts as a frame can have are drawn", () => {
   const marks = new ContactMarks();
-  marks.follow(Array.from({ length: MAX_CONTACTS }, () => CONTACT));
+  marks.follow(Array.from({ length: MAX_CONTACTS }, () => CONTACT), ALL_OVERLAYS, 0.04);
   assert.equal(marks.discs.count, MAX_CONTACTS);
 });
 

@@ -84,7 +84,7 @@ test("whoever cannot touch is told why", () => {
   assert.equal(refusal(scene, { ...state, stylusFree: false, stylusMine: true }), null);
   assert.match(refusal(null, null)!, /no connection/);
   assert.match(refusal({ ...scene, viewersStylus: false }, state)!, /no stylus/);
-  assert.match(refusal(scene, { ...state, onlyLooksOn: true })!, /only look on/);
+  assert.match(refusal(scene, { ...state, onlyLooksOn: true })!, /view only/);
   assert.match(refusal(scene, { ...state, stylusFree: false })!, /Another viewer/);
   assert.match(refusal(scene, { ...state, playback: {} as State["playback"] })!, /recorded run/);
   assert.match(refusal(scene, { ...state, paused: true })!, /paused/);

@@ -142,7 +142,7 @@ test("a state is what was written", () => {
     playback: { length: 12.5, speed: 0.5, playing: true, recording: 2 },
     recordings: STATE.recordings,
     settings: { gravity: [0, -9.81, 0], objects: [settings] },
-    changeable: [{ dampingFactor: false, inertia: true }],
+    changeable: [{ dampingFactor: false, inertia: true, motion: true }],
     notice: "done",
   });
 });

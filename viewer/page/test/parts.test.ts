@@ -7,6 +7,7 @@ import { ForceLog } from "../src/force_log.ts";
 import { stressText } from "../src/material_legend.ts";
 import type { Frame } from "../src/protocol.ts";
 import { scaleBar } from "../src/scale_bar.ts";
+import { cube } from "./server_messages.ts";
 
 // Two squares that meet at x = 1 under a right angle: eight triangles' corners, six nodes.
 const POINTS = Float32Array.from([0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 1, 0, -1, 1, 1, -1]);
@@ -58,6 +59,18 @@ test("an edge stays an edge, what is smooth is shared", () => {
   assert.equal(mesh.nodeOf.length, 8); // the two nodes of the edge twice
   mesh.index.forEach((vertex, corner) => assert.equal(mesh.nodeOf[vertex], TRIANGLES[corner]));
   assert.equal(creaseMesh(POINTS, TRIANGLES, 100).nodeOf.length, 6);
+});
+
+test("an edge that ends on the surface is smoothed away, one that closes stays", () => {
+  // A tent of four triangles on a flat square of sixteen: its ridges end at its foot.
+  const grid = cube(4, 4);
+  const [rest, triangles] = [Float32Array.from(grid.rest), Uint32Array.from(grid.triangles)];
+  const edgesOfCube = creaseMesh(rest, triangles).nodeOf.length;
+  const top = [...rest.keys()].find((i) => i % 3 === 0 && rest[i] === 0 && rest[i + 1] === 2 && rest[i + 2] === 0)!;
+  rest[top + 1] = 2.55; // 29 degrees to its surroundings, up to 58 between its sides
+  const { nodeOf } = creaseMesh(rest, triangles);
+  assert.equal(nodeOf.length, edgesOfCube, "only the twelve edges of the cube are creases");
+  assert.equal(nodeOf.filter((node) => node === top / 3).length, 1);
 });
 
 test("normals are those of the faces on either side of an edge", () => {

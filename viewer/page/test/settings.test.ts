@@ -63,7 +63,7 @@ test("an onlooker's link keeps the token where the server never sees it", () => 
 test("the run's state is said in a word each", () => {
   const scene = { lockstep: false } as Scene;
   const state = { playback: null, paused: true, recording: true, onlyLooksOn: true } as State;
-  assert.deepEqual(modesOf(scene, state), ["paused", "recording", "only looking on"]);
+  assert.deepEqual(modesOf(scene, state), ["paused", "recording", "view only"]);
   const playback = { length: 1, speed: 1, playing: true, recording: 0 };
   const shown = { ...state, recording: false, onlyLooksOn: false, playback };
   assert.deepEqual(modesOf(scene, shown), ["recorded run"]);

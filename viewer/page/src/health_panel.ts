@@ -1,52 +1,5 @@
 import { make } from "./elements";
-import { Contact, type BridgeHealth, type Frame, type Health, type Percentiles, type Scene } from "./protocol";
-
-const CONTACTS: Record<Contact, string> = {
-  [Contact.Free]: "free",
-  [Contact.Touching]: "touching",
-  [Contact.Held]: "held",
-};
-
-/** The styluses with state and force; the chosen one is the one that the curves show. */
-export class StylusList {
-  chosen = 0;
-  private rows: { button: HTMLButtonElement; state: HTMLElement; force: HTMLElement }[] = [];
-
-  constructor(private readonly host: HTMLElement) {}
-
-  show(scene: Scene): void {
-    this.chosen = Math.min(this.chosen, scene.styluses.length - 1);
-    this.rows = scene.styluses.map((_, s) => {
-      const button = document.createElement("button");
-      button.type = "button";
-      const [state, force] = [make("span", "absent", "state"), make("span", "", "force")];
-      const isViewers = scene.viewersStylus && s === scene.styluses.length - 1;
-      button.append(make("span", isViewers ? "Viewers’ hand" : `Stylus ${s + 1}`), state, force);
-      button.onclick = () => this.choose(s);
-      return { button, state, force };
-    });
-    this.host.replaceChildren(...this.rows.map((row) => row.button));
-    this.choose(this.chosen);
-  }
-
-  chooseLast(): void {
-    this.choose(this.rows.length - 1);
-  }
-
-  private choose(stylus: number): void {
-    this.chosen = stylus;
-    this.rows.forEach((row, s) => row.button.setAttribute("aria-pressed", String(s === stylus)));
-  }
-
-  follow(frame: Frame): void {
-    frame.styluses.forEach((stylus, s) => {
-      const { state, force } = this.rows[s]!;
-      const contact = stylus.contact === Contact.Touching && stylus.slips ? "slipping" : CONTACTS[stylus.contact];
-      state.textContent = stylus.present ? contact : "absent";
-      force.textContent = stylus.present ? Math.hypot(...stylus.force).toFixed(3) + " N" : "";
-    });
-  }
-}
+import type { BridgeHealth, Health, Percentiles } from "./protocol";
 
 function microseconds(value: number): string {
   if (Number.isNaN(value)) return "–";

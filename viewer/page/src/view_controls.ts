@@ -14,7 +14,7 @@ import type { World } from "./world";
 const LEGENDS: Record<Exclude<Colouring, "none" | "modulus">, { title: string; factor: number; unit: string }> = {
   displacement: { title: "Displacement", factor: 1000, unit: "mm" },
   velocity: { title: "Speed of the surface", factor: 100, unit: "cm/s" },
-  compliance: { title: "Compliance: give per push", factor: 1000, unit: "mm/N" },
+  compliance: { title: "Compliance under a fingertip", factor: 1000, unit: "mm/N" },
 };
 
 const MODULUS = "Young’s modulus";

@@ -50,7 +50,8 @@ void put_settings(Writer& writer, const ObjectSettings& settings, const Settings
   }
   writer.put(static_cast<std::uint8_t>(settings.inertial_loading ? 1 : 0));
   writer.put(static_cast<std::uint8_t>((choice.material_damping ? 1 : 0) |
-                                       (choice.inertial_loading ? 2 : 0)));
+                                       (choice.inertial_loading ? 2 : 0) |
+                                       (choice.motion ? 0 : 4)));
   writer.put_zeros(22);
 }
 
@@ -75,7 +76,7 @@ ObjectSettings get_settings(Reader& reader, SettingsChoice& choice) {
   const auto choices = reader.get<std::uint8_t>();
   if (loading > 1) throw MessageError("a setting is out of range");
   settings.inertial_loading = loading == 1;
-  choice = {(choices & 1) != 0, (choices & 2) != 0};
+  choice = {(choices & 1) != 0, (choices & 2) != 0, (choices & 4) == 0};
   reader.skip(22);
   return settings;
 }

@@ -100,6 +100,7 @@ SettingsChoice settings_choice(const SimulationConfig& config, std::size_t i) {
   choice.material_damping =
       std::holds_alternative<ModalResponse>(object.model->response) && !(config.floor && floats);
   choice.inertial_loading = floats && has_centrifugal(*object.model);
+  choice.motion = floats;
   return choice;
 }
 

@@ -52,6 +52,7 @@ struct Settings {
 struct SettingsChoice {
   bool material_damping = false;  ///< a dense response has its damping in it; a floor relies on it
   bool inertial_loading = false;  ///< its model says what spin does, and it can turn
+  bool motion = true;             ///< damping and tether: it floats
 
   bool operator==(const SettingsChoice&) const = default;
 };

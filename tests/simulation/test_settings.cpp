@@ -168,6 +168,9 @@ TEST_CASE("settings: coupling to inertia is switched where the model knows it") 
   SimulationConfig config = plain(model);
   config.objects[0].angular_velocity = Vector3(0, 5, 0);
   CHECK(settings_choice(config, 0).inertial_loading);
+  CHECK(settings_choice(config, 0).motion);
+  model.body.support = Support::kFixed;
+  CHECK(settings_choice(plain(model), 0) == SettingsChoice{true, false, false});
   Simulation simulation(config);
   const StylusCommand nobody;
   StepRecord record;

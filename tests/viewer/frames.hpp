@@ -161,7 +161,7 @@ inline viewer::State example_state() {
   state.settings.gravity = Vector3(0, -9.81, 0);
   state.settings.object[0] = {{0.6, 0.5}, {0.1, 0.2}, {3.0, 0.01}, 2.0, true};
   state.settings.object[1] = {{0.3, 0.3}, {0, 0}, {0, 0}, 1.0, false};
-  state.choices = {{true, false}, {false, true}};
+  state.choices = {{true, false, false}, {false, true, true}};
   return state;
 }
 

@@ -279,7 +279,7 @@ TEST_CASE("state's bytes are those of the document") {
   state.recordings = {{1, "a.h5"}};
   state.notice = "hm";
   state.settings = example_settings().settings;
-  state.choices = {{false, false}};
+  state.choices = {{false, false, true}};
   const std::string zeros(2 * 60, '0');
   CHECK(encode(state) ==
         from_hex("49525657 0100 0400 41000000 02000000 0000000000000040 000000000000e03f"

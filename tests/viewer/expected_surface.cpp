@@ -5,7 +5,6 @@
 #include <iomanip>
 #include <iostream>
 
-#include "common/model/model_file.hpp"
 #include "scene/scene.hpp"
 #include "simulation/deformation/deformation.hpp"
 #include "simulation/step/simulation.hpp"
@@ -20,12 +19,7 @@ int main(int argc, char** argv) {
   const Trace trace = read_trace(argv[2]);
   const auto last = static_cast<std::size_t>(std::strtoull(argv[3], nullptr, 10));
   if (last >= trace.rows()) return 2;
-  SimulationConfig config;
-  config.styluses = scene.styluses;
-  config.objects.resize(1);
-  config.objects[0].model =
-      std::make_shared<const Model>(read_model(scene.objects.at(0).model, ResponseKind::kModal));
-  config.objects[0].friction = scene.objects[0].friction;
+  const SimulationConfig config = simulation_config(scene, false);
   Simulation simulation(config);
   Deformation deformation(config);
   StepRecord record;

@@ -90,7 +90,7 @@ test("the canvas shows the cube where it is, and nothing elsewhere", async (cont
 });
 
 test("a pressed cube is deformed on the page as at the server", async (context) => {
-  const stage = new Stage(context);
+  const stage = new Stage(context, "[[stylus]]\nradius = 0\n"); // a point, which deforms it most
   const trace = stage.path("trace.h5");
   // Takes hold of the top and swings the cube round, 2 cm, once a second, for longer than the page needs to see it.
   const rows = ["time,x,y,z,button", "0,0,0.07,0,0", "0.05,0,0.07,0,0", "0.25,0,0.055,0,1"];

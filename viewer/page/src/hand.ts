@@ -1,23 +1,16 @@
 import { Plane, Vector3, type Ray } from "three";
 
 const APPROACH_MS = 120;
-const CLEARANCE = 0.005; // between fingertip and surface at the beginning [m]
+const CLEARANCE = 0.005; // between tip and surface at the beginning [m]
 const PUSH_DEPTH = 0.008; // below the surface as it was at the beginning [m]
 const GRAB_DEPTH = 0.001; // where only what is touched can be taken hold of
 const GRAB_DISTANCE = 0.002; // where there is a reach: the object is not pushed before it is held
 const MOST_DEPTH = 0.08;
 
-export interface Fingertip {
-  /** [m] */
-  radius: number;
-  /** distance from which it can take hold [m] */
-  reach: number;
-}
-
 /**
  * A press by mouse or finger: the tip begins outside the surface, goes in along the view within a moment, and then
- * slides in the plane parallel to the screen at that depth. It is a point that touches: the radius only spreads its
- * pressure. Pure; times in ms.
+ * slides in the plane parallel to the screen at that depth. It is a point that touches, whatever the radius, which
+ * spreads its pressure: a longer way would end too late at the server to take hold. Pure; times in ms.
  */
 export class Hand {
   private readonly plane = new Plane();
@@ -28,6 +21,7 @@ export class Hand {
    * @param place on the surface that is pressed, its true one however much exaggerated it is drawn [m], W
    * @param ray from the eye through the pointer, unit direction
    * @param forward from the eye through the middle of the screen, unit
+   * @param reach distance from which it can take hold [m]
    * @param grabs to take hold, not to push
    * @param began now [ms]
    */
@@ -35,13 +29,13 @@ export class Hand {
     private readonly place: Vector3,
     private ray: Ray,
     private readonly forward: Vector3,
-    { radius, reach }: Fingertip,
+    reach: number,
     grabs: boolean,
     private began: number,
   ) {
     const grabDepth = reach > 0 ? -Math.min(GRAB_DISTANCE, 0.4 * reach) : GRAB_DEPTH;
     this.depth = grabs ? grabDepth : PUSH_DEPTH;
-    this.way = this.depth + radius + CLEARANCE;
+    this.way = this.depth + CLEARANCE;
     const end = place.clone().addScaledVector(ray.direction, this.depth);
     this.plane.setFromNormalAndCoplanarPoint(forward, end);
     this.holdsFromAfar = reach > 0;

@@ -85,8 +85,8 @@ export class Touch {
   }
 
   private handAt(place: Vector3, ray: Ray): Hand {
-    const fingertip = this.scene!.styluses.at(-1)!;
-    return new Hand(place, ray, this.world.view.forward(), fingertip, this.grabs, performance.now());
+    const { reach } = this.scene!.styluses.at(-1)!;
+    return new Hand(place, ray, this.world.view.forward(), reach, this.grabs, performance.now());
   }
 
   lost(): void {

@@ -11,16 +11,16 @@ import { refusal } from "../src/touch.ts";
 const FORWARD = new Vector3(0, 0, -1);
 const ray = (x: number): Ray => new Ray(new Vector3(x, 0, 1), FORWARD.clone());
 const press = new Vector3(0, 0, 0);
-const POINT = { radius: 0, reach: 0 };
+const NO_REACH = 0;
 
 function near(actual: Vector3 | number, expected: Vector3 | number, within = 1e-12): void {
   const away = typeof actual === "number" ? Math.abs(actual - (expected as number)) : actual.distanceTo(expected as Vector3);
   assert.ok(away <= within, `${JSON.stringify(actual)} is not ${JSON.stringify(expected)}`);
 }
 
-test("a press begins with the fingertip 5 mm outside and ends 8 mm inside", () => {
-  const hand = new Hand(press, ray(0), FORWARD, { radius: 0.01, reach: 0 }, false, 1000);
-  near(hand.tip(1000), new Vector3(0, 0, 0.015));
+test("a press begins with the tip 5 mm outside and ends 8 mm inside", () => {
+  const hand = new Hand(press, ray(0), FORWARD, NO_REACH, false, 1000);
+  near(hand.tip(1000), new Vector3(0, 0, 0.005));
   near(hand.tip(1120), new Vector3(0, 0, -0.008));
   near(hand.tip(9000), hand.tip(1120));
   let before = hand.tip(1000).z;
@@ -32,18 +32,18 @@ test("a press begins with the fingertip 5 mm outside and ends 8 mm inside", () =
 });
 
 test("taking hold pushes as little as can be", () => {
-  const touching = new Hand(press, ray(0), FORWARD, POINT, true, 0);
+  const touching = new Hand(press, ray(0), FORWARD, NO_REACH, true, 0);
   near(touching.tip(200), new Vector3(0, 0, -0.001));
   assert.equal(touching.mayTakeHold(0), true); // it takes hold of nothing before it touches
-  const reaching = new Hand(press, ray(0), FORWARD, { radius: 0.01, reach: 0.01 }, true, 0);
-  near(reaching.tip(0), new Vector3(0, 0, 0.015));
+  const reaching = new Hand(press, ray(0), FORWARD, 0.01, true, 0);
+  near(reaching.tip(0), new Vector3(0, 0, 0.005));
   near(reaching.tip(200), new Vector3(0, 0, 0.002));
   assert.equal(reaching.mayTakeHold(50), false);
   assert.equal(reaching.mayTakeHold(120), true);
 });
 
 test("dragging slides in the plane parallel to the screen", () => {
-  const hand = new Hand(press, ray(0), FORWARD, POINT, false, 0);
+  const hand = new Hand(press, ray(0), FORWARD, NO_REACH, false, 0);
   hand.aim(new Ray(new Vector3(0, 0, 1), new Vector3(0.3, 0.1, -1).normalize()));
   const tip = hand.tip(200);
   near(tip.z, -0.008);
@@ -51,7 +51,7 @@ test("dragging slides in the plane parallel to the screen", () => {
 });
 
 test("the wheel goes deeper, not through the whole object, and carries what is held as far as it likes", () => {
-  const hand = new Hand(press, ray(0), FORWARD, POINT, false, 0);
+  const hand = new Hand(press, ray(0), FORWARD, NO_REACH, false, 0);
   hand.deepen(0.004);
   near(hand.tip(200).z, -0.012);
   hand.deepen(10);
@@ -63,7 +63,7 @@ test("the wheel goes deeper, not through the whole object, and carries what is h
 });
 
 test("a hand that was lost comes from outside again", () => {
-  const hand = new Hand(press, ray(0), FORWARD, POINT, false, 0);
+  const hand = new Hand(press, ray(0), FORWARD, NO_REACH, false, 0);
   hand.again(500);
   near(hand.tip(500), new Vector3(0, 0, 0.005));
   near(hand.tip(700), new Vector3(0, 0, -0.008));

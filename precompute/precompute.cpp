@@ -257,8 +257,15 @@ double largest_poisson_ratio(const Material& material) {
   return own.empty() ? material.poisson_ratio : std::ranges::max(own);
 }
 
-void warn_about_regions(const PrecomputeConfig& config, const TetMesh& mesh,
-                        const Summary& summary) {
+// Before anything is computed.
+void warn_of_input(const PrecomputeConfig& config, const TetMesh& mesh, const Model& model,
+                   const Summary& summary) {
+  if (const auto hint = unit_hint(summary.mesh.extent)) warn(*hint);
+  if (config.mesh.order == 1 && largest_poisson_ratio(model.material) > kLockingPoissonRatio) {
+    warn(
+        "poisson_ratio above 0.45: linear tetrahedra lock, the body comes out too stiff; use "
+        "mesh.order = 2 with half the cells an edge");
+  }
   if (config.rigid) return;
   int number = 0;
   for (const MaterialRegion& region : config.regions) {
@@ -269,16 +276,10 @@ void warn_about_regions(const PrecomputeConfig& config, const TetMesh& mesh,
   }
 }
 
-void warn_about(const PrecomputeConfig& config, const Model& model, const Summary& summary) {
-  if (config.mesh.order == 1 && largest_poisson_ratio(model.material) > kLockingPoissonRatio) {
-    warn(
-        "poisson_ratio above 0.45: linear tetrahedra lock, the body comes out too stiff; use "
-        "mesh.order = 2 with half the cells an edge");
-  }
+void warn_of_result(const Summary& summary) {
   if (summary.reduction && summary.reduction->force_error > kMaxForceError) {
     warn("with so few modes the force under a fingertip is off by more than 5 %; ask for more");
   }
-  if (const auto hint = unit_hint(summary.mesh.extent)) warn(*hint);
   if (summary.decay_left.value_or(0.0) > kMaxDecayLeft) {
     warn("more than 1 % of R is left at the last step; raise response.steps or the damping");
   }
@@ -306,6 +307,7 @@ Summary precompute_model(const PrecomputeConfig& config, const std::filesystem::
                std::to_string(model.mesh.surface_node_count()) + " surface nodes");
 
   Summary summary = describe_work(mesh, model, clamped.size());
+  if (ranks.rank() == 0) warn_of_input(config, mesh, model, summary);
   const int threads = config.threads > 0 ? config.threads : omp_get_num_procs();
   const auto by_columns = [&](const ColumnSource& source) {
     const ColumnsDone done =
@@ -341,8 +343,7 @@ Summary precompute_model(const PrecomputeConfig& config, const std::filesystem::
   if (ranks.rank() > 0) return summary;
   summary.file_bytes = std::filesystem::file_size(output);
   summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  warn_about(config, model, summary);
-  warn_about_regions(config, mesh, summary);
+  warn_of_result(summary);
   return summary;
 }
 

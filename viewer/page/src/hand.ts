@@ -16,6 +16,7 @@ export class Hand {
   private readonly plane = new Plane();
   private readonly way: number;
   private depth: number;
+  private began: number | null = null; // when it was first asked where it is: outside, however late that was [ms]
 
   /**
    * @param place on the surface that is pressed, its true one however much exaggerated it is drawn [m], W
@@ -23,7 +24,6 @@ export class Hand {
    * @param forward from the eye through the middle of the screen, unit
    * @param reach distance from which it can take hold [m]
    * @param grabs to take hold, not to push
-   * @param began now [ms]
    */
   constructor(
     private readonly place: Vector3,
@@ -31,7 +31,6 @@ export class Hand {
     private readonly forward: Vector3,
     reach: number,
     grabs: boolean,
-    private began: number,
   ) {
     const grabDepth = reach > 0 ? -Math.min(GRAB_DISTANCE, 0.4 * reach) : GRAB_DEPTH;
     this.depth = grabs ? grabDepth : PUSH_DEPTH;
@@ -62,17 +61,18 @@ export class Hand {
   /** Where the tip ought to be [m], W. */
   tip(now: number): Vector3 {
     const at = this.ray.intersectPlane(this.plane, new Vector3()) ?? this.place.clone();
+    this.began ??= now;
     const left = 1 - Math.min(Math.max((now - this.began) / APPROACH_MS, 0), 1);
     return at.addScaledVector(this.ray.direction, -this.way * left * left * (3 - 2 * left));
   }
 
   /** Not on the way there, where it would take hold from afar and then push. */
   mayTakeHold(now: number): boolean {
-    return !this.holdsFromAfar || now - this.began >= APPROACH_MS;
+    return !this.holdsFromAfar || (this.began !== null && now - this.began >= APPROACH_MS);
   }
 
   /** Comes from outside once more. */
-  again(now: number): void {
-    this.began = now;
+  again(): void {
+    this.began = null;
   }
 }

@@ -57,7 +57,7 @@ export class Touch {
 
   showState(state: State): void {
     // The server has not heard of it for too long, and has forgotten where it touches.
-    if (this.state?.stylusMine && state.stylusFree) this.hand?.again(performance.now());
+    if (this.state?.stylusMine && state.stylusFree) this.hand?.again();
     this.state = state;
     if (this.active && refusal(this.scene, state) !== null) {
       this.release();
@@ -86,7 +86,7 @@ export class Touch {
 
   private handAt(place: Vector3, ray: Ray): Hand {
     const { reach } = this.scene!.styluses.at(-1)!;
-    return new Hand(place, ray, this.world.view.forward(), reach, this.grabs, performance.now());
+    return new Hand(place, ray, this.world.view.forward(), reach, this.grabs);
   }
 
   lost(): void {

@@ -18,8 +18,15 @@ function near(actual: Vector3 | number, expected: Vector3 | number, within = 1e-
   assert.ok(away <= within, `${JSON.stringify(actual)} is not ${JSON.stringify(expected)}`);
 }
 
+/** A hand that is on its way since 0. */
+function begun(reach: number, grabs: boolean): Hand {
+  const hand = new Hand(press, ray(0), FORWARD, reach, grabs);
+  hand.tip(0);
+  return hand;
+}
+
 test("a press begins with the tip 5 mm outside and ends 8 mm inside", () => {
-  const hand = new Hand(press, ray(0), FORWARD, NO_REACH, false, 1000);
+  const hand = new Hand(press, ray(0), FORWARD, NO_REACH, false);
   near(hand.tip(1000), new Vector3(0, 0, 0.005));
   near(hand.tip(1120), new Vector3(0, 0, -0.008));
   near(hand.tip(9000), hand.tip(1120));
@@ -32,10 +39,10 @@ test("a press begins with the tip 5 mm outside and ends 8 mm inside", () => {
 });
 
 test("taking hold pushes as little as can be", () => {
-  const touching = new Hand(press, ray(0), FORWARD, NO_REACH, true, 0);
+  const touching = begun(NO_REACH, true);
   near(touching.tip(200), new Vector3(0, 0, -0.001));
   assert.equal(touching.mayTakeHold(0), true); // it takes hold of nothing before it touches
-  const reaching = new Hand(press, ray(0), FORWARD, 0.01, true, 0);
+  const reaching = new Hand(press, ray(0), FORWARD, 0.01, true);
   near(reaching.tip(0), new Vector3(0, 0, 0.005));
   near(reaching.tip(200), new Vector3(0, 0, 0.002));
   assert.equal(reaching.mayTakeHold(50), false);
@@ -43,7 +50,7 @@ test("taking hold pushes as little as can be", () => {
 });
 
 test("dragging slides in the plane parallel to the screen", () => {
-  const hand = new Hand(press, ray(0), FORWARD, NO_REACH, false, 0);
+  const hand = begun(NO_REACH, false);
   hand.aim(new Ray(new Vector3(0, 0, 1), new Vector3(0.3, 0.1, -1).normalize()));
   const tip = hand.tip(200);
   near(tip.z, -0.008);
@@ -51,7 +58,7 @@ test("dragging slides in the plane parallel to the screen", () => {
 });
 
 test("the wheel goes deeper, not through the whole object, and carries what is held as far as it likes", () => {
-  const hand = new Hand(press, ray(0), FORWARD, NO_REACH, false, 0);
+  const hand = begun(NO_REACH, false);
   hand.deepen(0.004);
   near(hand.tip(200).z, -0.012);
   hand.deepen(10);
@@ -63,10 +70,18 @@ test("the wheel goes deeper, not through the whole object, and carries what is h
 });
 
 test("a hand that was lost comes from outside again", () => {
-  const hand = new Hand(press, ray(0), FORWARD, NO_REACH, false, 0);
-  hand.again(500);
+  const hand = begun(NO_REACH, false);
+  hand.again();
   near(hand.tip(500), new Vector3(0, 0, 0.005));
   near(hand.tip(700), new Vector3(0, 0, -0.008));
+});
+
+test("the way in begins when it is first asked for, however late", () => {
+  const hand = new Hand(press, ray(0), FORWARD, 0.01, true);
+  assert.equal(hand.mayTakeHold(5000), false);
+  near(hand.tip(5000), new Vector3(0, 0, 0.005));
+  assert.equal(hand.mayTakeHold(5119), false);
+  assert.equal(hand.mayTakeHold(5120), true);
 });
 
 test("what is felt is said in words", () => {

@@ -116,10 +116,12 @@ TEST_CASE(
 
 TEST_CASE(
     "a device that is moved too fast again and again stays without force, the bridge goes on") {
+  // Three that count; one that comes while the force fades, as where the machine is busy, does not.
+  const std::string faults = "0x0203,0x0203,0x0203,0x0203,0x0203,0x0203,0x0203,0x0203";
   const DeviceStage device;
   Server server = device.stage.start_server();
-  ChildProcess bridge = device.stage.start_bridge(
-      server, {}, device.with(DeviceStage::in_contact("0x0203,0x0203,0x0203", 20)));
+  ChildProcess bridge =
+      device.stage.start_bridge(server, {}, device.with(DeviceStage::in_contact(faults, 20)));
   CHECK_THAT(bridge.line_with("no force any more", true), Contains("HD_EXCEEDED_MAX_VELOCITY"));
   CHECK(bridge.running());
   bridge.signal(SIGTERM);

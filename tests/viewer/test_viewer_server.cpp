@@ -40,7 +40,9 @@ PageFiles example_page() {
 
 /// A server that shows it.
 struct Show {
-  explicit Show(ViewerSettings settings = {}) : server(with_page(std::move(settings)), run) {
+  // Peers of these tests answer no pings, and a slow machine takes its time.
+  explicit Show(ViewerSettings settings = {.idle_timeout_ms = 600'000})
+      : server(with_page(std::move(settings)), run) {
     server.start();
   }
   static ViewerSettings with_page(ViewerSettings settings) {

@@ -14,7 +14,7 @@ namespace {
 /// Reserved bytes are not looked at and written as zero: only from the second time on must the
 /// bytes stay the same.
 template <typename Decode, typename Encode>
-void check_again(const Bytes& bytes, const Decode& decode, const Encode& encode) {
+void check_message_again(const viewer::Bytes& bytes, const Decode& decode, const Encode& encode) {
   try {
     expect(encode(decode(bytes)) == bytes, "a message that was encoded here stays the same");
   } catch (const MessageError&) {
@@ -25,7 +25,7 @@ void check_again(const Bytes& bytes, const Decode& decode, const Encode& encode)
 void client(Input input) {
   try {
     const ClientMessage message = decode_client(input);
-    check_again(encode(message), decode_client, [](const auto& it) { return encode(it); });
+    check_message_again(encode(message), decode_client, [](const auto& it) { return encode(it); });
   } catch (const MessageError&) {
   }
 }
@@ -33,7 +33,7 @@ void client(Input input) {
 void scene(Input input) {
   try {
     const Scene scene = decode_scene(input);
-    check_again(encode(scene), decode_scene, [](const auto& it) { return encode(it); });
+    check_message_again(encode(scene), decode_scene, [](const auto& it) { return encode(it); });
   } catch (const MessageError&) {
   }
 }
@@ -41,7 +41,7 @@ void scene(Input input) {
 void health(Input input) {
   try {
     const Health health = decode_health(input);
-    check_again(encode(health), decode_health, [](const auto& it) { return encode(it); });
+    check_message_again(encode(health), decode_health, [](const auto& it) { return encode(it); });
   } catch (const MessageError&) {
   }
 }
@@ -50,7 +50,7 @@ void state(Input input) {
   const auto decode = [](Input bytes) { return decode_state(bytes, 2); };
   try {
     const State state = decode(input);
-    check_again(encode(state), decode, [](const auto& it) { return encode(it); });
+    check_message_again(encode(state), decode, [](const auto& it) { return encode(it); });
   } catch (const MessageError&) {
   }
 }
@@ -67,7 +67,7 @@ void frame(Input input) {
   const std::vector<std::size_t> nodes(input.begin() + 1, input.begin() + 1 + input[0]);
   try {
     const SurfaceFrame frame = decode_frame(input.subspan(1u + input[0]), nodes);
-    Bytes bytes;
+    viewer::Bytes bytes;
     encode(frame, bytes);
     const SurfaceFrame again = decode_frame(bytes, nodes);
     for (std::size_t i = 0; i < nodes.size(); ++i) {

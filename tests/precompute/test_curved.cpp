@@ -20,13 +20,13 @@ using irdm::test::Discrete;
 
 namespace {
 
-const Material kMaterial{3000.0, 0.4, 1000.0, 0.0, 0.0};
-const Vector3 kSize(0.12, 0.10, 0.11);
+const Material kCurvedMaterial{3000.0, 0.4, 1000.0, 0.0, 0.0};
+const Vector3 kCurvedSize(0.12, 0.10, 0.11);
 constexpr double kRadius = 0.05;
 
 // A box whose surface is flat and all of whose inner edges are curved.
 TetMesh curved_box() {
-  TetMesh mesh = quadratic_mesh(test::box_mesh(kSize, {3, 3, 2}));
+  TetMesh mesh = quadratic_mesh(test::box_mesh(kCurvedSize, {3, 3, 2}));
   std::vector<bool> moves(static_cast<std::size_t>(mesh.node_count()), true);
   for (const int node : extract_surface(mesh, "box").nodes) {
     moves[static_cast<std::size_t>(node)] = false;
@@ -62,7 +62,7 @@ Eigen::VectorXd field(const TetMesh& mesh, const Matrix3& gradient) {
 TEST_CASE("curved elements strain evenly under a linear displacement and not at all as they turn") {
   const TetMesh mesh = curved_box();
   CHECK_NOTHROW(check_mesh(mesh, "m"));
-  const SparseMatrix stiffness = assemble_stiffness(mesh, kMaterial);
+  const SparseMatrix stiffness = assemble_stiffness(mesh, kCurvedMaterial);
   Matrix3 turn;
   turn << 0, -3, 2, 3, 0, -1, -2, 1, 0;
   const Eigen::VectorXd turned = field(mesh, turn);
@@ -80,18 +80,18 @@ TEST_CASE("curved elements strain evenly under a linear displacement and not at 
     const tet4::Geometry near = tet10::geometry(mesh, e, b);
     REQUIRE((element.transpose() * tet10::gradients(near, b) - gradient).norm() < 1e-12);
   }
-  const Matrix3 stress = lame_stress(gradient, lame_parameters(kMaterial));
+  const Matrix3 stress = lame_stress(gradient, lame_parameters(kCurvedMaterial));
   const double density = 0.5 * stress.cwiseProduct(gradient).sum();
   CHECK(0.5 * u.dot(stiffness * u) == Approx(density * volume).epsilon(1e-12));
   // Four points do not integrate the cubic Jacobian exactly.
-  CHECK(volume == Approx(kSize.prod()).epsilon(1e-3));
+  CHECK(volume == Approx(kCurvedSize.prod()).epsilon(1e-3));
 }
 
 TEST_CASE("mass and inertia of a body with curved elements inside are those of the body") {
   const TetMesh mesh = curved_box();
-  const MassProperties curved = solid_mass_properties(mesh, kMaterial);
+  const MassProperties curved = solid_mass_properties(mesh, kCurvedMaterial);
   const MassProperties straight =
-      solid_mass_properties(test::box_mesh(kSize, {3, 3, 2}), kMaterial);
+      solid_mass_properties(test::box_mesh(kCurvedSize, {3, 3, 2}), kCurvedMaterial);
   CHECK(curved.mass == Approx(straight.mass).epsilon(1e-12));
   CHECK((curved.centre_of_mass - straight.centre_of_mass).norm() < 1e-13);
   CHECK((curved.inertia - straight.inertia).norm() < 1e-12 * straight.inertia.norm());
@@ -105,10 +105,11 @@ TEST_CASE("a geometry script of second order gives a ball its own surface") {
     REQUIRE(mesh.position(node).norm() == Approx(kRadius).epsilon(1e-6));
   }
   const double volume = 4.0 / 3.0 * std::numbers::pi * std::pow(kRadius, 3);
-  const MassProperties solid = solid_mass_properties(mesh, kMaterial);
-  CHECK(solid.mass == Approx(kMaterial.density * volume).epsilon(2e-3));
+  const MassProperties solid = solid_mass_properties(mesh, kCurvedMaterial);
+  CHECK(solid.mass == Approx(kCurvedMaterial.density * volume).epsilon(2e-3));
   CHECK(solid.inertia.trace() == Approx(1.2 * solid.mass * kRadius * kRadius).epsilon(2e-3));
-  const MassProperties nodal = nodal_mass_properties(mesh.nodes, lumped_mass(mesh, kMaterial));
+  const MassProperties nodal =
+      nodal_mass_properties(mesh.nodes, lumped_mass(mesh, kCurvedMaterial));
   CHECK(nodal.mass == Approx(solid.mass).epsilon(1e-3));
   CHECK((nodal.centre_of_mass - solid.centre_of_mass).norm() < 1e-3 * kRadius);
 }
@@ -116,11 +117,12 @@ TEST_CASE("a geometry script of second order gives a ball its own surface") {
 TEST_CASE("the lowest torsional modes of a ball with curved elements are Lamb's within 2 %",
           "[slow]") {
   const test::MeshFiles files;
-  const Discrete body(curved_ball(files, 0.018), kMaterial);
+  const Discrete body(curved_ball(files, 0.018), kCurvedMaterial);
   const ElasticModes modes = elastic_modes(body.stiffness, body.mesh.nodes, body.mass);
   // Degree 2: j_2(eta) = eta j_3(eta), with eta = omega a / c_s.
-  const double shear = kMaterial.youngs_modulus / (2.0 * (1.0 + kMaterial.poisson_ratio));
-  const double expected = 2.5011 * std::sqrt(shear / kMaterial.density) / kRadius;
+  const double shear =
+      kCurvedMaterial.youngs_modulus / (2.0 * (1.0 + kCurvedMaterial.poisson_ratio));
+  const double expected = 2.5011 * std::sqrt(shear / kCurvedMaterial.density) / kRadius;
   for (Eigen::Index m = 0; m < 5; ++m) {
     CHECK(modes.angular_frequency(m) == Approx(expected).epsilon(0.02));
   }

@@ -11,7 +11,7 @@ using namespace irdm::test;
 
 namespace {
 
-constexpr int kPlane = -1;
+constexpr int kFirstScenery = -1;
 
 // Two cubes in free space that fly at each other, a little aside, and turn.
 SimulationConfig colliding(const FemCube& cube, double speed) {
@@ -289,10 +289,11 @@ TEST_CASE("bodies: a stylus that presses on a stack feels all of it", "[slow]") 
   const Vector3 hand = record->stylus[0].force;
   INFO("hand " << hand.transpose() << " N, between the cubes "
                << force_between(*record, 1, 0).transpose() << ", plane "
-               << force_between(*record, 0, kPlane).transpose());
+               << force_between(*record, 0, kFirstScenery).transpose());
   CHECK(hand.y() > 0.5);
   CHECK(force_between(*record, 1, 0).y() == Approx(weight + hand.y()).epsilon(1e-3));
-  CHECK(force_between(*record, 0, kPlane).y() == Approx(2 * weight + hand.y()).epsilon(1e-3));
+  CHECK(force_between(*record, 0, kFirstScenery).y() ==
+        Approx(2 * weight + hand.y()).epsilon(1e-3));
   // Without the coupling spring the tip is where the surface is.
   CHECK((record->stylus[0].proxy - command.tip).norm() ==
         Approx(hand.norm() / 2000.0).epsilon(0.02));

@@ -15,7 +15,7 @@ using namespace irdm::test;
 
 namespace {
 
-constexpr double kFriction = 0.5;
+constexpr double kHandFriction = 0.5;
 
 /// Where a fingertip presses on the cube [m], and the outward normal there, both in the hand's
 /// frame, which at the start is that of the cube.
@@ -118,7 +118,8 @@ class World {
     for (int s = 0; s < record_.stylus_count; ++s) {
       const ContactRecord& contact = cube().contact[static_cast<std::size_t>(s)];
       const double push = -contact.force.dot(contact.normal);
-      most = std::max(most, (contact.force + push * contact.normal).norm() / (kFriction * push));
+      most =
+          std::max(most, (contact.force + push * contact.normal).norm() / (kHandFriction * push));
     }
     return most;
   }
@@ -131,7 +132,7 @@ class World {
     for (const Vector3& position : cubes) {
       SimulationObject object;
       object.model = fem_cube({.youngs_modulus = youngs_modulus, .poisson_ratio = 0.45});
-      object.friction = {kFriction, kFriction};
+      object.friction = {kHandFriction, kHandFriction};
       object.damping = {4.0, 4.0};
       object.position = position;
       config.objects.push_back(object);
@@ -222,7 +223,7 @@ TEST_CASE("hands: a cube slips when all fingertips together press too little", "
   Grasp grasp(youngs_modulus, fingers, 0.01);
   World& world = grasp.world();
   grasp.lift(depth_for(youngs_modulus));
-  const double threshold = world.weight() / kFriction;
+  const double threshold = world.weight() / kHandFriction;
   REQUIRE(world.pressed() > 1.1 * threshold);
   double last = world.cube().position.y();
   double pressed = 0.0;

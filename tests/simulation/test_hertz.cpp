@@ -82,31 +82,34 @@ double total(const Load& load, double radius) {
   return sum;
 }
 
-const HertzBody kSoft{2000.0, 0.49, 0.06};
-const HertzBody kHard{9000.0, 0.3, 0.15};
-const HertzBody kFlat{5000.0, 0.2};
-const HertzBody kRigid{.radius = 0.01};
+const HertzBody kSoftSphere{2000.0, 0.49, 0.06};
+const HertzBody kHardSphere{9000.0, 0.3, 0.15};
+const HertzBody kHalfSpace{5000.0, 0.2};
+const HertzBody kRigidSphere{.radius = 0.01};
 constexpr double kApproach = 0.002;
 
 }  // namespace
 
 TEST_CASE("hertz: moduli and radius of pairs that are known") {
-  const HertzPair equal = hertz_pair(kSoft, kSoft);
+  const HertzPair equal = hertz_pair(kSoftSphere, kSoftSphere);
   CHECK(equal.modulus == Approx(0.5 * 2000.0 / (1 - 0.49 * 0.49)));
   CHECK(equal.radius == Approx(0.03));
   CHECK(equal.tangential_modulus == Approx(2 * (2000.0 / 2.98) / 1.51));
-  const HertzPair rigid = hertz_pair(kRigid, kFlat);
+  const HertzPair rigid = hertz_pair(kRigidSphere, kHalfSpace);
   CHECK(rigid.modulus == Approx(5000.0 / (1 - 0.04)));
   CHECK(rigid.radius == Approx(0.01));
-  const HertzPair unequal = hertz_pair(kSoft, kHard);
+  const HertzPair unequal = hertz_pair(kSoftSphere, kHardSphere);
   CHECK(1 / unequal.modulus == Approx((1 - 0.49 * 0.49) / 2000.0 + (1 - 0.09) / 9000.0));
   CHECK(1 / unequal.radius == Approx(1 / 0.06 + 1 / 0.15));
-  CHECK(unequal.modulus == hertz_pair(kHard, kSoft).modulus);
+  CHECK(unequal.modulus == hertz_pair(kHardSphere, kSoftSphere).modulus);
 }
 
 TEST_CASE("hertz: under the pressure both half-spaces fill the gap, and nowhere overlap") {
-  const std::pair<HertzBody, HertzBody> bodies = GENERATE(values<std::pair<HertzBody, HertzBody>>(
-      {{kSoft, kSoft}, {kSoft, kHard}, {kSoft, kFlat}, {kRigid, kFlat}}));
+  const std::pair<HertzBody, HertzBody> bodies =
+      GENERATE(values<std::pair<HertzBody, HertzBody>>({{kSoftSphere, kSoftSphere},
+                                                        {kSoftSphere, kHardSphere},
+                                                        {kSoftSphere, kHalfSpace},
+                                                        {kRigidSphere, kHalfSpace}}));
   const HertzBody& first = bodies.first;
   const HertzBody& second = bodies.second;
   const HertzPair pair = hertz_pair(first, second);
@@ -127,7 +130,7 @@ TEST_CASE("hertz: under the pressure both half-spaces fill the gap, and nowhere 
 }
 
 TEST_CASE("hertz: a little more approach takes 2 a E* of force") {
-  const HertzPair pair = hertz_pair(kSoft, kHard);
+  const HertzPair pair = hertz_pair(kSoftSphere, kHardSphere);
   constexpr double kStep = 1e-8;
   const double stiffness =
       (hertz_force(pair, kApproach + kStep) - hertz_force(pair, kApproach - kStep)) / (2 * kStep);
@@ -135,8 +138,8 @@ TEST_CASE("hertz: a little more approach takes 2 a E* of force") {
 }
 
 TEST_CASE("mindlin: what sticks moves as one, by the displacement of the closed form") {
-  const std::pair<HertzBody, HertzBody> bodies = GENERATE(
-      values<std::pair<HertzBody, HertzBody>>({{kSoft, kSoft}, {kHard, kHard}, {kSoft, kHard}}));
+  const std::pair<HertzBody, HertzBody> bodies = GENERATE(values<std::pair<HertzBody, HertzBody>>(
+      {{kSoftSphere, kSoftSphere}, {kHardSphere, kHardSphere}, {kSoftSphere, kHardSphere}}));
   const HertzBody& first = bodies.first;
   const HertzBody& second = bodies.second;
   const double share = GENERATE(0.05, 0.5, 0.9, 0.999);
@@ -172,7 +175,7 @@ TEST_CASE("mindlin: what sticks moves as one, by the displacement of the closed 
 }
 
 TEST_CASE("mindlin: it begins as if nothing slipped, and slips everywhere at mu F") {
-  const MindlinContact contact{hertz_pair(kSoft, kSoft), kApproach, 0.4};
+  const MindlinContact contact{hertz_pair(kSoftSphere, kSoftSphere), kApproach, 0.4};
   const double a = hertz_contact_radius(contact.pair, kApproach);
   const double most = 0.4 * hertz_force(contact.pair, kApproach);
   CHECK(contact.most_force() == most);
@@ -183,7 +186,7 @@ TEST_CASE("mindlin: it begins as if nothing slipped, and slips everywhere at mu 
   CHECK(contact.stick_radius(most) == 0.0);
   CHECK(contact.displacement(most) == contact.most_displacement());
   CHECK(contact.most_displacement() ==
-        Approx(3 * most * (2 - kSoft.poisson_ratio) / (8 * a * kSoft.shear_modulus())));
+        Approx(3 * most * (2 - kSoftSphere.poisson_ratio) / (8 * a * kSoftSphere.shear_modulus())));
   for (const double share : {0.0, 0.1, 0.5, 0.9, 1.0}) {
     CHECK(contact.force(contact.displacement(share * most)) == Approx(share * most));
   }

@@ -13,10 +13,10 @@ using namespace irdm::test;
 
 namespace {
 
-constexpr double kFriction = 0.4;
+constexpr double kSceneryFriction = 0.4;
 
 // A rigid block on a plane.
-SimulationConfig block(double friction = kFriction) {
+SimulationConfig block(double friction = kSceneryFriction) {
   SimulationConfig config = stacked(1, {.cells = 3}, {friction, friction});
   Model model = made_rigid(*config.objects[0].model);
   model.dt = 0.002;
@@ -150,10 +150,10 @@ TEST_CASE("moving scenery: a block on a belt comes to its speed at mu g, and the
   const double early = record->object[0].velocity.x();
   for (int k = 0; k < 50; ++k) step_alone(simulation, *record);
   const double gained = record->object[0].velocity.x() - early;
-  CHECK(gained == Approx(kFriction * kGravity * 0.1).epsilon(1e-3));
+  CHECK(gained == Approx(kSceneryFriction * kGravity * 0.1).epsilon(1e-3));
   for (int k = 0; k < 425; ++k) step_alone(simulation, *record);
   CHECK(record->object[0].velocity.x() == Approx(0.8).epsilon(1e-3));
-  const double slip = 0.5 * 0.8 * 0.8 / (kFriction * kGravity);
+  const double slip = 0.5 * 0.8 * 0.8 / (kSceneryFriction * kGravity);
   CHECK(record->object[0].position.x() == Approx(0.8 - slip).epsilon(0.01));
 }
 
@@ -163,7 +163,7 @@ TEST_CASE("moving scenery: a plane that shakes takes a block along up to mu g") 
     SceneryMotion& motion = config.scenery[0].motion;
     motion.frequency = 1.0;
     const double w = 2.0 * std::numbers::pi;
-    motion.stroke = Vector3(2.0 * share * kFriction * kGravity / (w * w), 0, 0);
+    motion.stroke = Vector3(2.0 * share * kSceneryFriction * kGravity / (w * w), 0, 0);
     Simulation simulation(config);
     const auto record = std::make_unique<StepRecord>();
     double largest = 0.0;
@@ -177,10 +177,10 @@ TEST_CASE("moving scenery: a plane that shakes takes a block along up to mu g") 
                          std::abs(record->object[0].velocity.x() - before.x()) / simulation.dt());
       apart = std::max(apart, std::abs(record->object[0].position.x() - plane));
     }
-    INFO(share << ": " << largest / (kFriction * kGravity) << " mu g, apart " << apart);
+    INFO(share << ": " << largest / (kSceneryFriction * kGravity) << " mu g, apart " << apart);
     if (share < 1.0) CHECK(apart < 1e-4);
     if (share > 1.0) CHECK(apart > 0.01);
-    CHECK(largest < 1.2 * kFriction * kGravity);
+    CHECK(largest < 1.2 * kSceneryFriction * kGravity);
   }
 }
 
@@ -188,7 +188,7 @@ TEST_CASE("moving scenery: a turntable carries a block with r w^2 until friction
   const double radius = 0.3;
   for (const double share : {0.8, 1.3}) {
     SimulationConfig config = block();
-    const double w = std::sqrt(share * kFriction * kGravity / radius);
+    const double w = std::sqrt(share * kSceneryFriction * kGravity / radius);
     config.scenery[0].motion.angular_velocity = Vector3(0, w, 0);
     SimulationObject& object = config.objects[0];
     object.position.x() = radius;

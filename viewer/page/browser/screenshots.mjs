@@ -19,7 +19,10 @@ const PICTURES = [
       const [stylus] = window.irdm.frame().styluses;
       return stylus.contact !== 0 && stylus.tip[0] > 0.04 && Math.hypot(...stylus.force) > 0.3;
     },
-    prepare: (page) => page.locator("#colour").selectOption("displacement"),
+    prepare: async (page) => {
+      await page.locator("#help summary").click(); // open on a first visit
+      await page.locator("#colour").selectOption("displacement");
+    },
   },
 ];
 

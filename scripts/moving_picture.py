@@ -11,6 +11,7 @@ from PIL import Image
 
 INTERVAL_MS = 100  # of a frame, as of the run
 LAST_MS = 1500  # of the last one, before it begins again
+SIZE = (720, 360)  # as large as a README shows it
 QUALITIES = (70, 55, 40, 25)
 
 
@@ -30,7 +31,8 @@ def main():
     if len(sys.argv) != 4:
         sys.exit(__doc__.strip())
     for look in ("light", "dark"):
-        frames = [Image.open(path).convert("RGB") for path in sorted(pathlib.Path(sys.argv[1]).glob(f"{look}-*.png"))]
+        paths = sorted(pathlib.Path(sys.argv[1]).glob(f"{look}-*.png"))
+        frames = [Image.open(path).convert("RGB").resize(SIZE, Image.Resampling.LANCZOS) for path in paths]
         if not frames:
             sys.exit(f"moving_picture: {sys.argv[1]} has no {look}-*.png")
         save(frames, pathlib.Path(f"{sys.argv[2]}-{look}.webp"), float(sys.argv[3]))

@@ -10,7 +10,7 @@ preset=${1:-release}
 bin=build/$preset/bin
 models=out/models
 kilobytes=150 # that a picture may have
-moving_kilobytes=2000
+moving_kilobytes=1000
 mkdir -p "$models" docs/images
 scripts/setup.sh
 scripts/build.sh "$preset" irdm-precompute irdm-server irdm-bridge

@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "common/error.hpp"
-#include "common/stability/sampled_coupling.hpp"
+#include "common/stability/coupling_limit.hpp"
 #include "simulation/step/default_fingertip.hpp"
 
 namespace irdm {

@@ -5,7 +5,6 @@
 #include "common/motion/rigid_body.hpp"
 #include "common/response/stored_response.hpp"
 #include "common/stability/coupling_limit.hpp"
-#include "common/stability/sampled_coupling.hpp"
 #include "server/stylus_notes.hpp"
 #include "simulation/collision/rest_surface.hpp"
 #include "simulation/step/default_fingertip.hpp"

@@ -9,7 +9,7 @@
 namespace irdm {
 
 /// Nodes that one fingertip can press on.
-inline constexpr int kMaxPatchNodes = 256;
+inline constexpr int kMaxPatchNodes = 320;
 
 /// How the force of one contact is spread over surface nodes: weights that sum to one. The
 /// contact's displacement is the same weighted mean, so that what the force does is what the

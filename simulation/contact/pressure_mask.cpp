@@ -10,12 +10,14 @@ namespace {
 constexpr int kFewestRings = 4;
 constexpr int kMostRings = 9;
 constexpr double kLeastRings = 0.6;  // share of the radius that they cover at least
+constexpr int kMostSamples = 3 * kMostRings * kMostRings;
+static_assert(kMostSamples <= kMaxPatchNodes, "a node for each sample must have room in a patch");
 
 // Direction from which the rings start, in B; parallel to the normal of hardly any surface.
 const Vector3 kReference(0.7548776662, 0.5698402910, 0.3247179572);
 
-// Rings no farther apart than the nodes, with room to spare in a patch for (kMostRings + 1) nodes
-// every way.
+// Rings no farther apart than the nodes. An even mesh has pi (kMostRings + 1)^2 nodes there at
+// most, for which a patch has room.
 int ring_count(const RestSurface& surface, double radius) noexcept {
   const int needed = static_cast<int>(std::ceil(radius / (0.7 * surface.mean_edge())));
   return std::clamp(needed, kFewestRings, kMostRings);
@@ -58,17 +60,29 @@ PressureMask::PressureMask(const RestSurface& surface, double radius)
   for (Sample& sample : samples_) sample.weight /= total;
 }
 
-void PressureMask::add(const SurfacePoint& sample, double weight, ContactPatch& patch) noexcept {
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (!(sample.weights[i] > 0)) continue;
-    int& slot = slot_[static_cast<std::size_t>(sample.nodes[i])];
-    if (slot < 0) {
-      if (patch.count == kMaxPatchNodes) continue;
-      slot = patch.count;
-      patch.add(sample.nodes[i], 0.0);
-    }
-    patch.weights[static_cast<std::size_t>(slot)] += weight * sample.weights[i];
+bool PressureMask::add(int node, double weight, ContactPatch& patch) noexcept {
+  int& slot = slot_[static_cast<std::size_t>(node)];
+  if (slot < 0) {
+    if (patch.count == kMaxPatchNodes) return false;
+    slot = patch.count;
+    patch.add(node, 0.0);
   }
+  patch.weights[static_cast<std::size_t>(slot)] += weight;
+  return true;
+}
+
+bool PressureMask::add_to_corners(const SurfacePoint& at, double weight,
+                                  ContactPatch& patch) noexcept {
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (at.weights[i] > 0 && !add(at.nodes[i], weight * at.weights[i], patch)) return false;
+  }
+  return true;
+}
+
+bool PressureMask::add_to_nearest(const SurfacePoint& at, double weight,
+                                  ContactPatch& patch) noexcept {
+  const auto largest = std::ranges::max_element(at.weights) - at.weights.begin();
+  return add(at.nodes[static_cast<std::size_t>(largest)], weight, patch);
 }
 
 void PressureMask::spread(const SurfacePoint& middle, ContactPatch& patch) noexcept {
@@ -86,16 +100,25 @@ void PressureMask::spread(const SurfacePoint& middle, ContactPatch& patch) noexc
 }
 
 void PressureMask::lay(const SurfacePoint& middle, ContactPatch& patch) noexcept {
+  if (!lay(middle, &PressureMask::add_to_corners, patch)) {
+    lay(middle, &PressureMask::add_to_nearest, patch);
+  }
+}
+
+bool PressureMask::lay(const SurfacePoint& middle, AddSample add_sample,
+                       ContactPatch& patch) noexcept {
   patch.count = 0;
   const SurfaceLocation centre = surface_.locate(middle);
   const Vector3 normal = area_normal(surface_.corners(centre.triangle)).normalized();
   const Vector3 x = (kReference - kReference.dot(normal) * normal).normalized();
   const Vector3 y = normal.cross(x);
-  for (const Sample& sample : samples_) {
+  const bool all = std::ranges::all_of(samples_, [&](const Sample& sample) {
     const Vector3 direction = sample.cosine * x + sample.sine * y;
-    add(surface_.straight_on(centre, direction, sample.distance).point, sample.weight, patch);
-  }
+    const SurfaceLocation at = surface_.straight_on(centre, direction, sample.distance);
+    return (this->*add_sample)(at.point, sample.weight, patch);
+  });
   normalise(patch);
+  return all;
 }
 
 void PressureMask::normalise(ContactPatch& patch) noexcept {

@@ -11,11 +11,13 @@ namespace irdm {
 /// radius, proportional to 1 - s^2, as under an elastic ball of small stiffness. It is summed at
 /// points on rings round the middle, laid along the surface and round its edges; each passes its
 /// share to its triangle's corners. So the force spreads alike on any mesh whose edges are not
-/// longer than the radius, and moves smoothly with the contact. Radius 0: the point itself.
+/// longer than the radius, and moves smoothly with the contact. Where the mesh is so much finer
+/// than elsewhere that a patch has no room for those corners, the nearest one gets the share.
+/// Radius 0: the point itself.
 /// Real-time safe after construction; one thread.
 class PressureMask {
  public:
-  /// The largest radius for a surface [m]: beyond it the rings would leave nodes out.
+  /// The largest radius for a surface [m]: beyond it nodes would lie between the rings.
   static double largest_radius(const RestSurface& surface) noexcept;
 
   /// @param radius [m], 0..largest_radius(surface)
@@ -33,9 +35,14 @@ class PressureMask {
     double distance;      ///< along the surface [m]
     double weight;        ///< share of the force
   };
-  void add(const SurfacePoint& sample, double weight, ContactPatch& patch) noexcept;
+  /// One way to pass a sample's weight on; false: the patch has no room.
+  using AddSample = bool (PressureMask::*)(const SurfacePoint&, double, ContactPatch&) noexcept;
+  bool add(int node, double weight, ContactPatch& patch) noexcept;
+  bool add_to_corners(const SurfacePoint& at, double weight, ContactPatch& patch) noexcept;
+  bool add_to_nearest(const SurfacePoint& at, double weight, ContactPatch& patch) noexcept;
   void normalise(ContactPatch& patch) noexcept;
   void lay(const SurfacePoint& middle, ContactPatch& patch) noexcept;
+  bool lay(const SurfacePoint& middle, AddSample add_sample, ContactPatch& patch) noexcept;
 
   const RestSurface& surface_;
   double radius_;

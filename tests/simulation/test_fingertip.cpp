@@ -5,7 +5,9 @@
 #include <cmath>
 #include <iostream>
 #include <map>
+#include <numeric>
 
+#include "precompute/mesh/box_mesh.hpp"
 #include "simulation/contact/pressure_mask.hpp"
 #include "simulation/contact/smoothed_surface.hpp"
 #include "tests/simulation/pressed_cube.hpp"
@@ -107,6 +109,40 @@ TEST_CASE("fingertip: the force spreads as wide as asked on any mesh that is fin
     }
     INFO(cells << " cells");
     CHECK(mean_square / places == Approx(0.02 * 0.02 / 3.0).epsilon(0.02));
+  }
+}
+
+TEST_CASE("fingertip: where the mesh is much finer than elsewhere no part of the force is lost") {
+  // Cells of the inner 60 % of each face are shorter: the largest tip covers those.
+  const double shorter = GENERATE(0.9, 0.8, 0.6, 0.3);
+  INFO("inner cells " << shorter << " times as long");
+  const precompute::SurfaceMesh even =
+      precompute::box_surface(Vector3::Constant(2 * kHalfEdge), {40, 40, 40});
+  ModelMesh mesh;
+  mesh.triangles = even.triangles;
+  mesh.nodes = even.nodes.unaryExpr([shorter](double place) {
+    const double x = place / kHalfEdge - 1.0;
+    const double outside = std::max(0.0, std::abs(x) - 0.6);
+    const double longer = (1.0 - 0.6 * shorter) / 0.4;
+    return kHalfEdge * std::copysign(shorter * std::min(0.6, std::abs(x)) + longer * outside, x);
+  });
+  mesh.surface_nodes.resize(static_cast<std::size_t>(mesh.nodes.rows()));
+  std::iota(mesh.surface_nodes.begin(), mesh.surface_nodes.end(), 0);
+  const RestSurface surface(mesh);
+  const double radius = PressureMask::largest_radius(surface);
+  for (const double x : {0.0, 0.004}) {
+    const ContactPatch patch = patch_at(surface, radius, x, 0.0);
+    Vector3 centre = Vector3::Zero();
+    double mean_square = 0.0, sum = 0.0;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(patch.count); ++i) {
+      const Vector3 away = surface.node(patch.nodes[i]) - Vector3(x, kHalfEdge, 0.0);
+      sum += patch.weights[i];
+      centre += patch.weights[i] * away;
+      mean_square += patch.weights[i] * away.squaredNorm();
+    }
+    CHECK(sum == Approx(1.0).epsilon(1e-12));
+    CHECK(centre.norm() < 0.02 * radius);
+    CHECK(mean_square == Approx(radius * radius / 3.0).epsilon(0.05));
   }
 }
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/model/model.hpp"
-#include "simulation/collision/surface_tree.hpp"
+#include "common/surface/surface_tree.hpp"
 
 namespace irdm {
 

@@ -1,4 +1,4 @@
-#include "simulation/collision/surface_tree.hpp"
+#include "common/surface/surface_tree.hpp"
 
 #include <algorithm>
 #include <limits>

@@ -302,6 +302,9 @@ PrecomputeConfig read_config(TomlTable root, const std::string& name) {
   } else {
     read_soft_body(root, config);
   }
+  if (root.has("display")) {
+    config.display = read_display_config(root.table("display"), config.mesh.unit);
+  }
   root.finish();
   return config;
 }

@@ -7,6 +7,7 @@
 #include "common/config/toml_reader.hpp"
 #include "common/model/model.hpp"
 #include "common/model/model_file.hpp"
+#include "precompute/display/make_display_mesh.hpp"
 #include "precompute/dynamics/rigid_extraction.hpp"
 #include "precompute/dynamics/soft_body.hpp"
 #include "precompute/mesh/material_regions.hpp"
@@ -96,6 +97,7 @@ struct PrecomputeConfig {
   /// `elements = "values.csv"`, and but for `elements` one or more of [material]'s youngs_modulus,
   /// poisson_ratio and density.
   std::vector<MaterialRegion> regions;
+  std::optional<DisplayConfig> display;  ///< none: viewers draw the surface that computes
   /// The body does not deform: there is no R, and no keys that say how to obtain it.
   bool rigid = false;
   ResponseConfig response;

@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <iostream>
 #include <numbers>
 
 #include "common/error.hpp"
 #include "common/model/model_check.hpp"
+#include "common/number_text.hpp"
 #include "precompute/blas.hpp"
 #include "precompute/columns/assemble.hpp"
 #include "precompute/columns/compute_columns.hpp"
@@ -78,6 +80,7 @@ Model describe(const TetMesh& mesh, const std::string& name, const PrecomputeCon
   model.dt = config.response.dt;
   model.steps = config.response.steps;
   if (config.rigid) model.response = RigidResponse{};
+  if (config.display) model.display = make_display_mesh(*config.display, model.mesh);
   if (const auto fault = description_fault(model)) {
     throw Error(name, "makes a model whose " + *fault, "correct the mesh, its unit or the density");
   }
@@ -252,6 +255,13 @@ Summary describe_work(const TetMesh& mesh, const Model& model, std::size_t clamp
   return summary;
 }
 
+std::string display_text(const Model& model) {
+  const double away = std::round(1e5 * largest_distance(model.display, model.mesh)) / 100.0;
+  return "display mesh: " + std::to_string(model.display.positions.rows()) + " vertices, " +
+         std::to_string(model.display.triangles.rows()) + " triangles, at most " +
+         number_text(away) + " mm off the surface";
+}
+
 double largest_poisson_ratio(const Material& material) {
   const std::vector<double>& own = material.elements.poisson_ratio;
   return own.empty() ? material.poisson_ratio : std::ranges::max(own);
@@ -305,6 +315,7 @@ Summary precompute_model(const PrecomputeConfig& config, const std::filesystem::
   console.line("mesh: " + std::to_string(mesh.node_count()) + " nodes, " +
                std::to_string(mesh.tet_count()) + " tetrahedra, " +
                std::to_string(model.mesh.surface_node_count()) + " surface nodes");
+  if (!model.display.empty()) console.line(display_text(model));
 
   Summary summary = describe_work(mesh, model, clamped.size());
   if (ranks.rank() == 0) warn_of_input(config, mesh, model, summary);

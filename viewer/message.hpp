@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "common/model/display_mesh.hpp"
 #include "simulation/deformation/deformation.hpp"
 
 /// The messages of docs/viewer-protocol.md, in both directions. Pure.
@@ -71,6 +72,7 @@ struct SceneObject {
   /// Static, along the normal, per node as the middle of a fingertip [m/N]; NaN: not known.
   std::vector<float> compliance = {};
   SceneRegions regions = {};
+  DisplayMesh display = {};  ///< empty: the surface itself is drawn
 };
 
 /// What does not change while the server runs.

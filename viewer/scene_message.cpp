@@ -5,6 +5,7 @@
 #include "common/response/stored_response.hpp"
 #include "simulation/contact/fingertip_loads.hpp"
 #include "simulation/step/default_fingertip.hpp"
+#include "viewer/display_message.hpp"
 #include "viewer/message_parts.hpp"
 #include "viewer/scene_regions.hpp"
 
@@ -38,6 +39,7 @@ viewer::SceneObject viewer_object(const std::string& name, const Model& model, d
   object.stiffness = static_cast<float>(model.material.youngs_modulus);
   object.compliance = felt_compliance(model, radius);
   object.regions = viewer::scene_regions(model);
+  object.display = model.display;
   return object;
 }
 
@@ -86,10 +88,12 @@ constexpr int kRecordedFlag = 8;
 
 constexpr int kUnlistedFlag = 1;
 constexpr int kFacesLeftOutFlag = 2;
+constexpr int kDisplayFlag = 4;
 
-std::uint16_t flags_of(const SceneRegions& regions) {
-  return static_cast<std::uint16_t>((regions.some_unlisted ? kUnlistedFlag : 0) |
-                                    (regions.faces_left_out ? kFacesLeftOutFlag : 0));
+std::uint16_t flags_of(const SceneObject& object) {
+  return static_cast<std::uint16_t>((object.regions.some_unlisted ? kUnlistedFlag : 0) |
+                                    (object.regions.faces_left_out ? kFacesLeftOutFlag : 0) |
+                                    (object.display.empty() ? 0 : kDisplayFlag));
 }
 
 void put_triangles(Writer& writer, const Triangles& triangles) {
@@ -198,7 +202,7 @@ void put_object(Writer& writer, const SceneObject& object) {
   writer.put(object.mass);
   writer.put(object.stiffness);
   writer.put(static_cast<std::uint16_t>(object.regions.regions.size()));
-  writer.put(flags_of(object.regions));
+  writer.put(flags_of(object));
   writer.put_text(name);
   writer.align();
   put_points(writer, object.rest);
@@ -209,6 +213,7 @@ void put_object(Writer& writer, const SceneObject& object) {
                                             : std::numeric_limits<float>::quiet_NaN());
   }
   if (!object.regions.empty()) put_regions(writer, object.regions);
+  if (!object.display.empty()) put_display(writer, object.display);
 }
 
 SceneObject get_object(Reader& reader) {
@@ -228,6 +233,7 @@ SceneObject get_object(Reader& reader) {
   object.triangles = get_triangles(reader, triangles, nodes);
   object.compliance = get_singles(reader, nodes);
   if (regions > 0) object.regions = get_regions(reader, regions, flags, triangles);
+  if ((flags & kDisplayFlag) != 0) object.display = get_display(reader, nodes);
   return object;
 }
 

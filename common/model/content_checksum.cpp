@@ -101,6 +101,13 @@ std::string content_checksum(const hdf5::File& file) {
   add_dataset<std::int32_t>(sha, file, kCompressedPoleShape);
   add_dataset<double>(sha, file, kCompressedPole);
   add_dataset<double>(sha, file, kCompressedAmplitude);
+  add_dataset<float>(sha, file, kDisplayPositions);
+  add_dataset<float>(sha, file, kDisplayNormals);
+  add_dataset<std::int32_t>(sha, file, kDisplayTriangles);
+  add_dataset<std::int32_t>(sha, file, kDisplayNodes);
+  add_dataset<float>(sha, file, kDisplayWeights);
+  add_dataset<float>(sha, file, kDisplayTextureCoordinates);
+  add_dataset<std::uint8_t>(sha, file, kDisplayTexture);
   return sha.hexadecimal();
 }
 

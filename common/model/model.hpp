@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/geometry.hpp"
+#include "common/model/display_mesh.hpp"
 
 namespace irdm {
 
@@ -233,6 +234,7 @@ struct Model {
   Material material;
   double dt = 0.0;  ///< response interval and force-loop period [s]
   int steps = 0;    ///< T, recorded steps
+  DisplayMesh display{};
   std::variant<std::monostate, ModalResponse, DenseResponse, CompressedResponse, StreamedResponse,
                RigidResponse>
       response;  ///< the one that was asked for; RigidResponse of every rigid body

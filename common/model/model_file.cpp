@@ -35,6 +35,10 @@ constexpr Unit kDatasetUnits[] = {
     {kModalGravityRest, "s^2"},
     {kDenseGravity, "s^2"},
     {kDenseR, "m/N"},
+    {kDisplayPositions, "m"},
+    {kDisplayNormals, "1"},
+    {kDisplayWeights, "1"},
+    {kDisplayTextureCoordinates, "1"},
     {kCompressedFirScale, "m/N"},
     {kCompressedShapes, "1"},
     {kCompressedPole, "1"},
@@ -107,6 +111,7 @@ class ModelReader {
     const std::int64_t steps = file_.read_integer_attribute("/response", "steps");
     model_.steps = static_cast<int>(std::clamp<std::int64_t>(steps, 0, 1L + lab::kMostSteps));
     if (const auto fault = description_fault(model_)) damaged(*fault);
+    model_.display = read_display(file_, model_.mesh.surface_node_count());
   }
 
   void check_format() {

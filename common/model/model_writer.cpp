@@ -97,6 +97,8 @@ void write_description(hdf5::File& file, const Model& model) {
   if (!is_rigid(model)) write_elasticity(file, model.material);
   write_elements(file, model.material.elements);
 
+  if (!model.display.empty()) write_display(file, model.display);
+
   file.create_group("/response");
   file.write_attribute("/response", "dt", model.dt);
   file.write_attribute("/response", "steps", static_cast<std::int64_t>(model.steps));

@@ -48,11 +48,6 @@ CapsuleConfig read_capsule(TomlTable table) {
   return capsule;
 }
 
-double unit_from_word(const std::string& word) {
-  static const std::map<std::string, double> words{{"m", 1.0}, {"cm", 1e-2}, {"mm", 1e-3}};
-  return words.at(word);
-}
-
 // Of a mesh that is not a file: `unit` and `edge_length` do not belong to it.
 void refuse_keys_of_files(TomlTable& table) {
   if (table.has("unit")) {
@@ -71,11 +66,17 @@ void read_file(TomlTable& table, MeshConfig& mesh) {
                "leave it out: this file says its own sizes");
   }
   mesh.source = path;
-  mesh.unit = unit_from_word(table.choice("unit", {"m", "cm", "mm"}, "m"));
+  mesh.unit = read_unit(table, 1.0);
   if (table.has("edge_length")) mesh.edge_length = table.number("edge_length", lab::kLength);
 }
 
 }  // namespace
+
+double read_unit(TomlTable& table, double fallback) {
+  static const std::map<std::string, double> words{{"m", 1.0}, {"cm", 1e-2}, {"mm", 1e-3}};
+  if (!table.has("unit")) return fallback;
+  return words.at(table.choice("unit", {"m", "cm", "mm"}, "m"));
+}
 
 MeshConfig read_mesh_config(TomlTable table) {
   MeshConfig mesh;

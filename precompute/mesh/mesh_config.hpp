@@ -44,6 +44,10 @@ struct MeshConfig {
   int order = 1;
 };
 
+/// The length of the unit of a file that table key `unit` names [m]: "m" | "cm" | "mm".
+/// Throws Error with file and line.
+double read_unit(TomlTable& table, double fallback);
+
 /// Throws Error with file and line.
 MeshConfig read_mesh_config(TomlTable table);
 

@@ -10,6 +10,7 @@
 #include "precompute/mesh/format/readers.hpp"
 #include "precompute/mesh/gmsh_program.hpp"
 #include "precompute/mesh/mesh_check.hpp"
+#include "precompute/mesh/shaded_surface.hpp"
 #include "precompute/mesh/tetgen_program.hpp"
 
 namespace irdm::precompute {
@@ -84,6 +85,14 @@ TetMesh read_mesh_file(const std::filesystem::path& path, std::optional<double> 
 bool is_surface_file(const std::filesystem::path& path) {
   const auto found = kFormats.find(extension(path));
   return found != kFormats.end() && found->second.read_surface != nullptr;
+}
+
+ShadedSurface read_shaded_surface(const std::filesystem::path& path) {
+  const std::string format = extension(path);
+  if (format != ".obj") return {weld(kFormats.at(format).read_surface(path)), {}, {}};
+  ShadedSurface surface = read_shaded_obj(path);
+  if (surface.normals.rows() == 0 && surface.texture.rows() == 0) surface.mesh = weld(surface.mesh);
+  return surface;
 }
 
 }  // namespace irdm::precompute

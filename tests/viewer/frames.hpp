@@ -66,6 +66,24 @@ inline viewer::SceneRegions example_regions() {
   return regions;
 }
 
+/// Two triangles with a texture, bound to the first node of an object.
+inline DisplayMesh example_display() {
+  DisplayMesh display;
+  display.positions.resize(4, 3);
+  display.positions << 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 0.5, 0.25;
+  display.normals = DisplayMesh::Rows3::Zero(4, 3);
+  display.normals.col(2).setOnes();
+  display.triangles.resize(2, 3);
+  display.triangles << 0, 1, 2, 0, 2, 3;
+  display.nodes = Triangles::Zero(4, 3);
+  display.weights.resize(4, 3);
+  display.weights.rowwise() = Eigen::RowVector3f(0.5F, 0.375F, 0.125F);
+  display.texture_coordinates.resize(4, 2);
+  display.texture_coordinates << 0, 0, 1, 0, 1, 1, 0.25, 0.75;
+  display.texture = {0xFF, 0xD8, 0xFF, 0xE0, 7};
+  return display;
+}
+
 /// A scene of a synthetic cube and a single tetrahedron, with two styluses, a floor and scenery.
 inline viewer::Scene example_scene() {
   viewer::Scene scene;

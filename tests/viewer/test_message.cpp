@@ -171,6 +171,46 @@ TEST_CASE("a mesh of scenery follows its name") {
   CHECK_THROWS_AS(decode_scene(bytes), MessageError);
 }
 
+TEST_CASE("a display mesh follows its object, and damage to it is an error") {
+  Scene scene = one_point_scene();
+  const std::size_t before = encode(scene).size();
+  const DisplayMesh display = example_display();
+  scene.objects[0].display = display;
+  const Bytes bytes = encode(scene);
+  const std::size_t counts = before;
+  CHECK(bytes.size() - before == 16 + 4 * (12 + 12 + 12 + 12 + 8) + 2 * 12 + 8);
+  CHECK(std::vector<int>(bytes.begin() + static_cast<long>(counts),
+                         bytes.begin() + static_cast<long>(counts) + 16) ==
+        std::vector<int>{4, 0, 0, 0, 2, 0, 0, 0, 1, 0, 0, 0, 5, 0, 0, 0});
+  const DisplayMesh back = decode_scene(bytes).objects.at(0).display;
+  CHECK(back.positions == display.positions);
+  CHECK(back.normals == display.normals);
+  CHECK(back.triangles == display.triangles);
+  CHECK(back.nodes == display.nodes);
+  CHECK(back.weights == display.weights);
+  CHECK(back.texture_coordinates == display.texture_coordinates);
+  CHECK(back.texture == display.texture);
+
+  const auto refused = [&](const std::function<void(DisplayMesh&)>& damage) {
+    scene.objects[0].display = display;
+    damage(scene.objects[0].display);
+    CHECK_THROWS_AS(decode_scene(encode(scene)), MessageError);
+  };
+  refused([](DisplayMesh& mesh) { mesh.triangles(1, 2) = 4; });
+  refused([](DisplayMesh& mesh) { mesh.triangles(1, 2) = -1; });
+  refused([](DisplayMesh& mesh) { mesh.nodes(3, 0) = 1000; });
+  refused([](DisplayMesh& mesh) { mesh.weights(0, 0) = -0.5F; });
+  refused([](DisplayMesh& mesh) { mesh.weights(0, 0) = 0.9F; });
+  refused([](DisplayMesh& mesh) { mesh.normals(0, 2) = 2.0F; });
+  refused([](DisplayMesh& mesh) { mesh.positions(0, 0) = std::nanf(""); });
+  refused([](DisplayMesh& mesh) { mesh.texture_coordinates(0, 0) = std::nanf(""); });
+  refused([](DisplayMesh& mesh) { mesh.texture = {1, 2, 3}; });
+  refused([](DisplayMesh& mesh) { mesh.texture_coordinates.resize(0, 2); });
+  for (std::size_t length = before; length < bytes.size(); length += 7) {
+    CHECK_THROWS_AS(decode_scene(std::span(bytes).first(length)), MessageError);
+  }
+}
+
 TEST_CASE("viewers are sent the floor and the scenery of the simulation") {
   SimulationConfig config;
   config.objects.resize(1);

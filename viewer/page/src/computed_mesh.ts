@@ -42,9 +42,10 @@ export class ComputedMesh {
     vertexNormals(at, this.creased, this.changed("normal"));
   }
 
-  /** @param colours of the nodes, linear */
-  paint(colours: Float32Array): void {
-    this.spread(colours, this.changed("color"));
+  /** @param shares of the ramp, 0 to 1, of the nodes; NaN: not known */
+  paint(shares: Float32Array): void {
+    const colours = this.changed("color");
+    this.creased.nodeOf.forEach((node, v) => paintShare(shares[node]!, colours, 3 * v));
   }
 
   /** @param range of Young's moduli [Pa] at both ends of the ramp */

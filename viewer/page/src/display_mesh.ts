@@ -1,11 +1,13 @@
 import * as THREE from "three";
 import { means } from "./binding";
+import { VIRIDIS } from "./colour_map";
 import { smoothMesh, vertexNormals, type CreasedMesh } from "./creases";
 import type { Display } from "./display";
 import type { DrawnSurface } from "./drawn_surface";
 import { NodeTexture, OF_NODES } from "./node_texture";
 import { pictureOf } from "./picture";
 import type { SceneObject } from "./protocol";
+import { rampShader } from "./ramp_shader";
 import { SurfaceLook } from "./surface_look";
 import type { SurfaceMarks } from "./surface_marks";
 
@@ -15,7 +17,7 @@ export class DisplayMesh {
   readonly look = new SurfaceLook();
   private readonly geometry: THREE.BufferGeometry;
   private readonly depth = new THREE.MeshDepthMaterial();
-  private readonly vectors: NodeTexture;
+  private readonly ofNodes: NodeTexture;
   private readonly computed: CreasedMesh;
   /** of its nodes */
   private readonly normals: Float32Array;
@@ -25,13 +27,13 @@ export class DisplayMesh {
     this.computed = smoothMesh(rest.length / 3, triangles);
     this.normals = new Float32Array(rest.length);
     vertexNormals(rest, this.computed, this.normals);
-    this.vectors = new NodeTexture(rest.length / 3);
+    this.ofNodes = new NodeTexture(rest.length / 3);
     this.geometry = geometryOf(display, rest, this.normals);
     const { material } = this.look;
     material.onBeforeCompile = (shader) => {
       marks.drawBy(shader);
       this.move(shader);
-      turnNormals(shader);
+      turnAndColour(shader);
     };
     material.customProgramCacheKey = () => "display mesh";
     this.depth.onBeforeCompile = (shader) => this.move(shader);
@@ -51,18 +53,18 @@ export class DisplayMesh {
   }
 
   draw({ displacement, exaggeration, positions }: DrawnSurface): void {
-    this.vectors.set("displacement", displacement, exaggeration);
+    this.ofNodes.setDisplacements(displacement, exaggeration);
     vertexNormals(positions, this.computed, this.normals);
-    this.vectors.set("normal", this.normals);
+    this.ofNodes.setNormals(this.normals);
   }
 
-  /** @param colours of the nodes, linear */
-  paint(colours: Float32Array): void {
-    this.vectors.set("colour", colours);
+  /** @param shares of the ramp, 0 to 1, of the nodes; NaN: not known */
+  paint(shares: Float32Array): void {
+    this.ofNodes.setValues(shares);
   }
 
   private move(shader: THREE.WebGLProgramParametersWithUniforms): void {
-    shader.uniforms["nodeVectors"] = { value: this.vectors.texture };
+    shader.uniforms["ofAllNodes"] = { value: this.ofNodes.texture };
     shader.vertexShader = (OF_NODES + shader.vertexShader).replace(
       "#include <begin_vertex>",
       "#include <begin_vertex>\ntransformed += displacementOfNodes();",
@@ -72,7 +74,7 @@ export class DisplayMesh {
   dispose(): void {
     this.disposed = true;
     this.geometry.dispose();
-    this.vectors.dispose();
+    this.ofNodes.dispose();
     this.depth.dispose();
     this.look.dispose();
   }
@@ -94,11 +96,11 @@ function geometryOf(display: Display, rest: Float32Array, normals: Float32Array)
   return geometry.setIndex(new THREE.BufferAttribute(display.triangles, 1));
 }
 
-/** A normal turns as the surface does that the vertex is bound to, on the shortest way; colours are those of its nodes. */
-function turnNormals(shader: THREE.WebGLProgramParametersWithUniforms): void {
-  shader.vertexShader = (TURNED + shader.vertexShader)
+/** A normal turns as the surface does that the vertex is bound to, on the shortest way; values are those of its nodes. */
+function turnAndColour(shader: THREE.WebGLProgramParametersWithUniforms): void {
+  shader.vertexShader = (TURNED + rampShader(VIRIDIS) + shader.vertexShader)
     .replace("#include <beginnormal_vertex>", "vec3 objectNormal = turned(normal, boundNormal, normalOfNodes());")
-    .replace("#include <color_vertex>", "#ifdef USE_COLOR\nvColor = vec4(colourOfNodes(), 1.0);\n#endif");
+    .replace("#include <color_vertex>", "#ifdef USE_COLOR\nvColor = vec4(onRamp(valueOfNodes()), 1.0);\n#endif");
 }
 
 const TURNED = `

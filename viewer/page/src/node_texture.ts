@@ -1,31 +1,44 @@
 import * as THREE from "three";
 
-const WIDTH = 4096; // which every machine with WebGL 2 can have, nearly
-const KINDS = ["displacement", "normal", "colour"] as const;
-type Kind = (typeof KINDS)[number];
+const WIDTH = 4096; // a texture is nearly everywhere as wide
+const UNKNOWN = -1e4; // so much that a part of it is still below all values
 
 /**
- * Vectors of the nodes of a surface for vertex shaders, in one texture: a block of rows for each kind, in a block the
- * nodes row by row.
+ * What nodes of a surface have, for vertex shaders, in one texture: in a first block of rows, node by node, displacement
+ * and value, in a second one the normal.
  */
 export class NodeTexture {
   readonly texture: THREE.DataTexture;
-  private readonly blockRows: number;
+  private readonly numbers: Float32Array;
+  private readonly block: number;
 
   constructor(nodes: number) {
     const width = Math.min(nodes, WIDTH);
-    this.blockRows = Math.ceil(nodes / width);
-    const height = KINDS.length * this.blockRows;
-    this.texture = new THREE.DataTexture(new Float32Array(4 * width * height), width, height, THREE.RGBAFormat, THREE.FloatType);
+    const rows = Math.ceil(nodes / width);
+    this.block = 4 * width * rows;
+    this.numbers = new Float32Array(2 * this.block);
+    this.texture = new THREE.DataTexture(this.numbers, width, 2 * rows, THREE.RGBAFormat, THREE.FloatType);
   }
 
   /** @param vectors three numbers a node */
-  set(kind: Kind, vectors: Float32Array, factor = 1): void {
-    const { data, width } = this.texture.image;
-    const numbers = data as Float32Array;
-    let at = 4 * width * this.blockRows * KINDS.indexOf(kind);
-    for (let i = 0; i < vectors.length; i += 3, at += 4) {
-      for (let c = 0; c < 3; ++c) numbers[at + c] = factor * vectors[i + c]!;
+  setDisplacements(vectors: Float32Array, factor: number): void {
+    this.set(0, vectors, factor);
+  }
+
+  /** @param vectors three numbers a node */
+  setNormals(vectors: Float32Array): void {
+    this.set(this.block, vectors, 1);
+  }
+
+  /** @param values a node; NaN: not known */
+  setValues(values: Float32Array): void {
+    values.forEach((value, i) => (this.numbers[4 * i + 3] = Number.isNaN(value) ? UNKNOWN : value));
+    this.texture.needsUpdate = true;
+  }
+
+  private set(start: number, vectors: Float32Array, factor: number): void {
+    for (let i = 0, at = start; i < vectors.length; i += 3, at += 4) {
+      for (let c = 0; c < 3; ++c) this.numbers[at + c] = factor * vectors[i + c]!;
     }
     this.texture.needsUpdate = true;
   }
@@ -35,21 +48,22 @@ export class NodeTexture {
   }
 }
 
-/** Of a vertex shader: means of what three nodes have. */
+/** GLSL of a vertex shader: weighted means of what three nodes have. */
 export const OF_NODES = `
 attribute uvec3 nodes;
 attribute vec3 weights;
-uniform sampler2D nodeVectors;
+uniform sampler2D ofAllNodes;
 
-vec3 ofNode(int block, uint node) {
-  ivec2 size = textureSize(nodeVectors, 0);
-  int row = block * (size.y / ${KINDS.length}) + int(node) / size.x;
-  return texelFetch(nodeVectors, ivec2(int(node) % size.x, row), 0).xyz;
+vec4 ofNode(int block, uint node) {
+  ivec2 size = textureSize(ofAllNodes, 0);
+  return texelFetch(ofAllNodes, ivec2(int(node) % size.x, block * (size.y / 2) + int(node) / size.x), 0);
 }
 
-vec3 ofNodes(int block) {
+vec4 ofNodes(int block) {
   return weights.x * ofNode(block, nodes.x) + weights.y * ofNode(block, nodes.y) + weights.z * ofNode(block, nodes.z);
 }
 
-${KINDS.map((kind, block) => `vec3 ${kind}OfNodes() { return ofNodes(${block}); }`).join("\n")}
+vec3 displacementOfNodes() { return ofNodes(0).xyz; }
+float valueOfNodes() { return ofNodes(0).w; }
+vec3 normalOfNodes() { return ofNodes(1).xyz; }
 `;

@@ -1,13 +1,10 @@
 import * as THREE from "three";
-import { paintShare } from "./colour_map";
-import { ComputedMesh } from "./computed_mesh";
-import { DisplayMesh } from "./display_mesh";
 import { DrawnSurface } from "./drawn_surface";
 import type { Patch } from "./held_patch";
 import { InsideFaces } from "./inside_faces";
 import type { ObjectState, SceneObject } from "./protocol";
 import type { Span } from "./regions";
-import { SurfaceMarks } from "./surface_marks";
+import { ShownSurface } from "./shown_surface";
 import { firstOnRay, mixed } from "./surface_point";
 import type { Theme } from "./theme";
 
@@ -19,7 +16,7 @@ export type ColourRange = Span;
 const THROUGH_RIGID = 0.6; // opacity of the surface
 const THROUGH_INSIDE = 0.4;
 
-/** One deforming object: its surface as it computes or a mesh that goes along with it, and the rigid body alone as a wireframe (the paper's Figure 4). */
+/** One deforming object: its surface, and the rigid body alone as a wireframe (the paper's Figure 4). */
 export class SoftObject {
   readonly group = new THREE.Group();
   /** u of the last frame [m], B, three numbers a node; never exaggerated */
@@ -27,21 +24,15 @@ export class SoftObject {
   readonly drawn: DrawnSurface;
   /** of the coloured quantity in the last frame: [m] or [m/s] */
   largest = 0;
-  readonly marks = new SurfaceMarks();
+  readonly surface: ShownSurface;
   /** of its nodes [m/N]; null: not known */
   readonly complianceRange: ColourRange | null;
   /** of Young's moduli at its surface and inside [Pa]; null: it is rigid */
   readonly modulusRange: ColourRange | null;
 
-  /** its computed surface is drawn, even if it has a display mesh */
-  showsComputed = false;
-
-  private readonly computed: ComputedMesh;
-  private readonly display: DisplayMesh | null;
   private readonly rigid: THREE.LineSegments<THREE.WireframeGeometry, THREE.LineBasicMaterial>;
   private readonly inside: InsideFaces | null;
   private readonly values: Float32Array;
-  private readonly colours: Float32Array;
   private readonly world: Float32Array;
   private worldTime = Number.NaN;
 
@@ -51,10 +42,8 @@ export class SoftObject {
     this.drawn = new DrawnSurface(object, this.displacement);
     this.values = new Float32Array(nodes);
     this.world = new Float32Array(3 * nodes);
-    this.colours = new Float32Array(3 * nodes);
-    this.computed = new ComputedMesh(object, this.marks);
-    const { regions, display } = object;
-    this.display = display === null ? null : new DisplayMesh(object, display, this.marks);
+    this.surface = new ShownSurface(object);
+    const { regions } = object;
     this.complianceRange = rangeOf(object.compliance);
     this.modulusRange = rangeOf(Float32Array.from(moduliOf(object)));
     this.inside = regions !== null && regions.faces.length > 0 ? new InsideFaces(regions) : null;
@@ -67,15 +56,9 @@ export class SoftObject {
       new THREE.LineBasicMaterial({ transparent: true, opacity: 0.55 }),
     );
     this.rigid.visible = false;
-    this.group.add(this.computed.mesh, this.rigid);
+    this.group.add(...this.surface.meshes, this.rigid);
     if (this.inside !== null) this.group.add(this.inside.mesh);
-    if (this.display !== null) this.group.add(this.display.mesh);
     this.draw("none", { low: 0, high: 0 });
-  }
-
-  /** Fails when it has one that cannot be read; it then stays plain. */
-  async loadTexture(): Promise<void> {
-    await this.display?.loadTexture();
   }
 
   /** By all that is drawn of it at rest. [m], W */
@@ -96,14 +79,12 @@ export class SoftObject {
     this.rigid.visible = rigid;
     if (this.inside !== null) this.inside.mesh.visible = inside !== null;
     if (inside !== null) this.inside?.paint(inside);
-    const opacity = this.inside?.mesh.visible ? THROUGH_INSIDE : rigid ? THROUGH_RIGID : 1;
-    for (const { look } of this.meshes) look.opacity = opacity;
+    this.surface.opacity = this.inside?.mesh.visible ? THROUGH_INSIDE : rigid ? THROUGH_RIGID : 1;
   }
 
   applyTheme(theme: Theme): void {
     this.rigid.material.color.set(theme.wire);
-    for (const { look } of this.meshes) look.plain = theme.object;
-    this.marks.colour = theme.accent;
+    this.surface.applyTheme(theme);
   }
 
   /** Takes in a frame; draw() shows it. */
@@ -151,30 +132,8 @@ export class SoftObject {
 
   draw(colouring: Colouring, range: ColourRange): void {
     this.drawn.place();
-    const shown = this.chosen(colouring);
-    for (const { mesh } of this.meshes) mesh.visible = mesh === shown.mesh;
-    shown.draw(this.drawn);
-    if (colouring === "modulus") this.computed.paintModuli(range);
-    else if (colouring !== "none") shown.paint(this.coloursOf(colouring, range));
-    const coloured = colouring !== "none";
-    shown.look.show(coloured);
-    this.marks.coloursAreValues = coloured;
-  }
-
-  /** Young's moduli are those of the triangles that compute. */
-  private chosen(colouring: Colouring): ComputedMesh | DisplayMesh {
-    return this.showsComputed || colouring === "modulus" ? this.computed : (this.display ?? this.computed);
-  }
-
-  private get meshes(): (ComputedMesh | DisplayMesh)[] {
-    return this.display === null ? [this.computed] : [this.computed, this.display];
-  }
-
-  /** Of the nodes, linear. */
-  private coloursOf(colouring: Colouring, range: ColourRange): Float32Array {
     const values = colouring === "compliance" ? this.object.compliance : this.values;
-    values.forEach((value, i) => paintShare(Number.isNaN(value) ? value : linearly(value, range), this.colours, 3 * i));
-    return this.colours;
+    this.surface.draw(this.drawn, colouring === "none" || colouring === "modulus" ? colouring : values, range);
   }
 
   /** @param held what styluses hold of it */
@@ -208,15 +167,11 @@ export class SoftObject {
   }
 
   dispose(): void {
-    for (const mesh of this.meshes) mesh.dispose();
+    this.surface.dispose();
     this.rigid.geometry.dispose();
     this.rigid.material.dispose();
     this.inside?.dispose();
   }
-}
-
-function linearly(value: number, { low, high }: ColourRange): number {
-  return high > low ? (value - low) / (high - low) : 0;
 }
 
 /** Of its surface, and those at the ends of what its regions have [Pa]; NaN: not known. */

@@ -109,7 +109,7 @@ export class World {
   /** Its texture is read meanwhile. */
   private async dress(object: SoftObject): Promise<void> {
     try {
-      await object.loadTexture();
+      await object.surface.loadTexture();
     } catch {
       this.onFault(`The texture of ${object.name} cannot be read: it is drawn plain.`);
     }
@@ -161,7 +161,7 @@ export class World {
       const touching = frame.styluses.map((state, s) => ({ state, radius: this.scene!.styluses[s]!.radius }));
       const here = touching.filter(({ state }) => state.present && state.contact !== Contact.Free && state.object === i);
       const patches = here.map(({ state, radius }) => ({ middle: state.middle, radius }));
-      object.marks.show(this.look.overlays.contacts ? patches : []);
+      object.surface.marks.show(this.look.overlays.contacts ? patches : []);
       object.showHeld(patches.filter((_, p) => here[p]!.state.contact === Contact.Held && !Number.isNaN(patches[p]!.middle[0])));
     });
   }
@@ -180,7 +180,7 @@ export class World {
     for (const object of this.objects) object.showThrough(this.look.rigid, inside);
     for (const object of this.objects) {
       object.drawn.exaggeration = this.look.exaggeration;
-      object.showsComputed = this.look.computed;
+      object.surface.computedOnly = this.look.computed;
     }
     this.ramp.restart();
     if (this.frame !== null) this.showFrame(this.frame, false);

@@ -35,6 +35,8 @@ export class FakeServer {
   others = [];
   /** of the dent: width [m]; way out of the surface [m], null: half the depth of the tip inwards */
   dent = { width: WIDTH, out: null };
+  /** of the first object instead of a dent: from a node's place at rest to its displacement [m] */
+  move = null;
   /** [N/m] */
   stiffness = STIFFNESS;
   state;
@@ -195,8 +197,9 @@ export class FakeServer {
     const { ABSENT, frameMessage } = this.#messages;
     const objects = this.scene.objects.map(({ rest }, object) => {
       const displacement = rest.map((part, i) => {
-        if (dent === null || object > 0) return 0;
         const node = rest.slice(i - (i % 3), i - (i % 3) + 3);
+        if (this.move !== null && object === 0) return Math.round(1e6 * this.move(node)[i % 3]);
+        if (dent === null || object > 0) return 0;
         const away = Math.hypot(...node.map((part, c) => part - dent.middle[c]));
         return Math.round(1e6 * dent.push[i % 3] * Math.exp(-((away / this.dent.width) ** 2)));
       });

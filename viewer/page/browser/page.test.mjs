@@ -6,20 +6,9 @@ import { test } from "node:test";
 import { accessibilityFaults, contrastsOverPicture } from "./accessibility.mjs";
 import { frames, newContext, onScreen, until, visit } from "./browser.mjs";
 import { FakeServer, loadMessages } from "./fake_server.mjs";
+import { different, LARGE, pixel, pixels, SMALL, stage } from "./page_stage.mjs";
 
-const SMALL = { viewport: { width: 720, height: 420 }, deviceScaleFactor: 0.5 };
 const TOP = [0, 0.05, 0]; // of the cube, B
-
-async function stage(test, { options = SMALL, query = "", ...changes } = {}) {
-  const context = await newContext(test, options);
-  const server = await FakeServer.start(context, process.env.PAGE, changes);
-  test.after(() => server.stop());
-  const page = await context.newPage();
-  await visit(page, server.address + query);
-  await frames(page);
-  await page.waitForFunction(() => window.irdm.state() !== null);
-  return { page, server };
-}
 
 const said = (server, type) => server.received.filter((message) => message.type === type);
 const asked = (server, what) => said(server, "command").filter((message) => message.what === what);
@@ -330,7 +319,6 @@ test("bodies of one material have no colours of the material, and the page says 
   assert.equal(await page.locator("#materials").isVisible(), false);
 });
 
-const different = (a, b) => Math.max(...a.map((part, i) => Math.abs(part - b[i]))) > 30;
 const saturated = ([red, green, blue]) => Math.max(red, green, blue) - Math.min(red, green, blue) > 60;
 const MIDDLE = [0.13, 0, 0]; // of the second object
 const FRONT = [0.12, 0.03, 0.05]; // on its surface, before nothing
@@ -442,25 +430,6 @@ const SCENERY = [
 ];
 const PUSHED = { object: 0, other: -1, normal: [0, 1, 0], position: [0, -0.05, 0.03], force: [0, 1, 0], area: 4e-4 };
 
-/** Of the picture at places of the world, drawn once: red, green, blue, alpha. */
-function pixels(page, places) {
-  return page.evaluate((places) => {
-    const { world } = window.irdm;
-    world.drawNow();
-    const flat = document.createElement("canvas");
-    [flat.width, flat.height] = [world.canvas.width, world.canvas.height];
-    const context = flat.getContext("2d");
-    context.drawImage(world.canvas, 0, 0);
-    const ratio = world.canvas.width / world.canvas.clientWidth;
-    return places.map((place) => {
-      const { x, y } = world.view.onCanvas(world.camera.position.clone().set(...place));
-      return [...context.getImageData(Math.floor(x * ratio), Math.floor(y * ratio), 1, 1).data];
-    });
-  }, places);
-}
-
-const pixel = async (page, place) => (await pixels(page, [place]))[0];
-
 test("scenery is drawn, in light and in dark", async (context) => {
   const options = { ...SMALL, deviceScaleFactor: 1 };
   const { page } = await stage(context, { options, scene: { scenery: SCENERY } });
@@ -534,7 +503,6 @@ test("contacts between bodies are drawn with a legend, and can be left out", asy
   assert.deepEqual(page.faults, []);
 });
 
-const LARGE = { viewport: { width: 1000, height: 700 }, deviceScaleFactor: 1 };
 /** In the colour of a mark, not of the object. */
 const marked = ([red, green, blue, alpha]) => alpha === 255 && Math.max(red, green, blue) - Math.min(red, green, blue) > 36;
 

@@ -67,6 +67,9 @@ export class Reader {
   longs(count: number): Int32Array {
     return new Int32Array(this.bytes, this.take(4 * count), count);
   }
+  octets(count: number): Uint8Array<ArrayBuffer> {
+    return new Uint8Array(this.bytes, this.take(count), count);
+  }
   skip(count: number): void {
     this.take(count);
   }

@@ -59,3 +59,12 @@ export function cssRamp(ramp: Ramp): string {
 export function linear(value: number): number {
   return value <= 0.04045 ? value / 12.92 : ((value + 0.055) / 1.055) ** 2.4;
 }
+
+const UNKNOWN: readonly [number, number, number] = [0.5, 0.5, 0.5];
+
+/** Writes what stands for a value on the ramp, linear. @param share of the ramp, 0 to 1; NaN: the value is not known */
+export function paintShare(share: number, into: Float32Array, offset: number): void {
+  if (Number.isNaN(share)) into.set(UNKNOWN, offset);
+  else colourAt(VIRIDIS, share, into, offset);
+  for (let c = offset; c < offset + 3; ++c) into[c] = linear(into[c]!);
+}

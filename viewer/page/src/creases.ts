@@ -166,3 +166,9 @@ export function vertexNormals(positions: Float32Array, { index, firstOf }: Creas
     if (first !== v) normals.copyWithin(3 * v, 3 * first, 3 * first + 3);
   });
 }
+
+/** Without creases: the nodes are the vertices. */
+export function smoothMesh(nodes: number, triangles: Uint32Array): CreasedMesh {
+  const nodeOf = Uint32Array.from(Array(nodes).keys());
+  return { nodeOf, index: triangles, firstOf: nodeOf };
+}

@@ -14,6 +14,8 @@ const PATCH_SHARE = 0.2; // of the object's radius
 export class DrawnSurface {
   /** before exaggeration [m] */
   readonly displacement: Float32Array;
+  /** of the nodes, as place() found them [m] */
+  readonly positions: Float32Array;
   exaggeration = 1;
   private readonly leastPatch: number;
   private readonly points = new Map<number, { middle: Vector3; point: SurfacePoint }>();
@@ -25,6 +27,7 @@ export class DrawnSurface {
   ) {
     this.displacement = Float32Array.from(truly);
     const { rest, triangles } = object;
+    this.positions = Float32Array.from(rest);
     this.leastPatch = Math.min(PATCH_EDGES * meanEdge(rest, triangles), PATCH_SHARE * radiusOf(rest));
   }
 
@@ -34,6 +37,11 @@ export class DrawnSurface {
     withPatches(this.object.rest, this.truly, patches, this.displacement);
   }
   private even = true;
+
+  place(): void {
+    const { rest } = this.object;
+    for (let i = 0; i < rest.length; ++i) this.positions[i] = rest[i]! + this.exaggeration * this.displacement[i]!;
+  }
 
   /** Of a stylus that touches at a point of the surface at rest. [m] */
   shiftOfStylus(stylus: number, middle: readonly [number, number, number]): Vector3 {

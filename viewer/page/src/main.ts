@@ -52,6 +52,7 @@ if (world !== null) {
   world.view.onMoved = (view) => rememberView(scene!, view);
 }
 const notices = new Notices(element("notices"));
+if (world !== null) world.onFault = (text) => notices.tell(text);
 const run = new RunControls(ask);
 const playback = new PlaybackBar(ask);
 const settings = new SettingsPanel(element("settings"), element("settings-reason"), (values) =>

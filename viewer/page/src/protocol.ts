@@ -5,6 +5,7 @@
  */
 
 import { ProtocolError, Reader } from "./byte_reader";
+import { readDisplay, type Display } from "./display";
 import { readRegions, type Regions } from "./regions";
 
 export const MAGIC = "IRVW";
@@ -27,6 +28,7 @@ export const MAX_CONTACTS = 256;
 const NORMAL_UNITS = 32767;
 const MAX_NAME = 256;
 const MAX_REGIONS = 64;
+const HAS_DISPLAY = 4; // of an object's flags
 const MAX_TOKEN = 128;
 const MAX_RECORDINGS = 100;
 const RECORDING_NAME = 64;
@@ -62,6 +64,8 @@ export interface SceneObject {
   compliance: Float32Array;
   /** null: it is of one material, or rigid */
   regions: Regions | null;
+  /** null: its computed surface is drawn */
+  display: Display | null;
 }
 
 /** In its own frame: a plane has the normal +y, a capsule the axis y with `length` between its balls' centres. [m] */
@@ -294,7 +298,8 @@ function readObject(reader: Reader): SceneObject {
   if (triangles.some((node) => node >= nodes)) throw new ProtocolError("a triangle has a node that is not there");
   const compliance = reader.singles(nodes);
   const regions = regionCount > 0 ? readRegions(reader, regionCount, flags, triangleCount) : null;
-  return { name, mass, stiffness, rest, triangles, compliance, regions };
+  const display = (flags & HAS_DISPLAY) !== 0 ? readDisplay(reader, nodes) : null;
+  return { name, mass, stiffness, rest, triangles, compliance, regions, display };
 }
 
 function readShape(number: number, [x, y, z]: Vec3): Shape {

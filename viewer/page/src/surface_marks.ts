@@ -6,8 +6,8 @@ const POINT = 0.0013; // radius at which the contact of a point is drawn [m]
 const AMONG_COLOURS = "#ffffff"; // which the ramp does not have
 
 /**
- * Marks where styluses touch, as discs on the surface at rest, which the deformation takes along. The material
- * needs the attribute `rest`, a vertex's rest position [m], B.
+ * Marks where styluses touch, as discs on the surface at rest, which the deformation takes along. What is drawn
+ * needs the attribute `rest`, a vertex's place on that surface [m], B.
  */
 export class SurfaceMarks {
   private readonly middles = Array.from({ length: MOST }, () => new THREE.Vector3());
@@ -19,17 +19,16 @@ export class SurfaceMarks {
     ownLight: { value: 0 },
   };
 
-  constructor(material: THREE.MeshStandardMaterial) {
-    material.onBeforeCompile = (shader) => {
-      Object.assign(shader.uniforms, this.uniforms);
-      shader.vertexShader = ("attribute vec3 rest;\nvarying vec3 vRest;\n" + shader.vertexShader).replace(
-        "#include <begin_vertex>",
-        "#include <begin_vertex>\nvRest = rest;",
-      );
-      shader.fragmentShader = (DECLARE + shader.fragmentShader)
-        .replace("#include <color_fragment>", "#include <color_fragment>\n" + MARK)
-        .replace("#include <emissivemap_fragment>", "#include <emissivemap_fragment>\n" + SHINE);
-    };
+  /** To be called before the material of a surface is compiled. */
+  drawBy(shader: THREE.WebGLProgramParametersWithUniforms): void {
+    Object.assign(shader.uniforms, this.uniforms);
+    shader.vertexShader = ("attribute vec3 rest;\nvarying vec3 vRest;\n" + shader.vertexShader).replace(
+      "#include <begin_vertex>",
+      "#include <begin_vertex>\nvRest = rest;",
+    );
+    shader.fragmentShader = (DECLARE + shader.fragmentShader)
+      .replace("#include <color_fragment>", "#include <color_fragment>\n" + MARK)
+      .replace("#include <emissivemap_fragment>", "#include <emissivemap_fragment>\n" + SHINE);
   }
 
   /** On a plain surface. */

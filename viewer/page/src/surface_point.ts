@@ -1,5 +1,5 @@
-// A point of a surface at rest as a mixture of nodes. Pure.
-import { Triangle, Vector3 } from "three";
+// A point of a surface as a mixture of nodes. Pure.
+import { Triangle, Vector3, type Ray } from "three";
 
 export interface SurfacePoint {
   nodes: [number, number, number];
@@ -25,6 +25,28 @@ export function nearestOnSurface(point: Vector3, rest: Float32Array, triangles: 
     found = { nodes, shares: shares.toArray() };
   }
   return found;
+}
+
+/** The first one on a ray that triangles have on their outer side; null: there is none. [m], B */
+export function firstOnRay(ray: Ray, positions: Float32Array, triangles: Uint32Array): { point: SurfacePoint; distance: number } | null {
+  const { a, b, c } = new Triangle();
+  const place = new Vector3();
+  let distance = Number.POSITIVE_INFINITY;
+  let nodes: SurfacePoint["nodes"] | null = null;
+  for (let t = 0; t < triangles.length; t += 3) {
+    a.fromArray(positions, 3 * triangles[t]!);
+    b.fromArray(positions, 3 * triangles[t + 1]!);
+    c.fromArray(positions, 3 * triangles[t + 2]!);
+    if (ray.intersectTriangle(a, b, c, true, place) === null) continue;
+    const away = place.distanceTo(ray.origin);
+    if (away >= distance) continue;
+    distance = away;
+    nodes = [triangles[t]!, triangles[t + 1]!, triangles[t + 2]!];
+  }
+  if (nodes === null) return null;
+  const [p, q, r] = nodes.map((node) => new Vector3().fromArray(positions, 3 * node)) as [Vector3, Vector3, Vector3];
+  const shares = Triangle.getBarycoord(ray.at(distance, place), p, q, r, new Vector3())!;
+  return { point: { nodes, shares: shares.toArray() }, distance };
 }
 
 /** The mixture of vectors that nodes have. */

@@ -24,6 +24,7 @@ export class ViewControls {
   private readonly exaggeration = element<HTMLInputElement>("exaggeration");
   private readonly colour = element<HTMLSelectElement>("colour");
   private readonly rigid = element<HTMLInputElement>("rigid");
+  private readonly computed = element<HTMLInputElement>("computed");
   private readonly contacts = element<HTMLInputElement>("contacts");
   private readonly forces = element<HTMLInputElement>("forces");
   private readonly pressures = element<HTMLInputElement>("pressures");
@@ -34,7 +35,7 @@ export class ViewControls {
 
   constructor(private readonly world: World | null) {
     const overlays = [this.contacts, this.forces, this.pressures, this.arrowLength, this.pressureEnd];
-    for (const input of [this.exaggeration, this.colour, this.rigid, this.follow, ...overlays]) {
+    for (const input of [this.exaggeration, this.colour, this.rigid, this.computed, this.follow, ...overlays]) {
       input.oninput = () => this.apply();
     }
     for (const preset of ["fit", "front", "side", "top"] as Preset[]) element(preset).onclick = () => world?.fit(preset);
@@ -48,6 +49,7 @@ export class ViewControls {
     const known = scene.objects.some((object) => object.compliance.some((value) => !Number.isNaN(value)));
     this.allow("compliance", known);
     this.allow("modulus", scene.objects.some((object) => object.regions !== null));
+    element("computed-choice").hidden = scene.objects.every((object) => object.display === null);
     const option = this.optionOf("modulus");
     option.textContent = option.disabled ? `${MODULUS} (no body has regions)` : MODULUS;
     if (this.world !== null) element("materials").replaceChildren(...materialRows(scene, modulusSpan(this.world.objects)));
@@ -129,6 +131,7 @@ export class ViewControls {
       colouring,
       range: this.range.of(colouring),
       rigid: this.rigid.checked,
+      computed: this.computed.checked,
       overlays,
       follow: this.follow.checked,
     };

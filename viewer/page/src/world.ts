@@ -20,6 +20,8 @@ export interface Look {
   /** of the colours, not of Young's modulus */
   range: SetRange;
   rigid: boolean;
+  /** the surfaces that compute, not their display meshes */
+  computed: boolean;
   overlays: Overlays;
   /** the camera goes along with objects that leave the middle of the picture */
   follow: boolean;
@@ -29,12 +31,14 @@ export interface Look {
 export class World {
   readonly view: ViewCamera;
   objects: SoftObject[] = [];
-  look: Look = { exaggeration: 1, colouring: "none", range: AUTOMATIC, rigid: false, overlays: ALL_OVERLAYS, follow: true };
+  look: Look = { exaggeration: 1, colouring: "none", range: AUTOMATIC, rigid: false, computed: false, overlays: ALL_OVERLAYS, follow: true };
   readonly ramp = new RampRange();
   /** a hand is on the objects: the camera stays where it is */
   held = false;
   /** called after each drawing */
   readonly onDraw: (() => void)[] = [];
+  /** called with what cannot be drawn */
+  onFault: (text: string) => void = () => {};
 
   private readonly renderer: THREE.WebGLRenderer;
   private readonly three = new THREE.Scene();
@@ -87,6 +91,7 @@ export class World {
     this.frame = null;
     this.ramp.restart();
     this.objects = scene.objects.map((object) => new SoftObject(object));
+    for (const object of this.objects) void this.dress(object);
     this.styluses = scene.styluses.map((stylus) => new Stylus(stylus));
     this.scenery = scene.scenery.map((body) => new SceneryBody(body));
     this.contacts.clear();
@@ -100,6 +105,16 @@ export class World {
   }
   private fitPending = false;
   private firstView: CameraView | null = null;
+
+  /** Its texture is read meanwhile. */
+  private async dress(object: SoftObject): Promise<void> {
+    try {
+      await object.surface.loadTexture();
+    } catch {
+      this.onFault(`The texture of ${object.name} cannot be read: it is drawn plain.`);
+    }
+    this.invalidate();
+  }
 
   follow(frame: Frame): void {
     // The same one once more is for colours to go on, as irdm-replay has it.
@@ -146,7 +161,7 @@ export class World {
       const touching = frame.styluses.map((state, s) => ({ state, radius: this.scene!.styluses[s]!.radius }));
       const here = touching.filter(({ state }) => state.present && state.contact !== Contact.Free && state.object === i);
       const patches = here.map(({ state, radius }) => ({ middle: state.middle, radius }));
-      object.marks.show(this.look.overlays.contacts ? patches : []);
+      object.surface.marks.show(this.look.overlays.contacts ? patches : []);
       object.showHeld(patches.filter((_, p) => here[p]!.state.contact === Contact.Held && !Number.isNaN(patches[p]!.middle[0])));
     });
   }
@@ -163,7 +178,10 @@ export class World {
   applyLook(): void {
     const inside = this.look.colouring === "modulus" ? modulusSpan(this.objects) : null;
     for (const object of this.objects) object.showThrough(this.look.rigid, inside);
-    for (const object of this.objects) object.drawn.exaggeration = this.look.exaggeration;
+    for (const object of this.objects) {
+      object.drawn.exaggeration = this.look.exaggeration;
+      object.surface.computedOnly = this.look.computed;
+    }
     this.ramp.restart();
     if (this.frame !== null) this.showFrame(this.frame, false);
     this.invalidate();
@@ -242,14 +260,7 @@ export class World {
 
   private bounds(): THREE.Sphere {
     const box = new THREE.Box3();
-    this.objects.forEach((object, i) => {
-      const rest = this.scene!.objects[i]!.rest;
-      object.group.updateMatrix();
-      const point = new THREE.Vector3();
-      for (let n = 0; n < rest.length; n += 3) {
-        box.expandByPoint(point.fromArray(rest, n).applyMatrix4(object.group.matrix));
-      }
-    });
+    for (const object of this.objects) object.widen(box);
     return box.getBoundingSphere(new THREE.Sphere());
   }
 

@@ -73,6 +73,20 @@ export interface ObjectParts {
   triangles: number[];
   compliance: number[];
   regions?: RegionsParts;
+  display?: DisplayParts;
+}
+
+/** Bound to the object's surface by three nodes and weights a vertex. */
+export interface DisplayParts {
+  positions: number[];
+  normals: number[];
+  triangles: number[];
+  nodes: number[];
+  weights: number[];
+  /** none: left out */
+  coordinates?: number[];
+  /** a file's bytes; none: left out */
+  texture?: number[];
 }
 
 export interface RegionsParts {
@@ -85,6 +99,8 @@ export interface RegionsParts {
   faces: number[];
   faceModulus: number[];
 }
+
+export { ball } from "./display_ball.ts";
 
 /** A cube of its own in the middle of an object: region 1. */
 export function inclusion(object: ObjectParts, edge: number, soft: number, stiff: number): RegionsParts {
@@ -165,6 +181,13 @@ function putRegions(to: Writer, { list, surfaceModulus, nodes, faces, faceModulu
   to.f32(...nodes).u32(...faces).f32(...faceModulus);
 }
 
+function putDisplay(to: Writer, display: DisplayParts): void {
+  const { positions, normals, triangles, nodes, weights, coordinates, texture } = display;
+  to.u32(positions.length / 3, triangles.length / 3, coordinates === undefined ? 0 : 1, texture?.length ?? 0);
+  to.f32(...positions, ...normals).u32(...triangles, ...nodes).f32(...weights, ...(coordinates ?? []));
+  to.u8(...(texture ?? [])).align();
+}
+
 export function sceneMessage(parts: SceneParts): ArrayBuffer {
   const to = begin(1).u16(parts.objects.length, parts.radii.length).u16(parts.flags, parts.scenery.length).f64(parts.dt);
   to.f64(0, (parts.flags & 2) !== 0 ? 1 : 0, 0, parts.floorHeight);
@@ -172,9 +195,10 @@ export function sceneMessage(parts: SceneParts): ArrayBuffer {
   for (const object of parts.objects) {
     const name = utf8(object.name);
     to.u32(object.rest.length / 3, object.triangles.length / 3, name.length).f32(0.1, 2e4);
-    to.u16(object.regions?.list.length ?? 0, object.regions?.flags ?? 0).raw(name).align();
+    to.u16(object.regions?.list.length ?? 0, (object.regions?.flags ?? 0) | (object.display === undefined ? 0 : 4)).raw(name).align();
     to.f32(...object.rest).u32(...object.triangles).f32(...object.compliance);
     if (object.regions !== undefined) putRegions(to, object.regions);
+    if (object.display !== undefined) putDisplay(to, object.display);
   }
   for (const scenery of parts.scenery) {
     const name = utf8(scenery.name);

@@ -99,6 +99,7 @@ inline viewer::Scene example_scene() {
   second.rest.bottomRows(3).setIdentity();
   second.triangles << 0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3;
   second.regions = example_regions();
+  second.display = example_display();
   for (int i = 0; i < first.rest.rows(); ++i) {
     first.compliance.push_back(0.001F * static_cast<float>(i));
   }

@@ -1,7 +1,7 @@
 import { ProtocolError, type Reader } from "./byte_reader";
 
 const HAS_COORDINATES = 1;
-const MAX_TEXTURE = 33_554_432; // bytes
+const MAX_TEXTURE = 16_777_216; // bytes
 const SUM_OFF = 1e-3; // by which weights may miss the sum 1
 
 /** A mesh that is drawn in place of an object's computed surface, which takes it along. */

@@ -43,6 +43,15 @@ test("a scene is what the server made it", () => {
   assert.deepEqual([...regions.nodes], [0.5, 0, 0, 0, 0.5, 0, 0, 0, -0.5]);
   assert.deepEqual([...regions.faces], [0, 2, 1]);
   assert.deepEqual([...regions.faceModulus], [500]);
+  const display = scene.objects[1]!.display!;
+  assert.equal(scene.objects[0]!.display, null);
+  assert.deepEqual([...display.positions], [0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 0.5, 0.25]);
+  assert.deepEqual([...display.normals.subarray(9)], [0, 0, 1]);
+  assert.deepEqual([...display.triangles], [0, 1, 2, 0, 2, 3]);
+  assert.deepEqual([...display.nodes], new Array(12).fill(0));
+  assert.deepEqual([...display.weights.subarray(9)], [0.5, 0.375, 0.125]);
+  assert.deepEqual([...display.coordinates!], [0, 0, 1, 0, 1, 1, 0.25, 0.75]);
+  assert.deepEqual([...display.texture!], [0xff, 0xd8, 0xff, 0xe0, 7]);
   assert.deepEqual(scene.scenery.map(({ name }) => name), ["wände", "box", "ball", "capsule"]);
   assert.deepEqual(scene.scenery[1]!.shape, { kind: "box", size: [0.5, 0.25, 0.125] });
   assert.deepEqual(scene.scenery[3]!.shape, { kind: "capsule", radius: 0.25, length: 0.75 });

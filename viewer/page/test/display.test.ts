@@ -77,15 +77,15 @@ test("a scene that ends within a display mesh is refused", () => {
 });
 
 test("a texture that is too large is refused however many bytes come", () => {
-  const large = new Uint8Array(bytes.byteLength + 33_554_433 + 3);
+  const large = new Uint8Array(bytes.byteLength + 16_777_217 + 3);
   const at = bytes.byteLength - 4 * Math.ceil(display.texture!.length / 4);
   large.set(new Uint8Array(bytes));
   const size = at - (display.positions.length / 3) * (4 * 12 + 8) - 4 * display.triangles.length - 4;
   const view = new DataView(large.buffer);
   assert.equal(view.getUint32(size, true), display.texture!.length);
-  view.setUint32(size, 33_554_433, true);
-  const whole = large.buffer.slice(0, at + 33_554_436);
+  view.setUint32(size, 16_777_217, true);
+  const whole = large.buffer.slice(0, at + 16_777_220);
   assert.throws(() => decode(whole, null), /texture is too large/);
-  view.setUint32(size, 33_554_432, true);
-  assert.equal((decode(large.buffer.slice(0, at + 33_554_432), null) as Scene).objects[0]!.display!.texture!.length, 33_554_432);
+  view.setUint32(size, 16_777_216, true);
+  assert.equal((decode(large.buffer.slice(0, at + 16_777_216), null) as Scene).objects[0]!.display!.texture!.length, 16_777_216);
 });

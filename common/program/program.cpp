@@ -91,7 +91,7 @@ std::vector<std::string> option_names(const CLI::App& app) {
 }
 
 // Empty where nothing is near.
-std::string meant(const std::string& word, const std::vector<std::string>& words) {
+std::string suggestion(const std::string& word, const std::vector<std::string>& words) {
   const std::optional<std::string> near = nearest_word(word, words);
   return near ? "did you mean " + *near + " in place of " + shortened(word) + "?\n" : "";
 }
@@ -106,13 +106,13 @@ std::string meant_command(const CLI::App& app, int argc, char** argv) {
   for (const CLI::App* command : app.get_subcommands(nullptr)) {
     commands.push_back(command->get_name());
   }
-  return meant(argv[1], commands);
+  return suggestion(argv[1], commands);
 }
 
 std::string meant_options(const CLI::App& app) {
   std::string text;
   for (const std::string& word : app.remaining(true)) {
-    if (word.starts_with('-')) text += meant(word.substr(0, word.find('=')), option_names(app));
+    if (word.starts_with('-')) text += suggestion(word.substr(0, word.find('=')), option_names(app));
   }
   return text;
 }

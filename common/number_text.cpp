@@ -10,4 +10,8 @@ std::string number_text(double value) {
   return stream.str();
 }
 
+std::string styluses_text(std::size_t count) {
+  return std::to_string(count) + (count == 1 ? " stylus" : " styluses");
+}
+
 }  // namespace irdm

@@ -13,6 +13,7 @@
 #include "common/config/range.hpp"
 #include "common/error.hpp"
 #include "common/model/model_file.hpp"
+#include "common/number_text.hpp"
 #include "scene/common_keys.hpp"
 #include "scene/scenery_keys.hpp"
 #include "simulation/step/default_fingertip.hpp"
@@ -354,7 +355,7 @@ bool recorded_viewer_stylus(const SceneConfig& scene, int stylus_count, const st
   const int more = stylus_count - static_cast<int>(scene.styluses.size());
   if (more == 0 || more == 1) return more == 1;
   throw Error(trace,
-              "has " + std::to_string(stylus_count) + " styluses, the scene " +
+              "has " + styluses_text(static_cast<std::size_t>(stylus_count)) + ", the scene " +
                   std::to_string(scene.styluses.size()),
               "give the scene that it was recorded with");
 }

@@ -9,15 +9,16 @@ import sys
 
 from PIL import Image
 
-INTERVAL_MS = 100  # of a frame, as of the run
-LAST_MS = 1500  # of the last one, before it begins again
+LENGTH_MS = 15000  # of it all
+LAST_MS = 1500  # of the last frame, before it begins again
 SIZE = (720, 360)  # as large as a README shows it
 QUALITIES = (70, 55, 40, 25)
 
 
 def save(frames, path, kilobytes):
     """In the best quality that fits."""
-    durations = [INTERVAL_MS] * (len(frames) - 1) + [LAST_MS]
+    steps = max(1, len(frames) - 1)
+    durations = [(LENGTH_MS - LAST_MS) // steps] * (len(frames) - 1) + [LAST_MS]
     for quality in QUALITIES:
         frames[0].save(path, save_all=True, append_images=frames[1:], duration=durations, loop=0, quality=quality)
         size = path.stat().st_size

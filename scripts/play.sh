@@ -17,6 +17,7 @@ while [ $# -gt 0 ]; do
 done
 export IRDM_PROGRAMS=$PWD/build/$preset/bin IRDM_DATA=$PWD
 if [ $plays = yes ]; then
+  command -v gmsh >/dev/null || scripts/setup.sh --run
   scripts/build.sh "$preset" irdm-precompute irdm-server irdm-bridge irdm-replay ||
     { echo "play: the build failed; see scripts/setup.sh" >&2; exit 1; }
 fi

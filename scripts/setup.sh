@@ -1,29 +1,31 @@
 #!/usr/bin/env bash
 # Installs what irdm needs: Debian's packages (scripts/packages.txt), and the npm packages that the viewer's page
-# is built from, as its lock file says. Does nothing when all is there.
-#   scripts/setup.sh [--run]    --run: without what only the tests need
+# is built from, as its lock file says. Does nothing when all is there. dpkg does not wait for the disk after each file
+# (--force-unsafe-io): if the machine loses power meanwhile, packages may have to be installed again.
+#   scripts/setup.sh [--run | --demo]    --run: without what only the tests need; --demo: for scripts/demo.sh only
 set -euo pipefail
 cd "$(dirname "$0")"
 
 case "${1:-}" in
   "") unwanted='^(#|$)' ;;
   --run) unwanted='^(#|$)| tests$' ;;
-  *) echo "usage: scripts/setup.sh [--run]" >&2; exit 2 ;;
+  --demo) unwanted='^(#|$)| (tests|gallery)$' ;;
+  *) echo "usage: scripts/setup.sh [--run | --demo]" >&2; exit 2 ;;
 esac
+# What npm needs comes first: it downloads while the others are unpacked.
+for_npm='^(ca-certificates|nodejs|npm)$'
+mapfile -t packages < <(grep -Ev "$unwanted" packages.txt | cut -d ' ' -f 1)
 
+# install_packages NAME...
 install_packages() {
-  local packages missing=() as_root=() package status
-  mapfile -t packages < <(grep -Ev "$unwanted" packages.txt | cut -d ' ' -f 1)
-  for package in "${packages[@]}"; do
+  local missing=() as_root=() package status
+  for package in "$@"; do
     # A nodejs that is not Debian's brings its own npm, and Debian's cannot be installed beside it.
     [ "$package" = npm ] && command -v npm >/dev/null && continue
     status=$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null || true)
     [ "$status" = installed ] || missing+=("$package")
   done
-  if [ ${#missing[@]} -eq 0 ]; then
-    echo "setup: all ${#packages[@]} packages are installed"
-    return
-  fi
+  [ ${#missing[@]} -gt 0 ] || return 0
   if [ "$(id -u)" -ne 0 ]; then
     command -v sudo >/dev/null || { echo "setup: run as root or install sudo" >&2; exit 1; }
     as_root=(sudo)
@@ -31,7 +33,7 @@ install_packages() {
   echo "setup: installing ${missing[*]}"
   "${as_root[@]}" apt-get update -qq
   "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
-    apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+    apt-get install -y -qq --no-install-recommends -o Dpkg::Options::=--force-unsafe-io "${missing[@]}" >/dev/null
 }
 
 install_page_packages() {
@@ -47,6 +49,10 @@ install_page_packages() {
   npm ci --no-audit --no-fund --loglevel=error
 }
 
-install_packages
-install_page_packages
-echo "setup: done"
+mapfile -t first < <(printf '%s\n' "${packages[@]}" | grep -E "$for_npm")
+mapfile -t others < <(printf '%s\n' "${packages[@]}" | grep -Ev "$for_npm")
+install_packages "${first[@]}"
+install_page_packages &
+install_packages "${others[@]}"
+wait $!
+echo "setup: all ${#packages[@]} packages are installed"

@@ -13,6 +13,7 @@
 #include "common/checksum.hpp"
 #include "common/contact/contact_model.hpp"
 #include "common/error.hpp"
+#include "common/number_text.hpp"
 #include "common/program/program.hpp"
 #include "common/realtime/event_fd.hpp"
 #include "common/realtime/scheduling.hpp"
@@ -121,6 +122,29 @@ int print_report(const FinishedRun& run, const ServerOptions& options) {
   return 0;
 }
 
+// Objects and styluses of a scene, for messages: "2 objects (left, right) and 1 stylus".
+std::string parts_text(const SceneConfig& scene) {
+  std::string names;
+  for (const ObjectConfig& object : scene.objects) {
+    names += (names.empty() ? "" : ", ") + shortened(object.name);
+  }
+  const std::size_t count = scene.objects.size();
+  return std::to_string(count) + (count == 1 ? " object (" : " objects (") + names + ") and " +
+         styluses_text(scene.styluses.size());
+}
+
+// Where a trace's sets are depends on its scene's objects and styluses.
+void check_parts(const SceneConfig& scene, const std::string& file, const TraceHeader& header,
+                 const std::string& trace) {
+  const std::string given = parts_text(scene);
+  const std::string recorded =
+      parts_text(read_scene(TomlTable::parse_text(header.scene, trace + ", scene")));
+  if (given == recorded) return;
+  throw Error(
+      trace, "was recorded with another scene: " + recorded + "; " + file + " has " + given,
+      "give the scene that it was recorded with: its text is the trace's attribute 'scene'");
+}
+
 void check_model(const SceneConfig& scene, const TraceHeader& header, const std::string& trace) {
   const std::filesystem::path& model = scene.objects.front().model;
   if (sha256_of_file(model) == header.objects.front().model_checksum) return;
@@ -135,6 +159,7 @@ int run_playback(const ServerOptions& options) {
   const SceneConfig scene = read_scene(TomlTable::parse_file(options.scene));
   const std::string trace = options.play->string();
   const TraceHeader header = read_trace_header(*options.play);
+  check_parts(scene, options.scene.string(), header, trace);
   check_model(scene, header, trace);
   const bool viewer_stylus = recorded_viewer_stylus(scene, header.stylus_count, trace);
   SceneColumns columns(false);

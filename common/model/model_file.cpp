@@ -69,6 +69,15 @@ void write_model_units(hdf5::File& file) {
   write(kCompressedFir, "unit", file.exists(kCompressedFirScale) ? "1" : "m/N");
 }
 
+void check_model_format(const hdf5::File& file) {
+  if (!file.has_attribute("/", "format")) return;
+  const std::string format = file.read_string_attribute("/", "format");
+  if (format == kModelFormat) return;
+  const std::string is =
+      format == "irdm-trace" ? "it is a trace" : "its format is " + in_quotes(format);
+  throw Error(file.name(), "is not a model file: " + is, "give one that irdm-precompute has made");
+}
+
 namespace {
 
 class ModelReader {
@@ -115,7 +124,8 @@ class ModelReader {
   }
 
   void check_format() {
-    if (file_.read_string_attribute("/", "format") != kModelFormat) damaged("is not a model file");
+    if (!file_.has_attribute("/", "format")) damaged("is not a model file");
+    check_model_format(file_);
     const std::int64_t version = file_.read_integer_attribute("/", "version");
     if (version != kModelVersion) {
       damaged("has version " + std::to_string(version) + " and this program reads version " +

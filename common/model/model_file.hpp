@@ -16,6 +16,9 @@ void write_model_units(hdf5::File& file);
 
 enum class ResponseKind { kModal, kDense, kCompressed };
 
+/// Throws Error when the file says that it is something else, such as a trace.
+void check_model_format(const hdf5::File& file);
+
 /// Reads a model file and, of its responses, the one that is asked for; of a rigid body
 /// RigidResponse, whatever is asked for. Everything is checked: shapes, index ranges, finite
 /// numbers, positive mass. Throws Error.

@@ -12,7 +12,10 @@
 #include <filesystem>
 #include <iostream>
 #include <new>
+#include <optional>
+#include <vector>
 
+#include "common/config/near_word.hpp"
 #include "common/error.hpp"
 
 namespace irdm {
@@ -73,6 +76,52 @@ int complain(const std::string& program, std::string text) {
   return kFailure;
 }
 
+// Of the program and of the command that was given.
+std::vector<std::string> option_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->get_group().empty()) continue;  // hidden
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  for (const CLI::App* command : app.get_subcommands()) {
+    const std::vector<std::string> more = option_names(*command);
+    names.insert(names.end(), more.begin(), more.end());
+  }
+  return names;
+}
+
+// Empty where nothing is near.
+std::string suggestion(const std::string& word, const std::vector<std::string>& words) {
+  const std::optional<std::string> near = nearest_word(word, words);
+  return near ? "did you mean " + *near + " in place of " + shortened(word) + "?\n" : "";
+}
+
+// Of a first word that neither is a command nor names a file.
+std::string meant_command(const CLI::App& app, int argc, char** argv) {
+  std::error_code ignored;
+  if (argc < 2 || !app.get_subcommands().empty() || std::filesystem::exists(argv[1], ignored)) {
+    return "";
+  }
+  std::vector<std::string> commands;
+  for (const CLI::App* command : app.get_subcommands(nullptr)) {
+    commands.push_back(command->get_name());
+  }
+  return suggestion(argv[1], commands);
+}
+
+std::string meant_options(const CLI::App& app) {
+  std::string text;
+  for (const std::string& word : app.remaining(true)) {
+    if (word.starts_with('-')) text += suggestion(word.substr(0, word.find('=')), option_names(app));
+  }
+  return text;
+}
+
+int say_wrong_usage(const CLI::App& app, const CLI::ParseError& error, const std::string& command) {
+  if (error.get_exit_code() != 0) std::cerr << command << meant_options(app);
+  return app.exit(error) == 0 ? 0 : kWrongUsage;
+}
+
 }  // namespace
 
 CLI::Validator positive_number() {
@@ -89,7 +138,12 @@ int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kWrongUsage;
+    return say_wrong_usage(app, error, meant_command(app, argc, argv));
+  }
+  const std::string command = meant_command(app, argc, argv);
+  if (!command.empty()) {
+    std::cerr << argv[1] << ": no such file\n" << command;
+    return kWrongUsage;
   }
   try {
     return body();

@@ -39,7 +39,8 @@ void wait_passively_in_openmp(char** argv);
 CLI::Validator positive_number();
 
 /// Adds --version, parses the command line and runs `body`; returns the exit status. An exception
-/// out of `body` becomes one line on stderr, `NAME: error: WHAT`, and status 1.
+/// out of `body` becomes one line on stderr, `NAME: error: WHAT`, and status 1. Beside wrong usage
+/// it names the option or command that was probably meant.
 int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& body);
 
 }  // namespace irdm

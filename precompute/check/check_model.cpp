@@ -172,6 +172,7 @@ void run_part(Report& report, const std::string& name, const std::string& suffix
 Report check_model(const std::filesystem::path& path, const CheckOptions& options,
                    const Console& console) {
   const hdf5::File file = hdf5::File::open(path);
+  check_model_format(file);
   Report report;
   run_part(report, "checksum", "", [&] { return Report{checksum_line(file)}; });
   HandLoop loop{options.hand, 0.0, 1};

@@ -15,7 +15,8 @@ struct CheckOptions {
 };
 
 /// Checks a model file and every response in it. What cannot be read is a line that fails. Dense R
-/// is read column by column. Throws Error only when the file is not there or not HDF5.
+/// is read column by column. Throws Error only when the file is not there, not HDF5, or of another
+/// format.
 Report check_model(const std::filesystem::path& path, const CheckOptions& options,
                    const Console& console);
 

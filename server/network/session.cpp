@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/number_text.hpp"
 #include "common/realtime/clock.hpp"
 
 namespace irdm {
@@ -92,7 +93,7 @@ void Session::greet(const wire::Hello& hello) {
   }
   if (hello.styluses > settings.styluses) {
     return refuse(wire::RefuseReason::kTooManyStyluses,
-                  "the server has " + std::to_string(settings.styluses) + " styluses");
+                  "the server has " + styluses_text(static_cast<std::size_t>(settings.styluses)));
   }
   std::uint32_t capabilities = wire::kCapabilityReport | wire::kCapabilityTorque;
   const bool simulated_link = (hello.capabilities & wire::kCapabilitySimulatedLink) != 0;

@@ -328,12 +328,13 @@ TEST_CASE("server refuses a bridge when no stylus is free, until one is") {
 }
 
 TEST_CASE("server refuses a bridge that wants more styluses than there are") {
-  RunningServer running({.styluses = 2});
+  RunningServer running({.styluses = 1});
   RawPeer peer = running.connect();
-  peer.send(Hello{.styluses = 3});
+  peer.send(Hello{.styluses = 2});
   const auto refuse = peer.receive_as<Refuse>();
   REQUIRE(refuse);
   CHECK(refuse->reason == RefuseReason::kTooManyStyluses);
+  CHECK(refuse->text == "the server has 1 stylus");
 }
 
 TEST_CASE("server in lockstep refuses a bridge that cannot") {

@@ -208,6 +208,57 @@ TEST_CASE("mistakes: two objects") {
           "inside one another", "move them apart"}});
 }
 
+TEST_CASE("mistakes: a trace") {
+  const Stage stage;
+  const std::string trace = record(stage, true).string();
+  const std::string object = "[[object]]\nname = \"cube\"";
+  const std::vector<std::string> play{"@scene.toml", "--play", trace};
+  const std::string recorded = "was recorded with another scene: 1 object (cube) and 1 stylus; ";
+  const std::string remedy = "give the scene that it was recorded with";
+  check(
+      IRDM_SERVER,
+      {{"scene.toml", object,
+        "[[object]]\nname = \"ball\"\nmodel = \"cube.h5\"\nposition = [1, 0, 0]\n" + object,
+        recorded, "has 2 objects (ball, cube) and 1 stylus; " + remedy, play},
+       {"scene.toml", "\"cube\"", "\"ball\"", recorded, "has 1 object (ball) and 1 stylus; ", play},
+       {"scene.toml", object, "[[stylus]]\nradius = 0.01\n" + object, recorded,
+        "has 1 object (cube) and 2 styluses; " + remedy, play}});
+  check(IRDM_PRECOMPUTE, {{"",
+                           "",
+                           "",
+                           "is not a model file: it is a trace",
+                           "that irdm-precompute has made",
+                           {"check", trace}}});
+}
+
+TEST_CASE("mistakes: commands and options") {
+  struct Misspelt {
+    std::vector<std::string> words;
+    std::string meant;
+  };
+  const std::vector<Misspelt> commands{
+      {{IRDM_PRECOMPUTE, "chek", "cube.h5"}, "did you mean check in place of chek?"},
+      {{IRDM_PRECOMPUTE, "chek"}, "did you mean check in place of chek?"},
+      {{IRDM_PRECOMPUTE, "check", "cube.h5", "--hand-mas", "1"},
+       "did you mean --hand-mass in place of --hand-mas?"},
+      {{IRDM_PRECOMPUTE, "cube.toml", "--outptu=cube.h5"},
+       "did you mean --output in place of --outptu?"},
+      {{IRDM_SERVER, "scene.toml", "--recrod", "trace.h5"},
+       "did you mean --record in place of --recrod?"},
+      {{IRDM_BRIDGE, "doctr"}, "did you mean doctor in place of doctr?"},
+      {{IRDM_BRIDGE, "bridge.toml", "--sevrer", "localhost:1"},
+       "did you mean --server in place of --sevrer?"},
+      {{IRDM_REPLAY, "compar", "a.h5", "b.h5"}, "did you mean compare in place of compar?"}};
+  for (const Misspelt& misspelt : commands) {
+    const FinishedProgram ended = run_to_end(misspelt.words);
+    CAPTURE(misspelt.words);
+    CHECK(ended.status == 2);
+    CHECK_THAT(ended.err, Contains(misspelt.meant + "\n"));
+  }
+  CHECK_THAT(run_to_end({IRDM_SERVER, "scene.toml", "--frobnicate"}).err,
+             !Contains("did you mean"));
+}
+
 TEST_CASE("mistakes: a bridge") {
   check(IRDM_BRIDGE,
         {{"", "", "", "bridge.tml: no such file", "check the path", {"@bridge.tml"}},

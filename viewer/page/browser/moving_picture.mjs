@@ -7,7 +7,7 @@ import { DEADLINE_MS, launch, listening, start } from "./programs.mjs";
 
 const { IRDM_SERVER, CHROMIUM } = process.env;
 const [scene, trace, out] = process.argv.slice(2);
-const INTERVAL = 0.1; // of the run [s]
+const INTERVAL = 1 / 15; // of the run [s]
 const SIZE = { width: 960, height: 480 };
 // The objects and the force. What is left out tells of the playback, which is held for each frame.
 const LOOK =

@@ -1,4 +1,4 @@
-// Makes the pictures of the README: real irdm-server and irdm-bridge, the page in headless Chromium, light and dark.
+// Makes the pictures of README and tutorial: real irdm-server and irdm-bridge, the page in headless Chromium, light and dark.
 //   node screenshots.mjs CONFIGS MODELS OUT      folders; MODELS has SCENE.h5; programs: IRDM_SERVER, IRDM_BRIDGE, CHROMIUM
 import { copyFileSync, mkdtempSync, rmSync, symlinkSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -7,26 +7,42 @@ import { DEADLINE_MS, launch, listening, start } from "./programs.mjs";
 
 const { IRDM_SERVER, IRDM_BRIDGE, CHROMIUM } = process.env;
 const [configs, models, out] = process.argv.slice(2).map((name) => path.resolve(name));
-const SIZE = { width: 1200, height: 750 };
+const DESKTOP = { viewport: { width: 1200, height: 750 } };
+const PHONE = { viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, isMobile: true, hasTouch: true };
+
+/** Something presses the liver's front so hard that it is seen. */
+const pressed = () => {
+  const [stylus] = window.irdm.frame().styluses;
+  return stylus.contact !== 0 && stylus.tip[0] > 0.04 && Math.hypot(...stylus.force) > 0.3;
+};
 
 // `when` says in the page whether what it shows is worth a picture.
 const PICTURES = [
   {
     name: "liver",
+    shape: DESKTOP,
     scene: "liver",
     bridge: "palpate",
-    when: () => {
-      const [stylus] = window.irdm.frame().styluses;
-      return stylus.contact !== 0 && stylus.tip[0] > 0.04 && Math.hypot(...stylus.force) > 0.3;
-    },
+    when: pressed,
     prepare: async (page) => {
       await page.locator("#help summary").click(); // open on a first visit
       await page.locator("#colour").selectOption("displacement");
     },
   },
+  {
+    name: "phone",
+    shape: PHONE,
+    scene: "liver",
+    bridge: "palpate",
+    when: pressed,
+    prepare: async (page) => {
+      await page.locator("#colour").selectOption("displacement");
+      await page.evaluate(() => window.scrollTo(0, 0));
+    },
+  },
 ];
 
-async function take(browser, { name, scene, bridge, when, prepare }) {
+async function take(browser, { name, shape, scene, bridge, when, prepare }) {
   const folder = mkdtempSync(path.join(tmpdir(), "irdm-screenshots-"));
   const children = [];
   try {
@@ -35,7 +51,7 @@ async function take(browser, { name, scene, bridge, when, prepare }) {
     const server = start(IRDM_SERVER, path.join(folder, "scene.toml"));
     children.push(server);
     const addresses = await listening(server);
-    const page = await browser.newPage({ viewport: SIZE });
+    const page = await browser.newPage(shape);
     await page.goto(addresses.page);
     await page.waitForFunction(() => window.irdm?.frame() != null, null, { timeout: DEADLINE_MS });
     await prepare(page);

@@ -134,7 +134,7 @@ test("a pressed cube is deformed on the page as at the server", async (context) 
     const object = window.irdm.world.objects[0];
     const at = object.group.children[0].geometry.getAttribute("position").array;
     window.irdm.world.drawNow();
-    const { nodeOf } = object.creased;
+    const { nodeOf } = object.surface.computed.creased;
     const { rest } = window.irdm.scene().objects[0];
     const shown = object.drawn.displacement;
     const same = shown.filter((value, i) => value === object.displacement[i]).length / shown.length;

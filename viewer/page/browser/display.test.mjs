@@ -116,6 +116,14 @@ test("its shading turns with the computed surface", async (context) => {
   assert.ok(Math.max(...steps) < 8, `differences ${steps}`);
 });
 
+test("its gap to the computed surface turns with that", async (context) => {
+  const radius = 0.02;
+  const { page, server } = await show(context, ball(radius, 12));
+  await move(page, server, ([x, y]) => [-y - x, x - y, 0]); // by a right angle
+  all(await opaque(page, times(0.96 * radius, ROUND)), true);
+  all(await opaque(page, times(1.1 * radius, ROUND)), false);
+});
+
 test("its shadow moves with it", async (context) => {
   const radius = 0.02;
   const { page, server } = await show(context, ball(radius, 10));

@@ -65,9 +65,9 @@ export class DisplayMesh {
 
   private move(shader: THREE.WebGLProgramParametersWithUniforms): void {
     shader.uniforms["ofAllNodes"] = { value: this.ofNodes.texture };
-    shader.vertexShader = (OF_NODES + shader.vertexShader).replace(
+    shader.vertexShader = (OF_NODES + TURNED + shader.vertexShader).replace(
       "#include <begin_vertex>",
-      "#include <begin_vertex>\ntransformed += displacementOfNodes();",
+      "#include <begin_vertex>\ntransformed += displacementOfNodes() + turned(gap) - gap;",
     );
   }
 
@@ -83,12 +83,14 @@ export class DisplayMesh {
 /** @param rest, normals of the nodes at rest */
 function geometryOf(display: Display, rest: Float32Array, normals: Float32Array): THREE.BufferGeometry {
   const geometry = new THREE.BufferGeometry();
+  const bound = means(display, rest);
   const triples = {
     position: display.positions,
     normal: display.normals,
     nodes: display.nodes,
     weights: display.weights,
-    rest: means(display, rest),
+    rest: bound,
+    gap: display.positions.map((part, i) => part - bound[i]!),
     boundNormal: means(display, normals),
   };
   for (const [name, numbers] of Object.entries(triples)) geometry.setAttribute(name, new THREE.BufferAttribute(numbers, 3));
@@ -96,22 +98,25 @@ function geometryOf(display: Display, rest: Float32Array, normals: Float32Array)
   return geometry.setIndex(new THREE.BufferAttribute(display.triangles, 1));
 }
 
-/** A normal turns as the surface does that the vertex is bound to, on the shortest way; values are those of its nodes. */
+/** Values are those of the nodes that the vertex is bound to. */
 function turnAndColour(shader: THREE.WebGLProgramParametersWithUniforms): void {
-  shader.vertexShader = (TURNED + rampShader(VIRIDIS) + shader.vertexShader)
-    .replace("#include <beginnormal_vertex>", "vec3 objectNormal = turned(normal, boundNormal, normalOfNodes());")
+  shader.vertexShader = (rampShader(VIRIDIS) + shader.vertexShader)
+    .replace("#include <beginnormal_vertex>", "vec3 objectNormal = turned(normal);")
     .replace("#include <color_vertex>", "#ifdef USE_COLOR\nvColor = vec4(onRamp(valueOfNodes()), 1.0);\n#endif");
 }
 
+/** A normal, and the gap to the computed surface, turn as that does where the vertex is bound, on the shortest way. */
 const TURNED = `
 attribute vec3 boundNormal;
+attribute vec3 gap;
 
-vec3 turned(vec3 normal, vec3 before, vec3 now) {
-  if (dot(before, before) < 1e-12 || dot(now, now) < 1e-12) return normal;
-  vec3 from = normalize(before);
+vec3 turned(vec3 vector) {
+  vec3 now = normalOfNodes();
+  if (dot(boundNormal, boundNormal) < 1e-12 || dot(now, now) < 1e-12) return vector;
+  vec3 from = normalize(boundNormal);
   vec3 to = normalize(now);
   vec3 axis = cross(from, to);
   float cosine = dot(from, to);
-  return cosine * normal + cross(axis, normal) + dot(axis, normal) / max(1.0 + cosine, 1e-4) * axis;
+  return cosine * vector + cross(axis, vector) + dot(axis, vector) / max(1.0 + cosine, 1e-4) * axis;
 }
 `;

@@ -53,11 +53,12 @@ function(irdm_precompile name)
   endif()
 endfunction()
 
-# irdm_optimise_more(SOURCES...) compiles these with -O3, each by itself; the presets build all else with -O2.
+# irdm_optimise_more(SOURCES...) compiles these with -O3, each by itself; the presets build all else with -O2. A
+# precompiled header may be of another -O.
 function(irdm_optimise_more)
   if(NOT IRDM_SANITIZE)
     set_source_files_properties(${ARGN} PROPERTIES
-      COMPILE_OPTIONS $<$<CONFIG:Release>:-O3> SKIP_PRECOMPILE_HEADERS ON SKIP_UNITY_BUILD_INCLUSION ON)
+      COMPILE_OPTIONS $<$<CONFIG:Release>:-O3> SKIP_UNITY_BUILD_INCLUSION ON)
   endif()
 endfunction()
 
@@ -75,5 +76,7 @@ endfunction()
 function(irdm_add_program name library)
   add_executable(${name} main.cpp)
   target_link_libraries(${name} PRIVATE ${library})
+  # It reads the command line and calls the library.
+  target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
   install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime)
 endfunction()

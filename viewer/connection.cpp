@@ -23,6 +23,7 @@ namespace websocket = boost::beast::websocket;
 using beast::error_code;
 using Request = http::request<http::empty_body>;
 using Response = http::response<http::span_body<const char>>;
+using Socket = websocket::stream<beast::tcp_stream, false>;  // without compression
 
 constexpr char kLivePath[] = "/live";
 constexpr std::size_t kHeaderLimit = 8192;
@@ -97,7 +98,7 @@ class BeastConnection final : public Connection,
   std::array<char, 4096> waste_;
   std::size_t wasted_ = 0;
 
-  std::optional<websocket::stream<beast::tcp_stream>> socket_;
+  std::optional<Socket> socket_;
   std::int64_t opened_ns_ = 0;
   bool accepted_ = false;
   bool watching_ = false;

@@ -112,7 +112,8 @@ std::string meant_command(const CLI::App& app, int argc, char** argv) {
 std::string meant_options(const CLI::App& app) {
   std::string text;
   for (const std::string& word : app.remaining(true)) {
-    if (word.starts_with('-')) text += suggestion(word.substr(0, word.find('=')), option_names(app));
+    if (word.starts_with('-'))
+      text += suggestion(word.substr(0, word.find('=')), option_names(app));
   }
   return text;
 }

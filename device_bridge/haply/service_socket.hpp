@@ -51,7 +51,7 @@ class ServiceSocket : public std::enable_shared_from_this<ServiceSocket> {
   std::string text_;  ///< that is written
   boost::asio::ip::tcp::resolver resolver_;
   boost::beast::flat_buffer buffer_;
-  boost::beast::websocket::stream<boost::beast::tcp_stream> stream_;
+  boost::beast::websocket::stream<boost::beast::tcp_stream, false> stream_;  ///< no compression
 };
 
 }  // namespace irdm::haply

@@ -28,6 +28,9 @@ struct PreparedRun {
   SceneNotes notes;
   TraceHeader header;                 ///< empty when nothing may be recorded
   std::optional<viewer::Scene> seen;  ///< by viewers; none: there are none
+
+  std::string name = {};      ///< in the list of scenes; empty: it is not there
+  std::string greeting = {};  ///< first notice to viewers
 };
 
 /// Names of the objects.

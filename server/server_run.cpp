@@ -18,7 +18,7 @@ RealTimeScheduling scheduling_of(const PreparedRun& run) {
 }
 
 NetworkSettings network_settings(const PreparedRun& run, RealTimeScheduling scheduling,
-                                 wire::FrameTap* tap) {
+                                 bool any_datagram_port, wire::FrameTap* tap) {
   const SceneConfig& scene = run.scene;
   NetworkSettings settings;
   settings.address = scene.server.address;
@@ -34,6 +34,7 @@ NetworkSettings network_settings(const PreparedRun& run, RealTimeScheduling sche
                    [](const SimulationStylus& stylus) { return stylus.tool.has_value(); });
   settings.scheduling = scheduling;
   settings.udp = scene.server.udp;
+  settings.any_datagram_port = any_datagram_port;
   settings.tap = tap;
   if (scene.server.key_file) settings.key = wire::read_key_file(*scene.server.key_file);
   return settings;
@@ -55,12 +56,13 @@ void say_where(const std::string& where) {
 
 }  // namespace
 
-ServerRun::ServerRun(PreparedRun& run, const Options& options)
+ServerRun::ServerRun(PreparedRun& run, SceneLoader& loader, const Options& options)
     : run_(run),
+      loader_(loader),
       options_(options),
       scheduling_(scheduling_of(run)),
       black_box_(run.scene.server.black_box, run.lockstep),
-      network_(network_settings(run, scheduling_, black_box_.frames())),
+      network_(network_settings(run, scheduling_, options.any_datagram_port, black_box_.frames())),
       control_(run.simulation.settings()),
       deformation_(run.config, run.scene.server.deformation_rate,
                    deformation_threads(run.scene.server)),
@@ -96,8 +98,13 @@ std::unique_ptr<Viewers> ServerRun::make_viewers() {
   }
   if (!viewer.enabled) return nullptr;
   return std::make_unique<Viewers>(
-      run_, deformation_threads(run_.scene.server),
-      Viewers::Parts{deformation_, force_, control_, network_, recordings_});
+      run_, deformation_threads(run_.scene.server), no_other_scene(),
+      Viewers::Parts{deformation_, force_, control_, network_, recordings_, loader_});
+}
+
+std::string ServerRun::no_other_scene() const {
+  if (run_.lockstep) return "this run is in lockstep";
+  return options_.record ? "this run is recorded as a whole (--record)" : "";
 }
 
 void ServerRun::start() {

@@ -27,9 +27,10 @@ class ServerRun {
   struct Options {
     std::optional<std::filesystem::path> record = {};  ///< trace file
     std::uint64_t steps = 0;                           ///< to make; 0: until it is finished
+    bool any_datagram_port = false;                    ///< UDP may have another number than TCP
   };
-  /// Binds and listens. Throws Error. @param run must outlive this object
-  ServerRun(PreparedRun& run, const Options& options);
+  /// Binds and listens. Throws Error. @param run, loader must outlive this object
+  ServerRun(PreparedRun& run, SceneLoader& loader, const Options& options);
 
   /// Throws Error.
   void start();
@@ -49,10 +50,12 @@ class ServerRun {
   std::vector<StepSink*> sinks();
   std::unique_ptr<StepClock> make_clock();
   std::unique_ptr<Viewers> make_viewers();
+  std::string no_other_scene() const;
   void end_recording();
   bool real_time() const { return scheduling_ != RealTimeScheduling::kIgnore; }
 
   PreparedRun& run_;
+  SceneLoader& loader_;
   Options options_;
   RealTimeScheduling scheduling_;
   ServerBlackBox black_box_;

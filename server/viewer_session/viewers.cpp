@@ -4,12 +4,15 @@
 
 namespace irdm {
 
-Viewers::Viewers(const PreparedRun& run, int deformation_threads, const Parts& parts)
+Viewers::Viewers(const PreparedRun& run, int deformation_threads, const std::string& refusal,
+                 const Parts& parts)
     : player_(run.config, names_of(run.scene), run.scene.server.deformation_rate,
               deformation_threads),
+      scenes_(parts.loader, run, refusal),
       run_(*run.seen, run.config,
-           {parts.deformation, parts.force, parts.control, parts.network, parts.recordings,
-            player_}),
+           {parts.deformation, parts.force, parts.control, parts.network, parts.recordings, player_,
+            scenes_},
+           run.greeting),
       server_(viewer_settings(run.scene.viewer), run_) {}
 
 void Viewers::start() {

@@ -16,9 +16,13 @@ class Viewers {
     RunControl& control;
     NetworkServer& network;
     Recordings& recordings;
+    SceneLoader& loader;
   };
   /// Listens. Throws Error. @param deformation_threads OpenMP threads for surfaces of recorded runs
-  Viewers(const PreparedRun& run, int deformation_threads, const Parts& parts);
+  /// @param run must outlive this object
+  /// @param refusal as of SceneChoice
+  Viewers(const PreparedRun& run, int deformation_threads, const std::string& refusal,
+          const Parts& parts);
 
   void start();
   void stop();
@@ -28,6 +32,7 @@ class Viewers {
 
  private:
   Player player_;
+  SceneChoice scenes_;
   LiveRun run_;
   viewer::ViewerServer server_;
 };

@@ -257,7 +257,7 @@ test("a page of another origin sees nothing", async (context) => {
 });
 
 const TWO = (model) => `[viewer]
-token = "of the other scene, unused"
+token = "another-token-unused"
 [[object]]
 name = "lower"
 model = "${model}"

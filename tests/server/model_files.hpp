@@ -9,7 +9,8 @@
 namespace irdm::test {
 
 /// Writes the model file of a small modal cube.
-inline void write_cube(const std::filesystem::path& path, Support support = Support::kFloating) {
+inline void write_cube_model(const std::filesystem::path& path,
+                             Support support = Support::kFloating) {
   Model cube = synthetic_cube(2, 3, 4);
   cube.body.support = support;
   ModelFileWriter writer(path);

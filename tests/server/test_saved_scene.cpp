@@ -29,7 +29,7 @@ struct Original {
     fs::create_directories(folder.path() / "from" / "models");
     fs::create_directories(folder.path() / "to");
     source = {(folder.path() / "from" / "two.toml").string(), kText, folder.path() / "from"};
-    write_cube(folder.path() / "from" / "models" / "cube.h5");
+    write_cube_model(folder.path() / "from" / "models" / "cube.h5");
     const SceneConfig scene = read_scene(source);
     initial.gravity = scene.world.gravity;
     for (std::size_t i = 0; i < scene.objects.size(); ++i) {
@@ -149,7 +149,7 @@ TEST_CASE("what cannot be saved is refused, and leaves nothing") {
 
 TEST_CASE("a damping of the material is read, and refused where it cannot be") {
   const TemporaryFolder folder;
-  write_cube(folder.path() / "cube.h5");
+  write_cube_model(folder.path() / "cube.h5");
   const auto config = [&](const std::string& more) {
     const SceneSource source{
         "s.toml", "[[object]]\nmodel = \"cube.h5\"\nmaterial_damping = 3\n" + more, folder.path()};

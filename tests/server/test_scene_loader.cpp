@@ -18,7 +18,7 @@ namespace {
 /// A folder with a scene that is good, one that is not, and a run of the first.
 struct Desk {
   Desk() {
-    write_cube(folder.path() / "cube.h5");
+    write_cube_model(folder.path() / "cube.h5");
     std::ofstream(path("good.toml")) << "[[object]]\nmodel = \"cube.h5\"\n";
     std::ofstream(path("bad.toml")) << "[[object]]\nmodel = \"missing.h5\"\n";
     run = prepare(read_scene_source(path("good.toml")));

@@ -1,6 +1,7 @@
 // Scenes that are prepared and saved beside a run.
 #include <catch2/catch.hpp>
 #include <fstream>
+#include <optional>
 
 #include "common/error.hpp"
 #include "server/scene_loader.hpp"
@@ -23,7 +24,9 @@ struct Desk {
     std::ofstream(path("bad.toml")) << "[[object]]\nmodel = \"missing.h5\"\n";
     run = prepare(read_scene_source(path("good.toml")));
     run->name = "good.toml";
+    loader_.emplace(folder.path(), prepare);
   }
+  SceneLoader& loader() { return *loader_; }
   std::filesystem::path path(const std::string& name) const { return folder.path() / name; }
   static std::unique_ptr<PreparedRun> prepare(const SceneSource& source) {
     return std::make_unique<PreparedRun>(source, read_scene(source), false, false);
@@ -31,7 +34,7 @@ struct Desk {
 
   TemporaryFolder folder;
   std::unique_ptr<PreparedRun> run;
-  SceneLoader loader{folder.path(), prepare};
+  std::optional<SceneLoader> loader_;  ///< when the files are there
 };
 
 viewer::State state_of(SceneChoice& choice, std::string& notice) {
@@ -44,7 +47,7 @@ viewer::State state_of(SceneChoice& choice, std::string& notice) {
 
 TEST_CASE("a scene that is chosen is prepared once, and taken") {
   Desk desk;
-  SceneLoader& loader = desk.loader;
+  SceneLoader& loader = desk.loader();
   loader.start();
   CHECK(loader.take() == nullptr);
   SceneChoice choice(loader, *desk.run, "");
@@ -69,24 +72,24 @@ TEST_CASE("a scene that is chosen is prepared once, and taken") {
 
 TEST_CASE("a scene that cannot be loaded is one notice, and the loader goes on") {
   Desk desk;
-  desk.loader.start();
-  SceneChoice choice(desk.loader, *desk.run, "");
+  desk.loader().start();
+  SceneChoice choice(desk.loader(), *desk.run, "");
   std::string notice;
   choice.load("bad.toml");
   CHECK(eventually([&] { return !state_of(choice, notice).preparing; }));
   CHECK_THAT(notice, Contains("missing.h5"));
-  CHECK(desk.loader.take() == nullptr);
+  CHECK(desk.loader().take() == nullptr);
   notice.clear();
   state_of(choice, notice);
   CHECK(notice.empty());
   choice.load("good.toml");
-  CHECK(desk.loader.ready().wait(kDeadlineMs));
+  CHECK(desk.loader().ready().wait(kDeadlineMs));
 }
 
 TEST_CASE("settings are saved beside the scenes and listed") {
   Desk desk;
-  desk.loader.start();
-  SceneChoice choice(desk.loader, *desk.run, "");
+  desk.loader().start();
+  SceneChoice choice(desk.loader(), *desk.run, "");
   Settings settings = initial_settings(desk.run->config);
   settings.object[0].tether.stiffness = 12.5;
   choice.save(settings);
@@ -101,18 +104,18 @@ TEST_CASE("settings are saved beside the scenes and listed") {
 
 TEST_CASE("a file that comes while the server runs is listed") {
   Desk desk;
-  desk.loader.start();
+  desk.loader().start();
   std::ofstream(desk.path("new.toml")) << "[[object]]\n";
-  CHECK(eventually([&] { return desk.loader.status().names.size() == 4; }));
+  CHECK(eventually([&] { return desk.loader().status().names.size() == 4; }));
 }
 
 TEST_CASE("what cannot be asked for is refused with the reason") {
   Desk desk;
-  SceneChoice choice(desk.loader, *desk.run, "this run is in lockstep");
+  SceneChoice choice(desk.loader(), *desk.run, "this run is in lockstep");
   CHECK_THROWS_WITH(choice.load("good.toml"), Contains("lockstep"));
   std::string notice;
   CHECK_FALSE(state_of(choice, notice).can_load);
-  SceneChoice free(desk.loader, *desk.run, "");
+  SceneChoice free(desk.loader(), *desk.run, "");
   CHECK_THROWS_WITH(free.load("../good.toml"), Contains("is not among the scenes"));
   SceneLoader without(std::nullopt, Desk::prepare);
   SceneChoice none(without, *desk.run, "");

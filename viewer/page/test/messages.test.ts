@@ -267,7 +267,7 @@ test("what the page says is what the protocol has", () => {
   assert.deepEqual(encodeCommand(Command.Seek, 0, 2.5), header(17).u16(11, 0).zeros(4).f64(2.5).done());
   assert.deepEqual(encodeCommand(Command.Step, 5), header(17).u16(4, 5).zeros(4).f64(0).done());
   assert.deepEqual(encodeCommand(Command.SaveScene), header(17).u16(13, 0).zeros(4).f64(0).done());
-  assert.deepEqual(encodeLoadScene("ü.h5"), header(20).u16(6).zeros(2).raw(new TextEncoder().encode("ü.h5")).done());
+  assert.deepEqual(encodeLoadScene("ü.h5"), header(20).u16(5).zeros(2).raw(new TextEncoder().encode("ü.h5")).done());
   const stylus = header(18).u8(1).zeros(3).u32(1).f64(0.1, -1000, 1000);
   assert.deepEqual(encodeStylus({ present: true, grab: true, tip: [0.1, -1e9, 1e9] }), stylus.done());
   const settings = header(19).u16(1).zeros(6).f64(0, -9.81, 0, 0.6, 0.5, 1, 2, 30, 0.01, 1).u8(1).zeros(23);

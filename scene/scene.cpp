@@ -5,6 +5,7 @@
 #include <fstream>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <set>
 #include <sstream>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "common/blackbox/black_box_file.hpp"
 #include "common/config/range.hpp"
 #include "common/error.hpp"
+#include "common/hdf5/handle.hpp"
 #include "common/model/model_file.hpp"
 #include "common/number_text.hpp"
 #include "scene/common_keys.hpp"
@@ -83,6 +85,7 @@ ViewerConfig read_viewer(TomlTable table, std::optional<double> radius) {
     table.fail("onlooker_token", "is the token itself", "give another one");
   }
   if (table.has("recordings")) config.recordings = table.path("recordings");
+  if (table.has("scenes")) config.scenes = table.path("scenes");
   config.mouse = table.boolean("mouse", config.mouse);
   read_viewer_stylus(table.table("stylus"), radius, config);
   table.finish();
@@ -168,6 +171,8 @@ ObjectConfig read_object(TomlTable table) {
   config.damping = read_damping(table.table("damping"));
   config.tether = read_tether(table.table("tether"));
   config.inertial_loading = table.boolean("inertial_loading", config.inertial_loading);
+  config.material_damping =
+      table.number("material_damping", lab::kMaterialDamping, config.material_damping);
   if (table.has("switchable")) {
     table.fail("switchable", "is not a key any more",
                "leave it out; irdm-replay --engine compares the engines on a recorded run");
@@ -290,6 +295,7 @@ constexpr double kBytesAMebibyte = 1024.0 * 1024.0;
 
 Model read_by_budget(const ObjectConfig& object, SceneColumns* columns) {
   if (object.engine != ResponseKind::kDense || !object.memory_budget || columns == nullptr) {
+    const std::lock_guard lock(hdf5::library_mutex());
     return read_model(object.model, object.engine);
   }
   return columns->read(object.model,
@@ -331,6 +337,11 @@ class Models {
   std::vector<Read> read_;
 };
 
+MeshShape read_mesh_of(const std::filesystem::path& model) {
+  const std::lock_guard lock(hdf5::library_mutex());
+  return read_mesh_shape(model);
+}
+
 // The scenery of a scene, with the surfaces of its meshes.
 std::vector<SceneryConfig> whole_scenery(const SceneConfig& scene) {
   std::vector<SceneryConfig> scenery = scene.scenery;
@@ -338,7 +349,7 @@ std::vector<SceneryConfig> whole_scenery(const SceneConfig& scene) {
   for (std::size_t i = 0; i < scenery.size(); ++i) {
     if (!std::holds_alternative<MeshShape>(scenery[i].shape)) continue;
     MeshShape& mesh = read[scene.scenery_models.at(i)];
-    if (!mesh.surface) mesh = read_mesh_shape(scene.scenery_models.at(i));
+    if (!mesh.surface) mesh = read_mesh_of(scene.scenery_models.at(i));
     scenery[i].shape = mesh;
   }
   return scenery;
@@ -381,7 +392,8 @@ SimulationConfig simulation_config(const SceneConfig& scene, bool viewer_stylus,
   for (const ObjectConfig& object : scene.objects) {
     config.objects.push_back({models.of(object), object.position, object.orientation,
                               object.velocity, object.angular_velocity, object.friction,
-                              object.damping, object.tether, object.inertial_loading, object.name});
+                              object.damping, object.tether, object.inertial_loading, object.name,
+                              object.material_damping});
   }
   config.styluses = scene.styluses;
   if (viewer_stylus) config.styluses.push_back(scene.viewer.stylus);
@@ -393,6 +405,7 @@ SimulationConfig simulation_config(const SceneConfig& scene, bool viewer_stylus,
   config.self_contact = scene.contact.self;
   config.contact_samples = scene.contact.samples;
   config.sleep_time = scene.contact.sleep_time;
+  check_material_damping(config);
   return config;
 }
 

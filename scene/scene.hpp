@@ -39,7 +39,9 @@ struct ViewerConfig {
   std::string token;           ///< what a viewer has to know, 0 or 16..128 printable characters
   std::string onlooker_token;  ///< the same for viewers that may only look on
   std::optional<std::filesystem::path>
-      recordings;     ///< folder for what viewers record; none: they cannot
+      recordings;  ///< folder for what viewers record; none: they cannot
+  /// Folder of scenes and models that viewers may load, and save into; none: they cannot
+  std::optional<std::filesystem::path> scenes;
   bool mouse = true;  ///< whether viewers have a stylus of their own; never in lockstep
   /// stylus = { radius, coupling_stiffness, reach }: that one; radius by default that of the first
   /// [[stylus]]
@@ -78,6 +80,7 @@ struct ObjectConfig {
   RigidDamping damping;           ///< damping = { linear, angular }
   Tether tether;                  ///< tether = { stiffness, angular_stiffness }
   bool inertial_loading = false;  ///< centrifugal loading by its own spin
+  double material_damping = 1.0;  ///< times the model's, 0.1..10; modal response, no floor
   /// Of its dense response in memory [MiB], at least 1; none: all of it
   std::optional<double> memory_budget = {};
 };
@@ -110,7 +113,7 @@ bool has_viewer_stylus(const SceneConfig& scene, bool lockstep);
 bool recorded_viewer_stylus(const SceneConfig& scene, int stylus_count, const std::string& trace);
 
 /// What a scene asks to simulate, with its models read; styluses without a radius have that of
-/// default_fingertip(). Throws Error.
+/// default_fingertip(). Throws Error. Holds hdf5::library_mutex() while it reads a file.
 /// @param columns of models with a memory_budget, to be started then; null: they are read whole
 SimulationConfig simulation_config(const SceneConfig& scene, bool viewer_stylus,
                                    SceneColumns* columns = nullptr);

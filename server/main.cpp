@@ -19,9 +19,12 @@ int main(int argc, char** argv) {
   app.add_flag("--no-viewer", options.no_viewer, "Do not serve the view for browsers");
   app.add_option("--recordings", options.recordings,
                  "Folder for what is recorded from the browser (default: the scene's)");
+  app.add_option("--scenes", options.scenes,
+                 "Folder of scenes and models that the browser may load, and save scenes into "
+                 "(default: the scene's)");
   app.add_option("--play", options.play,
                  "Trace file to show in the browser in place of a live run of the scene")
-      ->excludes("--record", "--lockstep", "--no-viewer", "--duration");
+      ->excludes("--record", "--lockstep", "--no-viewer", "--duration", "--scenes");
   return irdm::run_program(app, argc, argv, [&] {
     return options.play ? irdm::run_playback(options) : irdm::run_server(options);
   });

@@ -14,6 +14,7 @@ struct ServerOptions {
   bool lockstep = false;
   bool no_viewer = false;                           ///< whatever the scene says
   std::optional<std::filesystem::path> recordings;  ///< folder; overrides the scene's
+  std::optional<std::filesystem::path> scenes;      ///< folder; overrides the scene's
   std::optional<std::filesystem::path> play;        ///< trace to show in place of a live run
 };
 

@@ -36,6 +36,13 @@ struct ClientEncoder {
       put_settings(writer, request.settings.object.at(i), {});
     }
   }
+  void operator()(const SceneRequest& request) const {
+    const std::string name = request.name.substr(0, kMaxSceneName);
+    put_header(writer, Type::kLoadScene);
+    writer.put(static_cast<std::uint16_t>(name.size()));
+    writer.put_zeros(2);
+    writer.put_text(name);
+  }
 };
 
 Hello get_hello(Reader& reader) {
@@ -49,7 +56,7 @@ Hello get_hello(Reader& reader) {
 Command get_command(Reader& reader) {
   const auto kind = reader.get<std::uint16_t>();
   if (kind < static_cast<std::uint16_t>(CommandKind::kReset) ||
-      kind > static_cast<std::uint16_t>(CommandKind::kSetSpeed)) {
+      kind > static_cast<std::uint16_t>(CommandKind::kSaveScene)) {
     throw MessageError("the command is unknown");
   }
   Command command;
@@ -93,6 +100,13 @@ SettingsRequest get_settings_request(Reader& reader) {
   return request;
 }
 
+SceneRequest get_scene_request(Reader& reader) {
+  const auto length = reader.get<std::uint16_t>();
+  if (length < 1 || length > kMaxSceneName) throw MessageError("a name is too long or empty");
+  reader.skip(2);
+  return {reader.get_text(length)};
+}
+
 ClientMessage get_client_message(Reader& reader) {
   switch (get_header(reader)) {
     case Type::kHello:
@@ -103,6 +117,8 @@ ClientMessage get_client_message(Reader& reader) {
       return get_stylus_request(reader);
     case Type::kSettings:
       return get_settings_request(reader);
+    case Type::kLoadScene:
+      return get_scene_request(reader);
     default:
       throw MessageError("it is of another type");
   }

@@ -84,6 +84,7 @@ class BeastConnection final : public Connection,
   void take(const Command& command);
   void take(const SettingsRequest& request);
   void take(const StylusRequest& request);
+  void take(const SceneRequest& request);
   void expect_hello() const;
   void offer(SharedBytes& slot, SharedBytes bytes);
   void write_next();
@@ -312,6 +313,11 @@ void BeastConnection::take(const SettingsRequest& request) {
 void BeastConnection::take(const StylusRequest& request) {
   expect_hello();
   if (!looks_on_) hub_.handle(request, *this);
+}
+
+void BeastConnection::take(const SceneRequest& request) {
+  expect_hello();
+  if (!looks_on_) hub_.handle(request);
 }
 
 void BeastConnection::offer(SharedBytes& slot, SharedBytes bytes) {

@@ -30,6 +30,7 @@ class Hub {
   virtual void handle(const Command& command) = 0;
   virtual void handle(const SettingsRequest& request) = 0;
   virtual void handle(const StylusRequest& request, const Connection& viewer) = 0;
+  virtual void handle(const SceneRequest& request) = 0;
   /// Logs what a peer did wrong, or counts it where the log has had enough of them.
   virtual void complain(const std::string& what) = 0;
 };

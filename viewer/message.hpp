@@ -21,6 +21,8 @@ inline constexpr std::size_t kMaxNameLength = 256;
 inline constexpr std::size_t kMaxTokenLength = 128;
 inline constexpr std::size_t kMaxRecordingName = 64;
 inline constexpr std::size_t kMaxRecordings = 100;
+inline constexpr std::size_t kMaxScenes = 200;  ///< to choose from
+inline constexpr std::size_t kMaxSceneName = 128;
 inline constexpr std::size_t kMaxNotice = 512;
 inline constexpr double kFarthest = 1000.0;             ///< of a tip, in each direction [m]
 inline constexpr std::size_t kMaxRegions = 64;          ///< of an object that are listed
@@ -140,12 +142,17 @@ struct State {
   bool playback = false;  ///< a recorded run is shown
   bool playing = false;   ///< ... and is not paused
   bool can_record = false;
+  bool has_scenes = false;  ///< there is a folder of them; else the next two are false
+  bool can_load = false;    ///< another one may take the place of this run
+  bool preparing = false;   ///< one is being loaded or saved
   std::uint32_t settings_changes = 0;
   double length = 0.0;  ///< of the recorded run that is shown [s]
   double speed = 1.0;
   std::uint16_t shown = kNone;  ///< number of the recording that is shown
   std::vector<RecordingName> recordings = {};
-  std::string notice = {};  ///< UTF-8, cut to kMaxNotice bytes
+  std::vector<std::string> scenes = {};  ///< UTF-8, cut to kMaxSceneName bytes
+  std::uint16_t scene = kNone;           ///< number of the one that runs
+  std::string notice = {};               ///< UTF-8, cut to kMaxNotice bytes
   Settings settings = {};
   std::vector<SettingsChoice> choices = {};  ///< per object
 
@@ -171,6 +178,7 @@ enum class CommandKind : std::uint16_t {
   kPausePlayback = 10,
   kSeek = 11,      ///< value [s]
   kSetSpeed = 12,  ///< value
+  kSaveScene = 13,
 };
 
 /// What a viewer asks for.
@@ -193,7 +201,12 @@ struct SettingsRequest {
   std::size_t objects = 0;
 };
 
-using ClientMessage = std::variant<Hello, Command, StylusRequest, SettingsRequest>;
+/// The scene that a viewer wants to see in place of this one.
+struct SceneRequest {
+  std::string name = {};  ///< from the list in State: 1 to kMaxSceneName bytes
+};
+
+using ClientMessage = std::variant<Hello, Command, StylusRequest, SettingsRequest, SceneRequest>;
 
 Bytes encode(const Scene& scene);
 /// Replaces what is in `bytes`, whose memory is used again. Displacements are rounded to at most

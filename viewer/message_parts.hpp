@@ -107,7 +107,8 @@ enum class Type : std::uint16_t {
   kHello = 16,
   kCommand = 17,
   kStylus = 18,
-  kSettings = 19
+  kSettings = 19,
+  kLoadScene = 20
 };
 
 void put_header(Writer& writer, Type type);

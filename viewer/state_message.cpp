@@ -82,8 +82,27 @@ namespace {
 /// The flags of a State, bit by bit.
 template <typename AnyState>
 auto flags_of(AnyState& state) {
-  return std::array{&state.looks_on,  &state.stylus_free, &state.holds_stylus, &state.paused,
-                    &state.recording, &state.playback,    &state.playing,      &state.can_record};
+  return std::array{&state.looks_on,   &state.stylus_free, &state.holds_stylus, &state.paused,
+                    &state.recording,  &state.playback,    &state.playing,      &state.can_record,
+                    &state.has_scenes, &state.can_load,    &state.preparing};
+}
+
+void put_scenes(Writer& writer, std::span<const std::string> scenes) {
+  for (const std::string& scene : scenes) {
+    const std::string name = scene.substr(0, kMaxSceneName);
+    writer.put(static_cast<std::uint16_t>(name.size()));
+    writer.put_text(name);
+  }
+}
+
+std::vector<std::string> get_scenes(Reader& reader, std::size_t count) {
+  std::vector<std::string> scenes;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto length = reader.get<std::uint16_t>();
+    if (length > kMaxSceneName) throw MessageError("a name is too long");
+    scenes.push_back(reader.get_text(length));
+  }
+  return scenes;
 }
 
 }  // namespace
@@ -100,6 +119,7 @@ Bytes encode(const State& state) {
   }
   const std::string notice = state.notice.substr(0, kMaxNotice);
   const std::size_t recordings = std::min(state.recordings.size(), kMaxRecordings);
+  const std::size_t scenes = std::min(state.scenes.size(), kMaxScenes);
   writer.put(flags);
   writer.put(state.settings_changes);
   writer.put(state.length);
@@ -107,7 +127,9 @@ Bytes encode(const State& state) {
   writer.put(state.shown);
   writer.put(static_cast<std::uint16_t>(recordings));
   writer.put(static_cast<std::uint16_t>(notice.size()));
-  writer.put_zeros(2);
+  writer.put(static_cast<std::uint16_t>(scenes));
+  writer.put(state.scene);
+  writer.put_zeros(6);
   writer.put(state.settings.gravity);
   for (std::size_t i = 0; i < state.choices.size(); ++i) {
     put_settings(writer, state.settings.object[i], state.choices[i]);
@@ -119,6 +141,7 @@ Bytes encode(const State& state) {
     writer.put_text(name);
     writer.put_zeros(kMaxRecordingName - name.size());
   }
+  put_scenes(writer, std::span(state.scenes).first(scenes));
   writer.put_text(notice);
   writer.align();
   return bytes;
@@ -139,10 +162,12 @@ State decode_state(std::span<const std::uint8_t> bytes, std::size_t objects) {
   state.shown = reader.get<std::uint16_t>();
   const auto recordings = reader.get<std::uint16_t>();
   const auto notice = reader.get<std::uint16_t>();
-  if (recordings > kMaxRecordings || notice > kMaxNotice) {
+  const auto scenes = reader.get<std::uint16_t>();
+  if (recordings > kMaxRecordings || notice > kMaxNotice || scenes > kMaxScenes) {
     throw MessageError("a count is out of range");
   }
-  reader.skip(2);
+  state.scene = reader.get<std::uint16_t>();
+  reader.skip(6);
   state.settings.gravity = get_bounded_vector(reader, kMostGravity);
   for (std::size_t i = 0; i < objects; ++i) {
     state.settings.object.at(i) = get_settings(reader, state.choices.emplace_back());
@@ -154,6 +179,7 @@ State decode_state(std::span<const std::uint8_t> bytes, std::size_t objects) {
     state.recordings.push_back({number, reader.get_text(length)});
     reader.skip(kMaxRecordingName - length);
   }
+  state.scenes = get_scenes(reader, scenes);
   state.notice = reader.get_text(notice);
   reader.align();
   reader.finish();

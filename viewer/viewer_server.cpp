@@ -59,6 +59,7 @@ class ViewerServer::Impl final : public Hub {
   void handle(const Command& command) override;
   void handle(const SettingsRequest& request) override;
   void handle(const StylusRequest& request, const Connection& viewer) override;
+  void handle(const SceneRequest& request) override;
   void complain(const std::string& what) override;
 
   std::uint16_t port_ = 0;
@@ -236,6 +237,11 @@ void ViewerServer::Impl::handle(const SettingsRequest& request) {
 void ViewerServer::Impl::handle(const StylusRequest& request, const Connection& viewer) {
   if (!run_.scene().viewer_stylus) return;
   if (stylus_.take(request, &viewer, monotonic_ns())) spread_state();
+}
+
+void ViewerServer::Impl::handle(const SceneRequest& request) {
+  run_.handle(request);
+  spread_state();
 }
 
 void ViewerServer::Impl::complain(const std::string& what) {

@@ -36,6 +36,7 @@ class ViewerSession {
   /// @param request of as many objects as the scene has
   virtual void handle(const SettingsRequest& request) = 0;
   virtual void handle(const StylusRequest& request) = 0;
+  virtual void handle(const SceneRequest& request) = 0;
 };
 
 /// Who of the viewers has their one stylus: the first one to press, until it lets go or falls

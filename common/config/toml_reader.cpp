@@ -35,8 +35,13 @@ TomlTable TomlTable::parse_file(const std::filesystem::path& path) {
 }
 
 TomlTable TomlTable::parse_text(const std::string& text, const std::string& name) {
+  return parse_text(text, name, std::filesystem::current_path());
+}
+
+TomlTable TomlTable::parse_text(const std::string& text, const std::string& name,
+                                const std::filesystem::path& folder) {
   try {
-    return adopt(toml::parse(text), name, std::filesystem::current_path());
+    return adopt(toml::parse(text), name, folder);
   } catch (const toml::parse_error& error) {
     throw Error(name + ":" + std::to_string(error.source().begin.line),
                 shortened(error.description(), kMostOfParser), "correct the TOML syntax");

@@ -20,6 +20,9 @@ class TomlTable {
   /// Parses a file. Throws Error when it is missing or not TOML.
   static TomlTable parse_file(const std::filesystem::path& path);
   /// Parses text; `name` stands for the file in messages.
+  /// @param folder that relative paths begin at; the shorter form: the present one
+  static TomlTable parse_text(const std::string& text, const std::string& name,
+                              const std::filesystem::path& folder);
   static TomlTable parse_text(const std::string& text, const std::string& name);
 
   bool has(const std::string& key) const;

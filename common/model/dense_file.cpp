@@ -269,9 +269,18 @@ std::size_t resident_bytes(const StreamedResponse& response) {
          bytes(response.rest) + bytes(response.settling);
 }
 
+namespace {
+
+hdf5::File open_locked(const std::filesystem::path& path) {
+  const std::lock_guard lock(hdf5::library_mutex());
+  return hdf5::File::open(path);
+}
+
+}  // namespace
+
 DenseColumnFile::DenseColumnFile(const std::filesystem::path& path,
                                  const StreamedResponse& response)
-    : file_(hdf5::File::open(path)),
+    : file_(open_locked(path)),
       dof_(static_cast<hsize_t>(response.degrees_of_freedom)),
       steps_(static_cast<hsize_t>(response.steps)),
       number_size_(number_size(response)),

@@ -42,9 +42,10 @@ StopSignal::~StopSignal() {
   ::close(descriptor_);
 }
 
-bool StopSignal::wait(int other_descriptor) {
-  pollfd entries[2] = {{descriptor_, POLLIN, 0}, {other_descriptor, POLLIN, 0}};
-  while (::poll(entries, 2, -1) < 0 && errno == EINTR) {
+bool StopSignal::wait(int other_descriptor, int third_descriptor) {
+  pollfd entries[3] = {
+      {descriptor_, POLLIN, 0}, {other_descriptor, POLLIN, 0}, {third_descriptor, POLLIN, 0}};
+  while (::poll(entries, 3, -1) < 0 && errno == EINTR) {
   }
   return entries[0].revents != 0;
 }

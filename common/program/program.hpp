@@ -15,8 +15,8 @@ class StopSignal {
   StopSignal& operator=(const StopSignal&) = delete;
   ~StopSignal();
 
-  /// Waits until a signal has come (true) or `other_descriptor` is readable (false); -1: no other.
-  bool wait(int other_descriptor = -1);
+  /// Waits until a signal has come (true) or one of the others is readable (false); -1: no other.
+  bool wait(int other_descriptor = -1, int third_descriptor = -1);
   /// Waits at most `timeout_ms`, or until `other_descriptor` is readable; true when a signal has
   /// come.
   bool wait_for(int timeout_ms, int other_descriptor = -1);

@@ -26,6 +26,7 @@ class DrawnRun final : public viewer::ViewerSession {
   void handle(const viewer::Command&) override {}
   void handle(const viewer::SettingsRequest&) override {}
   void handle(const viewer::StylusRequest&) override {}
+  void handle(const viewer::SceneRequest&) override {}
 
  private:
   viewer::Scene scene_;

@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <mutex>
 
 #include "common/error.hpp"
+#include "common/hdf5/handle.hpp"
 #include "common/model/dense_file.hpp"
 #include "common/model/model_file.hpp"
 #include "common/realtime/clock.hpp"
@@ -217,8 +219,17 @@ int slots_within(const std::filesystem::path& path, const StreamedResponse& resp
 
 }  // namespace
 
+namespace {
+
+Model read_locked(const std::filesystem::path& path) {
+  const std::lock_guard lock(hdf5::library_mutex());
+  return read_streamed_model(path);
+}
+
+}  // namespace
+
 Model SceneColumns::read(const std::filesystem::path& path, std::size_t budget) {
-  Model model = read_streamed_model(path);
+  Model model = read_locked(path);
   if (is_rigid(model)) return model;
   auto& response = std::get<StreamedResponse>(model.response);
   const std::size_t slot_bytes = 3 * static_cast<std::size_t>(response.degrees_of_freedom) *

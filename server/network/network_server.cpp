@@ -169,7 +169,7 @@ void NetworkServer::Impl::listen() {
 
 /// At the same port as TCP, so that a firewall needs one number.
 void NetworkServer::Impl::listen_for_datagrams() {
-  const bool any_port = settings_.port == 0;
+  const bool any_port = settings_.port == 0 || settings_.any_datagram_port;
   try {
     datagrams_.emplace(
         io_.get_executor(),

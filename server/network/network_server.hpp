@@ -63,8 +63,9 @@ struct NetworkSettings {
   int silence_timeout_ms = 500;  ///< without a byte the session ends; not in lockstep
   /// What bridges have to know, in TLS; nothing: no TLS, and the address has to be a loopback one.
   std::optional<wire::SecretKey> key = {};
-  bool udp = true;                ///< a bridge's stream may go by datagrams; not in lockstep
-  wire::FrameTap* tap = nullptr;  ///< listens in, in the network thread; null: nobody
+  bool any_datagram_port = false;  ///< UDP may have another number than TCP; always with port 0
+  bool udp = true;                 ///< a bridge's stream may go by datagrams; not in lockstep
+  wire::FrameTap* tap = nullptr;   ///< listens in, in the network thread; null: nobody
 };
 
 /// Counters of the network thread; read from any thread.

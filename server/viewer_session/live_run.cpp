@@ -18,12 +18,14 @@ viewer::Percentiles percentiles(const Histogram& histogram) {
 
 }  // namespace
 
-LiveRun::LiveRun(viewer::Scene scene, SimulationConfig config, const Parts& parts)
+LiveRun::LiveRun(viewer::Scene scene, SimulationConfig config, const Parts& parts,
+                 std::string notice)
     : scene_(std::move(scene)),
       config_(std::move(config)),
       parts_(parts),
       playback_(parts.player),
       settings_(initial_settings(config_)),
+      notice_(std::move(notice)),
       since_ns_(monotonic_ns()) {}
 
 std::vector<viewer::SurfaceSource> LiveRun::sources() {
@@ -86,6 +88,7 @@ viewer::State LiveRun::state() {
   state.recording = parts_.recordings.recording();
   state.can_record = parts_.recordings.possible();
   state.settings_changes = settings_changes_;
+  parts_.scenes.report(state, notice_);
   for (const std::filesystem::path& path : parts_.recordings.complete()) {
     const auto number = static_cast<std::uint16_t>(state.recordings.size());
     state.recordings.push_back({number, path.filename().string()});
@@ -119,9 +122,7 @@ void LiveRun::handle_live(const viewer::Command& command) {
       if (!playback_.on()) control.request_steps(command.number);
       return;
     case CommandKind::kRecord:
-      if (playback_.on()) show_live();
-      parts_.recordings.begin();
-      return control.request_reset();
+      return begin_recording();
     case CommandKind::kEndRecording:
       if (!parts_.recordings.recording()) return;
       parts_.recordings.end();
@@ -132,9 +133,26 @@ void LiveRun::handle_live(const viewer::Command& command) {
     case CommandKind::kShowLive:
       if (playback_.on()) show_live();
       return;
+    case CommandKind::kSaveScene:
+      return save_scene();
     default:
       return;  // of a recorded run, and none is shown
   }
+}
+
+// A scene that is being read has the HDF5 library for itself.
+void LiveRun::begin_recording() {
+  if (parts_.scenes.preparing()) {
+    throw Error("recording", "cannot begin while a scene is loaded", "wait for the scene");
+  }
+  if (playback_.on()) show_live();
+  parts_.recordings.begin();
+  parts_.control.request_reset();
+}
+
+void LiveRun::save_scene() {
+  if (playback_.on()) throw Error("settings", "are of a recorded run", "go back to the live one");
+  parts_.scenes.save(settings_);
 }
 
 void LiveRun::show_recording(std::size_t number) {
@@ -165,6 +183,18 @@ void LiveRun::handle(const viewer::SettingsRequest& request) {
   settings_ = request.settings;
   ++settings_changes_;
   parts_.control.set(settings_);
+}
+
+void LiveRun::handle(const viewer::SceneRequest& request) {
+  notice_.clear();
+  try {
+    if (parts_.recordings.recording()) {
+      throw Error("recording", "is being made", "end it before another scene is loaded");
+    }
+    parts_.scenes.load(request.name);
+  } catch (const Error& error) {
+    notice_ = error.what();
+  }
 }
 
 void LiveRun::handle(const viewer::StylusRequest& request) {

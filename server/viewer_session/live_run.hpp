@@ -8,6 +8,7 @@
 #include "server/threads/force_thread.hpp"
 #include "server/viewer_session/playback.hpp"
 #include "server/viewer_session/recordings.hpp"
+#include "server/viewer_session/scene_choice.hpp"
 #include "viewer/viewer_session.hpp"
 
 namespace irdm {
@@ -23,8 +24,10 @@ class LiveRun final : public viewer::ViewerSession {
     NetworkServer& network;
     Recordings& recordings;
     Player& player;
+    SceneChoice& scenes;
   };
-  LiveRun(viewer::Scene scene, SimulationConfig config, const Parts& parts);
+  /// @param notice that viewers are shown at first; empty: none
+  LiveRun(viewer::Scene scene, SimulationConfig config, const Parts& parts, std::string notice);
 
   const viewer::Scene& scene() const override { return scene_; }
   std::vector<viewer::SurfaceSource> sources() override;
@@ -34,9 +37,12 @@ class LiveRun final : public viewer::ViewerSession {
   void handle(const viewer::Command& command) override;
   void handle(const viewer::SettingsRequest& request) override;
   void handle(const viewer::StylusRequest& request) override;
+  void handle(const viewer::SceneRequest& request) override;
 
  private:
   void handle_live(const viewer::Command& command);
+  void begin_recording();
+  void save_scene();
   void show_recording(std::size_t number);
   void show_live();
   viewer::LinkHealth link_health(int stylus);

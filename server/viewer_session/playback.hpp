@@ -49,6 +49,7 @@ class RecordedRun final : public viewer::ViewerSession {
   void handle(const viewer::Command& command) override { playback_.handle(command); }
   void handle(const viewer::SettingsRequest&) override {}
   void handle(const viewer::StylusRequest&) override {}
+  void handle(const viewer::SceneRequest&) override {}
 
  private:
   viewer::Scene scene_;

@@ -68,14 +68,20 @@ void check_restraints(const SimulationConfig& config, const Settings& settings) 
 
 namespace {
 
-void check_choice(const SettingsChoice& choice, const ObjectSettings& initial,
-                  const ObjectSettings& settings, const std::string& name) {
+[[noreturn]] void refuse_material_damping(const SimulationConfig& config, std::size_t i) {
+  throw Error(object_name(config, i),
+              "cannot change the damping of its material while it is simulated",
+              "use engine = \"modal\" and no floor, or precompute it again");
+}
+
+void check_choice(const SimulationConfig& config, std::size_t i, const ObjectSettings& initial,
+                  const ObjectSettings& settings) {
+  const SettingsChoice choice = settings_choice(config, i);
   if (!choice.material_damping && settings.material_damping != initial.material_damping) {
-    throw Error(name, "cannot change the damping of its material while it is simulated",
-                "use engine = \"modal\" and no floor, or precompute it again");
+    refuse_material_damping(config, i);
   }
   if (!choice.inertial_loading && settings.inertial_loading != initial.inertial_loading) {
-    throw Error(name, "has a model that does not say what its spin does",
+    throw Error(object_name(config, i), "has a model that does not say what its spin does",
                 "precompute it again with method = \"modal\"");
   }
 }
@@ -87,7 +93,7 @@ Settings initial_settings(const SimulationConfig& config) {
   settings.gravity = config.gravity;
   for (std::size_t i = 0; i < config.objects.size() && i < settings.object.size(); ++i) {
     const SimulationObject& object = config.objects[i];
-    settings.object[i] = {object.friction, object.damping, object.tether, 1.0,
+    settings.object[i] = {object.friction, object.damping, object.tether, object.material_damping,
                           object.inertial_loading};
   }
   return settings;
@@ -104,6 +110,13 @@ SettingsChoice settings_choice(const SimulationConfig& config, std::size_t i) {
   return choice;
 }
 
+void check_material_damping(const SimulationConfig& config) {
+  for (std::size_t i = 0; i < config.objects.size(); ++i) {
+    if (config.objects[i].material_damping == 1.0) continue;
+    if (!settings_choice(config, i).material_damping) refuse_material_damping(config, i);
+  }
+}
+
 void follow_settings(ResponseEngine& engine, const ObjectSettings& settings,
                      double& material_damping) noexcept {
   if (settings.material_damping == material_damping) return;
@@ -116,8 +129,7 @@ void follow_settings(ResponseEngine& engine, const ObjectSettings& settings,
 void check_settings(const SimulationConfig& config, const Settings& settings) {
   const Settings initial = initial_settings(config);
   for (std::size_t i = 0; i < config.objects.size(); ++i) {
-    check_choice(settings_choice(config, i), initial.object[i], settings.object[i],
-                 object_name(config, i));
+    check_choice(config, i, initial.object[i], settings.object[i]);
   }
   check_restraints(config, settings);
 }

@@ -63,6 +63,10 @@ Settings initial_settings(const SimulationConfig& config);
 /// What can be chosen for object i.
 SettingsChoice settings_choice(const SimulationConfig& config, std::size_t i);
 
+/// Throws Error where an object begins with another damping of its material than its model's and
+/// cannot have one.
+void check_material_damping(const SimulationConfig& config);
+
 /// Makes an engine work as set. Real-time safe. @param material_damping that it works with, kept
 /// by whoever owns the engine
 void follow_settings(ResponseEngine& engine, const ObjectSettings& settings,

@@ -28,7 +28,8 @@ struct SimulationObject {
   Tether tether;
   /// Centrifugal loading of the elastic part by the body's own spin. false: none, as in the paper.
   bool inertial_loading = false;
-  std::string name = {};  ///< in messages; empty: "object 1" and so on
+  std::string name = {};          ///< in messages; empty: "object 1" and so on
+  double material_damping = 1.0;  ///< at the start, times the model's
 };
 
 /// A plane on which objects rest; the side that the normal points to is free.

@@ -22,6 +22,11 @@ void write_client_messages(const Seeds& seeds) {
   write_viewer(
       seeds, 0, "too_fast",
       encode(viewer::ClientMessage(viewer::Command{viewer::CommandKind::kSetSpeed, 0, 99.0})));
+  write_viewer(
+      seeds, 0, "save_scene",
+      encode(viewer::ClientMessage(viewer::Command{viewer::CommandKind::kSaveScene, 0, 0.0})));
+  write_viewer(seeds, 0, "load_scene",
+               encode(viewer::ClientMessage(viewer::SceneRequest{"press.toml"})));
   write_viewer(seeds, 0, "onlooker", encode(viewer::ClientMessage(viewer::Hello{"a", true})));
   write_viewer(seeds, 0, "stylus",
                encode(viewer::ClientMessage(viewer::StylusRequest{true, 1, Vector3(1, 2, 3)})));

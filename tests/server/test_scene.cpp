@@ -169,15 +169,17 @@ TEST_CASE("the viewer of a scene: defaults, keys, and what is no token") {
   CHECK(usual.address == "127.0.0.1");
   CHECK(usual.port == 0);
   CHECK(usual.token.empty());
+  CHECK_FALSE(usual.scenes);
   const ViewerConfig viewer = scene(
                                   "[viewer]\nenabled = false\naddress = \"0.0.0.0\"\nport = 8080\n"
-                                  "token = \"0123456789abcdef\"\n" +
+                                  "token = \"0123456789abcdef\"\nscenes = \"/s\"\n" +
                                   kObject)
                                   .viewer;
   CHECK_FALSE(viewer.enabled);
   CHECK(viewer.address == "0.0.0.0");
   CHECK(viewer.port == 8080);
   CHECK(viewer.token == "0123456789abcdef");
+  CHECK(viewer.scenes == "/s");
   const auto with_token = [](const std::string& token) {
     return rejection("[viewer]\ntoken = \"" + token + "\"\n" + kObject);
   };

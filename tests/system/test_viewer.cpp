@@ -1,8 +1,10 @@
 // The viewer of a real irdm-server.
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <csignal>
 #include <cstring>
+#include <thread>
 
 #include "common/hdf5/file.hpp"
 #include "common/model/model_file.hpp"
@@ -272,6 +274,99 @@ TEST_CASE("viewer: what --play cannot show is refused in one line") {
   CHECK_THAT(refusal("scene.toml"), Contains("scene.toml"));
   std::filesystem::copy_file(cube_model(), stage.path("model.h5"));
   CHECK_THAT(refusal("model.h5"), Contains("is not a trace"));
+}
+
+namespace {
+
+/// The stage's scene and another one, in a folder to choose from.
+std::string scenes_folder(const Stage& stage) {
+  std::filesystem::create_directory(stage.path("scenes"));
+  stage.write("scenes/cube.toml", scene_text());
+  stage.write("scenes/falling.toml", scene_text("[world]\ngravity = [0, -1, 0]\n"));
+  return stage.path("scenes").string();
+}
+
+void load(WebPeer& peer, const std::string& name) {
+  peer.send_message(encode(viewer::ClientMessage(viewer::SceneRequest{name})));
+}
+
+viewer::State next_state(WebPeer& peer) {
+  return viewer::decode_state(next(peer, kState).payload, 1);
+}
+
+std::size_t count_of(const std::string& text, const std::string& words) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(words); at != std::string::npos; at = text.find(words, at + 1)) {
+    ++count;
+  }
+  return count;
+}
+
+}  // namespace
+
+TEST_CASE("viewer: scenes follow each other at the same ports, each with its report") {
+  const Stage stage;
+  Server server = stage.start_server({"--scenes", scenes_folder(stage)});
+  const std::uint16_t port = viewer_port(server.process);
+  std::string bridges = server.process.line_with("listening on ");
+  for (const std::string name : {"falling.toml", "cube.toml", "falling.toml"}) {
+    WebPeer peer = watch(port);
+    next(peer, kScene);
+    load(peer, name);
+    while (const auto message = peer.receive()) {
+      if (message->opcode != 8) continue;
+      CHECK(message->close_code() == 1001);
+      break;
+    }
+    viewer::State state;
+    REQUIRE(eventually([&] {
+      try {
+        WebPeer again = watch(port);
+        next(again, kScene);
+        state = next_state(again);
+        return state.notice == "loaded: " + name;
+      } catch (const std::exception&) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));  // it is not there yet
+        return false;
+      }
+    }));
+    CHECK(state.scenes.at(state.scene) == name);
+    CHECK(state.settings.gravity.y() == (name == "cube.toml" ? 0.0 : -1.0));
+  }
+  server.process.signal(SIGTERM);
+  CHECK(server.process.wait() == 0);
+  CHECK(count_of(server.process.out(), "steps: ") == 4);
+  CHECK(count_of(server.process.out(), bridges + "\n") == 4);
+}
+
+TEST_CASE("viewer: a run that is recorded or in lockstep keeps its scene, and says so") {
+  const Stage stage;
+  std::vector<std::string> arguments{"--scenes", scenes_folder(stage)};
+  if (GENERATE(false, true)) {
+    arguments.push_back("--lockstep");
+  } else {
+    arguments.insert(arguments.end(), {"--record", stage.path("trace.h5").string()});
+  }
+  Server server = stage.start_server(arguments);
+  WebPeer peer = watch(viewer_port(server.process));
+  next(peer, kScene);
+  const viewer::State state = next_state(peer);
+  CHECK(state.has_scenes);
+  CHECK_FALSE(state.can_load);
+  load(peer, "cube.toml");
+  CHECK_THAT(next_state(peer).notice, Contains("cube.toml: cannot be loaded"));
+  server.process.signal(SIGTERM);
+  CHECK(server.process.wait() == 0);
+}
+
+TEST_CASE("viewer: without a folder of scenes there is nothing to load") {
+  const Stage stage;
+  Server server = stage.start_server();
+  WebPeer peer = watch(viewer_port(server.process));
+  next(peer, kScene);
+  CHECK_FALSE(next_state(peer).has_scenes);
+  load(peer, "scene.toml");
+  CHECK_THAT(next_state(peer).notice, Contains("--scenes"));
 }
 
 TEST_CASE("a bridge that is sent to the page's port says so in one line, and ends") {

@@ -27,6 +27,9 @@ struct ExampleRun final : viewer::ViewerSession {
     if (command.kind == viewer::CommandKind::kShowRecording) shown = 1;
   }
   void handle(const viewer::SettingsRequest&) override { ++settings; }
+  void handle(const viewer::SceneRequest& request) override {
+    if (request.name == "press.toml") ++loads;
+  }
   void handle(const viewer::StylusRequest& request) override {
     (request.present ? presses : releases)++;
   }
@@ -37,7 +40,7 @@ struct ExampleRun final : viewer::ViewerSession {
   EventFd ready, other_ready;
   std::atomic<std::size_t> shown{0};
   std::atomic<std::uint64_t> steps{77};
-  std::atomic<int> resets{0}, settings{0}, presses{0}, releases{0};
+  std::atomic<int> resets{0}, settings{0}, presses{0}, releases{0}, loads{0};
 };
 
 }  // namespace irdm::test

@@ -176,6 +176,10 @@ inline viewer::State example_state() {
   state.speed = 0.5;
   state.shown = 1;
   state.recordings = {{0, "run-1.h5"}, {1, "l\xC3\xA4ufe.h5"}};
+  state.has_scenes = true;
+  state.can_load = true;
+  state.scenes = {"press.toml", "w\xC3\xBCrfel.h5"};
+  state.scene = 1;
   state.notice = "a notice for a person";
   state.settings.gravity = Vector3(0, -9.81, 0);
   state.settings.object[0] = {{0.6, 0.5}, {0.1, 0.2}, {3.0, 0.01}, 2.0, true};

@@ -317,14 +317,19 @@ TEST_CASE("state's bytes are those of the document") {
   state.speed = 0.5;
   state.shown = 1;
   state.recordings = {{1, "a.h5"}};
+  state.has_scenes = true;
+  state.preparing = true;
+  state.scenes = {"b.h5", ""};
+  state.scene = 1;
   state.notice = "hm";
   state.settings = example_settings().settings;
   state.choices = {{false, false, true}};
   const std::string zeros(2 * 60, '0');
   CHECK(encode(state) ==
-        from_hex("49525657 0100 0400 41000000 02000000 0000000000000040 000000000000e03f"
-                 "0100 0100 0200 0000" +
-                 std::string(kSettingsHex) + "0100 0400 612e6835" + zeros + "686d 0000"));
+        from_hex("49525657 0100 0400 41050000 02000000 0000000000000040 000000000000e03f"
+                 "0100 0100 0200 0200 0100 000000000000" +
+                 std::string(kSettingsHex) + "0100 0400 612e6835" + zeros +
+                 "0400 622e6835 0000 686d 0000"));
   CHECK(decode_state(encode(state), 1) == state);
   const State all = example_state();
   CHECK(decode_state(encode(all), 2) == all);
@@ -342,6 +347,8 @@ TEST_CASE("a viewer's messages are those of the document") {
        "49525657 0100 1100 0b00 0700 00000000 000000000000e03f");
   same(StylusRequest{true, 1, Vector3(1, 0, -1)},
        "49525657 0100 1200 01 000000 01000000 000000000000f03f 0000000000000000 000000000000f0bf");
+  same(Command{CommandKind::kSaveScene}, "49525657 0100 1100 0d00 0000 00000000 0000000000000000");
+  same(SceneRequest{"b.h5"}, "49525657 0100 1400 0400 0000 622e6835");
   same(example_settings(), std::string("49525657 0100 1300 0100 000000000000") + kSettingsHex);
 }
 
@@ -350,9 +357,9 @@ TEST_CASE("a viewer's message that breaks the rules is refused") {
       GENERATE("", "49", "49525658 0100 1100 0100 0000 00000000 0000000000000000",  // magic
                "49525657 0200 1100 0100 0000 00000000 0000000000000000",            // version
                "49525657 0100 0200 0100 0000 00000000 0000000000000000",            // direction
-               "49525657 0100 1400 0100 0000 00000000 0000000000000000",            // type
+               "49525657 0100 1500 0100 0000 00000000 0000000000000000",            // type
                "49525657 0100 1100 0000 0000 00000000 0000000000000000",            // command
-               "49525657 0100 1100 0d00 0000 00000000 0000000000000000",            // command
+               "49525657 0100 1100 0e00 0000 00000000 0000000000000000",            // command
                "49525657 0100 1100 0400 0000 00000000 0000000000000000",     // no step at all
                "49525657 0100 1100 0b00 0000 00000000 000000000000f0bf",     // before the start
                "49525657 0100 1100 0c00 0000 00000000 0000000000000000",     // speed
@@ -365,10 +372,35 @@ TEST_CASE("a viewer's message that breaks the rules is refused") {
                "49525657 0100 1200 02 000000 00000000 000000000000f03f 000000000000f03f "
                "000000000000f03f",  // present
                "49525657 0100 1200 01 000000 00000000 000000000000f87f 000000000000f03f "
-               "000000000000f03f",                     // NaN
-               "49525657 0100 1300 0500 000000000000"  // objects
+               "000000000000f03f",                       // NaN
+               "49525657 0100 1300 0500 000000000000",   // objects
+               "49525657 0100 1400 0000 0000",           // no name
+               "49525657 0100 1400 0500 0000 622e6835",  // name cut
+               "49525657 0100 1400 0300 0000 622e6835"   // more than the name
       );
   CHECK_THROWS_AS(decode_client(from_hex(spoilt)), MessageError);
+}
+
+TEST_CASE("names of scenes that are too long or too many are refused or cut") {
+  const std::string longest(kMaxSceneName, 'a');
+  const auto request = decode_client(encode(ClientMessage(SceneRequest{longest + "b"})));
+  CHECK(std::get<SceneRequest>(request).name == longest);
+  Bytes bytes = encode(ClientMessage(SceneRequest{longest}));
+  bytes[8] = kMaxSceneName + 1;
+  bytes.push_back('b');
+  CHECK_THROWS_AS(decode_client(bytes), MessageError);
+  State state;
+  state.scenes.assign(kMaxScenes + 1, longest + "b");
+  const State back = decode_state(encode(state), 0);
+  CHECK(back.scenes == std::vector<std::string>(kMaxScenes, longest));
+  bytes = encode(back);
+  SECTION("too many") {
+    bytes[38] = kMaxScenes + 1;
+  }
+  SECTION("too long") {
+    bytes[72] = kMaxSceneName + 1;
+  }
+  CHECK_THROWS_AS(decode_state(bytes, 0), MessageError);
 }
 
 TEST_CASE("scenes and frames come back as they went") {
@@ -437,6 +469,8 @@ TEST_CASE("whatever the bytes are, decoding ends in an answer or in MessageError
   check_survives(encode(ClientMessage(StylusRequest{})),
                  [](const Bytes& bytes) { decode_client(bytes); });
   check_survives(encode(ClientMessage(example_settings())),
+                 [](const Bytes& bytes) { decode_client(bytes); });
+  check_survives(encode(ClientMessage(SceneRequest{"press.toml"})),
                  [](const Bytes& bytes) { decode_client(bytes); });
   check_survives(encode(example_state()), [](const Bytes& bytes) { decode_state(bytes, 2); });
 }

@@ -304,11 +304,14 @@ TEST_CASE("who only looks on is sent everything and asks for nothing") {
   peer.send_message(encode(ClientMessage(Command{})));
   peer.send_message(encode(ClientMessage(SettingsRequest{example_state().settings, 2})));
   peer.send_message(encode(ClientMessage(StylusRequest{true, 0, Vector3::Zero()})));
+  peer.send_message(encode(ClientMessage(SceneRequest{"press.toml"})));
   WebPeer other = show.watch(kToken);
   other.send_message(encode(ClientMessage(SettingsRequest{example_state().settings, 2})));
   REQUIRE(eventually([&] { return show.run.settings == 1; }));
   other.send_message(encode(ClientMessage(Command{})));
   REQUIRE(eventually([&] { return show.run.resets == 1; }));
+  other.send_message(encode(ClientMessage(SceneRequest{"press.toml"})));
+  REQUIRE(eventually([&] { return show.run.loads == 1; }));
   CHECK(show.run.presses == 0);
 }
 
@@ -319,6 +322,11 @@ TEST_CASE("a message that breaks the rules ends the session") {
   SECTION("a command before Hello") {
     peer.send_message(encode(ClientMessage(Command{})));
     CHECK(close_code(peer) == 1002);
+  }
+  SECTION("a scene before Hello") {
+    peer.send_message(encode(ClientMessage(SceneRequest{"press.toml"})));
+    CHECK(close_code(peer) == 1002);
+    CHECK(show.run.loads == 0);
   }
   SECTION("a second Hello") {
     peer.send_message(encode(ClientMessage(Hello{})));

@@ -57,6 +57,8 @@ int main(int argc, char** argv) {
   ask("reset", viewer::Command{});
   ask("seek", viewer::Command{viewer::CommandKind::kSeek, 0, 1.25});
   ask("show_recording", viewer::Command{viewer::CommandKind::kShowRecording, 3, 0.0});
+  ask("save_scene", viewer::Command{viewer::CommandKind::kSaveScene, 0, 0.0});
+  ask("load_scene", viewer::SceneRequest{"w\xC3\xBCrfel.h5"});
   ask("stylus", viewer::StylusRequest{true, kGrabButton, Vector3(0.1, -0.2, 0.3)});
   ask("settings", viewer::SettingsRequest{example_state().settings, 2});
   std::ofstream json(folder / "expected.json");

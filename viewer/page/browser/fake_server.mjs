@@ -12,7 +12,7 @@ const STIFFNESS = 300; // [N/m]
 const WIDTH = 0.018; // of the dent [m]
 const BOUND = 3; // [N]
 const ADDRESS = "http://viewer.test/";
-const FLAG = { looksOn: 1, free: 2, mine: 4, paused: 8, recording: 16, playback: 32, playing: 64, canRecord: 128 };
+const FLAG = { looksOn: 1, free: 2, mine: 4, paused: 8, recording: 16, playback: 32, playing: 64, canRecord: 128, hasScenes: 256, canLoad: 512, preparing: 1024 };
 
 /** The messages that test/server_messages.ts writes. */
 export async function loadMessages() {
@@ -121,6 +121,7 @@ export class FakeServer {
     else if (type === 17) this.#command(view);
     else if (type === 18) this.#hand(view);
     else if (type === 19) this.#settings(view);
+    else if (type === 20) this.#load(view);
   }
 
   #greet(looksOn) {
@@ -154,6 +155,12 @@ export class FakeServer {
       12: () => this.tell({ speed: value }),
     };
     does[what]?.();
+  }
+
+  #load(view) {
+    const name = new TextDecoder().decode(new Uint8Array(view.buffer, view.byteOffset + 12, view.getUint16(8, true)));
+    this.received.push({ type: "load", name });
+    this.flag("preparing", true);
   }
 
   #hand(view) {

@@ -208,6 +208,53 @@ test("a recorded run is shown, sought in, and left", async (context) => {
   assert.deepEqual(page.faults, []);
 });
 
+const LISTED = { flags: 2 + 128 + 256 + 512, scenes: ["a scene with a name that is as long as names can be, or so.toml", "press.toml", "würfel.h5"], scene: 1 };
+
+test("a scene is chosen, loaded and saved by keys; whoever cannot is told why", async (context) => {
+  const { page, server } = await stage(context, { state: LISTED });
+  const choice = page.getByLabel("Scene", { exact: true }).and(page.locator("select"));
+  const [load, save] = ["Load", "Save as scene"].map((name) => page.getByRole("button", { name, exact: true }));
+  assert.deepEqual(await choice.locator("option").allInnerTexts(), [LISTED.scenes[0], "press.toml (shown)", "würfel.h5"]);
+  assert.equal(await choice.inputValue(), "press.toml");
+  await choice.focus();
+  await page.keyboard.press("ArrowDown");
+  server.tell({ scenes: ["another.toml", ...LISTED.scenes], scene: 2 }); // meanwhile
+  await until(async () => (await choice.locator("option").count()) === 4, "the new one is listed");
+  assert.equal(await choice.inputValue(), "würfel.h5", "what is chosen stays so");
+  await page.keyboard.press("Tab");
+  await page.keyboard.press("Enter");
+  await until(() => load.isDisabled(), "the server is at it");
+  assert.deepEqual(said(server, "load"), [{ type: "load", name: "würfel.h5" }]);
+  assert.equal(await save.isDisabled(), true);
+  assert.match(await page.locator("#scenes-reason").innerText(), /One moment/);
+  server.flag("preparing", false);
+  await until(() => save.isEnabled(), "it is done");
+  await save.focus();
+  await page.keyboard.press("Space");
+  await until(() => asked(server, 13).length === 1, "it is saved");
+
+  server.flag("canLoad", false);
+  await until(() => choice.isDisabled(), "this run keeps its scene");
+  assert.match(await page.locator("#scenes-reason").innerText(), /records this run as a whole/);
+  assert.equal(await save.isEnabled(), true);
+  server.flag("canLoad", true);
+  server.flag("recording", true);
+  await until(() => load.isDisabled(), "a recording comes first");
+  assert.match(await page.locator("#scenes-reason").innerText(), /End the recording/);
+  server.flag("recording", false);
+  server.tell({ scenes: [], scene: 65535 });
+  await until(async () => /no scenes yet/.test(await page.locator("#scenes-reason").innerText()), "the folder is empty");
+  server.flag("hasScenes", false);
+  await until(async () => !(await page.locator("#scenes-section").isVisible()), "it is hidden without a folder");
+  assert.deepEqual(page.faults, []);
+});
+
+test("an onlooker sees which scenes there are, and can neither load nor save", async (context) => {
+  const { page } = await stage(context, { state: LISTED, query: "?watch=1" });
+  await until(async () => /view only/.test(await page.locator("#scenes-reason").innerText()), "it says why");
+  for (const id of ["#scene-choice", "#scene-load", "#scene-save"]) assert.equal(await page.locator(id).isDisabled(), true, id);
+});
+
 test("settings go out whole, and come back without a fight", async (context) => {
   const { page, server } = await stage(context);
   await page.locator("#settings-section summary").click();
@@ -387,7 +434,7 @@ test("regions of which a face has no such node are refused, and the page says so
 });
 
 test("axe-core finds nothing, in light and in dark, live and recorded", async (context) => {
-  const changes = { scene: { radii: [0, 0.006, 0.006], scenery: SCENERY }, inclusions: {}, state: { recordings: [{ number: 0, name: "a run" }] } };
+  const changes = { scene: { radii: [0, 0.006, 0.006], scenery: SCENERY }, inclusions: {}, state: { ...LISTED, recordings: [{ number: 0, name: "a run" }] } };
   const { page, server } = await stage(context, changes);
   await page.evaluate(() => document.querySelectorAll("details").forEach((details) => (details.open = true)));
   await page.locator("#colour").selectOption("modulus");
@@ -411,7 +458,7 @@ test("axe-core finds nothing, in light and in dark, live and recorded", async (c
 test("at 360 pixels nothing sticks out", async (context) => {
   const options = { viewport: { width: 360, height: 740 }, hasTouch: true };
   const recordings = [{ number: 0, name: "a recording with a name that is as long as names can be, or so" }];
-  const { page, server } = await stage(context, { options, state: { recordings } });
+  const { page, server } = await stage(context, { options, state: { ...LISTED, recordings } });
   const width = () => page.evaluate(() => document.documentElement.scrollWidth);
   await page.evaluate(() => document.querySelectorAll("details").forEach((details) => (details.open = true)));
   assert.ok((await width()) <= 360);

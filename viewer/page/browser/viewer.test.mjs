@@ -2,6 +2,8 @@
 // Programs, model and browser are named by the environment: tests/system/CMakeLists.txt.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
+import { copyFileSync, mkdirSync, readFileSync } from "node:fs";
+import path from "node:path";
 import { test } from "node:test";
 import { frames, newPage, open, until } from "./browser.mjs";
 import { Stage } from "./stage.mjs";
@@ -252,4 +254,127 @@ test("a page of another origin sees nothing", async (context) => {
     server.url,
   );
   assert.equal(outcome, "closed");
+});
+
+const TWO = (model) => `[viewer]
+token = "another-token-unused"
+[[object]]
+name = "lower"
+model = "${model}"
+[[object]]
+name = "upper"
+model = "${model}"
+position = [0, 0.3, 0]
+`;
+
+/** A stage with a folder of scenes, which a bridge holds its stylus in. */
+async function folderStage(context, scenes, tables = "") {
+  const stage = new Stage(context, tables);
+  mkdirSync(stage.path("scenes"));
+  for (const [name, text] of Object.entries(scenes)) stage.write(path.join("scenes", name), text);
+  stage.write("script.csv", "time,x,y,z,button\n0,0,0.2,0,0\n600,0,0.2,0,0\n");
+  const server = await stage.server("--scenes", stage.path("scenes"));
+  const bridge = stage.bridge(server);
+  return { stage, server, bridge };
+}
+
+const notice = (page, text) => until(async () => (await page.locator("#notices").innerText()).includes(text), `the notice "${text}"`);
+const bridged = (page) => page.waitForFunction(() => window.irdm.frame()?.styluses[0].present === true);
+const choose = async (page, name) => {
+  await page.locator("#scene-choice").selectOption(name);
+  await page.locator("#scene-load").click();
+};
+
+/** Is something drawn at a place of the world? */
+const drawnAt = (page, place) =>
+  page.evaluate((place) => {
+    const { world } = window.irdm;
+    world.drawNow();
+    const flat = document.createElement("canvas");
+    [flat.width, flat.height] = [world.canvas.width, world.canvas.height];
+    const context = flat.getContext("2d");
+    context.drawImage(world.canvas, 0, 0);
+    const { x, y } = world.view.onCanvas(world.camera.position.clone().set(...place));
+    const ratio = world.canvas.width / world.canvas.clientWidth;
+    return context.getImageData(Math.floor(x * ratio), Math.floor(y * ratio), 1, 1).data[3] === 255;
+  }, place);
+
+test("another scene is loaded from the page: the picture changes, page and bridge come back", async (context) => {
+  const token = "0123456789abcdef";
+  const { server, bridge } = await folderStage(context, { "two.toml": TWO(IRDM_MODEL) }, `[viewer]\ntoken = "${token}"`);
+  const page = await open(context, `${server.url}#token=${token}`);
+  await frames(page);
+  await bridged(page);
+  assert.equal(await page.title(), "cube – irdm");
+  assert.equal(await page.locator("#scene-choice option").first().innerText(), "Choose a scene");
+  await choose(page, "two.toml");
+  await until(async () => (await page.title()) === "lower, upper – irdm", "the other scene is shown");
+  await notice(page, "loaded: two.toml");
+  await frames(page);
+  await bridged(page);
+  await page.waitForTimeout(300);
+  assert.equal(await drawnAt(page, [0, 0, 0]), true);
+  assert.equal(await drawnAt(page, [0, 0.3, 0]), true);
+  assert.equal(await drawnAt(page, [0, 0.15, 0]), false);
+  assert.equal(await page.locator("#scene-choice option").first().innerText(), "two.toml (shown)");
+  assert.equal(await page.locator("#link").innerText(), "Live");
+  assert.equal(bridge.exitCode, null, "the bridge has gone on");
+  const lines = server.output.match(/listening on \S+/g);
+  assert.deepEqual(lines.slice(2), lines.slice(0, 2), "it listens where it did");
+  assert.match(server.output, /steps: [1-9]/, "the ended run was reported");
+  server.kill("SIGTERM");
+  assert.equal(await server.ended, 0);
+});
+
+test("a scene that is broken leaves the run as it is, and says what is wrong", async (context) => {
+  const broken = '[[object]]\nname = "broken"\nmodel = "missing.h5"\n';
+  const { server } = await folderStage(context, { "broken.toml": broken, "typo.toml": "[[object]]\nmodel = \n" });
+  const page = await open(context, server.url);
+  await frames(page);
+  await bridged(page);
+  for (const [name, text] of [["broken.toml", "missing.h5"], ["typo.toml", "typo.toml:2"]]) {
+    await choose(page, name);
+    await notice(page, text);
+    const step = await page.evaluate(() => window.irdm.frame().step);
+    await page.waitForFunction((step) => window.irdm.frame().step > step + 100, step);
+  }
+  assert.equal(await page.title(), "cube – irdm");
+  await bridged(page);
+  assert.equal(server.output.match(/listening on/g).length, 2);
+  assert.doesNotMatch(server.output, /steps:/);
+  assert.deepEqual(page.faults, []);
+});
+
+test("settings are saved as a scene, which is listed and loads with them", async (context) => {
+  const { stage, server } = await folderStage(context, {});
+  const page = await open(context, server.url);
+  await frames(page);
+  await page.locator("#settings-section summary").click();
+  const tether = page.locator("#set-tether");
+  const told = () => tether.getAttribute("aria-valuetext");
+  await tether.focus();
+  for (let i = 0; i < 40; ++i) await page.keyboard.press("ArrowRight");
+  await until(async () => page.evaluate(() => window.irdm.state().settings.objects[0].tether > 0), "the server has it");
+  const set = await told();
+  await page.locator("#scene-save").click();
+  await notice(page, "saved: scene-1.toml");
+  assert.match(readFileSync(stage.path("scenes/scene-1.toml"), "utf8"), /tether = \{/);
+  await until(async () => (await page.locator("#scene-choice").innerText()).includes("scene-1.toml"), "it is listed");
+  await choose(page, "scene-1.toml");
+  await notice(page, "loaded: scene-1.toml");
+  assert.equal(await page.title(), "cube – irdm");
+  await until(async () => (await told()) === set, "the tether is as it was set");
+});
+
+test("a model alone is loaded; an onlooker cannot", async (context) => {
+  const { stage, server } = await folderStage(context, {});
+  copyFileSync(IRDM_MODEL, stage.path("scenes/soft thing.h5"));
+  const onlooker = await open(context, `${server.url}?watch=1`);
+  await frames(onlooker);
+  assert.equal(await onlooker.locator("#scene-load").isDisabled(), true);
+  const page = await open(context, server.url);
+  await frames(page);
+  await until(async () => (await page.locator("#scene-choice").innerText()).includes("soft thing.h5"), "it is listed");
+  await choose(page, "soft thing.h5");
+  for (const one of [page, onlooker]) await until(async () => (await one.title()) === "soft thing – irdm", "it is shown");
 });

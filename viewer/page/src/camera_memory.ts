@@ -22,6 +22,15 @@ function nameOf(scene: Scene): string {
   return "camera." + scene.objects.map(({ name }) => name).join(",");
 }
 
+/** Whether a view of one scene is as good for the other. */
+export function hasSameBodies(a: Scene, b: Scene): boolean {
+  const same = (i: number): boolean => {
+    const [first, second] = [a.objects[i]!, b.objects[i]!];
+    return first.name === second.name && first.rest.length === second.rest.length && first.rest.every((part, k) => part === second.rest[k]);
+  };
+  return a.objects.length === b.objects.length && a.objects.every((_, i) => same(i));
+}
+
 function isVector(value: unknown): value is Vec3 {
   return Array.isArray(value) && value.length === 3 && value.every((part) => Number.isFinite(part));
 }

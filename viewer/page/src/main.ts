@@ -11,6 +11,7 @@ import { copy, isOnlooker, onlookerLink } from "./onlooker_link";
 import { PlaybackBar } from "./playback_bar";
 import { Command, encodeCommand, encodeSettings, encodeStylus, type Frame, type Scene, type ServerMessage, type State } from "./protocol";
 import { RunControls } from "./run_controls";
+import { ScenePanel } from "./scene_panel";
 import { SettingsPanel } from "./settings_panel";
 import { listenForShortcuts } from "./shortcuts";
 import { StatusLine } from "./status_line";
@@ -55,6 +56,7 @@ const notices = new Notices(element("notices"));
 if (world !== null) world.onFault = (text) => notices.tell(text);
 const run = new RunControls(ask);
 const playback = new PlaybackBar(ask);
+const scenes = new ScenePanel(ask);
 const settings = new SettingsPanel(element("settings"), element("settings-reason"), (values) =>
   ask(encodeSettings(values)),
 );
@@ -96,6 +98,7 @@ function showScene(next: Scene): void {
   view.show(next);
   forces.show(next);
   playback.show(next);
+  scenes.show(next);
   settings.show(next);
   hand?.touch.show(next);
   document.title = `${next.objects.map((object) => object.name).join(", ")} – irdm`;
@@ -109,6 +112,7 @@ function showState(next: State): void {
   status.showState(scene!, next);
   run.showState(next);
   playback.showState(next);
+  scenes.showState(next);
   view.showState(next);
   settings.showState(next);
   forces.showState(next);
@@ -141,6 +145,7 @@ function showLink(link: LinkState, detail: string): void {
   status.link(link, detail);
   if (link === "live") return;
   run.lost();
+  scenes.lost();
   settings.lost();
   hand?.touch.lost();
 }

@@ -19,6 +19,7 @@ const enum Type {
   Command = 17,
   Stylus = 18,
   Settings = 19,
+  LoadScene = 20,
 }
 const MAX_OBJECTS = 16;
 const MAX_STYLUSES = 16;
@@ -33,7 +34,9 @@ const MAX_TOKEN = 128;
 const MAX_RECORDINGS = 100;
 const RECORDING_NAME = 64;
 const MAX_NOTICE = 512;
-const NO_RECORDING = 65535;
+const NONE = 65535; // in place of a number
+const MAX_SCENES = 200;
+const MAX_SCENE_NAME = 128;
 const MAX_COORDINATE = 1000; // of a tip [m]
 
 export type Vec3 = readonly [number, number, number];
@@ -244,6 +247,8 @@ export interface State {
   paused: boolean;
   recording: boolean;
   canRecord: boolean;
+  /** null: the server has no folder of scenes */
+  scenes: Scenes | null;
   /** number of changes of settings so far */
   changes: number;
   /** of the recorded run that is shown; null: the live run is */
@@ -254,6 +259,17 @@ export interface State {
   changeable: Changeable[];
   /** what the last thing asked for led to, for a person; empty: nothing to say */
   notice: string;
+}
+
+/** The scenes that the server can load. */
+export interface Scenes {
+  names: string[];
+  /** number of the one that runs; null: it is not in the list */
+  shown: number | null;
+  /** another one may take the place of this run */
+  canLoad: boolean;
+  /** one is being loaded or saved */
+  preparing: boolean;
 }
 
 export interface Playback {
@@ -497,6 +513,10 @@ function readRecording(reader: Reader): Recording {
   return { number, name: reader.field(length, RECORDING_NAME) };
 }
 
+function readScenes(reader: Reader, count: number): string[] {
+  return repeat(count, () => reader.text(upTo(MAX_SCENE_NAME, reader.u16())));
+}
+
 function readState(reader: Reader, scene: Scene | null): State {
   if (scene === null) throw new ProtocolError("a state comes before its scene");
   const flags = reader.u32();
@@ -507,10 +527,13 @@ function readState(reader: Reader, scene: Scene | null): State {
   const shown = reader.u16();
   const recordings = upTo(MAX_RECORDINGS, reader.u16());
   const noticeLength = upTo(MAX_NOTICE, reader.u16());
-  reader.skip(2);
+  const sceneCount = upTo(MAX_SCENES, reader.u16());
+  const shownScene = reader.u16();
+  reader.skip(6);
   const gravity = reader.vector();
   const objects = scene.objects.map(() => readObjectSettings(reader));
   const list = repeat(recordings, () => readRecording(reader));
+  const names = readScenes(reader, sceneCount);
   const notice = reader.text(noticeLength);
   reader.align();
   return {
@@ -521,9 +544,10 @@ function readState(reader: Reader, scene: Scene | null): State {
     paused: flag(3),
     recording: flag(4),
     canRecord: flag(7),
+    scenes: flag(8) ? { names, shown: shownScene === NONE ? null : shownScene, canLoad: flag(9), preparing: flag(10) } : null,
     changes,
     playback: flag(5)
-      ? { length, speed, playing: flag(6), recording: shown === NO_RECORDING ? null : shown }
+      ? { length, speed, playing: flag(6), recording: shown === NONE ? null : shown }
       : null,
     recordings: list,
     settings: { gravity, objects: objects.map(([settings]) => settings) },
@@ -596,6 +620,7 @@ export const enum Command {
   PausePlayback = 10,
   Seek = 11,
   Speed = 12,
+  SaveScene = 13,
 }
 
 /**
@@ -623,6 +648,15 @@ export function encodeStylus(hand: HandMessage): ArrayBuffer {
   view.setUint8(8, hand.present ? 1 : 0);
   view.setUint32(12, hand.grab ? 1 : 0, true);
   putNumbers(view, 16, hand.tip.map((part) => clamp(part, -MAX_COORDINATE, MAX_COORDINATE)));
+  return bytesOf(view);
+}
+
+/** @param name from the list in State */
+export function encodeLoadScene(name: string): ArrayBuffer {
+  const text = new TextEncoder().encode(name).slice(0, MAX_SCENE_NAME);
+  const view = begin(Type.LoadScene, 12 + text.length);
+  view.setUint16(8, text.length, true);
+  new Uint8Array(view.buffer).set(text, 12);
   return bytesOf(view);
 }
 

@@ -1,6 +1,6 @@
 import * as THREE from "three";
 import { ArrowScale } from "./arrow_scale";
-import type { CameraView, Preset } from "./camera_memory";
+import { hasSameBodies, type CameraView, type Preset } from "./camera_memory";
 import { AUTOMATIC, type SetRange } from "./colour_range";
 import { ContactMarks } from "./contact_marks";
 import { looksTheSame } from "./frame_changes";
@@ -78,11 +78,11 @@ export class World {
   }
 
   /**
-   * Replaces everything that is shown. The camera stays where it is when the scene is one of before.
+   * Replaces everything that is shown. The camera stays where it is when the bodies are those of before.
    * @param view to begin with; null: everything
    */
   show(scene: Scene, view: CameraView | null = null): void {
-    const first = this.scene === null;
+    const first = this.scene === null || !hasSameBodies(this.scene, scene);
     for (const thing of [...this.objects, ...this.styluses, ...this.scenery]) {
       this.three.remove(thing.group);
       thing.dispose();

@@ -7,6 +7,7 @@ import {
   decode,
   encodeCommand,
   encodeHello,
+  encodeLoadScene,
   encodeSettings,
   encodeStylus,
   type Frame,
@@ -73,7 +74,7 @@ const times = (p50: number): { p50: number; p99: number; max: number } => ({ p50
 const healthBytes = healthMessage(9, [{ reports: true, roundTrip: times(100), forceAge: times(200) }]);
 
 const STATE: StateParts = {
-  flags: 1 + 2 + 8 + 32 + 64 + 128,
+  flags: 1 + 2 + 8 + 32 + 64 + 128 + 256 + 1024,
   changes: 3,
   length: 12.5,
   speed: 0.5,
@@ -82,6 +83,8 @@ const STATE: StateParts = {
     { number: 0, name: "first" },
     { number: 2, name: "zweite Übung" },
   ],
+  scenes: ["press.toml", "Würfel.h5"],
+  scene: 1,
   notice: "done",
   gravity: [0, -9.81, 0],
   objects: [{ ...SETTINGS, inertia: true, changeable: 2 }],
@@ -138,6 +141,7 @@ test("a state is what was written", () => {
     paused: true,
     recording: false,
     canRecord: true,
+    scenes: { names: ["press.toml", "Würfel.h5"], shown: 1, canLoad: false, preparing: true },
     changes: 3,
     playback: { length: 12.5, speed: 0.5, playing: true, recording: 2 },
     recordings: STATE.recordings,
@@ -150,6 +154,9 @@ test("a state is what was written", () => {
 test("the live run is no playback, and the server's own recorded run has no number", () => {
   const live = decode(stateMessage({ ...STATE, flags: 0 }), scene) as State;
   assert.equal(live.playback, null);
+  assert.equal(live.scenes, null);
+  const elsewhere = decode(stateMessage({ ...STATE, scene: 65535 }), scene) as State;
+  assert.equal(elsewhere.scenes!.shown, null);
   const own = decode(stateMessage({ ...STATE, shown: 65535 }), scene) as State;
   assert.equal(own.playback!.recording, null);
 });
@@ -219,7 +226,7 @@ test("a number out of its range is refused", () => {
     new DataView(copy).setUint8(offset, value);
     return copy;
   };
-  const object = 64;
+  const object = 72;
   const recording = object + 80;
   const stylus = 32 + 88;
   const contact = frameBytes.byteLength - 36;
@@ -228,8 +235,10 @@ test("a number out of its range is refused", () => {
   for (const [bytes, offset, value] of [
     [state, 34, 101], // recordings
     [state, 37, 3], // length of the notice, high byte
+    [state, 38, 201], // scenes
     [state, object + 56, 2], // coupling to inertia
     [state, recording + 2, 65], // length of a name
+    [state, recording + 2 * 68, 129], // length of a scene's name
     [frameBytes, stylus, 2], // present
     [frameBytes, stylus + 1, 3], // contact
     [frameBytes, stylus + 80, 2], // slips
@@ -257,6 +266,8 @@ test("what the page says is what the protocol has", () => {
   assert.deepEqual(encodeHello(""), header(16).u16(0, 0).done());
   assert.deepEqual(encodeCommand(Command.Seek, 0, 2.5), header(17).u16(11, 0).zeros(4).f64(2.5).done());
   assert.deepEqual(encodeCommand(Command.Step, 5), header(17).u16(4, 5).zeros(4).f64(0).done());
+  assert.deepEqual(encodeCommand(Command.SaveScene), header(17).u16(13, 0).zeros(4).f64(0).done());
+  assert.deepEqual(encodeLoadScene("ü.h5"), header(20).u16(5).zeros(2).raw(new TextEncoder().encode("ü.h5")).done());
   const stylus = header(18).u8(1).zeros(3).u32(1).f64(0.1, -1000, 1000);
   assert.deepEqual(encodeStylus({ present: true, grab: true, tip: [0.1, -1e9, 1e9] }), stylus.done());
   const settings = header(19).u16(1).zeros(6).f64(0, -9.81, 0, 0.6, 0.5, 1, 2, 30, 0.01, 1).u8(1).zeros(23);

@@ -4,7 +4,7 @@ import { readFileSync } from "node:fs";
 import path from "node:path";
 import { test } from "node:test";
 import { ProtocolError } from "../src/byte_reader.ts";
-import { Command, decode, encodeCommand, encodeHello, type Frame, type Health, type Scene } from "../src/protocol.ts";
+import { Command, decode, encodeCommand, encodeHello, encodeLoadScene, type Frame, type Health, type Scene, type State } from "../src/protocol.ts";
 
 const folder = process.env["SAMPLES"]!;
 const expected = JSON.parse(readFileSync(path.join(folder, "expected.json"), "utf8")) as Record<string, number[]>;
@@ -102,6 +102,15 @@ test("health is what the server made it", () => {
 test("the page's messages are those of the server's decoder", () => {
   assert.deepEqual(Buffer.from(encodeHello("token ü")), Buffer.from(bytes("hello.bin")));
   assert.deepEqual(Buffer.from(encodeCommand(Command.Reset)), Buffer.from(bytes("reset.bin")));
+  assert.deepEqual(Buffer.from(encodeCommand(Command.SaveScene)), Buffer.from(bytes("save_scene.bin")));
+  assert.deepEqual(Buffer.from(encodeLoadScene("würfel.h5")), Buffer.from(bytes("load_scene.bin")));
+});
+
+test("the state's scenes are those of the server", () => {
+  const { scenes, recordings, notice } = decode(bytes("state.bin"), scene) as State;
+  assert.deepEqual(scenes, { names: ["press.toml", "würfel.h5"], shown: 1, canLoad: true, preparing: false });
+  assert.deepEqual(recordings.map(({ name }) => name), ["run-1.h5", "läufe.h5"]);
+  assert.equal(notice, "a notice for a person");
 });
 
 test("a message that is cut, too long or of another kind is refused", () => {

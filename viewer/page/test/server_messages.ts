@@ -286,6 +286,9 @@ export interface StateParts {
   speed: number;
   shown: number;
   recordings: Recording[];
+  scenes?: string[];
+  /** number of the one that runs */
+  scene?: number;
   notice: string;
   gravity: Vec3;
   /** with the bits of what can be changed */
@@ -307,7 +310,8 @@ export const SETTINGS: ObjectSettings & { changeable: number } = {
 export function stateMessage(parts: StateParts): ArrayBuffer {
   const notice = utf8(parts.notice);
   const to = begin(4).u32(parts.flags, parts.changes).f64(parts.length, parts.speed);
-  to.u16(parts.shown, parts.recordings.length, notice.length).zeros(2).f64(...parts.gravity);
+  to.u16(parts.shown, parts.recordings.length, notice.length);
+  to.u16(parts.scenes?.length ?? 0, parts.scene ?? 65535).zeros(6).f64(...parts.gravity);
   for (const object of parts.objects) {
     to.f64(object.staticFriction, object.kineticFriction, object.damping, object.angularDamping);
     to.f64(object.tether, object.angularTether, object.dampingFactor);
@@ -316,6 +320,10 @@ export function stateMessage(parts: StateParts): ArrayBuffer {
   for (const { number, name } of parts.recordings) {
     const text = utf8(name);
     to.u16(number, text.length).raw(text).zeros(64 - text.length);
+  }
+  for (const name of parts.scenes ?? []) {
+    const text = utf8(name);
+    to.u16(text.length).raw(text);
   }
   return to.raw(notice).align().done();
 }

@@ -1,0 +1,16 @@
+#include "scene/scene_source.hpp"
+
+#include "common/config/input_file.hpp"
+
+namespace irdm {
+
+SceneSource read_scene_source(const std::filesystem::path& path) {
+  require_file(path);
+  return {path.string(), read_text(path), std::filesystem::absolute(path).parent_path()};
+}
+
+SceneConfig read_scene(const SceneSource& source) {
+  return read_scene(TomlTable::parse_text(source.text, source.name, source.folder));
+}
+
+}  // namespace irdm

@@ -27,7 +27,7 @@ using Socket = websocket::stream<beast::tcp_stream, false>;  // without compress
 
 constexpr char kLivePath[] = "/live";
 constexpr std::size_t kHeaderLimit = 8192;
-constexpr std::size_t kMessageLimit = 512;
+constexpr std::size_t kMessageLimit = 2048;  // settings of kMaxObjects take 1320
 constexpr std::size_t kDrainLimit = 1 << 20;
 constexpr std::chrono::seconds kDrainTime(1);
 constexpr int kSendBuffer = 256 * 1024;  // what the kernel may hold for a viewer that is slow

@@ -345,12 +345,24 @@ TEST_CASE("a message that breaks the rules ends the session") {
     CHECK(show.run.settings == 0);
   }
   SECTION("too long") {
-    peer.send_message(Bytes(600, 0));
+    peer.send_message(Bytes(2100, 0));
     CHECK(close_code(peer) == 1009);
   }
   CHECK(show.run.resets == 0);
   WebPeer next = show.watch();
   CHECK(next_frame(next, show.scene).force_step == 1039);
+}
+
+TEST_CASE("settings of as many objects as a scene can have are taken") {
+  ExampleRun run;
+  run.scene_.objects.resize(kMaxObjects, run.scene_.objects[1]);
+  ViewerServer server(Show::with_page({.idle_timeout_ms = 600'000}), run);
+  server.start();
+  WebPeer peer(server.port());
+  peer.open();
+  peer.send_message(encode(ClientMessage(Hello{})));
+  peer.send_message(encode(ClientMessage(SettingsRequest{example_state().settings, kMaxObjects})));
+  CHECK(eventually([&] { return run.settings == 1; }));
 }
 
 TEST_CASE("where a token is needed, only the right one opens") {

@@ -43,13 +43,15 @@ int index(const std::string& text, int count, const char* what, const TokenReade
   return found;
 }
 
-// Written as 3, 3/1, 3//2 or 3/1/2.
-Corner read_corner(const std::string& word, const ObjContent& content, const TokenReader& in) {
+// Written as 3, 3/1, 3//2 or 3/1/2. What a mesh does not need of it is not looked at.
+Corner read_corner(const std::string& word, const ObjContent& content, bool looks,
+                   const TokenReader& in) {
   std::array<std::string, 3> parts;
   std::istringstream text(word);
   for (std::string& part : parts) std::getline(text, part, '/');
   Corner corner;
   corner.vertex = index(parts[0], content.surface.node_count(), "vertex", in);
+  if (!looks) return corner;
   if (!parts[1].empty()) {
     corner.texture =
         index(parts[1], static_cast<int>(content.texture.size()), "texture coordinate", in);
@@ -60,10 +62,10 @@ Corner read_corner(const std::string& word, const ObjContent& content, const Tok
   return corner;
 }
 
-void read_face(TokenReader& in, ObjContent& content) {
+void read_face(TokenReader& in, bool looks, ObjContent& content) {
   std::istringstream words{std::string(in.rest_of_line())};
   std::vector<Corner> corners;
-  for (std::string word; words >> word;) corners.push_back(read_corner(word, content, in));
+  for (std::string word; words >> word;) corners.push_back(read_corner(word, content, looks, in));
   if (corners.size() < 3) in.fail("a face has less than three corners", "write the surface again");
   std::vector<int> nodes;
   for (const Corner& corner : corners) nodes.push_back(corner.vertex);
@@ -96,19 +98,22 @@ void read_texture(TokenReader& in, ObjContent& content) {
   content.texture.push_back(place);
 }
 
-ObjContent read_content(const std::filesystem::path& path) {
+/// @param looks whether normals and texture coordinates are wanted
+ObjContent read_content(const std::filesystem::path& path, bool looks) {
   TokenReader in(path, '#');
   ObjContent content;
   while (!in.at_end()) {
     const std::string_view keyword = in.word();
     if (keyword == "v") {
       read_vertex(in, content);
+    } else if (!looks && (keyword == "vn" || keyword == "vt")) {
+      in.rest_of_line();
     } else if (keyword == "vn") {
       read_normal(in, content);
     } else if (keyword == "vt") {
       read_texture(in, content);
     } else if (keyword == "f") {
-      read_face(in, content);
+      read_face(in, looks, content);
     } else if (kSkippedKeywords.contains(keyword)) {
       in.rest_of_line();
     } else {
@@ -125,11 +130,11 @@ bool has_length(const Vector3& normal) {
 }  // namespace
 
 SurfaceMesh read_obj(const std::filesystem::path& path) {
-  return read_content(path).surface.surface();
+  return read_content(path, false).surface.surface();
 }
 
 ShadedSurface read_shaded_obj(const std::filesystem::path& path) {
-  const ObjContent content = read_content(path);
+  const ObjContent content = read_content(path, true);
   const auto normal = [&](const Corner& corner) -> const Vector3& {
     return content.normals[static_cast<std::size_t>(corner.normal)];
   };

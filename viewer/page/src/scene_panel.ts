@@ -63,7 +63,7 @@ export class ScenePanel {
     const { state } = this;
     if (state === null) return "There is no connection to the server.";
     if (state.onlyLooksOn) return "This link is view only.";
-    if (state.scenes?.preparing) return "One moment: the server is at it.";
+    if (state.scenes?.preparing) return "A scene is being loaded or saved.";
     return state.playback === null ? null : "A recorded run is shown.";
   }
 

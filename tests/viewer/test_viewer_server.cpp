@@ -361,7 +361,9 @@ TEST_CASE("settings of as many objects as a scene can have are taken") {
   WebPeer peer(server.port());
   peer.open();
   peer.send_message(encode(ClientMessage(Hello{})));
-  peer.send_message(encode(ClientMessage(SettingsRequest{example_state().settings, kMaxObjects})));
+  Settings settings = example_state().settings;
+  settings.object.fill(settings.object[0]);
+  peer.send_message(encode(ClientMessage(SettingsRequest{settings, kMaxObjects})));
   CHECK(eventually([&] { return run.settings == 1; }));
 }
 

@@ -5,8 +5,10 @@
 #include <string>
 
 #include "common/error.hpp"
+#include "precompute/display/make_display_mesh.hpp"
 #include "precompute/mesh/format/readers.hpp"
 #include "precompute/mesh/mesh_check.hpp"
+#include "precompute/mesh/round_mesh.hpp"
 #include "tests/fuzz/harness.hpp"
 #include "tests/fuzz/scratch_file.hpp"
 
@@ -40,6 +42,29 @@ void read_surface(Input input, const char* name, const Read& read) {
   }
 }
 
+// The surface of a ball that a display mesh is bound to.
+const ModelMesh& ball() {
+  static const ModelMesh mesh = [] {
+    const SurfaceMesh surface = sphere_surface(2);
+    ModelMesh made;
+    made.nodes = surface.nodes;
+    made.triangles = surface.triangles;
+    for (int i = 0; i < static_cast<int>(made.nodes.rows()); ++i) made.surface_nodes.push_back(i);
+    return made;
+  }();
+  return mesh;
+}
+
+void make_display(Input input) {
+  DisplayConfig config;
+  config.file = scratch_file("it.obj", text_of(input));
+  try {
+    const DisplayMesh display = make_display_mesh(config, ball());
+    expect(!display_fault(display, ball().surface_node_count()), "a display mesh can be read");
+  } catch (const Error&) {
+  }
+}
+
 }  // namespace
 
 void mesh_msh(Input input) {
@@ -59,6 +84,7 @@ void mesh_stl(Input input) {
 }
 void mesh_obj(Input input) {
   read_surface(input, "it.obj", read_obj);
+  make_display(input);
 }
 void mesh_ply(Input input) {
   read_surface(input, "it.ply", read_ply);

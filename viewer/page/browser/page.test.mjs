@@ -223,10 +223,10 @@ test("a scene is chosen, loaded and saved by keys; whoever cannot is told why", 
   assert.equal(await choice.inputValue(), "würfel.h5", "what is chosen stays so");
   await page.keyboard.press("Tab");
   await page.keyboard.press("Enter");
-  await until(() => load.isDisabled(), "the server is at it");
+  await until(() => load.isDisabled(), "a scene is being loaded");
   assert.deepEqual(said(server, "load"), [{ type: "load", name: "würfel.h5" }]);
   assert.equal(await save.isDisabled(), true);
-  assert.match(await page.locator("#scenes-reason").innerText(), /One moment/);
+  assert.match(await page.locator("#scenes-reason").innerText(), /being loaded or saved/);
   server.flag("preparing", false);
   await until(() => save.isEnabled(), "it is done");
   await save.focus();

@@ -10,8 +10,7 @@
 #include "tests/support/captured_log.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/temporary_folder.hpp"
-#include "tests/viewer/example_run.hpp"
-#include "tests/viewer/web_peer.hpp"
+#include "tests/viewer/show.hpp"
 #include "viewer/viewer_server.hpp"
 
 using Catch::Matchers::Contains;
@@ -21,62 +20,6 @@ using namespace irdm::test;
 using namespace irdm::viewer;
 
 namespace {
-
-const std::string kToken = "a token of 16 or more";
-
-/// A page of three files, as build.mjs leaves them.
-PageFiles example_page() {
-  const TemporaryFolder folder;
-  std::filesystem::create_directory(folder.path() / "assets");
-  const auto write = [&](const std::string& name, const std::string& text) {
-    std::ofstream(folder.path() / name) << text;
-  };
-  write("index.html", "<!doctype html>");
-  write("index.html.gz", "packed page");
-  write("assets/app-1234.js", "script");
-  write("secret.txt", "of no known type");
-  return PageFiles::read(folder.path());
-}
-
-/// A server that shows it.
-struct Show {
-  // Peers of these tests answer no pings, and a slow machine takes its time.
-  explicit Show(ViewerSettings settings = {.idle_timeout_ms = 600'000})
-      : server(with_page(std::move(settings)), run) {
-    server.start();
-  }
-  static ViewerSettings with_page(ViewerSettings settings) {
-    settings.page = example_page();
-    return settings;
-  }
-  void publish(std::uint64_t step) {
-    run.surfaces.back() = example_frame(scene, 0.01);
-    run.surfaces.back().force_step = step;
-    run.surfaces.publish();
-    run.ready.signal();
-  }
-  /// Asks and returns the whole answer.
-  std::string ask(const std::string& request) {
-    WebPeer peer(server.port());
-    peer.send(request);
-    const auto answer = peer.rest();
-    REQUIRE(answer);
-    return *answer;
-  }
-  std::string get(const std::string& path, const std::string& more = "") {
-    return ask("GET " + path + " HTTP/1.1\r\nHost: x\r\nConnection: close\r\n" + more + "\r\n");
-  }
-  WebPeer watch(const std::string& token = "", int receive_buffer = 0, bool looks_on = false) {
-    WebPeer peer(server.port(), receive_buffer);
-    peer.open();
-    peer.send_message(encode(ClientMessage(Hello{token, looks_on})));
-    return peer;
-  }
-
-  ExampleRun run;
-  const Scene& scene = run.scene_;
-  ViewerServer server;
-};
 
 /// The next frame, whatever else comes before it.
 SurfaceFrame next_frame(WebPeer& peer, const Scene& scene) {

@@ -12,7 +12,7 @@ from PIL import Image
 LENGTH_MS = 15000  # of it all
 LAST_MS = 1500  # of the last frame, before it begins again
 SIZE = (720, 360)  # as large as a README shows it
-QUALITIES = (70, 55, 40, 25)
+QUALITIES = (70, 55, 40, 25, 20)
 
 
 def save(frames, path, kilobytes):

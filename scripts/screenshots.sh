@@ -11,7 +11,7 @@ bin=build/$preset/bin
 models=out/models
 kilobytes=150 # that a picture may have
 phone_kilobytes=300
-moving_kilobytes=2000
+moving_kilobytes=1000
 mkdir -p "$models" docs/images
 scripts/setup.sh
 scripts/build.sh "$preset" irdm-precompute irdm-server irdm-bridge

@@ -1,7 +1,6 @@
-#include <catch2/catch.hpp>
-
 #include "device_bridge/safety/arming.hpp"
 #include "tests/bridge/milliseconds.hpp"
+#include "tests/support/catch.hpp"
 
 using irdm::ArmingPatience;
 using irdm::test::kMs;

@@ -1,4 +1,3 @@
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -6,6 +5,7 @@
 #include "common/error.hpp"
 #include "device_bridge/bridge_config.hpp"
 #include "device_bridge/device_registry.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 
@@ -36,7 +36,7 @@ void check_refused(const std::string& text, const std::string& words,
                    const BridgeOverrides& overrides = {}) {
   const ConfigFile file(text);
   CHECK_THROWS_AS(file.load(overrides), Error);
-  CHECK_THROWS_WITH(file.load(overrides), Catch::Contains(words));
+  CHECK_THROWS_WITH(file.load(overrides), Catch::Matchers::ContainsSubstring(words));
 }
 
 }  // namespace

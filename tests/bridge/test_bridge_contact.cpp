@@ -1,8 +1,7 @@
-#include <catch2/catch.hpp>
-
 #include "device_bridge/contact/bridge_contact.hpp"
 #include "tests/bridge/milliseconds.hpp"
 #include "tests/support/allocation_guard.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/left_out.hpp"
 
 using namespace irdm;

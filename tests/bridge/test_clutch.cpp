@@ -1,7 +1,7 @@
 #include <algorithm>
-#include <catch2/catch.hpp>
 
 #include "device_bridge/workspace.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 

@@ -1,6 +1,5 @@
 // Velocity and damping of a device whose position comes in steps.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 #include <sstream>
@@ -9,6 +8,7 @@
 #include "device_bridge/safety/velocity_estimate.hpp"
 #include "device_bridge/virtual_stylus.hpp"
 #include "tests/bridge/filter_rig.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 using test::FilterRig;

@@ -1,5 +1,4 @@
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <deque>
 #include <limits>
@@ -7,6 +6,7 @@
 
 #include "device_bridge/virtual_stylus.hpp"
 #include "tests/bridge/filter_rig.hpp"
+#include "tests/support/catch.hpp"
 
 // What each guard of the safety filter is there for, as something that holds with it and does not
 // hold without it.

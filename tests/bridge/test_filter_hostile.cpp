@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -9,6 +8,7 @@
 
 #include "common/motion/rigid_body.hpp"
 #include "device_bridge/safety/safety_filter.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 

@@ -1,6 +1,5 @@
 // The safety filter of a device that renders torque.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <deque>
 #include <limits>
@@ -8,6 +7,7 @@
 #include "common/motion/rigid_body.hpp"
 #include "device_bridge/virtual_stylus.hpp"
 #include "tests/bridge/filter_rig.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 using test::FilterRig;

@@ -1,7 +1,6 @@
-#include <catch2/catch.hpp>
-
 #include "device_bridge/safety/arming.hpp"
 #include "tests/bridge/filter_rig.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 using test::kOneUp;

@@ -1,11 +1,11 @@
-#include <catch2/catch.hpp>
 #include <string>
 
 #include "device_bridge/link/link_verdict.hpp"
 #include "tests/bridge/milliseconds.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using irdm::test::kMs;
 
 namespace {
@@ -71,7 +71,7 @@ TEST_CASE("a link is graded by the share of ticks that were answered in time") {
 TEST_CASE("a link is graded by what its mode needs: a bridge that predicts has a horizon") {
   LinkMeasurement link = link_with(1000);
   CHECK(judge(link).grade == LinkGrade::kBad);
-  CHECK_THAT(judge(link).advice.front(), Contains("bridge.mode"));
+  CHECK_THAT(judge(link).advice.front(), ContainsSubstring("bridge.mode"));
   link.predict = true;
   CHECK(judge(link).grade == LinkGrade::kGood);
   CHECK(judge(link).advice.empty());
@@ -79,7 +79,7 @@ TEST_CASE("a link is graded by what its mode needs: a bridge that predicts has a
   CHECK(judge(link).advice.empty());
   add(link.client.round_trip, 55 * kMs);
   add(link.client.round_trip, 55 * kMs);
-  CHECK_THAT(judge(link).advice.front(), Contains("nearer to the device"));
+  CHECK_THAT(judge(link).advice.front(), ContainsSubstring("nearer to the device"));
 }
 
 TEST_CASE("a contact model predicts 50 steps, and at most 50 ms") {
@@ -99,20 +99,22 @@ TEST_CASE("a contact model predicts 50 steps, and at most 50 ms") {
 
 TEST_CASE("each fault of a link has its advice") {
   CHECK_THAT(advice([](auto& link) { link.client.round_trip = Histogram{}; }),
-             Contains("answers nothing"));
+             ContainsSubstring("answers nothing"));
   CHECK_THAT(advice([](auto& link) { add(link.client.round_trip, 25 * kMs); }),
-             Contains("nearer to the device"));
-  CHECK_THAT(advice([](auto& link) { add(link.client.jitter, 6 * kMs); }), Contains("cable"));
-  CHECK_THAT(advice([](auto& link) { link.client.steps_missed = 10; }), Contains("Steps get lost"));
-  CHECK_THAT(advice([](auto& link) { link.client.sessions = 2; }), Contains("made anew"));
+             ContainsSubstring("nearer to the device"));
+  CHECK_THAT(advice([](auto& link) { add(link.client.jitter, 6 * kMs); }),
+             ContainsSubstring("cable"));
+  CHECK_THAT(advice([](auto& link) { link.client.steps_missed = 10; }),
+             ContainsSubstring("Steps get lost"));
+  CHECK_THAT(advice([](auto& link) { link.client.sessions = 2; }), ContainsSubstring("made anew"));
   CHECK_THAT(advice([](auto& link) { add(link.wakeup, 2 * kMs); }),
-             Contains("real-time scheduling"));
+             ContainsSubstring("real-time scheduling"));
   CHECK_THAT(advice([](auto& link) {
                link.client.server_at_first = wire::Status{.steps = 1000, .missed = 500};
                link.client.server = wire::Status{.steps = 1490, .missed = 510};
              }),
-             Contains("server skips steps"));
-  CHECK_THAT(advice([](auto& link) { link.dt = 0.015; }), Contains("shorter dt"));
+             ContainsSubstring("server skips steps"));
+  CHECK_THAT(advice([](auto& link) { link.dt = 0.015; }), ContainsSubstring("shorter dt"));
 }
 
 TEST_CASE("a link's report says what was measured, with the verdict") {
@@ -121,18 +123,21 @@ TEST_CASE("a link's report says what was measured, with the verdict") {
   link.client.server_at_first = link.client.server =
       wire::Status{.steps = 70, .missed = 3, .overflows = 2, .surface_rate = 60.0F};
   const std::string text = to_text(link);
-  CHECK_THAT(text, Contains("link: 1.0 s, 1000 ticks, 1 sessions, server's step 2.0 ms\n"));
-  CHECK_THAT(text, Contains("success: 85.00 % of the ticks"));
   CHECK_THAT(text,
-             Contains("of at most 20.0 ms, as holding the server's forces needs (100.00 % of at "
-                      "most 50.0 ms)"));
+             ContainsSubstring("link: 1.0 s, 1000 ticks, 1 sessions, server's step 2.0 ms\n"));
+  CHECK_THAT(text, ContainsSubstring("success: 85.00 % of the ticks"));
+  CHECK_THAT(text, ContainsSubstring(
+                       "of at most 20.0 ms, as holding the server's forces needs (100.00 % of at "
+                       "most 50.0 ms)"));
   link.predict = true;
-  CHECK_THAT(to_text(link), Contains("success: 100.00 % of the ticks have a force of at most 50.0 "
-                                     "ms, as solving the contact at the bridge needs (85.00 %"));
-  CHECK_THAT(text, Contains("loss: 50.00 %"));
-  CHECK_THAT(text, Contains("  up to     0.125 ms 100.00 % ###"));
-  CHECK_THAT(text, Contains("server: step p50 0.0") &&
-                       Contains("overruns 3 of 70 steps, lost in full queues 2, 60.0 surfaces/s"));
-  CHECK_THAT(text, Contains("verdict: bad"));
-  CHECK_THAT(text, Contains("advice: Steps get lost"));
+  CHECK_THAT(to_text(link),
+             ContainsSubstring("success: 100.00 % of the ticks have a force of at most 50.0 "
+                               "ms, as solving the contact at the bridge needs (85.00 %"));
+  CHECK_THAT(text, ContainsSubstring("loss: 50.00 %"));
+  CHECK_THAT(text, ContainsSubstring("  up to     0.125 ms 100.00 % ###"));
+  CHECK_THAT(text, ContainsSubstring("server: step p50 0.0") &&
+                       ContainsSubstring(
+                           "overruns 3 of 70 steps, lost in full queues 2, 60.0 surfaces/s"));
+  CHECK_THAT(text, ContainsSubstring("verdict: bad"));
+  CHECK_THAT(text, ContainsSubstring("advice: Steps get lost"));
 }

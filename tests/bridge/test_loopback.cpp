@@ -1,5 +1,4 @@
 #include <atomic>
-#include <catch2/catch.hpp>
 #include <chrono>
 #include <limits>
 #include <optional>
@@ -11,6 +10,7 @@
 #include "device_bridge/servo_thread.hpp"
 #include "device_bridge/virtual_stylus.hpp"
 #include "server/network/network_server.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/eventually.hpp"
 
 using namespace irdm;

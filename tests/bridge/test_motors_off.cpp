@@ -1,8 +1,8 @@
 // What the safety filter makes of a device that shows nothing any more, whatever it is sent.
 #include <algorithm>
-#include <catch2/catch.hpp>
 
 #include "tests/bridge/filter_rig.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 using test::FilterRig;

@@ -2,13 +2,13 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "device_bridge/network_client.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/raw_peer.hpp"
 
@@ -339,8 +339,8 @@ TEST_CASE("client gives up when the versions do not match, and names both") {
   RawPeer peer = server.accept();
   peer.send(Refuse{.reason = RefuseReason::kVersion, .version_min = 3, .version_max = 4});
   REQUIRE(server.gave_up.wait(kDeadlineMs));
-  CHECK_THAT(server.end().failure,
-             Catch::Contains("peer speaks protocol version 3 to 4, this program 1"));
+  CHECK_THAT(server.end().failure, Catch::Matchers::ContainsSubstring(
+                                       "peer speaks protocol version 3 to 4, this program 1"));
 }
 
 TEST_CASE("client gives up on a header of another version") {
@@ -350,7 +350,7 @@ TEST_CASE("client gives up on a header of another version") {
   bytes[4] = 7;
   peer.send(bytes);
   REQUIRE(server.gave_up.wait(kDeadlineMs));
-  CHECK_THAT(server.end().failure, Catch::Contains("version 7"));
+  CHECK_THAT(server.end().failure, Catch::Matchers::ContainsSubstring("version 7"));
 }
 
 TEST_CASE("client gives up when it asks for too much, and tries again when that may pass") {
@@ -364,12 +364,13 @@ TEST_CASE("client gives up when it asks for too much, and tries again when that 
   RawPeer peer = server.accept();
   peer.send(Refuse{.reason = RefuseReason::kTooManyStyluses, .text = "only 0"});
   REQUIRE(server.gave_up.wait(kDeadlineMs));
-  CHECK_THAT(server.end().failure, Catch::Contains("only 0"));
+  CHECK_THAT(server.end().failure, Catch::Matchers::ContainsSubstring("only 0"));
 }
 
 TEST_CASE("client gives up when a lockstep session breaks") {
   ScriptedServer server;
   { RawPeer peer = server.welcome(1, true); }
   REQUIRE(server.gave_up.wait(kDeadlineMs));
-  CHECK_THAT(server.end().failure, Catch::Contains("connection lost in lockstep"));
+  CHECK_THAT(server.end().failure,
+             Catch::Matchers::ContainsSubstring("connection lost in lockstep"));
 }

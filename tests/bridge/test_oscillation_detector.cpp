@@ -1,10 +1,10 @@
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <random>
 
 #include "device_bridge/safety/oscillation_detector.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 

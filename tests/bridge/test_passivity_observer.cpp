@@ -1,7 +1,7 @@
-#include <catch2/catch.hpp>
 #include <limits>
 
 #include "device_bridge/safety/passivity.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 

@@ -1,7 +1,7 @@
-#include <catch2/catch.hpp>
 #include <limits>
 
 #include "tests/bridge/filter_rig.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 using test::FilterRig;

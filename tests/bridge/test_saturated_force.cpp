@@ -1,10 +1,10 @@
 // What the safety filter makes of motors that show less than it sends.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "common/motion/rigid_body.hpp"
 #include "tests/bridge/filter_rig.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 using test::FilterRig;

@@ -1,11 +1,11 @@
 // A bridge's stream by datagrams: with the real server, and with one that the test speaks for.
-#include <catch2/catch.hpp>
 #include <memory>
 #include <optional>
 
 #include "common/wire/secret_key.hpp"
 #include "device_bridge/network_client.hpp"
 #include "server/network/network_server.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/raw_datagrams.hpp"
 #include "tests/support/raw_peer.hpp"

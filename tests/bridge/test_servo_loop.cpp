@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -8,6 +7,7 @@
 #include "device_bridge/servo_loop.hpp"
 #include "device_bridge/virtual_stylus.hpp"
 #include "tests/support/allocation_guard.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/left_out.hpp"
 
 using namespace irdm;

@@ -1,11 +1,11 @@
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <deque>
 #include <random>
 
 #include "device_bridge/contact/step_pacer.hpp"
 #include "tests/bridge/milliseconds.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 using irdm::test::kMs;

@@ -1,10 +1,10 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <sstream>
 #include <string>
 
 #include "common/error.hpp"
 #include "device_bridge/stylus_script.hpp"
+#include "tests/support/catch.hpp"
 
 using irdm::Error;
 using irdm::Quaternion;
@@ -21,7 +21,7 @@ StylusScript parse(const std::string& text) {
 
 /// That the text is refused, with these words in the message.
 void check_script_refused(const std::string& text, const std::string& words) {
-  CHECK_THROWS_WITH(parse(text), Catch::Contains(words));
+  CHECK_THROWS_WITH(parse(text), Catch::Matchers::ContainsSubstring(words));
   CHECK_THROWS_AS(parse(text), Error);
 }
 
@@ -91,5 +91,6 @@ TEST_CASE("script refuses what does not fit, with file and line") {
   check_script_refused("time,x,y,z,qw,qx,qy,qz\n0,0,0,0,0,0,0,0\n", "not of norm 1");
   check_script_refused("time,x,y,z,button\n0,0,0,0,-1\n", "button '-1'");
   check_script_refused("time,x,y,z,button\n0,0,0,0,0.5\n", "button '0.5'");
-  CHECK_THROWS_WITH(StylusScript::load("/nowhere/motion.csv"), Catch::Contains("no such"));
+  CHECK_THROWS_WITH(StylusScript::load("/nowhere/motion.csv"),
+                    Catch::Matchers::ContainsSubstring("no such"));
 }

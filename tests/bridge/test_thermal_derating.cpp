@@ -1,7 +1,7 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "device_bridge/safety/guards.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 

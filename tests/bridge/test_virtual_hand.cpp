@@ -1,9 +1,9 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 
 #include "common/motion/rigid_body.hpp"
 #include "device_bridge/virtual_stylus.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 

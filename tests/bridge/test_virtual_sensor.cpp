@@ -1,8 +1,8 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
 
 #include "device_bridge/virtual_stylus.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 

@@ -1,7 +1,7 @@
-#include <catch2/catch.hpp>
 #include <sstream>
 
 #include "device_bridge/virtual_stylus.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 
@@ -89,5 +89,5 @@ TEST_CASE("virtual stylus: warm motors are told to the filter and to people") {
     CHECK(stylus.trouble().empty() == (last < 1.0));
   }
   CHECK(last == 1.0);
-  CHECK_THAT(stylus.trouble(), Catch::Contains("motors are warm"));
+  CHECK_THAT(stylus.trouble(), Catch::Matchers::ContainsSubstring("motors are warm"));
 }

@@ -1,9 +1,9 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "common/motion/rigid_body.hpp"
 #include "device_bridge/safety/passivity.hpp"
 #include "tests/bridge/milliseconds.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 using namespace irdm::test;

@@ -1,9 +1,9 @@
-#include <catch2/catch.hpp>
 #include <cstring>
 
 #include "scene/scene_run.hpp"
 #include "tests/c_interface/c_scene.hpp"
 #include "tests/support/allocation_guard.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/left_out.hpp"
 
 using namespace irdm;

@@ -1,10 +1,10 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <csignal>
 #include <fstream>
 #include <limits>
 
 #include "tests/c_interface/c_scene.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/child_process.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/left_out.hpp"
@@ -92,7 +92,7 @@ TEST_CASE("C interface: a stylus client that is used wrongly says so") {
     const Connected connected(address, options);
     CHECK(connected.status == IRDM_FAILED);
     CHECK(connected.handle == nullptr);
-    CHECK_THAT(connected.error, Catch::Contains(expected));
+    CHECK_THAT(connected.error, Catch::Matchers::ContainsSubstring(expected));
   }
 }
 
@@ -122,7 +122,7 @@ TEST_CASE("C interface: a program is a stylus of a server in real time") {
   CHECK(feedback.latency >= 0.0);
   std::array<char, 128> state{};
   CHECK(irdm_stylus_state(stylus.handle, state.data(), state.size()) == IRDM_OK);
-  CHECK_THAT(std::string(state.data()), Catch::StartsWith("ready"));
+  CHECK_THAT(std::string(state.data()), Catch::Matchers::StartsWith("ready"));
 }
 
 namespace {

@@ -1,12 +1,12 @@
 #include <unistd.h>
 
-#include <catch2/catch.hpp>
 #include <cstring>
 #include <fstream>
 #include <limits>
 #include <random>
 
 #include "tests/c_interface/c_scene.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm::test;
 
@@ -49,10 +49,10 @@ TEST_CASE("C interface: a scene that is wrong is refused with a message") {
   const OpenSimulation no_object("[world]\n");
   CHECK(no_object.status == IRDM_FAILED);
   CHECK(no_object.handle == nullptr);
-  CHECK_THAT(no_object.error, Catch::Contains("object is missing"));
+  CHECK_THAT(no_object.error, Catch::Matchers::ContainsSubstring("object is missing"));
   const OpenSimulation no_file("[[object]]\nmodel = \"/nowhere/cube.h5\"\n");
   CHECK(no_file.status == IRDM_FAILED);
-  CHECK_THAT(no_file.error, Catch::Contains("/nowhere/cube.h5"));
+  CHECK_THAT(no_file.error, Catch::Matchers::ContainsSubstring("/nowhere/cube.h5"));
   irdm_simulation* simulation = nullptr;
   std::array<char, 8> little{};
   little.fill('x');
@@ -130,7 +130,7 @@ TEST_CASE("C interface: a state that is damaged or of other models changes nothi
     damaged[at] ^= 4;
     CHECK(load(damaged) == IRDM_FAILED);
     CHECK_THAT(std::string(message.data()),
-               Catch::Contains(at < 64 ? "these models" : "is damaged"));
+               Catch::Matchers::ContainsSubstring(at < 64 ? "these models" : "is damaged"));
   }
   CHECK(load({'i'}) == IRDM_FAILED);
   const std::string table = "[[scenery]]";
@@ -138,7 +138,8 @@ TEST_CASE("C interface: a state that is damaged or of other models changes nothi
   const OpenSimulation alone(fewer);
   REQUIRE(alone.status == IRDM_OK);
   CHECK(load(state_of(alone.handle)) == IRDM_FAILED);
-  CHECK_THAT(std::string(message.data()), Catch::Contains("not one of this scene"));
+  CHECK_THAT(std::string(message.data()),
+             Catch::Matchers::ContainsSubstring("not one of this scene"));
   CHECK((state_of(open.handle) == state));
 }
 

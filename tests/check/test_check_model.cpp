@@ -1,11 +1,11 @@
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <sstream>
 
 #include "precompute/check/check_model.hpp"
 #include "precompute/check/static_reference.hpp"
 #include "precompute/precompute.hpp"
 #include "tests/check/dense_file.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using namespace irdm;

@@ -1,7 +1,6 @@
-#include <catch2/catch.hpp>
-
 #include "precompute/check/reciprocity.hpp"
 #include "tests/check/oscillators.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 using namespace irdm::precompute;

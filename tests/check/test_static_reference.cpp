@@ -1,7 +1,6 @@
-#include <catch2/catch.hpp>
-
 #include "precompute/check/static_reference.hpp"
 #include "tests/precompute/discrete.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/fem_cube.hpp"
 
 using namespace irdm;

@@ -1,7 +1,7 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "precompute/check/step_error.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/led_brick.hpp"
 
 using namespace irdm;

@@ -1,7 +1,6 @@
-#include <catch2/catch.hpp>
-
 #include "precompute/check/lines.hpp"
 #include "precompute/check/wave_speed.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/fem_cube.hpp"
 #include "tests/support/synthetic_model.hpp"
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -8,6 +7,7 @@
 #include "device_bridge/commission/plan.hpp"
 #include "device_bridge/commission/report.hpp"
 #include "device_bridge/commission/step_runner.hpp"
+#include "tests/support/catch.hpp"
 
 namespace irdm::test {
 

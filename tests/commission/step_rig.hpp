@@ -1,6 +1,5 @@
 #pragma once
 
-#include <catch2/catch.hpp>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -9,6 +8,7 @@
 #include "device_bridge/commission/step_runner.hpp"
 #include "device_bridge/servo_loop.hpp"
 #include "tests/bridge/milliseconds.hpp"
+#include "tests/support/catch.hpp"
 
 namespace irdm::test {
 

@@ -1,4 +1,3 @@
-#include <catch2/catch.hpp>
 #include <memory>
 
 #include "device_bridge/forcedimension/forcedimension_device.hpp"
@@ -7,6 +6,7 @@
 #include "tests/commission/step_rig.hpp"
 #include "tests/forcedimension/fake_api.hpp"
 #include "tests/openhaptics/fake_session.hpp"
+#include "tests/support/catch.hpp"
 
 using Catch::Matchers::StartsWith;
 using namespace irdm;

@@ -1,4 +1,3 @@
-#include <catch2/catch.hpp>
 #include <chrono>
 #include <sstream>
 #include <string>
@@ -11,6 +10,7 @@
 #include "tests/commission/held_device.hpp"
 #include "tests/commission/played_plan.hpp"
 #include "tests/haply/fake_service.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 using namespace irdm::commission;

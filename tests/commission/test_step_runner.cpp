@@ -1,9 +1,8 @@
-#include <catch2/catch.hpp>
-
 #include "device_bridge/commission/force_steps.hpp"
 #include "device_bridge/commission/plan.hpp"
 #include "tests/commission/step_rig.hpp"
 #include "tests/support/allocation_guard.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 using namespace irdm::commission;

@@ -1,14 +1,14 @@
 #include <unistd.h>
 
 #include <array>
-#include <catch2/catch.hpp>
 #include <sstream>
 
 #include "device_bridge/commission/commission.hpp"
 #include "device_bridge/commission/reading_steps.hpp"
 #include "device_bridge/commission/terminal.hpp"
+#include "tests/support/catch.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using namespace irdm;
 using namespace irdm::commission;
 
@@ -45,9 +45,9 @@ TEST_CASE("commission: a line begins a step, q ends, y confirms") {
   CHECK_FALSE(terminal.begins(step));
   CHECK(terminal.confirms("Was it gone?"));
   CHECK_FALSE(terminal.confirms("Was it gone?"));
-  CHECK_THAT(keyboard.output.str(), Contains("axis up: Move the handle 5 cm up") &&
-                                        Contains("any key then stops it") &&
-                                        Contains("Was it gone? [y/n]"));
+  CHECK_THAT(keyboard.output.str(), ContainsSubstring("axis up: Move the handle 5 cm up") &&
+                                        ContainsSubstring("any key then stops it") &&
+                                        ContainsSubstring("Was it gone? [y/n]"));
 }
 
 TEST_CASE("commission: any key stops a step, once") {
@@ -100,5 +100,5 @@ TEST_CASE("commission: a key stops the virtual device's step, and the rest is no
   CHECK(report.steps[5].verdict == Verdict::kNotReached);
   CHECK(report.steps.back().step == "wall");
   CHECK_FALSE(report.signed_off());
-  CHECK_THAT(keyboard.output.str(), Contains("stopped: by a key"));
+  CHECK_THAT(keyboard.output.str(), ContainsSubstring("stopped: by a key"));
 }

@@ -1,8 +1,8 @@
-#include <catch2/catch.hpp>
 #include <functional>
 
 #include "tests/commission/played_plan.hpp"
 #include "tests/commission/step_rig.hpp"
+#include "tests/support/catch.hpp"
 
 using Catch::Matchers::StartsWith;
 using namespace irdm;

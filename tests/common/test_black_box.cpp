@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
 #include <fstream>
 #include <memory>
 #include <sstream>
@@ -15,6 +14,7 @@
 #include "common/realtime/clock.hpp"
 #include "common/wire/frame.hpp"
 #include "tests/support/captured_log.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/file_size_limit.hpp"
 #include "tests/support/small_disk.hpp"
@@ -22,7 +22,7 @@
 
 using namespace irdm;
 using namespace irdm::test;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using wire::TapKind;
 
 namespace {
@@ -74,7 +74,8 @@ void check_no_room(const std::filesystem::path& folder) {
   box.report("a fault", "");
   box.finish();
   CHECK(log.lines() == 1);
-  CHECK_THAT(log.text(), Contains("a fault: no black box: ") && Contains("; check "));
+  CHECK_THAT(log.text(),
+             ContainsSubstring("a fault: no black box: ") && ContainsSubstring("; check "));
   CHECK(files_in(folder).empty());
 }
 
@@ -97,7 +98,8 @@ TEST_CASE("a black box is written when a part sees a fault, with what came befor
   box.finish();
   const auto written = files_in(folder.path() / "made" / "here");
   REQUIRE(written.size() == 1);
-  CHECK_THAT(written[0].filename().string(), Catch::StartsWith("program-2") && Contains("Z-"));
+  CHECK_THAT(written[0].filename().string(),
+             Catch::Matchers::StartsWith("program-2") && ContainsSubstring("Z-"));
   CHECK(written[0].extension() == ".h5");
   const hdf5::File file = hdf5::File::open(written[0]);
   CHECK(file.read_string_attribute("/", "format") == "irdm-blackbox");
@@ -149,7 +151,7 @@ TEST_CASE("a black box that cannot be written disturbs nobody") {
   box.finish();
   CHECK(files_in(folder.path()).size() == 1);
   CHECK_THROWS_WITH(write_black_box(folder.path() / "file", 1, "program", {}, {}),
-                    Contains("black_box"));
+                    ContainsSubstring("black_box"));
 }
 
 TEST_CASE("a black box on a full disk: one line, and nothing is left of it") {
@@ -173,7 +175,7 @@ TEST_CASE("a process whose first file of HDF5 meets a full disk ends in order") 
   frames.take();
   const FileSizeLimit limit(10'000);
   CHECK_THROWS_WITH(write_black_box(folder.path(), 1, "program", {}, {&frames}),
-                    Contains("check free space"));
+                    ContainsSubstring("check free space"));
   CHECK(files_in(folder.path()).empty());
 }
 

@@ -1,8 +1,8 @@
-#include <catch2/catch.hpp>
 #include <fstream>
 
 #include "common/model/content_checksum.hpp"
 #include "common/model/model_file.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/synthetic_model.hpp"
 #include "tests/support/temporary_folder.hpp"
 

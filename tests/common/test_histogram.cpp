@@ -1,6 +1,5 @@
-#include <catch2/catch.hpp>
-
 #include "common/realtime/histogram.hpp"
+#include "tests/support/catch.hpp"
 
 using irdm::Histogram;
 

@@ -1,10 +1,10 @@
 #include <atomic>
-#include <catch2/catch.hpp>
 #include <cstdint>
 #include <thread>
 #include <utility>
 
 #include "common/realtime/triple_buffer.hpp"
+#include "tests/support/catch.hpp"
 
 using irdm::TripleBuffer;
 

@@ -1,6 +1,5 @@
 #include <unistd.h>
 
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <functional>
 
@@ -9,9 +8,10 @@
 #include "common/model/dense_file.hpp"
 #include "common/model/model_file.hpp"
 #include "tests/common/one_tet_model.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/sparse_dataset.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using namespace irdm;
 
 namespace {
@@ -189,7 +189,7 @@ TEST_CASE("model file without commit leaves nothing behind") {
 TEST_CASE("model file that is missing, truncated, foreign or damaged is refused with its name") {
   const ModelFolder folder;
   const auto path = folder.path / "model.h5";
-  CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal), Contains("no such file"));
+  CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal), ContainsSubstring("no such file"));
 
   Model model = small_model();
   const auto write = [&] {
@@ -200,58 +200,60 @@ TEST_CASE("model file that is missing, truncated, foreign or damaged is refused 
   };
   SECTION("no dense response") {
     write();
-    CHECK_THROWS_WITH(read_model(path, ResponseKind::kDense), Contains("no dense response"));
+    CHECK_THROWS_WITH(read_model(path, ResponseKind::kDense),
+                      ContainsSubstring("no dense response"));
   }
   SECTION("truncated") {
     write();
     std::filesystem::resize_file(path, std::filesystem::file_size(path) / 2);
-    CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal), Contains("not a complete HDF5 file"));
+    CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal),
+                      ContainsSubstring("not a complete HDF5 file"));
   }
   SECTION("triangle out of range") {
     model.mesh.triangles(0, 0) = 99;
     write();
-    CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal), Contains("points outside"));
+    CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal), ContainsSubstring("points outside"));
   }
   SECTION("number that is not finite") {
     model.mesh.nodes(0, 0) = std::numeric_limits<double>::quiet_NaN();
     write();
-    CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal), Contains("not finite"));
+    CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal), ContainsSubstring("not finite"));
   }
   SECTION("mass that is not positive") {
     model.body.mass = 0;
     write();
-    CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal), Contains("mass"));
+    CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal), ContainsSubstring("mass"));
   }
   SECTION("centrifugal force that is not finite") {
     std::get<ModalResponse>(model.response).centrifugal(1, 5) =
         std::numeric_limits<double>::infinity();
     write();
-    CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal), Contains("centrifugal"));
+    CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal), ContainsSubstring("centrifugal"));
   }
   SECTION("gravity that is not finite") {
     auto& response = std::get<ModalResponse>(model.response);
     response.gravity(1, 2) = std::numeric_limits<double>::quiet_NaN();
     write();
     CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal),
-                      Contains(std::string(kModalGravity) + " has numbers"));
+                      ContainsSubstring(std::string(kModalGravity) + " has numbers"));
     response.gravity(1, 2) = 0.0;
     response.gravity_rest(3, 0) = std::numeric_limits<double>::infinity();
     write();
     CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal),
-                      Contains(std::string(kModalGravityRest) + " has numbers"));
+                      ContainsSubstring(std::string(kModalGravityRest) + " has numbers"));
   }
   SECTION("gravity of another number of modes or nodes") {
     auto& response = std::get<ModalResponse>(model.response);
     const AxisColumns rest = response.gravity_rest;
     response.gravity_rest = AxisColumns::Ones(9, 3);
     write();
-    CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal), Contains(kModalGravityRest));
+    CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal), ContainsSubstring(kModalGravityRest));
     response.gravity_rest = rest;
     write();
     irdm::test::make_sparse(path, kModalGravity, {3, 3});
-    CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal), Contains(kModalGravity));
+    CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal), ContainsSubstring(kModalGravity));
     irdm::test::make_sparse(path, kModalGravity, {2, 6});
-    CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal), Contains(kModalGravity));
+    CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal), ContainsSubstring(kModalGravity));
   }
   SECTION("dense gravity of another shape or not finite") {
     const auto write_dense = [&](const RowMatrix<double>& gravity) {
@@ -267,13 +269,14 @@ TEST_CASE("model file that is missing, truncated, foreign or damaged is refused 
     write_dense(gravity);
     CHECK(has_gravity(read_model(path, ResponseKind::kDense)));
     irdm::test::make_sparse(path, kDenseGravity, {3, 4, 12});
-    CHECK_THROWS_WITH(read_model(path, ResponseKind::kDense),
-                      Contains("/response/dense/gravity must have the shape (3, steps, 3n)"));
+    CHECK_THROWS_WITH(
+        read_model(path, ResponseKind::kDense),
+        ContainsSubstring("/response/dense/gravity must have the shape (3, steps, 3n)"));
     gravity(4, 7) = std::numeric_limits<double>::infinity();
     write_dense(gravity);
     CHECK_THROWS_WITH(read_model(path, ResponseKind::kDense),
-                      Contains("/response/dense/gravity has numbers that are not finite"));
-    CHECK_THROWS_WITH(read_streamed_model(path), Contains("/response/dense/gravity"));
+                      ContainsSubstring("/response/dense/gravity has numbers that are not finite"));
+    CHECK_THROWS_WITH(read_streamed_model(path), ContainsSubstring("/response/dense/gravity"));
   }
   SECTION("residual compliance that is none") {
     const auto refused = [&](const std::function<void(ResidualCompliance&)>& spoil,
@@ -283,7 +286,7 @@ TEST_CASE("model file that is missing, truncated, foreign or damaged is refused 
       residual = small_residual();
       spoil(residual);
       write();
-      CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal), Contains(message));
+      CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal), ContainsSubstring(message));
     };
     refused([](auto& g) { g.blocks[0] = std::numeric_limits<float>::quiet_NaN(); }, "not finite");
     // Not the first number: where comparisons decide, it may hide behind another.
@@ -299,15 +302,18 @@ TEST_CASE("model file that is missing, truncated, foreign or damaged is refused 
   SECTION("negative frequency") {
     std::get<ModalResponse>(model.response).angular_frequency(0) = -1;
     write();
-    CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal), Contains("angular_frequency"));
+    CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal),
+                      ContainsSubstring("angular_frequency"));
   }
   SECTION("shapes that there is neither memory nor a number for") {
     write();
     // So many that their count does not fit into 64 bits, and room for none would be made.
     irdm::test::make_sparse(path, "/mesh/tets", {hsize_t{1} << 62, 4});
-    CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal),
-                      Contains("/mesh/tets has shape") && Contains("but not the numbers"));
+    CHECK_THROWS_WITH(
+        read_model(path, ResponseKind::kModal),
+        ContainsSubstring("/mesh/tets has shape") && ContainsSubstring("but not the numbers"));
     irdm::test::make_sparse(path, "/mesh/nodes", {hsize_t{1} << 40, 3});
-    CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal), Contains("but not the numbers"));
+    CHECK_THROWS_WITH(read_model(path, ResponseKind::kModal),
+                      ContainsSubstring("but not the numbers"));
   }
 }

@@ -1,8 +1,7 @@
-#include <catch2/catch.hpp>
-
 #include "common/config/near_word.hpp"
 #include "common/config/toml_reader.hpp"
 #include "common/error.hpp"
+#include "tests/support/catch.hpp"
 
 using Catch::Matchers::EndsWith;
 using namespace irdm;

@@ -1,8 +1,8 @@
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "common/response/modal_response.hpp"
+#include "tests/support/catch.hpp"
 
 using irdm::held_force_oscillator;
 using irdm::held_force_response;

@@ -1,10 +1,10 @@
 #include <unistd.h>
 
-#include <catch2/catch.hpp>
 #include <fstream>
 #include <string>
 
 #include "common/process/temporary_files.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/child_process.hpp"
 
 using namespace irdm;

@@ -1,6 +1,5 @@
-#include <catch2/catch.hpp>
-
 #include "common/realtime/clock.hpp"
+#include "tests/support/catch.hpp"
 
 using irdm::PeriodicSchedule;
 

@@ -1,4 +1,3 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
 #include <limits>
@@ -8,6 +7,7 @@
 #include "common/realtime/no_denormals.hpp"
 #include "common/realtime/real_time_scope.hpp"
 #include "common/realtime/scheduling.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 
@@ -64,7 +64,7 @@ TEST_CASE(
     }
     after = keeps_denormals();
   }).join();
-  CHECK_THAT(name, Catch::EndsWith("some name"));
+  CHECK_THAT(name, Catch::Matchers::EndsWith("some name"));
   CHECK_FALSE(inside);
   CHECK(after);
 }
@@ -75,7 +75,7 @@ TEST_CASE("memory is locked when it says so") {
   const bool some = status_line("VmLck:").find(" 0 kB") == std::string::npos;
   INFO(came_of_it << "; " << status_line("VmLck:"));
   CHECK(some == (came_of_it == "locked"));
-  if (!some) CHECK_THAT(came_of_it, Catch::Contains("not locked ("));
+  if (!some) CHECK_THAT(came_of_it, Catch::Matchers::ContainsSubstring("not locked ("));
 }
 
 TEST_CASE("the last processor is spared where there are several") {

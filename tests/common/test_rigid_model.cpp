@@ -1,13 +1,12 @@
-#include <catch2/catch.hpp>
-
 #include "common/model/content_checksum.hpp"
 #include "common/model/model_file.hpp"
 #include "common/response/stored_response.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/point_loads.hpp"
 #include "tests/support/synthetic_model.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using namespace irdm;
 using namespace irdm::test;
 
@@ -26,10 +25,11 @@ struct RigidFile : TemporaryFolder {
     CAPTURE(message);
     for (const ResponseKind kind :
          {ResponseKind::kModal, ResponseKind::kDense, ResponseKind::kCompressed}) {
-      CHECK_THROWS_WITH(read_model(file, kind), Contains(message) && Contains("cube.h5"));
+      CHECK_THROWS_WITH(read_model(file, kind),
+                        ContainsSubstring(message) && ContainsSubstring("cube.h5"));
     }
-    CHECK_THROWS_WITH(read_streamed_model(file), Contains(message));
-    CHECK_THROWS_WITH(read_description(hdf5::File::open(file)), Contains(message));
+    CHECK_THROWS_WITH(read_streamed_model(file), ContainsSubstring(message));
+    CHECK_THROWS_WITH(read_description(hdf5::File::open(file)), ContainsSubstring(message));
   }
   void refuses(void (*change)(Model&), const std::string& message) const {
     Model model = cube;

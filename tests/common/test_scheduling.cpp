@@ -1,10 +1,10 @@
 #include <pthread.h>
 
-#include <catch2/catch.hpp>
 #include <latch>
 
 #include "common/error.hpp"
 #include "common/realtime/scheduling.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 
@@ -25,7 +25,7 @@ TEST_CASE("scheduling does what it reports") {
     CHECK(preferred == "SCHED_FIFO 60");
     CHECK_NOTHROW(apply_scheduling(RealTimeScheduling::kRequire, thread, kForcePriority));
   } else {
-    CHECK_THAT(preferred, Catch::Contains("none ("));
+    CHECK_THAT(preferred, Catch::Matchers::ContainsSubstring("none ("));
     CHECK_THROWS_AS(apply_scheduling(RealTimeScheduling::kRequire, thread, kForcePriority), Error);
   }
   done.count_down();

@@ -1,14 +1,14 @@
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
 
 #include "device_bridge/doctor/facts.hpp"
 #include "server/network/network_server.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/raw_peer.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using namespace irdm;
 using namespace irdm::test;
 
@@ -37,7 +37,7 @@ TEST_CASE("doctor: a server in lockstep refuses and goes on") {
   const doctor::ServerFacts facts = doctor::ask_server(to_port(server.port_number()), 1);
   CHECK(facts.connects);
   CHECK_FALSE(facts.welcomes);
-  CHECK_THAT(facts.words, Contains("lockstep"));
+  CHECK_THAT(facts.words, ContainsSubstring("lockstep"));
   CHECK(server.stats().accepted == 0);
 }
 
@@ -52,7 +52,7 @@ TEST_CASE("doctor: nobody listens, or nobody who answers") {
   }
   const doctor::ServerFacts away = doctor::ask_server(to_port(port), 1);
   CHECK_FALSE(away.connects);
-  CHECK_THAT(away.words, Contains("no connection: "));
+  CHECK_THAT(away.words, ContainsSubstring("no connection: "));
 }
 
 TEST_CASE("doctor: the clock is looked at, and the source is the kernel's") {

@@ -1,8 +1,7 @@
-#include <catch2/catch.hpp>
-
 #include "device_bridge/doctor/judgements.hpp"
+#include "tests/support/catch.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using namespace irdm;
 using namespace irdm::doctor;
 
@@ -48,10 +47,10 @@ TEST_CASE("doctor: each port is told, and whether it is permitted") {
   const Findings findings = judge_ports(system, kWanted);
   REQUIRE(findings.size() == 2);
   CHECK(findings[0].grade == Grade::kOk);
-  CHECK_THAT(findings[0].what, Contains("2988:0302"));
+  CHECK_THAT(findings[0].what, ContainsSubstring("2988:0302"));
   CHECK(findings[1].grade == Grade::kProblem);
   CHECK(findings[1].subject == "port /dev/hidraw1");
-  CHECK_THAT(findings[1].remedy, Contains("udev"));
+  CHECK_THAT(findings[1].remedy, ContainsSubstring("udev"));
   CHECK(judge_ports(system, kNotWanted)[1].grade == Grade::kWarning);
   CHECK(judge_ports({}, kWanted).at(0).grade == Grade::kWarning);
   CHECK(judge_ports({}, kNotWanted).at(0).grade == Grade::kOk);
@@ -64,11 +63,11 @@ TEST_CASE(
   const Findings findings = judge_usb(devices, kWanted);
   REQUIRE(findings.size() == 2);
   CHECK(findings[0].grade == Grade::kOk);
-  CHECK_THAT(findings[0].what, Contains("0403:cb48"));
+  CHECK_THAT(findings[0].what, ContainsSubstring("0403:cb48"));
   CHECK(findings[1].grade == Grade::kProblem);
   CHECK(findings[1].subject == "usb /dev/bus/usb/001/005");
-  CHECK_THAT(findings[1].remedy,
-             Contains("/etc/udev/rules.d") && Contains(dhd::udev_rule("1451:0402")));
+  CHECK_THAT(findings[1].remedy, ContainsSubstring("/etc/udev/rules.d") &&
+                                     ContainsSubstring(dhd::udev_rule("1451:0402")));
   CHECK(judge_usb(devices, kNotWanted)[1].grade == Grade::kWarning);
   CHECK(judge_usb({}, kWanted).at(0).grade == Grade::kWarning);
   CHECK(judge_usb({}, kNotWanted).at(0).grade == Grade::kOk);
@@ -76,7 +75,7 @@ TEST_CASE(
 
 TEST_CASE("doctor: a device's service is judged by how long it takes to answer") {
   CHECK(judge_service("service", 500, 400'000).grade == Grade::kOk);
-  CHECK_THAT(judge_service("service", 500, 400'000).what, Contains("500 answers, 99 %"));
+  CHECK_THAT(judge_service("service", 500, 400'000).what, ContainsSubstring("500 answers, 99 %"));
   CHECK(judge_service("service", 500, 2'100'000).grade == Grade::kWarning);
   CHECK_FALSE(judge_service("service", 500, 2'100'000).remedy.empty());
   CHECK(judge_service("service", 0, 0).grade == Grade::kWarning);
@@ -89,12 +88,13 @@ TEST_CASE("doctor: a device's setup is found, missing, another's, or written wit
   CHECK(judge_setup(system, "Left").grade == Grade::kOk);
   CHECK(judge_setup(system, "").grade == Grade::kOk);
   CHECK(judge_setup(system, "Right").grade == Grade::kProblem);
-  CHECK_THAT(judge_setup(system, "Right").what, Contains("/c/Right.config has decimal commas"));
+  CHECK_THAT(judge_setup(system, "Right").what,
+             ContainsSubstring("/c/Right.config has decimal commas"));
   CHECK(judge_setup(system, "Middle").grade == Grade::kProblem);
-  CHECK_THAT(judge_setup(system, "Middle").what, Contains("only Left, Right"));
+  CHECK_THAT(judge_setup(system, "Middle").what, ContainsSubstring("only Left, Right"));
   const Finding none = judge_setup({.folders = {"/c", "/d"}}, "Left");
   CHECK(none.grade == Grade::kWarning);
-  CHECK_THAT(none.what, Contains("/c, /d"));
+  CHECK_THAT(none.what, ContainsSubstring("/c, /d"));
 }
 
 TEST_CASE("doctor: real time that is not permitted weighs as the configuration wants it") {
@@ -103,12 +103,13 @@ TEST_CASE("doctor: real time that is not permitted weighs as the configuration w
   CHECK(judge_real_time(refused, RealTimeScheduling::kRequire).grade == Grade::kProblem);
   CHECK(judge_real_time(refused, RealTimeScheduling::kPrefer).grade == Grade::kWarning);
   CHECK(judge_real_time(refused, RealTimeScheduling::kIgnore).grade == Grade::kOk);
-  CHECK_THAT(judge_real_time(refused, RealTimeScheduling::kPrefer).remedy, Contains("rtprio"));
+  CHECK_THAT(judge_real_time(refused, RealTimeScheduling::kPrefer).remedy,
+             ContainsSubstring("rtprio"));
   CHECK(judge_locked_memory({.given = true}, RealTimeScheduling::kRequire).grade == Grade::kOk);
   const Finding memory = judge_locked_memory(refused, RealTimeScheduling::kRequire);
   CHECK(memory.grade == Grade::kProblem);
   CHECK(judge_locked_memory(refused, RealTimeScheduling::kPrefer).grade == Grade::kWarning);
-  CHECK_THAT(memory.what, Contains("64 MiB cannot be locked: Operation not permitted"));
+  CHECK_THAT(memory.what, ContainsSubstring("64 MiB cannot be locked: Operation not permitted"));
   CHECK(judge_locked_memory(refused, RealTimeScheduling::kIgnore).grade == Grade::kOk);
 }
 
@@ -118,14 +119,15 @@ TEST_CASE("doctor: clocks that are coarse or slow, and wake-ups that are late") 
   clock.source = "hpet";
   CHECK(judge_clock_source(clock).grade == Grade::kWarning);
   clock.source.clear();
-  CHECK_THAT(judge_clock_source(clock).what, Contains("unknown source"));
+  CHECK_THAT(judge_clock_source(clock).what, ContainsSubstring("unknown source"));
   clock.resolution_ns = 4'000'000;
   CHECK(judge_clock_source(clock).grade == Grade::kProblem);
   clock.resolution_ns = 0;
   CHECK(judge_clock_source(clock).grade == Grade::kProblem);
 
   CHECK(judge_wakeup(good_clock()).grade == Grade::kOk);
-  CHECK_THAT(judge_wakeup(good_clock()).what, Contains("0.060 ms as a rule, 0.900 ms at worst"));
+  CHECK_THAT(judge_wakeup(good_clock()).what,
+             ContainsSubstring("0.060 ms as a rule, 0.900 ms at worst"));
   clock = good_clock();
   clock.worst_lateness_ns = 2'000'001;
   CHECK(judge_wakeup(clock).grade == Grade::kWarning);
@@ -139,12 +141,12 @@ TEST_CASE("doctor: a server that welcomes, refuses, is silent, or is not there")
   const Finding away = judge({.words = "no connection: Connection refused"});
   CHECK(away.grade == Grade::kProblem);
   CHECK(away.subject == "server h:1");
-  CHECK_THAT(away.remedy, Contains("start irdm-server"));
+  CHECK_THAT(away.remedy, ContainsSubstring("start irdm-server"));
   const Finding refused =
       judge({.connects = true, .words = "h:1: the server refuses: 3 styluses; change them"});
   CHECK(refused.grade == Grade::kProblem);
   CHECK(refused.remedy == "change them");
   const Finding silent = judge({.connects = true});
   CHECK(silent.grade == Grade::kProblem);
-  CHECK_THAT(silent.what, Contains("does not welcome"));
+  CHECK_THAT(silent.what, ContainsSubstring("does not welcome"));
 }

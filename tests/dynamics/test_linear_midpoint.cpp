@@ -1,7 +1,6 @@
-#include <catch2/catch.hpp>
-
 #include "precompute/dynamics/implicit_midpoint.hpp"
 #include "tests/precompute/meshes.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 using namespace irdm::precompute;

@@ -1,6 +1,5 @@
-#include <catch2/catch.hpp>
-
 #include "precompute/dynamics/neo_hookean.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 using namespace irdm::precompute;

@@ -1,9 +1,9 @@
-#include <catch2/catch.hpp>
 #include <numbers>
 
 #include "precompute/dynamics/rigid_extraction.hpp"
 #include "precompute/dynamics/soft_body.hpp"
 #include "tests/precompute/meshes.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 using namespace irdm::precompute;

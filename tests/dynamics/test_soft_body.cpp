@@ -1,10 +1,9 @@
-#include <catch2/catch.hpp>
-
 #include "precompute/dynamics/soft_body.hpp"
 #include "precompute/fem/assembly.hpp"
 #include "precompute/mesh/material_regions.hpp"
 #include "precompute/mesh/tet_mesh.hpp"
 #include "tests/precompute/meshes.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 using namespace irdm::precompute;

@@ -1,10 +1,10 @@
-#include <catch2/catch.hpp>
 #include <thread>
 
 #include "precompute/dynamics/sparse_solver.hpp"
 #include "tests/precompute/meshes.hpp"
+#include "tests/support/catch.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using namespace irdm;
 using namespace irdm::precompute;
 
@@ -31,7 +31,7 @@ void check_solver(const Make& make) {
   }
   Eigen::SparseMatrix<double> negative = matrix(1e-3);
   negative.coeffRef(4, 4) = -1.0;
-  CHECK_THROWS_WITH(solver->factorise(negative), Contains("not positive definite"));
+  CHECK_THROWS_WITH(solver->factorise(negative), ContainsSubstring("not positive definite"));
 }
 
 }  // namespace

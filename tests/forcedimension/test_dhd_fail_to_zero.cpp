@@ -1,11 +1,11 @@
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <optional>
 
 #include "device_bridge/forcedimension/forcedimension_device.hpp"
 #include "device_bridge/servo_loop.hpp"
 #include "tests/bridge/link_faults.hpp"
 #include "tests/forcedimension/fake_api.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 using namespace irdm::test;

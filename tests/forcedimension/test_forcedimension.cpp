@@ -1,5 +1,4 @@
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -13,11 +12,12 @@
 #include "tests/bridge/served_device.hpp"
 #include "tests/forcedimension/fake_api.hpp"
 #include "tests/support/allocation_guard.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/left_out.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using namespace irdm;
 using namespace irdm::test;
 
@@ -57,8 +57,9 @@ TEST_CASE("libdhd.so is looked for by its usual names, or by the one that is giv
   ::setenv("FORCEDIMENSION_LIB", "/opt/libdrd.so", 1);
   CHECK(dhd::library_names() == std::vector<std::string>{"/opt/libdrd.so"});
   ::unsetenv("FORCEDIMENSION_LIB");
-  CHECK_THROWS_WITH(dhd::load_library({"/nowhere/libdhd.so"}),
-                    Contains("/nowhere/libdhd.so") && Contains("install the 64-bit"));
+  CHECK_THROWS_WITH(
+      dhd::load_library({"/nowhere/libdhd.so"}),
+      ContainsSubstring("/nowhere/libdhd.so") && ContainsSubstring("install the 64-bit"));
 }
 
 TEST_CASE("a device of Force Dimension is opened by its number or as the first, and closed") {
@@ -74,16 +75,16 @@ TEST_CASE("a device of Force Dimension is opened by its number or as the first, 
     first.open();
     CHECK(fakedhd_is_open(0) == 1);
     ForceDimensionDevice again("0", fake_api());
-    CHECK_THROWS_WITH(again.open(), Contains("is open already"));
+    CHECK_THROWS_WITH(again.open(), ContainsSubstring("is open already"));
     ForceDimensionDevice by_serial("10777", fake_api());
-    CHECK_THROWS_WITH(by_serial.open(), Contains("is open already"));
+    CHECK_THROWS_WITH(by_serial.open(), ContainsSubstring("is open already"));
     ForceDimensionDevice unknown("10778", fake_api());
-    CHECK_THROWS_WITH(unknown.open(), Contains("cannot be opened: no device found"));
+    CHECK_THROWS_WITH(unknown.open(), ContainsSubstring("cannot be opened: no device found"));
   }
   CHECK(fakedhd_is_open(0) == 0);
   CHECK(fakedhd_force_is_on(0) == 0);
   ForceDimensionDevice nameless("Left", fake_api());
-  CHECK_THROWS_WITH(nameless.open(), Contains("has no number"));
+  CHECK_THROWS_WITH(nameless.open(), ContainsSubstring("has no number"));
 }
 
 TEST_CASE("positions, orientations and forces are taken from the driver's axes to ours and back") {
@@ -143,7 +144,7 @@ TEST_CASE("readings that fail are of no use, and after fifty the device is lost"
   for (int tick = 0; tick < 50; ++tick) device.read(0.0);
   CHECK(device.state().lost);
   CHECK(device.state().failed);
-  CHECK_THAT(device.trouble(), Contains("does not answer any more"));
+  CHECK_THAT(device.trouble(), ContainsSubstring("does not answer any more"));
 }
 
 namespace {
@@ -170,7 +171,7 @@ TEST_CASE("a device that turns its force off is not ready until that is on again
   SECTION("the person's button stays off until it is pressed again") {
     fakedhd_force_off(0, 1);
     CHECK_FALSE(tick(device, kSeen));
-    CHECK_THAT(device.trouble(), Contains("the force button"));
+    CHECK_THAT(device.trouble(), ContainsSubstring("the force button"));
     CHECK_FALSE(tick(device, 2000));
     CHECK(fakedhd_turned_on(0) == 1);
     fakedhd_force_off(0, 0);
@@ -182,7 +183,7 @@ TEST_CASE("a device that turns its force off is not ready until that is on again
         GENERATE(table<int, const char*>({{3, "its watchdog"}, {2, "too fast"}}));
     fakedhd_force_off(0, cause);
     CHECK_FALSE(tick(device, kSeen));
-    CHECK_THAT(device.trouble(), Contains(words));
+    CHECK_THAT(device.trouble(), ContainsSubstring(words));
     CHECK_FALSE(tick(device, 400));
     CHECK(fakedhd_turned_on(0) == 1);
     CHECK(tick(device, 200));
@@ -202,7 +203,7 @@ TEST_CASE("a device that is not initialised has no force, and moves by itself on
     ForceDimensionDevice device("", fake_api());
     device.open();
     CHECK_FALSE(tick(device, 3 * kSeen));
-    CHECK_THAT(device.trouble(), Contains("not initialised"));
+    CHECK_THAT(device.trouble(), ContainsSubstring("not initialised"));
     fakedhd_initialised(0, 1);  // by the vendor's program, or by hand
     CHECK(tick(device, kSeen));
   }
@@ -215,7 +216,7 @@ TEST_CASE("a device that is not initialised has no force, and moves by itself on
   dhd::Api only_dhd = fake_api();
   only_dhd.auto_init = nullptr;
   ForceDimensionDevice cannot("", only_dhd, true);
-  CHECK_THROWS_WITH(cannot.open(), Contains("auto_init needs libdrd"));
+  CHECK_THROWS_WITH(cannot.open(), ContainsSubstring("auto_init needs libdrd"));
   CHECK(fakedhd_is_open(0) == 0);
 }
 
@@ -302,7 +303,7 @@ TEST_CASE("a driver that takes no force any more has lost its device") {
   for (int k = 0; k < 50; ++k) device.write({});
   CHECK(device.state().failed);
   CHECK(device.state().lost);
-  CHECK_THAT(device.trouble(), Contains("does not answer any more"));
+  CHECK_THAT(device.trouble(), ContainsSubstring("does not answer any more"));
 }
 
 TEST_CASE("a force that is more than the motors give is said to be, as long as it is asked for") {

@@ -1,4 +1,3 @@
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -6,9 +5,10 @@
 #include "common/error.hpp"
 #include "device_bridge/bridge_config.hpp"
 #include "device_bridge/haply/haply_device.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using namespace irdm;
 using namespace irdm::test;
 
@@ -45,17 +45,19 @@ TEST_CASE("a Haply device is named by its id and the service's address, which ha
 TEST_CASE("what a configuration says wrongly of a Haply device is told in one line") {
   CHECK_THROWS_WITH(
       load(kHaply + "service = \"localhost\"\n"),
-      Contains("bridge.toml: device.service: 'localhost' has no port; give HOST:PORT"));
-  CHECK_THROWS_WITH(load(kHaply + "service = \"localhost:0\"\n"), Contains("is not a server"));
-  CHECK_THROWS_WITH(load(kHaply + "service = 10001\n"), Contains("service is not text"));
+      ContainsSubstring("bridge.toml: device.service: 'localhost' has no port; give HOST:PORT"));
+  CHECK_THROWS_WITH(load(kHaply + "service = \"localhost:0\"\n"),
+                    ContainsSubstring("is not a server"));
+  CHECK_THROWS_WITH(load(kHaply + "service = 10001\n"), ContainsSubstring("service is not text"));
   CHECK_THROWS_WITH(load("[[device]]\ntype = \"openhaptics\"\nservice = \"a:1\"\n"),
-                    Contains("service is for devices of type haply; remove it"));
+                    ContainsSubstring("service is for devices of type haply; remove it"));
   CHECK_THROWS_WITH(load("[[device]]\ntype = \"openhaptics\"\ngrip = \"1\"\n"),
-                    Contains("grip is for devices of type haply; remove it"));
+                    ContainsSubstring("grip is for devices of type haply; remove it"));
   CHECK_THROWS_WITH(load("[[device]]\ntype = \"openhaptics\"\nshared = true\n"),
-                    Contains("shared is for devices of type haply; remove it"));
-  CHECK_THROWS_WITH(load(kHaply + kHaply), Contains("two devices of type haply with the name ''"));
+                    ContainsSubstring("shared is for devices of type haply; remove it"));
+  CHECK_THROWS_WITH(load(kHaply + kHaply),
+                    ContainsSubstring("two devices of type haply with the name ''"));
   CHECK_THROWS_WITH(load(kHaply + "auto_init = true\n"),
-                    Contains("is for devices of Force Dimension"));
+                    ContainsSubstring("is for devices of Force Dimension"));
   CHECK_NOTHROW(load(kHaply + kHaply + "service = \"other:10001\"\n"));
 }

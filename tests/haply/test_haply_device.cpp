@@ -1,4 +1,3 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
 
@@ -8,11 +7,12 @@
 #include "device_bridge/haply/http_request.hpp"
 #include "tests/haply/fake_service.hpp"
 #include "tests/haply/served_device.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/left_out.hpp"
 #include "tests/support/real_time_guard.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using namespace irdm;
 using namespace irdm::test;
 
@@ -103,13 +103,14 @@ TEST_CASE("a device is chosen by its id, and the same one is opened once") {
   HaplyDevice second(service.settings("04EA"));
   second.open();
   HaplyDevice again(service.settings("04EA"));
-  CHECK_THROWS_WITH(again.open(), Contains("Haply device 04EA: is open already"));
+  CHECK_THROWS_WITH(again.open(), ContainsSubstring("Haply device 04EA: is open already"));
   HaplyDevice unknown(service.settings("1234"));
-  CHECK_THROWS_WITH(unknown.open(), Contains("found: 049D, 04EA") && Contains("Haply Hub"));
+  CHECK_THROWS_WITH(unknown.open(),
+                    ContainsSubstring("found: 049D, 04EA") && ContainsSubstring("Haply Hub"));
   HaplyDevice first(service.settings());
   first.open();
   HaplyDevice none(service.settings());
-  CHECK_THROWS_WITH(none.open(), Contains("or it is open already"));
+  CHECK_THROWS_WITH(none.open(), ContainsSubstring("or it is open already"));
   first.close();
   none.open();
   REQUIRE(eventually([&] {
@@ -127,12 +128,13 @@ TEST_CASE("where there is no service, opening says so and what to do") {
     service.kill();
   }
   HaplyDevice device(settings);
-  CHECK_THROWS_WITH(device.open(), Contains("no connection to the service at 127.0.0.1:") &&
-                                       Contains("start the Inverse Service"));
+  CHECK_THROWS_WITH(device.open(),
+                    ContainsSubstring("no connection to the service at 127.0.0.1:") &&
+                        ContainsSubstring("start the Inverse Service"));
   FakeService other;
   other.order("garbage hello");
   HaplyDevice confused(other.settings());
-  CHECK_THROWS_WITH(confused.open(), Contains("is not understood: it is no JSON"));
+  CHECK_THROWS_WITH(confused.open(), ContainsSubstring("is not understood: it is no JSON"));
 }
 
 TEST_CASE("an Inverse3 bears 10 N, and 3.3 N for long; no torque") {
@@ -149,8 +151,8 @@ TEST_CASE("a device that another session commands is not opened, unless it may b
   service.order("status 049D 1 1 1 1");
   haply::InverseSettings settings = service.settings();
   HaplyDevice refused(settings);
-  CHECK_THROWS_WITH(refused.open(),
-                    Contains("Haply device 049D: another session") && Contains("`shared = true`"));
+  CHECK_THROWS_WITH(refused.open(), ContainsSubstring("Haply device 049D: another session") &&
+                                        ContainsSubstring("`shared = true`"));
   CHECK(service.told().forces == 0);
   settings.shared = true;
   HaplyDevice device(settings);

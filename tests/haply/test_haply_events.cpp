@@ -1,14 +1,14 @@
 // The channel of events of services from 3.5 on.
-#include <catch2/catch.hpp>
 #include <string>
 
 #include "device_bridge/haply/haply_device.hpp"
 #include "device_bridge/haply/inverse_events.hpp"
 #include "tests/haply/fake_service.hpp"
 #include "tests/support/captured_log.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/eventually.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using namespace irdm;
 using namespace irdm::test;
 using haply::decode_event;
@@ -131,7 +131,7 @@ TEST_CASE("events of another device, and what is no event, change nothing; a not
   REQUIRE(eventually([&] { return heard.device.trouble().find("brake") != std::string::npos; }));
   CHECK(heard.service.order("listeners") == "1");  // no new connection
   heard.device.close();
-  CHECK_THAT(log.text(), Contains("the service says: device-battery-low: in words"));
+  CHECK_THAT(log.text(), ContainsSubstring("the service says: device-battery-low: in words"));
 }
 
 TEST_CASE("a service without the channel of events is used without it") {

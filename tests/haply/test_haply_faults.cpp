@@ -1,4 +1,3 @@
-#include <catch2/catch.hpp>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -7,9 +6,10 @@
 #include "device_bridge/haply/haply_device.hpp"
 #include "tests/haply/fake_service.hpp"
 #include "tests/haply/served_device.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/eventually.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using namespace irdm;
 using namespace irdm::test;
 
@@ -117,8 +117,8 @@ TEST_CASE("a device that is not ready from the start has no force until it is") 
   for (int k = 0; k < 20; ++k) CHECK_FALSE(tick_ready(device));
   CHECK(eventually([&] {
     const bool there = !device.read(0.0).tip.hasNaN();
-    return there &&
-           Contains("Haply device 049D: is not calibrated, no force").match(device.trouble());
+    return there && ContainsSubstring("Haply device 049D: is not calibrated, no force")
+                        .match(device.trouble());
   }));
   service.order("status 049D 1 1 1 0");
   CHECK(eventually([&] { return tick_ready(device) && device.trouble().empty(); }));

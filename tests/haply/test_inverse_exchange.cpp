@@ -1,8 +1,8 @@
-#include <catch2/catch.hpp>
 #include <string>
 
 #include "device_bridge/haply/inverse_exchange.hpp"
 #include "tests/bridge/milliseconds.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 using namespace irdm::haply;

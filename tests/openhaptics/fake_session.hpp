@@ -1,6 +1,5 @@
 #pragma once
 
-#include <catch2/catch.hpp>
 #include <memory>
 #include <string>
 
@@ -9,6 +8,7 @@
 #include "device_bridge/servo_loop.hpp"
 #include "tests/bridge/milliseconds.hpp"
 #include "tests/fake_libhd/control.hpp"
+#include "tests/support/catch.hpp"
 
 namespace irdm::test {
 

@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
 
 #include "tests/bridge/link_faults.hpp"
 #include "tests/openhaptics/fake_session.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 using namespace irdm::test;
@@ -76,7 +76,8 @@ TEST_CASE(
   CHECK(stepped.loop.shown().isZero(0.0));
   CHECK(stepped.device.state().off);
   CHECK_FALSE(stepped.device.state().ready);
-  CHECK_THAT(stepped.device.trouble(), Catch::Matchers::Contains("its driver has turned it off"));
+  CHECK_THAT(stepped.device.trouble(),
+             Catch::Matchers::ContainsSubstring("its driver has turned it off"));
   fakehd_force_off("", 0);
   double rise = 0.0;
   for (int tick = 0; tick < 700; ++tick) {

@@ -1,9 +1,8 @@
-#include <catch2/catch.hpp>
-
 #include "device_bridge/servo_loop.hpp"
 #include "tests/openhaptics/fake_session.hpp"
+#include "tests/support/catch.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using namespace irdm;
 using namespace irdm::test;
 
@@ -56,7 +55,7 @@ TEST_CASE("a device with an inkwell has no force until its stylus was in it, and
   CHECK_FALSE(stepped.device.state().ready);
   CHECK(fakehd_updated_style("") == 0);
   CHECK(force_of("").isZero(0.0));
-  CHECK_THAT(stepped.device.trouble(), Contains("inkwell"));
+  CHECK_THAT(stepped.device.trouble(), ContainsSubstring("inkwell"));
   fakehd_calibration("", kNeedsUpdate, kInkwell);  // it is in
   stepped.tick(2 * kLook);
   CHECK(fakehd_updated_style("") == kInkwell);
@@ -74,7 +73,7 @@ TEST_CASE("encoders are never reset by the bridge: a person is told what to do")
   CHECK(fakehd_updated_style("") == 0);
   CHECK_FALSE(stepped.device.state().ready);
   CHECK(force_of("").isZero(0.0));
-  CHECK_THAT(stepped.device.trouble(), Contains("reset pose"));
+  CHECK_THAT(stepped.device.trouble(), ContainsSubstring("reset pose"));
 }
 
 TEST_CASE("a calibration that fails is not a device that is lost: its force comes back later") {
@@ -90,7 +89,7 @@ TEST_CASE("a calibration that fails is not a device that is lost: its force come
   CHECK_FALSE(stepped.device.state().failed);
   CHECK_FALSE(stepped.device.state().lost);
   CHECK(force_of("").isZero(0.0));
-  CHECK_THAT(stepped.device.trouble(), Contains("calibration fails"));
+  CHECK_THAT(stepped.device.trouble(), ContainsSubstring("calibration fails"));
   fakehd_calibration_fails("", 0);
   stepped.tick(kLook);
   CHECK(stepped.device.state().ready);

@@ -1,9 +1,9 @@
-#include <catch2/catch.hpp>
 #include <string>
 
 #include "device_bridge/openhaptics/hd_error.hpp"
+#include "tests/support/catch.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using namespace irdm::hd;
 
 TEST_CASE("every error of the driver has the meaning that is safe") {
@@ -26,13 +26,13 @@ TEST_CASE("every error of the driver has the meaning that is safe") {
 
 TEST_CASE("an error of the driver is told by name, number and words") {
   CHECK_THAT(to_text({.code = 0x0302, .internal = 5}),
-             Contains("HD_COMM_ERROR 0x0302, internal 5: communication"));
-  CHECK_THAT(to_text({.code = 0x0203}), Contains("HD_EXCEEDED_MAX_VELOCITY 0x0203: "));
-  CHECK_THAT(to_text({.code = 0xABCD}), Contains("unknown error 0xABCD"));
+             ContainsSubstring("HD_COMM_ERROR 0x0302, internal 5: communication"));
+  CHECK_THAT(to_text({.code = 0x0203}), ContainsSubstring("HD_EXCEEDED_MAX_VELOCITY 0x0203: "));
+  CHECK_THAT(to_text({.code = 0xABCD}), ContainsSubstring("unknown error 0xABCD"));
 }
 
 TEST_CASE("what only a fault of ours can cause is told as such") {
   for (const Code code : {0x0204u, 0x0402u}) {
-    CHECK_THAT(describe(code).remedy, Contains("fault of irdm-bridge"));
+    CHECK_THAT(describe(code).remedy, ContainsSubstring("fault of irdm-bridge"));
   }
 }

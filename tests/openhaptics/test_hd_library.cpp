@@ -1,11 +1,11 @@
-#include <catch2/catch.hpp>
 #include <cstdlib>
 
 #include "common/error.hpp"
 #include "device_bridge/driver_library.hpp"
 #include "device_bridge/openhaptics/hd_library.hpp"
+#include "tests/support/catch.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using namespace irdm;
 
 TEST_CASE("libHD.so is looked for by its usual names, or by the one that is given alone") {
@@ -24,31 +24,31 @@ TEST_CASE("libHD.so is loaded with all its functions, the next name after one th
 }
 
 TEST_CASE("a missing libHD.so is told with all names that were tried") {
-  CHECK_THROWS_WITH(
-      hd::load_library({"libHD.so.no", "/nowhere/libHD.so"}),
-      Contains("libHD.so.no, /nowhere/libHD.so") && Contains("install the 64-bit OpenHaptics"));
+  CHECK_THROWS_WITH(hd::load_library({"libHD.so.no", "/nowhere/libHD.so"}),
+                    ContainsSubstring("libHD.so.no, /nowhere/libHD.so") &&
+                        ContainsSubstring("install the 64-bit OpenHaptics"));
   CHECK_THROWS_AS(hd::load_library({"/nowhere/libHD.so"}), Error);
 }
 
 TEST_CASE("a libHD.so that lacks a library of its own names it and what brings it") {
-  CHECK_THROWS_WITH(
-      hd::load_library({IRDM_LONELY_LIBHD, IRDM_FAKE_LIBHD}),
-      Contains("is there, but needs libPhantomIOLib42.so") && Contains("device driver"));
+  CHECK_THROWS_WITH(hd::load_library({IRDM_LONELY_LIBHD, IRDM_FAKE_LIBHD}),
+                    ContainsSubstring("is there, but needs libPhantomIOLib42.so") &&
+                        ContainsSubstring("device driver"));
 }
 
 TEST_CASE("a libHD.so that lacks a function names it") {
-  CHECK_THROWS_WITH(hd::load_library({IRDM_BROKEN_LIBHD}), Contains("has no function hd"));
+  CHECK_THROWS_WITH(hd::load_library({IRDM_BROKEN_LIBHD}), ContainsSubstring("has no function hd"));
 }
 
 TEST_CASE("a file that is no library is told in dlopen's words") {
   CHECK_THROWS_WITH(hd::load_library({IRDM_SOURCE_DIR "/README.md"}),
-                    Contains("README.md cannot be loaded") && Contains("64-bit"));
+                    ContainsSubstring("README.md cannot be loaded") && ContainsSubstring("64-bit"));
 }
 
 TEST_CASE("what dlopen misses is read from its message") {
   CHECK(missing_object("libx.so.5: cannot open shared object file: No such file") == "libx.so.5");
   CHECK(missing_object("libx.so: wrong ELF class: ELFCLASS32").empty());
-  CHECK_THAT(hd::package_of("libncurses.so.5"), Contains("libncurses5"));
-  CHECK_THAT(hd::package_of("libtinfo.so.5"), Contains("libtinfo5"));
-  CHECK_THAT(hd::package_of("libother.so"), Contains("LD_LIBRARY_PATH"));
+  CHECK_THAT(hd::package_of("libncurses.so.5"), ContainsSubstring("libncurses5"));
+  CHECK_THAT(hd::package_of("libtinfo.so.5"), ContainsSubstring("libtinfo5"));
+  CHECK_THAT(hd::package_of("libother.so"), ContainsSubstring("LD_LIBRARY_PATH"));
 }

@@ -1,8 +1,8 @@
 // Torque of devices with six actuated axes (Premium 6DOF).
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "tests/openhaptics/fake_session.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 using namespace irdm::test;

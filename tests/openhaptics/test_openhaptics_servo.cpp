@@ -1,4 +1,3 @@
-#include <catch2/catch.hpp>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -6,6 +5,7 @@
 #include "common/realtime/clock.hpp"
 #include "device_bridge/servo_thread.hpp"
 #include "tests/openhaptics/fake_session.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/eventually.hpp"
 
 using namespace irdm;
@@ -215,5 +215,5 @@ TEST_CASE("a servo loop refuses two drivers that both want to make its ticks") {
   ServoLink link(2);
   EventFd done;
   ServoThread servo(link, loops, {}, done);
-  CHECK_THROWS_WITH(servo.start(), Catch::Contains("two drivers"));
+  CHECK_THROWS_WITH(servo.start(), Catch::Matchers::ContainsSubstring("two drivers"));
 }

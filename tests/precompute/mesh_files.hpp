@@ -1,6 +1,5 @@
 #pragma once
 
-#include <catch2/catch.hpp>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -9,6 +8,7 @@
 
 #include "common/process/temporary_files.hpp"
 #include "precompute/mesh/tet_mesh.hpp"
+#include "tests/support/catch.hpp"
 
 namespace irdm::test {
 

@@ -1,13 +1,13 @@
 #pragma once
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "tests/support/catch.hpp"
 #include "tests/support/child_process.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -52,8 +52,8 @@ struct ProgramRun : TemporaryFolder {
     start("c.toml -o made/model.h5");
     CHECK(status == 1);
     CHECK(std::count(err.begin(), err.end(), '\n') == 1);
-    CHECK_THAT(err,
-               Catch::StartsWith("irdm-precompute: error: ") && Catch::Matchers::Contains(message));
+    CHECK_THAT(err, Catch::Matchers::StartsWith("irdm-precompute: error: ") &&
+                        Catch::Matchers::ContainsSubstring(message));
     CHECK(std::filesystem::is_empty(path() / "made"));
   }
 };

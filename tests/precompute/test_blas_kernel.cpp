@@ -1,6 +1,5 @@
-#include <catch2/catch.hpp>
-
 #include "precompute/blas.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm::precompute;
 

@@ -1,10 +1,9 @@
-#include <catch2/catch.hpp>
-
 #include "precompute/fem/assembly.hpp"
 #include "precompute/fem/mass_properties.hpp"
 #include "precompute/modal/elastic_modes.hpp"
 #include "tests/precompute/discrete.hpp"
 #include "tests/precompute/meshes.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 using namespace irdm::precompute;

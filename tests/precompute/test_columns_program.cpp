@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -9,10 +8,11 @@
 #include <thread>
 
 #include "common/model/model_file.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/child_process.hpp"
 #include "tests/support/eventually.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using namespace irdm;
 using irdm::test::ChildProcess;
 using irdm::test::file_content;
@@ -57,7 +57,8 @@ struct ColumnsRun : irdm::test::TemporaryFolder {
     CAPTURE(arguments);
     CHECK(status == 1);
     CHECK(std::count(err.begin(), err.end(), '\n') == 1);
-    CHECK_THAT(err, Catch::StartsWith("irdm-precompute: error: ") && Contains(message));
+    CHECK_THAT(
+        err, Catch::Matchers::StartsWith("irdm-precompute: error: ") && ContainsSubstring(message));
   }
   std::string content(const std::string& name) const { return file_content(path() / name); }
   bool has(const std::string& name) const { return std::filesystem::exists(path() / name); }
@@ -94,7 +95,7 @@ TEST_CASE("slices join to the file of a whole run, bit for bit, by both methods"
     run.good("c.toml -o a.part --columns 0:5");
     run.good("c.toml -o b.part --columns 5:6" + one);
     run.good("c.toml -o c.part --columns 6:54");
-    CHECK_THAT(run.out, Contains("part of a model file"));
+    CHECK_THAT(run.out, ContainsSubstring("part of a model file"));
     run.good("merge c.part a.part b.part -o joined.h5");
     CHECK((run.content("joined.h5") == run.content("whole.h5")));
     const Model joined = read_model(run.path() / "joined.h5", ResponseKind::kDense);
@@ -143,7 +144,7 @@ TEST_CASE("option --columns takes A:B within R, of dense R only") {
   for (const std::string bad : {"5", "5:", ":5", "5:5", "6:5", "-1:5", "1:2x", "a:b"}) {
     run.start("c.toml -o a.part --columns=" + bad);
     CHECK(run.status == 2);
-    CHECK_THAT(run.err, Contains("A:B"));
+    CHECK_THAT(run.err, ContainsSubstring("A:B"));
   }
   run.refused("c.toml -o a.part --columns 50:55", "columns 50:55 are asked for and R has 54");
   run.refused("c.toml -o a.part --columns 0:5 --method modal --storage modal", "only dense R");
@@ -180,7 +181,7 @@ TEST_CASE("a work file goes on where its last whole column ends, however it was 
   flipped = whole;
   flipped[200] = static_cast<char>(flipped[200] ^ 4);
   CHECK(resumed(flipped) == 0);
-  CHECK_THAT(run.out, Contains("of another configuration: starting anew"));
+  CHECK_THAT(run.out, ContainsSubstring("of another configuration: starting anew"));
   CHECK(resumed(whole + "and more") == 54);
 }
 
@@ -191,7 +192,7 @@ TEST_CASE("a work file of another configuration is given up", "[slow]") {
   run.good("c.toml -o a.part --columns 0:54");
   std::filesystem::rename(run.path() / "a.part", run.path() / "model.h5.columns");
   run.good("other.toml -o model.h5");
-  CHECK_THAT(run.out, Contains("starting anew") && !Contains("going on"));
+  CHECK_THAT(run.out, ContainsSubstring("starting anew") && !ContainsSubstring("going on"));
   CHECK((run.content("model.h5") == run.content("other.h5")));
 }
 
@@ -208,7 +209,7 @@ TEST_CASE("SIGINT keeps the work file and says how to go on, and the same comman
   run.refused("c.toml -o model.h5", "model.h5.columns: is being written by another run");
   process.signal(SIGINT);
   CHECK(process.wait() == -SIGINT);
-  CHECK_THAT(process.err(), Contains("the same command goes on from where it was"));
+  CHECK_THAT(process.err(), ContainsSubstring("the same command goes on from where it was"));
   CHECK_FALSE(run.has("model.h5"));
   run.good("c.toml -o model.h5");
   CHECK(columns_kept(run.out) >= 2);
@@ -228,10 +229,10 @@ TEST_CASE("two ranks share the columns and one file comes out, that of a single 
     CHECK_FALSE(run.has("shared.h5.columns.1-of-2"));
     run.start("c.toml -o nowhere/shared.h5", two);
     CHECK(run.status != 0);
-    CHECK_THAT(run.err, Contains("nowhere/shared.h5"));
+    CHECK_THAT(run.err, ContainsSubstring("nowhere/shared.h5"));
     run.start("c.toml -o a.part --columns 0:5", two);
     CHECK(run.status != 0);
-    CHECK_THAT(run.err, Contains("do not go together"));
+    CHECK_THAT(run.err, ContainsSubstring("do not go together"));
   }
 }
 #endif

@@ -1,9 +1,9 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "common/response/modal_response.hpp"
 #include "precompute/modal/dense_columns.hpp"
 #include "precompute/modal/elastic_statics.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 using namespace irdm::precompute;

@@ -1,6 +1,5 @@
 // The surface that is drawn: where it lies, how it is shaded, and that it moves with the one that
 // computes.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
 
@@ -13,8 +12,9 @@
 #include "precompute/mesh/shaded_surface.hpp"
 #include "tests/precompute/mesh_files.hpp"
 #include "tests/precompute/program_run.hpp"
+#include "tests/support/catch.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using namespace irdm;
 using namespace irdm::test;
 
@@ -266,7 +266,7 @@ TEST_CASE("display: what cannot be one is refused with what to do") {
   const MeshFiles files;
   const ModelMesh mesh = computed(sphere_surface(3));
   const auto refused = [&](const DisplayConfig& config, const std::string& what) {
-    CHECK_THROWS_WITH(make_display_mesh(config, mesh), Contains(what));
+    CHECK_THROWS_WITH(make_display_mesh(config, mesh), ContainsSubstring(what));
   };
   DisplayConfig ball = config_of(files.write("ball.obj", ball_obj(4)));
   ball.texture = files.write("ball.gif", "GIF89a");
@@ -284,7 +284,7 @@ TEST_CASE("display: what cannot be one is refused with what to do") {
       config_of(files.write("odd.obj", "v 1 0 0\nv 0 1 0\nv 0 0 1\nvn 0 0 1\nf 1//1 2//1 3//2\n")),
       "normal '2' of a face does not exist");
   const ModelMesh fine = computed(sphere_surface(40));
-  CHECK_THROWS_WITH(make_display_mesh(parts(8), fine), Contains("set it to"));
+  CHECK_THROWS_WITH(make_display_mesh(parts(8), fine), ContainsSubstring("set it to"));
 }
 
 TEST_CASE("display: the model file has it, compress keeps it, and damage is refused") {
@@ -293,7 +293,8 @@ TEST_CASE("display: the model file has it, compress keeps it, and damage is refu
                           "[display]\nsubdivision = 3\n");
   run.start("c.toml -o made/model.h5");
   REQUIRE(run.status == 0);
-  CHECK_THAT(run.out, Contains("display mesh: ") && Contains("at most 0 mm off the surface"));
+  CHECK_THAT(run.out, ContainsSubstring("display mesh: ") &&
+                          ContainsSubstring("at most 0 mm off the surface"));
   const Model model = read_model(run.model(), ResponseKind::kModal);
   REQUIRE_FALSE(model.display.empty());
   run.start("compress made/model.h5 -o made/small.h5");
@@ -307,7 +308,7 @@ TEST_CASE("display: the model file has it, compress keeps it, and damage is refu
 TEST_CASE("display: keys that do not belong are refused") {
   const auto refused = [](const std::string& text, const std::string& what) {
     CHECK_THROWS_WITH(read_display_config(TomlTable::parse_text(text, "c.toml"), 1.0),
-                      Contains(what));
+                      ContainsSubstring(what));
   };
   refused("", "has not exactly one of file and subdivision");
   refused("file = \"a.obj\"\nsubdivision = 3", "has not exactly one of file and subdivision");

@@ -1,6 +1,5 @@
 // What the default fingertip feels on one ball, as different meshes have it: by static finite
 // elements of the whole mesh, without modes, responses or steps.
-#include <catch2/catch.hpp>
 
 #include "precompute/mesh/make_mesh.hpp"
 #include "precompute/mesh/surface.hpp"
@@ -9,6 +8,7 @@
 #include "simulation/step/default_fingertip.hpp"
 #include "tests/precompute/discrete.hpp"
 #include "tests/precompute/mesh_files.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 using namespace irdm::precompute;

@@ -1,8 +1,7 @@
-#include <catch2/catch.hpp>
-
 #include "precompute/fem/assembly.hpp"
 #include "precompute/fem/mass_properties.hpp"
 #include "tests/precompute/meshes.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 using namespace irdm::precompute;

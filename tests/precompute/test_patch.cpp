@@ -1,4 +1,3 @@
-#include <catch2/catch.hpp>
 #include <random>
 
 #include "precompute/fem/assembly.hpp"
@@ -6,6 +5,7 @@
 #include "precompute/fem/tetrahedra.hpp"
 #include "precompute/mesh/surface.hpp"
 #include "tests/precompute/meshes.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 using namespace irdm::precompute;

@@ -1,10 +1,10 @@
-#include <catch2/catch.hpp>
 #include <sstream>
 
 #include "precompute/progress.hpp"
 #include "precompute/summary.hpp"
+#include "tests/support/catch.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using namespace irdm::precompute;
 
 TEST_CASE("durations are given in units that fit") {
@@ -26,7 +26,8 @@ TEST_CASE("progress draws one line anew on a terminal and whole lines elsewhere"
   std::ostringstream out;
   SECTION("terminal") {
     Progress(Console{out, true}, "work", 4).update(4);
-    CHECK_THAT(out.str(), Catch::StartsWith("\rwork  100 %") && Catch::EndsWith("\n"));
+    CHECK_THAT(out.str(),
+               Catch::Matchers::StartsWith("\rwork  100 %") && Catch::Matchers::EndsWith("\n"));
   }
   SECTION("file") {
     Progress progress(Console{out, false}, "work", 4);
@@ -50,7 +51,7 @@ TEST_CASE("summary gives sizes and times per degree of freedom") {
   summary.seconds = 6.0;
   summary.file_bytes = 3'000'000;
   const std::string text = format_summary(summary);
-  CHECK_THAT(text, Contains("per d.o.f.   0.02 s"));
-  CHECK_THAT(text, Contains("10.0 kB"));
-  CHECK_THAT(text, Contains("3.0 MB"));
+  CHECK_THAT(text, ContainsSubstring("per d.o.f.   0.02 s"));
+  CHECK_THAT(text, ContainsSubstring("10.0 kB"));
+  CHECK_THAT(text, ContainsSubstring("3.0 MB"));
 }

@@ -1,4 +1,3 @@
-#include <catch2/catch.hpp>
 #include <functional>
 #include <numbers>
 #include <random>
@@ -11,6 +10,7 @@
 #include "precompute/modal/elastic_modes.hpp"
 #include "tests/precompute/discrete.hpp"
 #include "tests/precompute/meshes.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 using namespace irdm::precompute;

@@ -1,5 +1,4 @@
 // Some of the modes and what the others add, against all of them.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 #include <sstream>
@@ -13,6 +12,7 @@
 #include "precompute/modal/residual_compliance.hpp"
 #include "tests/precompute/discrete.hpp"
 #include "tests/precompute/meshes.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 using namespace irdm::precompute;

@@ -1,10 +1,10 @@
-#include <catch2/catch.hpp>
 #include <numbers>
 
 #include "precompute/fem/mass_properties.hpp"
 #include "precompute/mesh/make_mesh.hpp"
 #include "precompute/mesh/mesh_check.hpp"
 #include "precompute/mesh/round_mesh.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 using namespace irdm::precompute;

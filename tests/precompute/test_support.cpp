@@ -1,5 +1,4 @@
 #include <Eigen/SparseCholesky>
-#include <catch2/catch.hpp>
 #include <numbers>
 
 #include "precompute/mesh/region.hpp"
@@ -9,8 +8,9 @@
 #include "precompute/modal/elastic_statics.hpp"
 #include "tests/precompute/discrete.hpp"
 #include "tests/precompute/meshes.hpp"
+#include "tests/support/catch.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using namespace irdm;
 using namespace irdm::precompute;
 using irdm::test::Discrete;
@@ -37,11 +37,14 @@ TEST_CASE("supports that hold nothing, everything or not enough are refused") {
     check_clamped(mesh, nodes_in(mesh, BoxRegion{lowest, highest}, "m"), surface, "m");
   };
   CHECK_NOTHROW(check(Vector3(0, 0, 0), Vector3(0, 1, 1)));
-  CHECK_THROWS_WITH(check(Vector3(5, 5, 5), Vector3(6, 6, 6)), Contains("holds no node"));
-  CHECK_THROWS_WITH(check(Vector3(0, 0, 0), Vector3(1, 1, 1)), Contains("every node"));
-  CHECK_THROWS_WITH(check(Vector3(0, 0, 0), Vector3(0, 0, 0)), Contains("1 node, about which"));
-  CHECK_THROWS_WITH(check(Vector3(0, 0, 0), Vector3(0.1, 0, 0)), Contains("2 nodes on one line"));
-  CHECK_THROWS_WITH(check(Vector3(0, 0, 0), Vector3(1, 0, 0)), Contains("4 nodes on one line"));
+  CHECK_THROWS_WITH(check(Vector3(5, 5, 5), Vector3(6, 6, 6)), ContainsSubstring("holds no node"));
+  CHECK_THROWS_WITH(check(Vector3(0, 0, 0), Vector3(1, 1, 1)), ContainsSubstring("every node"));
+  CHECK_THROWS_WITH(check(Vector3(0, 0, 0), Vector3(0, 0, 0)),
+                    ContainsSubstring("1 node, about which"));
+  CHECK_THROWS_WITH(check(Vector3(0, 0, 0), Vector3(0.1, 0, 0)),
+                    ContainsSubstring("2 nodes on one line"));
+  CHECK_THROWS_WITH(check(Vector3(0, 0, 0), Vector3(1, 0, 0)),
+                    ContainsSubstring("4 nodes on one line"));
 }
 
 TEST_CASE("a slender beam clamped at one end bends at the frequency of beam theory") {

@@ -1,8 +1,8 @@
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "simulation/step/bridged_stylus.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/fem_cube.hpp"
 
 // What the server makes of the forces of a bridge that solves the contact, when the bridge, the

@@ -1,10 +1,10 @@
-#include <catch2/catch.hpp>
 #include <functional>
 #include <limits>
 
 #include "device_bridge/contact/contact_predictor.hpp"
 #include "simulation/step/simulation.hpp"
 #include "tests/support/allocation_guard.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/fem_cube.hpp"
 #include "tests/support/left_out.hpp"
 

@@ -1,7 +1,7 @@
 #include <algorithm>
-#include <catch2/catch.hpp>
 
 #include "tests/prediction/failing_link.hpp"
+#include "tests/support/catch.hpp"
 
 // Whatever goes wrong, the hand feels nothing soon, and nothing jumps.
 

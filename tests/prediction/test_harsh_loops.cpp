@@ -1,8 +1,8 @@
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <iostream>
 
 #include "tests/prediction/harsh_loop.hpp"
+#include "tests/support/catch.hpp"
 
 // Whatever link and machines do, the object gets no blow: no more than a device can show, and
 // hardly more energy than hands gave.

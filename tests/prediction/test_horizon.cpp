@@ -1,8 +1,8 @@
 #include <array>
-#include <catch2/catch.hpp>
 #include <random>
 
 #include "simulation/engine/response_engine.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/fem_cube.hpp"
 #include "tests/support/fixed_box.hpp"
 

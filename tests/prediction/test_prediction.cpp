@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "tests/prediction/delayed_loop.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/fem_cube.hpp"
 
 // Transparency of the contact that is solved at the bridge: the force on the hand with a link in

@@ -1,6 +1,5 @@
-#include <catch2/catch.hpp>
-
 #include "tests/prediction/random_loop.hpp"
+#include "tests/support/catch.hpp"
 
 // A few of the loops of bench_closed_loops, which runs them by the thousand.
 

@@ -1,12 +1,12 @@
 #pragma once
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 
 #include "replay/rerun/deviation.hpp"
 #include "replay/rerun/rerun.hpp"
 #include "tests/replay/kept_run.hpp"
 #include "tests/server/touching_cubes.hpp"
+#include "tests/support/catch.hpp"
 
 namespace irdm::test {
 

@@ -1,7 +1,6 @@
 // Runs in which objects touch each other and scenery, rerun from their traces.
 #include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
 #include <fstream>
 #include <map>
 #include <sstream>
@@ -14,6 +13,7 @@
 #include "simulation/collision/rest_surface.hpp"
 #include "tests/replay/rerun_checks.hpp"
 #include "tests/server/touching_cubes.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/fem_cube.hpp"
 #include "tests/support/slotted_body.hpp"
 #include "tests/support/temporary_folder.hpp"

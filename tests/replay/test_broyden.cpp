@@ -1,7 +1,7 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "replay/reference/broyden_solver.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm::replay;
 

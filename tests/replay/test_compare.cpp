@@ -1,15 +1,15 @@
 // Differences of two runs that are known.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "common/error.hpp"
 #include "replay/compare/comparison_output.hpp"
 #include "replay/output/run_output.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/synthetic_model.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using namespace irdm;
 using namespace irdm::replay;
 using namespace irdm::test;
@@ -117,7 +117,7 @@ TEST_CASE("frames are compared that both runs have") {
   const Comparison found = runs.compared();
   CHECK(found.times == std::vector<double>{0.1 * 3, 0.1 * 4});
   CHECK(found.alone == 4);
-  CHECK_THROWS_WITH(TwoRuns({}, 11).compared(), Contains("no frame at a time"));
+  CHECK_THROWS_WITH(TwoRuns({}, 11).compared(), ContainsSubstring("no frame at a time"));
 }
 
 TEST_CASE("a run that is later is compared with what it lags behind") {
@@ -138,12 +138,12 @@ TEST_CASE("runs with other meshes are compared as bodies, with other objects not
   const Measures measures =
       measure_runs(RunReader(runs.a), RunReader(runs.folder.path() / "fine.h5"), found);
   CHECK(measures.nodes.at(0).spectrum_a.frequency.empty());
-  CHECK_THAT(comparison_table(found, measures), Contains("the meshes differ"));
+  CHECK_THAT(comparison_table(found, measures), ContainsSubstring("the meshes differ"));
   TracedScene other = one_cube();
   other.objects[0].name = "ball";
   write_run(runs.folder.path() / "ball.h5", other);
   CHECK_THROWS_WITH(compare_runs(RunReader(runs.a), RunReader(runs.folder.path() / "ball.h5")),
-                    Contains("other objects"));
+                    ContainsSubstring("other objects"));
 }
 
 TEST_CASE("a comparison as JSON has its numbers to the bit, its words and its keys in order") {
@@ -176,7 +176,7 @@ TEST_CASE("a comparison as JSON has its numbers to the bit, its words and its ke
 
 TEST_CASE("an output is not written over, and one that is not finished leaves nothing") {
   const TwoRuns runs;
-  CHECK_THROWS_WITH(write_run(runs.a, one_cube()), Contains("exists already"));
+  CHECK_THROWS_WITH(write_run(runs.a, one_cube()), ContainsSubstring("exists already"));
   { RunOutput unfinished(runs.folder.path() / "c.h5", one_cube(), {"trace.h5", "inputs"}); }
   CHECK(std::distance(std::filesystem::directory_iterator(runs.folder.path()), {}) == 2);
 }

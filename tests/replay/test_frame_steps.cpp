@@ -1,9 +1,8 @@
-#include <catch2/catch.hpp>
-
 #include "common/error.hpp"
 #include "replay/replay.hpp"
+#include "tests/support/catch.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using namespace irdm;
 using namespace irdm::replay;
 
@@ -33,7 +32,7 @@ TEST_CASE("a frame is at the end of the step that its time falls into") {
 }
 
 TEST_CASE("there are no more frames than steps") {
-  CHECK_THROWS_WITH(FrameSteps(100, 0.002, 501.0), Contains("at most 500"));
+  CHECK_THROWS_WITH(FrameSteps(100, 0.002, 501.0), ContainsSubstring("at most 500"));
 }
 
 TEST_CASE("frames of a part of a run are those of the whole run that are in it") {
@@ -51,5 +50,5 @@ TEST_CASE("frames of a part of a run are those of the whole run that are in it")
   CHECK(part.count() == count);
   CHECK(count > 25);
   CHECK(FrameSteps(10, 0.002, std::nullopt, {0.0, 0.002}).count() == 1);
-  CHECK_THROWS_WITH(FrameSteps(10, 0.002, std::nullopt, {1.0}), Contains("0.02"));
+  CHECK_THROWS_WITH(FrameSteps(10, 0.002, std::nullopt, {1.0}), ContainsSubstring("0.02"));
 }

@@ -1,5 +1,4 @@
 // What is written of a run in which a bridge told of forces after their steps.
-#include <catch2/catch.hpp>
 
 #include "common/checksum.hpp"
 #include "common/model/model_writer.hpp"
@@ -7,6 +6,7 @@
 #include "replay/replay.hpp"
 #include "replay/traced_scene.hpp"
 #include "simulation/step/simulation.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/synthetic_model.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "trace/trace_writer.hpp"

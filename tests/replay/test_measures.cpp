@@ -1,5 +1,4 @@
 // What compare measures of signals, against signals whose answers are known.
-#include <catch2/catch.hpp>
 #include <complex>
 #include <numbers>
 #include <random>
@@ -9,6 +8,7 @@
 #include "replay/measures/ringing.hpp"
 #include "replay/measures/spectrum.hpp"
 #include "simulation/engine/response_engine.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/synthetic_model.hpp"
 
 using namespace irdm;

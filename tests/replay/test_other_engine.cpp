@@ -1,10 +1,10 @@
 // A run that is rerun by another engine, whose error is known.
-#include <catch2/catch.hpp>
 #include <numbers>
 
 #include "replay/rerun/deviation.hpp"
 #include "replay/rerun/rerun.hpp"
 #include "tests/replay/kept_run.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/fem_cube.hpp"
 
 using namespace irdm;

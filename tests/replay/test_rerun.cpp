@@ -1,10 +1,10 @@
 // Runs that are rerun from their traces, against what they were.
-#include <catch2/catch.hpp>
 
 #include "replay/rerun/rerun.hpp"
 #include "simulation/step/bridged_stylus.hpp"
 #include "tests/replay/rerun_checks.hpp"
 #include "tests/server/two_cubes.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/fem_cube.hpp"
 
 using namespace irdm;

@@ -1,11 +1,11 @@
-#include <catch2/catch.hpp>
 #include <fstream>
 
 #include "common/error.hpp"
 #include "replay/reference/step_journal.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using namespace irdm;
 using namespace irdm::replay;
 
@@ -92,5 +92,5 @@ TEST_CASE("a journal with a wrong bit ends there") {
 TEST_CASE("a journal that cannot be written says where") {
   const test::TemporaryFolder folder;
   CHECK_THROWS_WITH(StepJournal(folder.path() / "no" / "steps", "key"),
-                    Contains("steps: cannot be written"));
+                    ContainsSubstring("steps: cannot be written"));
 }

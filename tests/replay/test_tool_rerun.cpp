@@ -1,9 +1,9 @@
 // Recorded runs with a tool.
-#include <catch2/catch.hpp>
 
 #include "replay/rerun/rerun.hpp"
 #include "tests/simulation/led_rod.hpp"
 #include "tests/simulation/pressed_cube.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "trace/trace_layout.hpp"
 

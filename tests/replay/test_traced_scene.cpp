@@ -1,16 +1,16 @@
 // Where the models of a trace are found.
-#include <catch2/catch.hpp>
 #include <fstream>
 
 #include "common/checksum.hpp"
 #include "common/error.hpp"
 #include "common/model/model_file.hpp"
 #include "replay/traced_scene.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/synthetic_model.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "trace/trace_writer.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using namespace irdm;
 using namespace irdm::replay;
 using namespace irdm::test;
@@ -65,9 +65,10 @@ TEST_CASE("the model of a trace is found where its scene says, and beside the tr
   Folders::write_model(folders.beside, 7);
   CHECK(folders.read().objects.at(0).model == folders.models / "cube.h5");
   std::filesystem::remove(folders.models / "cube.h5");
-  CHECK_THROWS_WITH(folders.read(), Contains("is not the model that") && Contains("--model"));
+  CHECK_THROWS_WITH(folders.read(),
+                    ContainsSubstring("is not the model that") && ContainsSubstring("--model"));
   std::filesystem::remove(folders.beside);
-  CHECK_THROWS_WITH(folders.read(), Contains("recorded with cube.h5, which is not there"));
+  CHECK_THROWS_WITH(folders.read(), ContainsSubstring("recorded with cube.h5, which is not there"));
 }
 
 TEST_CASE("a model that is given may be another one, with a warning, but not of another dt") {
@@ -77,11 +78,11 @@ TEST_CASE("a model that is given may be another one, with a warning, but not of 
   const TracedScene scene = folders.read({other.string()});
   CHECK(scene.objects.at(0).checksum == sha256_of_file(other));
   REQUIRE(scene.warnings.size() == 1);
-  CHECK_THAT(scene.warnings[0], Contains("other.h5 is not the model"));
+  CHECK_THAT(scene.warnings[0], ContainsSubstring("other.h5 is not the model"));
   CHECK(folders.read({(folders.models / "cube.h5").string()}).warnings.empty());
   Folders::write_model(folders.folder.path() / "fast.h5", 1, 0.001);
   CHECK_THROWS_WITH(folders.read({(folders.folder.path() / "fast.h5").string()}),
-                    Contains("has steps of 0.001"));
+                    ContainsSubstring("has steps of 0.001"));
 }
 
 TEST_CASE("with several objects a given model names its own") {
@@ -91,8 +92,9 @@ TEST_CASE("with several objects a given model names its own") {
   const TracedScene scene = folders.read({"cube1=" + other.string()});
   CHECK(scene.objects.at(0).model == folders.models / "cube.h5");
   CHECK(scene.objects.at(1).model == other);
-  CHECK_THROWS_WITH(folders.read({other.string()}), Contains("names none of the 2 objects"));
-  CHECK_THROWS_WITH(folders.read({"ball=" + other.string()}), Contains("cube0="));
+  CHECK_THROWS_WITH(folders.read({other.string()}),
+                    ContainsSubstring("names none of the 2 objects"));
+  CHECK_THROWS_WITH(folders.read({"ball=" + other.string()}), ContainsSubstring("cube0="));
 }
 
 TEST_CASE("an engine that the model has no response for is refused") {

@@ -2,7 +2,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <csignal>
 #include <cstring>
 #include <filesystem>
@@ -12,12 +11,13 @@
 #include "common/model/model_file.hpp"
 #include "ros_bridge/messages.hpp"
 #include "tests/ros_bridge/ros_peer.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/child_process.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/system/trace.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using namespace irdm;
 using namespace irdm::test;
 
@@ -185,7 +185,7 @@ void play(std::unique_ptr<RosPeer> (*make)(std::uint32_t, const std::string&)) {
     return newest && vector(newest->force).isZero(0.0);
   }));
   CHECK_THAT(programs.bridge().line_with("its frame", true),
-             Contains("stylus_0: a pose is ignored: its frame is 'map', not 'irdm'"));
+             ContainsSubstring("stylus_0: a pose is ignored: its frame is 'map', not 'irdm'"));
 
   programs.bridge().signal(SIGTERM);
   CHECK(programs.bridge().wait() == 0);
@@ -242,8 +242,8 @@ TEST_CASE("ROS bridge: wrong use is refused in one line", "[slow]") {
   }
   const FinishedProgram address = run({"--viewer", "localhost"});
   CHECK(address.status == 1);
-  CHECK_THAT(address.err, Contains("irdm-ros-bridge: error: --viewer: "));
+  CHECK_THAT(address.err, ContainsSubstring("irdm-ros-bridge: error: --viewer: "));
   const FinishedProgram alone = run({"--server", "127.0.0.1:1"});
   CHECK(alone.status == 1);
-  CHECK_THAT(alone.err, Contains("irdm-ros-bridge: error: 127.0.0.1:1: "));
+  CHECK_THAT(alone.err, ContainsSubstring("irdm-ros-bridge: error: 127.0.0.1:1: "));
 }

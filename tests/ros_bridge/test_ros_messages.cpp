@@ -1,9 +1,9 @@
-#include <catch2/catch.hpp>
 #include <chrono>
 #include <cstring>
 
 #include "common/realtime/clock.hpp"
 #include "ros_bridge/messages.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 

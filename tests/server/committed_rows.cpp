@@ -1,9 +1,8 @@
 #include "tests/server/committed_rows.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "common/hdf5/file.hpp"
 #include "tests/server/records.hpp"
+#include "tests/support/catch.hpp"
 
 namespace irdm::test {
 namespace {

@@ -1,6 +1,5 @@
 // Columns that come from a disk, or do not.
 #include <atomic>
-#include <catch2/catch.hpp>
 #include <chrono>
 #include <cstring>
 #include <stdexcept>
@@ -9,6 +8,7 @@
 #include "common/model/model_file.hpp"
 #include "scene/columns/column_store.hpp"
 #include "simulation/engine/response_engine.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/left_out.hpp"
 #include "tests/support/real_time_guard.hpp"
@@ -16,7 +16,7 @@
 #include "tests/support/synthetic_model.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using namespace irdm;
 using namespace irdm::test;
 
@@ -197,8 +197,9 @@ TEST_CASE(
   const TemporaryFolder folder;
   const std::filesystem::path path = write_cube(folder);
   SceneColumns columns(true);
-  CHECK_THROWS_WITH(columns.read(path, 2 * kMebibyte),
-                    Contains("memory_budget of 2 MiB is too small") && Contains("need 5 MiB"));
+  CHECK_THROWS_WITH(
+      columns.read(path, 2 * kMebibyte),
+      ContainsSubstring("memory_budget of 2 MiB is too small") && ContainsSubstring("need 5 MiB"));
   const auto streamed = std::make_shared<const Model>(columns.read(path, 14 * kMebibyte));
   const auto whole = std::make_shared<const Model>(read_model(path, ResponseKind::kDense));
   columns.start(false);

@@ -1,7 +1,6 @@
-#include <catch2/catch.hpp>
-
 #include "common/realtime/clock.hpp"
 #include "server/threads/force_thread.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/synthetic_model.hpp"
 

@@ -1,15 +1,14 @@
-#include <catch2/catch.hpp>
-
 #include "common/error.hpp"
 #include "server/threads/recorder_thread.hpp"
 #include "tests/server/committed_rows.hpp"
 #include "tests/server/records.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/file_size_limit.hpp"
 #include "tests/support/small_disk.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using namespace irdm;
 using namespace irdm::test;
 
@@ -32,7 +31,8 @@ std::string record_steps(const std::filesystem::path& path, std::size_t steps) {
 }
 
 void check_error(const std::string& error, const std::string& why) {
-  CHECK_THAT(error, Contains("trace.h5: cannot grow: " + why) && Contains("check free space"));
+  CHECK_THAT(error, ContainsSubstring("trace.h5: cannot grow: " + why) &&
+                        ContainsSubstring("check free space"));
   CHECK(error.find('\n') == std::string::npos);
 }
 

@@ -1,7 +1,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <catch2/catch.hpp>
 #include <chrono>
 #include <csignal>
 #include <random>
@@ -10,6 +9,7 @@
 #include "common/error.hpp"
 #include "tests/server/committed_rows.hpp"
 #include "tests/server/records.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/committed_so_far.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/temporary_folder.hpp"

@@ -1,8 +1,8 @@
 // What a trace says of forces that bridges told of after their steps.
-#include <catch2/catch.hpp>
 #include <vector>
 
 #include "tests/server/two_cubes.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "trace/recording.hpp"
 #include "trace/trace_writer.hpp"

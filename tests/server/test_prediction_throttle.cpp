@@ -1,6 +1,5 @@
-#include <catch2/catch.hpp>
-
 #include "server/threads/prediction_throttle.hpp"
+#include "tests/support/catch.hpp"
 
 using irdm::PredictionThrottle;
 

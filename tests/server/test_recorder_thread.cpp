@@ -1,12 +1,11 @@
-#include <catch2/catch.hpp>
-
 #include "server/threads/recorder_thread.hpp"
 #include "tests/server/records.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/file_size_limit.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using namespace irdm;
 using namespace irdm::test;
 
@@ -66,6 +65,7 @@ TEST_CASE("a full disk ends the recording with an error, and disturbs nobody") {
     recorder.start();
   }
   recorder.finish();
-  CHECK_THAT(recorder.error(), Contains("trace.h5") && Contains("check free space"));
+  CHECK_THAT(recorder.error(),
+             ContainsSubstring("trace.h5") && ContainsSubstring("check free space"));
   CHECK(recorder.lost() == 0);
 }

@@ -1,13 +1,13 @@
 // Recordings that are begun and ended while a run goes on.
-#include <catch2/catch.hpp>
 #include <fstream>
 
 #include "common/error.hpp"
 #include "server/viewer_session/recordings.hpp"
 #include "tests/server/records.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using namespace irdm;
 using namespace irdm::test;
 
@@ -46,7 +46,7 @@ TEST_CASE("a recording without a step leaves no file, and says so") {
   const TemporaryFolder folder;
   Recordings recordings(folder.path(), header(2));
   recordings.begin();
-  CHECK_THROWS_WITH(recordings.end(), Contains("no step"));
+  CHECK_THROWS_WITH(recordings.end(), ContainsSubstring("no step"));
   CHECK(recordings.complete().empty());
   CHECK(std::filesystem::is_empty(folder.path()));
 }
@@ -55,12 +55,12 @@ TEST_CASE("what cannot be recorded is refused with the reason") {
   const TemporaryFolder folder;
   Recordings nowhere(std::nullopt, header(2));
   CHECK_FALSE(nowhere.possible());
-  CHECK_THROWS_WITH(nowhere.begin(), Contains("--recordings"));
+  CHECK_THROWS_WITH(nowhere.begin(), ContainsSubstring("--recordings"));
   std::ofstream(folder.path() / "file") << "no folder";
   Recordings impossible(folder.path() / "file", header(2));
   CHECK_THROWS_AS(impossible.begin(), Error);
   CHECK_FALSE(impossible.recording());
   Recordings twice(folder.path(), header(2));
   twice.begin();
-  CHECK_THROWS_WITH(twice.begin(), Contains("already"));
+  CHECK_THROWS_WITH(twice.begin(), ContainsSubstring("already"));
 }

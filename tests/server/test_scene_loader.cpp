@@ -1,5 +1,4 @@
 // Scenes that are prepared and saved beside a run.
-#include <catch2/catch.hpp>
 #include <fstream>
 #include <optional>
 
@@ -7,10 +6,11 @@
 #include "server/scene_loader.hpp"
 #include "server/viewer_session/scene_choice.hpp"
 #include "tests/server/model_files.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using namespace irdm;
 using namespace irdm::test;
 
@@ -57,7 +57,7 @@ TEST_CASE("a scene that is chosen is prepared once, and taken") {
   CHECK(state_of(choice, notice).scene == 2);
   choice.load("cube.h5");
   CHECK(choice.preparing());
-  CHECK_THROWS_WITH(choice.load("good.toml"), Contains("busy"));
+  CHECK_THROWS_WITH(choice.load("good.toml"), ContainsSubstring("busy"));
   REQUIRE(loader.ready().wait(kDeadlineMs));
   CHECK(choice.preparing());
   const auto prepared = loader.take();
@@ -77,7 +77,7 @@ TEST_CASE("a scene that cannot be loaded is one notice, and the loader goes on")
   std::string notice;
   choice.load("bad.toml");
   CHECK(eventually([&] { return !state_of(choice, notice).preparing; }));
-  CHECK_THAT(notice, Contains("missing.h5"));
+  CHECK_THAT(notice, ContainsSubstring("missing.h5"));
   CHECK(desk.loader().take() == nullptr);
   notice.clear();
   state_of(choice, notice);
@@ -112,14 +112,14 @@ TEST_CASE("a file that comes while the server runs is listed") {
 TEST_CASE("what cannot be asked for is refused with the reason") {
   Desk desk;
   SceneChoice choice(desk.loader(), *desk.run, "this run is in lockstep");
-  CHECK_THROWS_WITH(choice.load("good.toml"), Contains("lockstep"));
+  CHECK_THROWS_WITH(choice.load("good.toml"), ContainsSubstring("lockstep"));
   std::string notice;
   CHECK_FALSE(state_of(choice, notice).can_load);
   SceneChoice free(desk.loader(), *desk.run, "");
-  CHECK_THROWS_WITH(free.load("../good.toml"), Contains("is not among the scenes"));
+  CHECK_THROWS_WITH(free.load("../good.toml"), ContainsSubstring("is not among the scenes"));
   SceneLoader without(std::nullopt, Desk::prepare);
   SceneChoice none(without, *desk.run, "");
-  CHECK_THROWS_WITH(none.load("good.toml"), Contains("--scenes"));
-  CHECK_THROWS_WITH(none.save({}), Contains("--scenes"));
+  CHECK_THROWS_WITH(none.load("good.toml"), ContainsSubstring("--scenes"));
+  CHECK_THROWS_WITH(none.save({}), ContainsSubstring("--scenes"));
   CHECK_FALSE(state_of(none, notice).has_scenes);
 }

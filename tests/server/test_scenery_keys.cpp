@@ -1,11 +1,10 @@
-#include <catch2/catch.hpp>
-
 #include "common/model/model_file.hpp"
 #include "tests/server/scene_text.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/synthetic_model.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using Catch::Matchers::StartsWith;
 using namespace irdm;
 using test::kObject;
@@ -60,10 +59,11 @@ TEST_CASE("scenery: it stands still, or moves as it is told") {
   CHECK(motion.stroke == Vector3(0.1, 0.2, 0.3));
   CHECK(motion.frequency == 2.0);
   CHECK_THAT(rejection(with_scenery(kSphere + "motion = { stroke = [1, 0, 0] }\n")),
-             Contains("stroke is given without a frequency"));
+             ContainsSubstring("stroke is given without a frequency"));
   CHECK_THAT(rejection(with_scenery(kSphere + "motion = { frequency = 101 }\n")),
-             Contains("is 101; give a finite number >= 0 and <= 100"));
-  CHECK_THAT(rejection(with_scenery(kSphere + "motion = { speed = 1 }\n")), Contains("speed"));
+             ContainsSubstring("is 101; give a finite number >= 0 and <= 100"));
+  CHECK_THAT(rejection(with_scenery(kSphere + "motion = { speed = 1 }\n")),
+             ContainsSubstring("speed"));
 }
 
 TEST_CASE("scenery: a path has waypoints in the order of their times") {
@@ -79,14 +79,15 @@ TEST_CASE("scenery: a path has waypoints in the order of their times") {
   CHECK(path[1].time == 2.0);
   CHECK(path[1].displacement == Vector3(1, 2, 3));
   CHECK_THAT(rejection(with_scenery(with_path(first + "{ time = 0.5 }"))),
-             Contains("time is not after that of the row before"));
+             ContainsSubstring("time is not after that of the row before"));
   CHECK_THAT(
       rejection(with_scenery(with_path(first + "{ time = 0.6, displacement = [0, 101, 0] }"))),
-      Contains("displacement is reached at 1010 m/s"));
-  CHECK_THAT(rejection(with_scenery(with_path("{ time = -1 }"))), Contains("time is -1"));
+      ContainsSubstring("displacement is reached at 1010 m/s"));
+  CHECK_THAT(rejection(with_scenery(with_path("{ time = -1 }"))), ContainsSubstring("time is -1"));
   CHECK_THAT(rejection(with_scenery(with_path("{ displacement = [0, 0, 0] }"))),
-             Contains("time is missing"));
-  CHECK_THAT(rejection(with_scenery(with_path("{ time = 1, place = 2 }"))), Contains("place"));
+             ContainsSubstring("time is missing"));
+  CHECK_THAT(rejection(with_scenery(with_path("{ time = 1, place = 2 }"))),
+             ContainsSubstring("place"));
 }
 
 TEST_CASE("scenery: it is a part of what is simulated") {
@@ -237,9 +238,10 @@ TEST_CASE("scenery: a mesh has the surface of a rigid body's model, read once a 
   CHECK(surface == std::get<MeshShape>(simulated.at(1).shape).surface);
   CHECK(closest(simulated[0], {1, 2, 13}).signed_distance == Approx(10.0 - 0.06));
   config.scenery_models[1] = folder.path() / "soft.h5";
-  CHECK_THROWS_WITH(simulation_config(config, false),
-                    Contains("soft.h5: is not of a rigid body, as scenery of a mesh is; make its "
-                             "model with rigid = true"));
+  CHECK_THROWS_WITH(
+      simulation_config(config, false),
+      ContainsSubstring("soft.h5: is not of a rigid body, as scenery of a mesh is; make its "
+                        "model with rigid = true"));
   config.scenery_models[1] = folder.path() / "nothing.h5";
   CHECK_THROWS_AS(simulation_config(config, false), Error);
 }

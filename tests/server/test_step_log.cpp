@@ -1,6 +1,5 @@
-#include <catch2/catch.hpp>
-
 #include "server/blackbox/step_log.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 

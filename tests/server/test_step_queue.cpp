@@ -1,10 +1,10 @@
 // The way of steps from the force thread to the others.
-#include <catch2/catch.hpp>
 #include <memory>
 #include <thread>
 
 #include "server/threads/step_queue.hpp"
 #include "tests/server/records.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 using namespace irdm::test;

@@ -1,12 +1,12 @@
 #include <array>
-#include <catch2/catch.hpp>
 
 #include "common/error.hpp"
 #include "tests/server/records.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "trace/trace_writer.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using namespace irdm;
 using namespace irdm::test;
 
@@ -219,7 +219,7 @@ TEST_CASE("a trace that exists is not written over, one that cannot be begun lea
   const auto path = folder.path() / "trace.h5";
   TraceWriter(path, header(1)).close();
   const auto size = std::filesystem::file_size(path);
-  CHECK_THROWS_WITH(TraceWriter(path, header(1)), Contains("trace.h5: exists already"));
+  CHECK_THROWS_WITH(TraceWriter(path, header(1)), ContainsSubstring("trace.h5: exists already"));
   CHECK(std::filesystem::file_size(path) == size);
   CHECK_THROWS_AS(TraceWriter(folder.path() / "no" / "trace.h5", header(1)), Error);
   TraceHeader twins = header(1);

@@ -1,8 +1,8 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
 #include "server/threads/viewer_stylus.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 

@@ -1,10 +1,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <catch2/catch.hpp>
-
 #include "common/error.hpp"
 #include "tests/server/records.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/committed_so_far.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "trace/trace_writer.hpp"

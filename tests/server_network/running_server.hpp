@@ -2,12 +2,12 @@
 
 #include <unistd.h>
 
-#include <catch2/catch.hpp>
 #include <cstdint>
 #include <fstream>
 #include <limits>
 
 #include "server/network/network_server.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/raw_peer.hpp"
 

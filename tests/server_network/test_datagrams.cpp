@@ -1,12 +1,12 @@
 // The server's datagrams, over real sockets: who gets forces by them, and who gets nothing.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <memory>
 #include <random>
 
 #include "common/error.hpp"
 #include "common/wire/secret_key.hpp"
 #include "tests/server_network/running_server.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/raw_datagrams.hpp"
 
 using namespace irdm;
@@ -311,6 +311,7 @@ TEST_CASE("a port that another program has for UDP is said so") {
   });
   REQUIRE(free_for_tcp);
   settings.udp = true;
-  CHECK_THROWS_WITH(NetworkServer(settings), Catch::Contains("cannot listen for datagrams") &&
-                                                 Catch::Contains("server.udp = false"));
+  CHECK_THROWS_WITH(NetworkServer(settings),
+                    Catch::Matchers::ContainsSubstring("cannot listen for datagrams") &&
+                        Catch::Matchers::ContainsSubstring("server.udp = false"));
 }

@@ -1,4 +1,3 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <future>
 #include <string>
@@ -7,6 +6,7 @@
 
 #include "common/error.hpp"
 #include "tests/server_network/running_server.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 using namespace irdm::test;

@@ -1,8 +1,8 @@
-#include <catch2/catch.hpp>
 #include <functional>
 #include <random>
 
 #include "tests/server_network/running_server.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 using namespace irdm::test;

@@ -1,6 +1,5 @@
-#include <catch2/catch.hpp>
-
 #include "server/network/stylus_slots.hpp"
+#include "tests/support/catch.hpp"
 
 using irdm::StylusSample;
 using irdm::StylusSlots;

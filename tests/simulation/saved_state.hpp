@@ -1,12 +1,12 @@
 #pragma once
 
-#include <catch2/catch.hpp>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "simulation/state/state_archive.hpp"
 #include "simulation/step/simulation.hpp"
+#include "tests/support/catch.hpp"
 
 namespace irdm::test {
 

@@ -1,10 +1,10 @@
 // Objects that touch each other and scenery.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
 #include "simulation/deformation/deformation.hpp"
 #include "tests/simulation/touching_cubes.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 using namespace irdm::test;
@@ -303,19 +303,23 @@ TEST_CASE("bodies: those that begin inside one another are refused, by name and 
   SimulationConfig config = stacked(2, {.cells = 3}, {0.5, 0.5});
   config.objects[1].position.y() -= 0.01;
   CHECK_THROWS_WITH(Simulation(config),
-                    Catch::Contains("object 1 and object 2 are inside one another by 10.0 mm at "
-                                    "the start") &&
-                        Catch::Contains("apart"));
+                    Catch::Matchers::ContainsSubstring(
+                        "object 1 and object 2 are inside one another by 10.0 mm at "
+                        "the start") &&
+                        Catch::Matchers::ContainsSubstring("apart"));
   config.objects[0].name = "cube";
-  CHECK_THROWS_WITH(Simulation(config), Catch::Contains("object \"cube\" and object 2 are"));
+  CHECK_THROWS_WITH(Simulation(config),
+                    Catch::Matchers::ContainsSubstring("object \"cube\" and object 2 are"));
   config.objects[1].name = "lid";
-  CHECK_THROWS_WITH(Simulation(config), Catch::Contains("objects \"cube\" and \"lid\" are inside "
-                                                        "one another by 10.0 mm at the start"));
+  CHECK_THROWS_WITH(Simulation(config),
+                    Catch::Matchers::ContainsSubstring("objects \"cube\" and \"lid\" are inside "
+                                                       "one another by 10.0 mm at the start"));
   config.objects[1].position.y() += 0.02;
   config.scenery[0].position.y() = 0.003;
   CHECK_THROWS_WITH(Simulation(config),
-                    Catch::Contains("object \"cube\" and scenery \"plane\" are inside one another "
-                                    "by 3.0 mm at the start"));
+                    Catch::Matchers::ContainsSubstring(
+                        "object \"cube\" and scenery \"plane\" are inside one another "
+                        "by 3.0 mm at the start"));
   config.between_objects = false;
   CHECK_NOTHROW(Simulation(config));
 }

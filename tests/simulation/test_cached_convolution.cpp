@@ -1,9 +1,9 @@
-#include <catch2/catch.hpp>
 #include <random>
 
 #include "simulation/engine/prediction_cache.hpp"
 #include "tests/simulation/random_numbers.hpp"
 #include "tests/support/allocation_guard.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/left_out.hpp"
 
 using namespace irdm;

@@ -1,13 +1,13 @@
 #include <omp.h>
 
 #include <array>
-#include <catch2/catch.hpp>
 #include <complex>
 #include <random>
 
 #include "common/response/compressed_response.hpp"
 #include "common/response/stored_response.hpp"
 #include "simulation/engine/response_engine.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/fem_cube.hpp"
 #include "tests/support/interaction_suite.hpp"
 #include "tests/support/point_loads.hpp"

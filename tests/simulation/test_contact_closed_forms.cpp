@@ -1,5 +1,4 @@
 // Contact between bodies against closed forms: Hertz and Mindlin.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -9,6 +8,7 @@
 #include "tests/simulation/half_space.hpp"
 #include "tests/simulation/hertz.hpp"
 #include "tests/simulation/touching_cubes.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 using namespace irdm::test;

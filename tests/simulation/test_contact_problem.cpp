@@ -1,9 +1,9 @@
-#include <catch2/catch.hpp>
 #include <limits>
 #include <random>
 #include <vector>
 
 #include "common/contact/contact_problem.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 

@@ -1,6 +1,5 @@
 // Two soft cubes pressed together, against finite elements on their whole meshes.
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -9,6 +8,7 @@
 
 #include "simulation/contact/normal_cone.hpp"
 #include "tests/simulation/touching_cubes.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/fem_contact.hpp"
 
 using namespace irdm;

@@ -1,13 +1,13 @@
 // What styluses put in and get out, and that nothing blows up.
 #include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <iostream>
 #include <numbers>
 
 #include "tests/simulation/pressed_cube.hpp"
 #include "tests/simulation/random_numbers.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 using namespace irdm::test;

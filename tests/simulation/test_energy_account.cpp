@@ -1,7 +1,6 @@
-#include <catch2/catch.hpp>
-
 #include "common/motion/free_motion.hpp"
 #include "simulation/step/energy_account.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 

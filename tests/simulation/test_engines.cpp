@@ -1,11 +1,11 @@
 #include <omp.h>
 
-#include <catch2/catch.hpp>
 #include <deque>
 #include <random>
 
 #include "common/response/modal_response.hpp"
 #include "simulation/engine/response_engine.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/shared_model.hpp"
 #include "tests/support/synthetic_model.hpp"
 

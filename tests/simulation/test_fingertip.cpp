@@ -1,7 +1,6 @@
 // What a fingertip presses on, and that the force under it is the object's, not the mesh's.
 #include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <iostream>
 #include <map>
@@ -11,6 +10,7 @@
 #include "simulation/contact/pressure_mask.hpp"
 #include "simulation/contact/smoothed_surface.hpp"
 #include "tests/simulation/pressed_cube.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/static_cube.hpp"
 
 using namespace irdm;

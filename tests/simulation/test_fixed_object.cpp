@@ -1,7 +1,6 @@
-#include <catch2/catch.hpp>
-
 #include "simulation/step/simulation.hpp"
 #include "tests/simulation/pressed_cube.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/synthetic_model.hpp"
 
 using namespace irdm;

@@ -1,9 +1,9 @@
 // Edges of bodies that come to lie flat, and turn up again.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "tests/simulation/touching_cubes.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 using namespace irdm::test;

@@ -1,11 +1,11 @@
 // Objects that rest and slide on the floor.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
 #include "simulation/deformation/deformation.hpp"
 #include "simulation/step/simulation.hpp"
 #include "tests/simulation/pressed_cube.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/fem_cube.hpp"
 
 using namespace irdm;

@@ -1,7 +1,7 @@
-#include <catch2/catch.hpp>
 #include <random>
 
 #include "simulation/engine/force_history.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 

@@ -1,9 +1,9 @@
 // Gravity, damping and tether of a body that nothing touches, against closed forms.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
 #include "common/motion/free_motion.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 

@@ -1,5 +1,4 @@
 // Gravity bends what is fixed, by the load on all of its mass, and what floats by what carries it.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <deque>
 #include <iostream>
@@ -11,6 +10,7 @@
 #include "simulation/step/simulation.hpp"
 #include "tests/simulation/pressed_cube.hpp"
 #include "tests/support/allocation_guard.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/fixed_box.hpp"
 #include "tests/support/left_out.hpp"
 #include "tests/support/shared_model.hpp"

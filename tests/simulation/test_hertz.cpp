@@ -2,8 +2,9 @@
 // its surface, integrated numerically.
 #include "tests/simulation/hertz.hpp"
 
-#include <catch2/catch.hpp>
 #include <numbers>
+
+#include "tests/support/catch.hpp"
 
 using namespace irdm::test;
 

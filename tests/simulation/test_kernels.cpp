@@ -1,5 +1,4 @@
 #include <bit>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdint>
 #include <random>
@@ -10,6 +9,7 @@
 #include "simulation/engine/force_history.hpp"
 #include "simulation/engine/kernels.hpp"
 #include "simulation/engine/wide_kernels.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 

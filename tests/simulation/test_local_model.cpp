@@ -1,7 +1,7 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "simulation/step/simulation.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/fem_cube.hpp"
 
 // A live run predicts for its bridges and finds where late forces acted. One that is rerun

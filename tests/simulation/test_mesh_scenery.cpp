@@ -1,6 +1,5 @@
 // Objects on scenery that is a triangle mesh: against a box of the same shape, and in hollows,
 // which no other shape has.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -8,6 +7,7 @@
 #include "simulation/deformation/deformation.hpp"
 #include "tests/simulation/touching_cubes.hpp"
 #include "tests/simulation/voxel_mesh.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 using namespace irdm::test;
@@ -192,5 +192,6 @@ TEST_CASE("mesh scenery: an object that starts in its wall is refused, one in it
   config.objects[0].position = Vector3::Zero();
   CHECK_NOTHROW(Simulation(config));
   config.objects[0].position = Vector3(0, -0.15, 0);
-  CHECK_THROWS_WITH(Simulation(config), Catch::Contains("scenery \"bowl\" are inside one another"));
+  CHECK_THROWS_WITH(Simulation(config),
+                    Catch::Matchers::ContainsSubstring("scenery \"bowl\" are inside one another"));
 }

@@ -1,10 +1,10 @@
 // Scenery that moves as it is told, and what it does to the bodies on it.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
 #include "common/motion/rigid_body.hpp"
 #include "tests/simulation/touching_cubes.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/fixed_box.hpp"
 #include "tests/support/synthetic_model.hpp"
 

@@ -1,11 +1,11 @@
 // Two fingers that pinch a cube, lift it, hold it and let it slip.
 #include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "simulation/step/simulation.hpp"
 #include "tests/simulation/pressed_cube.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/fem_cube.hpp"
 
 using namespace irdm;

@@ -1,7 +1,6 @@
 // A hundred scenes that nobody thought of.
 #include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <iostream>
 #include <memory>
@@ -10,6 +9,7 @@
 #include "tests/simulation/pressed_cube.hpp"
 #include "tests/simulation/random_numbers.hpp"
 #include "tests/simulation/saved_state.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 using namespace irdm::test;

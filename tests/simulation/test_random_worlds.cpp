@@ -1,7 +1,6 @@
 // Worlds that nobody thought of: two to eight bodies, soft and rigid, on scenery and among tools.
 #include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <iostream>
 #include <memory>
@@ -11,6 +10,7 @@
 #include "tests/simulation/pressed_cube.hpp"
 #include "tests/simulation/random_numbers.hpp"
 #include "tests/simulation/saved_state.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 using namespace irdm::test;

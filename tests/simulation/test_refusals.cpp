@@ -1,11 +1,11 @@
 // What a simulation refuses to begin with.
-#include <catch2/catch.hpp>
 
 #include "common/error.hpp"
 #include "simulation/step/simulation.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/synthetic_model.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using namespace irdm;
 using namespace irdm::test;
 
@@ -22,7 +22,7 @@ SimulationConfig two() {
 
 void check_refused(const SimulationConfig& config, const std::string& words) {
   CHECK_THROWS_AS(Simulation(config), Error);
-  CHECK_THROWS_WITH(Simulation(config), Contains(words));
+  CHECK_THROWS_WITH(Simulation(config), ContainsSubstring(words));
 }
 
 }  // namespace

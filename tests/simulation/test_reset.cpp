@@ -1,11 +1,11 @@
 // Everything is reset.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
 
 #include "simulation/deformation/deformation.hpp"
 #include "simulation/step/simulation.hpp"
 #include "tests/simulation/two_on_floor.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 using namespace irdm::test;

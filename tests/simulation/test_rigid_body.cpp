@@ -1,8 +1,8 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 
 #include "common/motion/rigid_body.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 

@@ -1,8 +1,8 @@
-#include <catch2/catch.hpp>
 #include <random>
 #include <vector>
 
 #include "common/motion/free_motion.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 

@@ -1,12 +1,12 @@
 // A saved state: the steps that follow are the same to the bit, and its energy is what was put in.
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "common/error.hpp"
 #include "tests/simulation/saved_state.hpp"
 #include "tests/simulation/touching_cubes.hpp"
 #include "tests/simulation/two_on_floor.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/fixed_box.hpp"
 #include "tests/support/slotted_body.hpp"
 

@@ -1,7 +1,6 @@
 // Shapes of static scenery against what is known of them otherwise: which points are inside, and
 // samples of their surfaces.
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -11,6 +10,7 @@
 #include "tests/simulation/random_numbers.hpp"
 #include "tests/simulation/voxel_mesh.hpp"
 #include "tests/support/allocation_guard.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/left_out.hpp"
 
 using namespace irdm;

@@ -1,7 +1,6 @@
 // Parts of one body that touch each other: a horseshoe and a frame whose slot is pressed shut.
 #include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <complex>
 #include <memory>
@@ -15,6 +14,7 @@
 #include "simulation/step/simulation.hpp"
 #include "tests/simulation/random_numbers.hpp"
 #include "tests/support/allocation_guard.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/fem_cube.hpp"
 #include "tests/support/left_out.hpp"
 #include "tests/support/slotted_body.hpp"

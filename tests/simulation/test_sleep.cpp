@@ -1,10 +1,10 @@
 // Objects at rest sleep, and wake as if they had not.
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "simulation/deformation/deformation.hpp"
 #include "tests/simulation/touching_cubes.hpp"
 #include "tests/support/allocation_guard.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/left_out.hpp"
 #include "tests/support/synthetic_model.hpp"
 

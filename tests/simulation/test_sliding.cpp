@@ -1,11 +1,11 @@
 // Fingertips that slide round a cube, over its faces, edges and corners.
 #include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
 #include "tests/simulation/pressed_cube.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 using namespace irdm::test;

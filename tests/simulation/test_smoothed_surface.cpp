@@ -1,10 +1,10 @@
 // The surface with its edges rounded off, against sums over a disc laid round an edge.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
 #include "simulation/contact/smoothed_surface.hpp"
 #include "tests/simulation/pressed_cube.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 using namespace irdm::test;

@@ -1,6 +1,5 @@
 #include "simulation/step/simulation.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -11,6 +10,7 @@
 #include "simulation/deformation/deformation.hpp"
 #include "simulation/step/nodal_forces.hpp"
 #include "tests/simulation/pressed_cube.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/fem_cube.hpp"
 
 using namespace irdm;

@@ -1,10 +1,10 @@
 // Every stored form of R against the same R in another form, and against the engine that plays it.
-#include <catch2/catch.hpp>
 
 #include "common/model/model_file.hpp"
 #include "common/response/compressed_response.hpp"
 #include "common/response/stored_response.hpp"
 #include "simulation/engine/response_engine.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/point_loads.hpp"
 #include "tests/support/shared_model.hpp"
 #include "tests/support/streamed_model.hpp"
@@ -104,7 +104,7 @@ TEST_CASE("stored response: dense in a file and streamed are the dense one in me
   CHECK(file->column(7, kStoredSteps) == dense->column(7, kStoredSteps));
   CHECK(difference(streamed->static_column(7), dense->static_column(7)) < 1e-6);
   CHECK_THROWS_WITH(stored_response(path, 3 * nodes, kStoredSteps - 1),
-                    Catch::Contains("must have the shape"));
+                    Catch::Matchers::ContainsSubstring("must have the shape"));
 }
 
 TEST_CASE("stored response: a compressed one is what its engine plays") {

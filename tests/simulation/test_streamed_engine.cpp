@@ -1,5 +1,4 @@
 // Columns of R that come late or never, against the engine that has all of them.
-#include <catch2/catch.hpp>
 #include <complex>
 #include <numbers>
 #include <numeric>
@@ -12,6 +11,7 @@
 #include "tests/simulation/pressed_cube.hpp"
 #include "tests/simulation/random_numbers.hpp"
 #include "tests/support/allocation_guard.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/left_out.hpp"
 #include "tests/support/streamed_model.hpp"
 #include "tests/support/synthetic_model.hpp"

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -7,6 +6,7 @@
 
 #include "simulation/collision/deformed_surface.hpp"
 #include "simulation/step/god_object.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/synthetic_model.hpp"
 
 using namespace irdm;

@@ -1,7 +1,7 @@
 // How the force on a stylus goes with the step, against the same at 0.1 ms.
 #include <array>
-#include <catch2/catch.hpp>
 
+#include "tests/support/catch.hpp"
 #include "tests/support/led_brick.hpp"
 
 using namespace irdm;

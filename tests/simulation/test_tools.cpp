@@ -1,5 +1,4 @@
 // Bodies that a stylus leads through a coupling of six degrees of freedom.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -8,9 +7,10 @@
 #include "tests/simulation/led_rod.hpp"
 #include "tests/simulation/pressed_cube.hpp"
 #include "tests/support/allocation_guard.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/left_out.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using namespace irdm;
 using namespace irdm::test;
 

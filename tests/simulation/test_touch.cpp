@@ -1,6 +1,5 @@
 // What tips feel on an object: friction, fingertips, taking hold and letting go.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -8,6 +7,7 @@
 #include <random>
 
 #include "tests/simulation/pressed_cube.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 using namespace irdm::test;

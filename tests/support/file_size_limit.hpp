@@ -3,10 +3,11 @@
 #include <sys/resource.h>
 #include <sys/types.h>
 
-#include <catch2/catch.hpp>
 #include <csignal>
 #include <string>
 #include <vector>
+
+#include "tests/support/catch.hpp"
 
 namespace irdm::test {
 

@@ -1,9 +1,9 @@
-#define CATCH_CONFIG_EXTERNAL_INTERFACES
 #include "tests/support/left_out.hpp"
 
-#include <catch2/catch.hpp>
 #include <cstdlib>
 #include <iostream>
+
+#include "tests/support/catch.hpp"
 
 namespace {
 
@@ -14,9 +14,9 @@ std::size_t cases_left_out = 0;
 
 /// A program of which nothing failed and every test case was left out ends with a status of its
 /// own. What a sanitizer finds at the end has one that comes before it.
-class LeftOutListener : public Catch::TestEventListenerBase {
+class LeftOutListener : public Catch::EventListenerBase {
  public:
-  using TestEventListenerBase::TestEventListenerBase;
+  using Catch::EventListenerBase::EventListenerBase;
   void testCaseEnded(const Catch::TestCaseStats&) override {
     if (left_out) ++cases_left_out;
     left_out = false;

@@ -1,6 +1,5 @@
 #include "tests/system/one_session.hpp"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.hpp"
 
 #include "tests/system/stage.hpp"
 

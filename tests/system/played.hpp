@@ -1,6 +1,5 @@
 #pragma once
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
 #include <memory>
@@ -10,6 +9,7 @@
 #include "common/hdf5/file.hpp"
 #include "common/model/model_file.hpp"
 #include "scene/scene.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/system/penetration.hpp"
 #include "tests/system/stage.hpp"
 

@@ -3,7 +3,6 @@
 // by a relay of our own between two TUN devices, loss too: it needs neither tc nor nftables, and
 // traffic stays in the namespaces. Left out where the kernel does not allow such namespaces.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <csignal>
 #include <optional>
@@ -15,11 +14,12 @@
 #include "common/realtime/clock.hpp"
 #include "tests/network_namespace/packet_relay.hpp"
 #include "tests/network_namespace/two_namespaces.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/left_out.hpp"
 #include "tests/system/stage.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using namespace irdm;
 using namespace irdm::test;
 
@@ -128,8 +128,8 @@ std::size_t sessions(const ChildProcess& bridge) {
 void check_end(Server& server) {
   server.process.signal(SIGTERM);
   CHECK(server.process.wait() == 0);
-  CHECK_THAT(server.process.out(),
-             Contains(" 0 closed for protocol errors") && !Contains("without the server's key"));
+  CHECK_THAT(server.process.out(), ContainsSubstring(" 0 closed for protocol errors") &&
+                                       !ContainsSubstring("without the server's key"));
 }
 
 /// The time from the last that can arrive to no force [ns]: docs/protocol.md, age.
@@ -157,7 +157,7 @@ TEST_CASE("a path that becomes a black hole: no force in time, and the session i
   REQUIRE(eventually([&] { return sessions(bridge) >= 2; }));
   bridge.signal(SIGTERM);
   CHECK(bridge.wait() == 0);
-  CHECK_THAT(bridge.out(), Contains("protocol errors 0"));
+  CHECK_THAT(bridge.out(), ContainsSubstring("protocol errors 0"));
   CHECK((bridge.out().find("datagrams: ") != std::string::npos) == (stream == "udp"));
 
   const std::vector<LinkFrame> frames = stage.frames();
@@ -184,7 +184,7 @@ TEST_CASE("a bad path: forces within limits, or the bridge says why there are no
   CHECK(bridge.wait() == 0);
   CAPTURE(mode, bridge.out(), bridge.err());
   CHECK(path.corrupted() > 0);
-  CHECK_THAT(bridge.out(), Contains("protocol errors 0"));
+  CHECK_THAT(bridge.out(), ContainsSubstring("protocol errors 0"));
   CHECK(number_after(bridge.out(), "forces: ") > 0);
   const double largest = largest_link_force(stage.frames());
   CHECK(largest < kDeviceLimit * (1.0 + 1e-9));
@@ -209,7 +209,8 @@ TEST_CASE("a bad path by UDP: a bridge that predicts arms, and the cube is felt"
   CHECK(bridge.wait() == 0);
   CAPTURE(bridge.out(), bridge.err());
   CHECK(path.corrupted() > 0);
-  CHECK_THAT(bridge.out(), Contains("protocol errors 0") && Contains("datagrams: "));
+  CHECK_THAT(bridge.out(),
+             ContainsSubstring("protocol errors 0") && ContainsSubstring("datagrams: "));
   // One way takes 10 ms on average, there and back 20 ms, and a step.
   CHECK(number_after(bridge.out(), "round trip: p50 ") < 30.0);
   const double largest = largest_link_force(stage.frames());
@@ -217,6 +218,6 @@ TEST_CASE("a bad path by UDP: a bridge that predicts arms, and the cube is felt"
   CHECK(largest < kDeviceLimit * (1.0 + 1e-9));
   server.process.signal(SIGTERM);
   CHECK(server.process.wait() == 0);
-  CHECK_THAT(server.process.out(),
-             Contains(" 0 closed for protocol errors") && Contains("came twice, dropped: "));
+  CHECK_THAT(server.process.out(), ContainsSubstring(" 0 closed for protocol errors") &&
+                                       ContainsSubstring("came twice, dropped: "));
 }

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -10,12 +9,13 @@
 
 #include "common/geometry.hpp"
 #include "common/hdf5/file.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/raw_peer.hpp"
 #include "tests/system/device_stage.hpp"
 #include "tests/system/stage.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using namespace irdm;
 using namespace irdm::test;
 
@@ -90,7 +90,7 @@ TEST_CASE("black box: a device that fails in contact leaves two seconds of ticks
   // Of a busy machine there may be others before it: connections that were lost with a force.
   const hdf5::File file = black_box(device.stage, "irdm-bridge-", "device failed");
   CHECK_THAT(bridge.line_with("device failed: stylus 0: the last seconds are in", true),
-             Contains("blackbox/irdm-bridge-"));
+             ContainsSubstring("blackbox/irdm-bridge-"));
   bridge.signal(SIGTERM);
   CHECK(bridge.wait() == 0);
   server.process.signal(SIGTERM);
@@ -151,7 +151,7 @@ TEST_CASE("black box: a driver that hangs leaves the ticks that it made until th
   ChildProcess bridge = device.stage.start_bridge(server, {}, options);
   CHECK(bridge.wait() == 1);
   const hdf5::File file = black_box(device.stage, "irdm-bridge-");
-  CHECK_THAT(file.read_string_attribute("/", "fault"), Contains("no ticks"));
+  CHECK_THAT(file.read_string_attribute("/", "fault"), ContainsSubstring("no ticks"));
   CHECK(file.shape("/tick/0/time")[0] > 50);
 }
 
@@ -165,7 +165,7 @@ TEST_CASE("black box: garbage at the server leaves its bytes and the steps meanw
   const hdf5::File file = black_box(stage, "irdm-server-");
   CHECK(file.read_string_attribute("/", "fault") == "protocol violation");
   const std::vector<std::uint8_t> bytes = file.read<std::uint8_t>("/frame/bytes", {0});
-  CHECK_THAT(std::string(bytes.begin(), bytes.end()), Contains("GET / HTTP/1.1"));
+  CHECK_THAT(std::string(bytes.begin(), bytes.end()), ContainsSubstring("GET / HTTP/1.1"));
   const std::vector<std::uint8_t> kind = file.read<std::uint8_t>("/frame/kind", {0});
   CHECK(std::count(kind.begin(), kind.end(), 2) == 1);
   CHECK(std::count(kind.begin(), kind.end(), 4) == 1);
@@ -235,7 +235,7 @@ TEST_CASE(
     const std::vector<std::uint8_t> garbage(100, 7);
     peer.send(garbage);
     CHECK(peer.ends());
-    CHECK_THAT(server.process.line_with("no black box", false), Contains("black_box"));
+    CHECK_THAT(server.process.line_with("no black box", false), ContainsSubstring("black_box"));
     server.process.signal(SIGTERM);
     CHECK(server.process.wait() == 0);
   }

@@ -1,9 +1,9 @@
-#include <catch2/catch.hpp>
 #include <csignal>
 
+#include "tests/support/catch.hpp"
 #include "tests/system/device_stage.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using Catch::Matchers::EndsWith;
 using Catch::Matchers::StartsWith;
 using namespace irdm;
@@ -30,18 +30,18 @@ TEST_CASE("commission: without anybody at the terminal no step begins, and the r
                               " < /dev/null";
   const FinishedProgram program = run_to_end({"/bin/sh", "-c", command}, device.with());
   CHECK(program.status == 1);
-  CHECK_THAT(program.out, Contains("passed: driver: ") &&
-                              Contains("stopped: axis right: ended by the person") &&
-                              Contains("not reached: ramp"));
-  CHECK_THAT(program.err, Contains("irdm-bridge: error: commission: not signed off"));
-  CHECK_THAT(file_content(report), Contains("device = \"Touch, serial number fake-1\""));
+  CHECK_THAT(program.out, ContainsSubstring("passed: driver: ") &&
+                              ContainsSubstring("stopped: axis right: ended by the person") &&
+                              ContainsSubstring("not reached: ramp"));
+  CHECK_THAT(program.err, ContainsSubstring("irdm-bridge: error: commission: not signed off"));
+  CHECK_THAT(file_content(report), ContainsSubstring("device = \"Touch, serial number fake-1\""));
   CHECK_THAT(device.misuses(), StartsWith("misuses 0 \n") && EndsWith("misuses 0 \n"));
   device.stage.write("bridge.toml", std::string(kTable) + "commissioned = \"report.toml\"\n");
   const FinishedProgram bridge = run_to_end(
       {IRDM_BRIDGE, device.stage.path("bridge.toml").string(), "--server", "127.0.0.1:1"},
       device.with());
   CHECK(bridge.status == 1);
-  CHECK_THAT(bridge.err, Contains("report.toml") && Contains("not signed off"));
+  CHECK_THAT(bridge.err, ContainsSubstring("report.toml") && ContainsSubstring("not signed off"));
 }
 
 TEST_CASE("a real device without a report gets at most 1 N, and the bridge says what to do") {
@@ -50,7 +50,7 @@ TEST_CASE("a real device without a report gets at most 1 N, and the bridge says 
   ChildProcess bridge =
       device.stage.start_bridge(server, {}, device.with(DeviceStage::in_contact("tell", 500)));
   CHECK_THAT(bridge.line_with("not commissioned", true),
-             Contains("at most 1 N") && Contains("irdm-bridge commission"));
+             ContainsSubstring("at most 1 N") && ContainsSubstring("irdm-bridge commission"));
   bridge.line_with("in contact");
   bridge.signal(SIGTERM);
   CHECK(bridge.wait() == 0);
@@ -71,13 +71,13 @@ TEST_CASE(
   bridge.line_with("in contact");
   bridge.signal(SIGTERM);
   CHECK(bridge.wait() == 0);
-  CHECK_THAT(bridge.err(), !Contains("commission"));
+  CHECK_THAT(bridge.err(), !ContainsSubstring("commission"));
   device.stage.write("report.toml", signed_off("Touch, serial number fake-2"));
   const FinishedProgram other = run_to_end(
       {IRDM_BRIDGE, device.stage.path("bridge.toml").string(), "--server", "127.0.0.1:1"},
       device.with());
   CHECK(other.status == 1);
-  CHECK_THAT(other.err, Contains("its report is that of another device"));
+  CHECK_THAT(other.err, ContainsSubstring("its report is that of another device"));
 }
 
 TEST_CASE("commission: what is to be killed pushes the handle up with 0.5 N, and ends in order") {

@@ -1,10 +1,10 @@
-#include <catch2/catch.hpp>
 #include <string>
 #include <vector>
 
+#include "tests/support/catch.hpp"
 #include "tests/system/stage.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using namespace irdm;
 using namespace irdm::test;
 
@@ -25,10 +25,11 @@ TEST_CASE("doctor says of each thing how it is, and finds the server") {
                                           "--server", "127.0.0.1:" + std::to_string(server.port)});
   for (const char* subject : {"device 0 (virtual): opens", "real-time priority: ",
                               "locked memory: ", "clock: ", "wake-up: ", "welcomes this bridge"}) {
-    CHECK_THAT(program.out, Contains(subject));
+    CHECK_THAT(program.out, ContainsSubstring(subject));
   }
-  CHECK_THAT(program.out, !Contains("driver: "));
-  CHECK_THAT(doctor({}).out, Contains("driver: ") && Contains("port") && Contains("usb"));
+  CHECK_THAT(program.out, !ContainsSubstring("driver: "));
+  CHECK_THAT(doctor({}).out, ContainsSubstring("driver: ") && ContainsSubstring("port") &&
+                                 ContainsSubstring("usb"));
   CHECK((program.status == 0) == (program.out.find("problem") == std::string::npos));
 }
 
@@ -38,8 +39,10 @@ TEST_CASE("doctor: a driver that is missing is a problem of a bridge that needs 
   const FinishedProgram program =
       doctor({"--config", stage.path("bridge.toml").string()}, {"HD_LIBRARY=/nowhere/libHD.so"});
   CHECK(program.status == 1);
-  CHECK_THAT(program.out, Contains("problem  driver: ") && Contains("/nowhere/libHD.so"));
-  CHECK_THAT(program.err, Contains("irdm-bridge: error: doctor: ") && Contains("problems"));
+  CHECK_THAT(program.out,
+             ContainsSubstring("problem  driver: ") && ContainsSubstring("/nowhere/libHD.so"));
+  CHECK_THAT(program.err,
+             ContainsSubstring("irdm-bridge: error: doctor: ") && ContainsSubstring("problems"));
 }
 
 TEST_CASE("doctor: a device that opens, and one that the driver refuses") {
@@ -47,11 +50,13 @@ TEST_CASE("doctor: a device that opens, and one that the driver refuses") {
   stage.write("bridge.toml", "[[device]]\ntype = \"openhaptics\"\n");
   const std::string library = "HD_LIBRARY=" IRDM_FAKE_LIBHD;
   const std::vector<std::string> arguments{"--config", stage.path("bridge.toml").string()};
-  CHECK_THAT(doctor(arguments, {library}).out, Contains("ok       driver: libHD.so loads") &&
-                                                   Contains("device 0 (openhaptics): opens"));
+  CHECK_THAT(doctor(arguments, {library}).out,
+             ContainsSubstring("ok       driver: libHD.so loads") &&
+                 ContainsSubstring("device 0 (openhaptics): opens"));
   const FinishedProgram refused = doctor(arguments, {library, "FAKE_HD_REFUSE=0x0301"});
   CHECK(refused.status == 1);
-  CHECK_THAT(refused.out, Contains("problem  device 0 (openhaptics): ") && Contains("in use"));
+  CHECK_THAT(refused.out,
+             ContainsSubstring("problem  device 0 (openhaptics): ") && ContainsSubstring("in use"));
 }
 
 TEST_CASE("doctor: wrong usage is told as such") {

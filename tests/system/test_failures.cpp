@@ -2,12 +2,12 @@
 #include <csignal>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <random>
 #include <thread>
 
 #include "common/error.hpp"
 #include "common/hdf5/file.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/committed_so_far.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/file_size_limit.hpp"
@@ -16,7 +16,7 @@
 #include "tests/system/stage.hpp"
 #include "tests/system/trace.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using namespace irdm;
 using namespace irdm::test;
 
@@ -67,7 +67,7 @@ TEST_CASE("a bridge is killed: its contact ends, the server goes on and takes th
   CHECK(server.process.wait() == 0);
   const double accepted = 2 + number_after(next.out(), ", stalls ");
   CHECK(number_after(server.process.out(), "sessions: ") == accepted);
-  CHECK_THAT(server.process.out(), Contains(" accepted, 0 refused, 0 closed"));
+  CHECK_THAT(server.process.out(), ContainsSubstring(" accepted, 0 refused, 0 closed"));
 
   const Trace trace = read_trace(path);
   const std::size_t end = end_of_hold(trace);
@@ -102,7 +102,7 @@ TEST_CASE("a server is killed: the bridge shows no force meanwhile and finds the
   }));
   first.process.signal(SIGKILL);
   CHECK(first.process.wait() == -SIGKILL);
-  CHECK_THAT(bridge.line_with("connection lost", true), Contains("trying again"));
+  CHECK_THAT(bridge.line_with("connection lost", true), ContainsSubstring("trying again"));
   // Not to wait for anything: this is how long there is no server.
   std::this_thread::sleep_for(std::chrono::milliseconds(400));
   Server second = stage.restart_server(first.port, {"--record", stage.path("second.h5").string()});
@@ -111,7 +111,7 @@ TEST_CASE("a server is killed: the bridge shows no force meanwhile and finds the
   CHECK(bridge.wait() == 0);
   second.process.signal(SIGTERM);
   CHECK(second.process.wait() == 0);
-  CHECK_THAT(bridge.out(), Contains("sessions 2, reconnects 1, protocol errors 0"));
+  CHECK_THAT(bridge.out(), ContainsSubstring("sessions 2, reconnects 1, protocol errors 0"));
 
   const Trace trace = read_trace(stage.path("second.h5"));
   const auto arrived = std::find(trace.buttons.begin(), trace.buttons.end(), 1);
@@ -158,11 +158,12 @@ TEST_CASE("a peer of another version is refused with a reason and both versions"
   CHECK(refuse->reason == wire::RefuseReason::kVersion);
   CHECK(refuse->version_min == wire::kOldestProtocolVersion);
   CHECK(refuse->version_max == wire::kProtocolVersion);
-  CHECK_THAT(refuse->text, Contains("7") && Contains("9") && Contains("1"));
+  CHECK_THAT(refuse->text,
+             ContainsSubstring("7") && ContainsSubstring("9") && ContainsSubstring("1"));
   CHECK(peer.ends());
   server.process.signal(SIGTERM);
   CHECK(server.process.wait() == 0);
-  CHECK_THAT(server.process.out(), Contains("sessions: 0 accepted, 1 refused"));
+  CHECK_THAT(server.process.out(), ContainsSubstring("sessions: 0 accepted, 1 refused"));
 }
 
 TEST_CASE("a bridge that is refused for its version says both and ends with status 1") {
@@ -178,8 +179,9 @@ TEST_CASE("a bridge that is refused for its version says both and ends with stat
                          .text = "too old"});
   peer.close();
   CHECK(bridge.wait() == 1);
-  CHECK_THAT(bridge.err(), Contains("irdm-bridge: error: ") && Contains("7 to 9") &&
-                               Contains("install matching versions"));
+  CHECK_THAT(bridge.err(), ContainsSubstring("irdm-bridge: error: ") &&
+                               ContainsSubstring("7 to 9") &&
+                               ContainsSubstring("install matching versions"));
   CHECK(bridge.out().empty());
 }
 
@@ -218,7 +220,8 @@ TEST_CASE("garbage to the server disturbs neither it nor the bridge that plays")
   check_one_session(bridge.out());
   CHECK(number_after(server.process.out(), "sessions: ") ==
         number_after(bridge.out(), "sessions "));
-  CHECK_THAT(server.process.out(), Contains(" accepted, 0 refused, 9 closed for protocol errors"));
+  CHECK_THAT(server.process.out(),
+             ContainsSubstring(" accepted, 0 refused, 9 closed for protocol errors"));
   const Trace trace = read_trace(path);
   const auto held_from = std::find(trace.contact.begin(), trace.contact.end(), kHeld);
   CHECK(std::all_of(held_from, trace.contact.begin() + static_cast<long>(end_of_hold(trace)),
@@ -237,8 +240,9 @@ TEST_CASE("a disk that gets full while a server records: it says so, and ends in
   ChildProcess bridge = stage.start_bridge(server);
   CHECK(bridge.wait() == 0);
   CHECK(server.process.wait() == 1);
-  CHECK_THAT(server.process.err(), Contains("irdm-server: error: recording ended early: ") &&
-                                       Contains("check free space"));
+  CHECK_THAT(server.process.err(),
+             ContainsSubstring("irdm-server: error: recording ended early: ") &&
+                 ContainsSubstring("check free space"));
   CHECK(committed_so_far(path) > 0);
 }
 
@@ -250,7 +254,8 @@ TEST_CASE("a disk without room for a trace: one error, and no trace") {
                             "--record", stage.path("trace.h5").string()}));
   CHECK(ended.status == 1);
   CHECK(std::count(ended.err.begin(), ended.err.end(), '\n') == 1);
-  CHECK_THAT(ended.err, Contains("irdm-server: error: ") && Contains("check free space"));
+  CHECK_THAT(ended.err,
+             ContainsSubstring("irdm-server: error: ") && ContainsSubstring("check free space"));
   CHECK_FALSE(std::filesystem::exists(stage.path("trace.h5")));
 }
 #endif

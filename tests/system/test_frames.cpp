@@ -1,11 +1,11 @@
 // Pictures of a recorded run, as another program than ours sees them.
 #include <algorithm>
-#include <catch2/catch.hpp>
 
+#include "tests/support/catch.hpp"
 #include "tests/support/left_out.hpp"
 #include "tests/system/stage.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using namespace irdm;
 using namespace irdm::test;
 
@@ -47,9 +47,9 @@ TEST_CASE("frames of a recorded run show the object, from frame to frame another
   REQUIRE(taken.status == 0);
   const FinishedProgram seen = look_at(stage.path("plain"));
   INFO(seen.out << seen.err);
-  CHECK_THAT(taken.out, Contains("; 5 frames"));
+  CHECK_THAT(taken.out, ContainsSubstring("; 5 frames"));
   CHECK(number_after(seen.out, "frames ") == 5);
-  CHECK_THAT(seen.out, Contains("480 x 360"));
+  CHECK_THAT(seen.out, ContainsSubstring("480 x 360"));
   // Of all frames the least: colours of a shaded object, and how much of the picture it takes.
   CHECK(number_after(seen.out, "colours ") > 100);
   CHECK(number_after(seen.out, "object ") > 0.05);
@@ -66,7 +66,7 @@ TEST_CASE("frames of a recorded run show the object, from frame to frame another
 
   const FinishedProgram again = take(stage, "plain", options);
   CHECK(again.status == 1);
-  CHECK_THAT(again.err, Contains("is not empty"));
+  CHECK_THAT(again.err, ContainsSubstring("is not empty"));
 }
 
 TEST_CASE("pictures without a browser, or a video without ffmpeg, are refused in one line") {
@@ -78,7 +78,8 @@ TEST_CASE("pictures without a browser, or a video without ffmpeg, are refused in
       {IRDM_REPLAY, stage.path("trace.h5").string(), "--frames", stage.path("pictures").string()},
       nowhere);
   CHECK(refused.status == 1);
-  CHECK_THAT(refused.err, Contains("Debian's package chromium") || Contains("IRDM_BUILD_PAGE"));
+  CHECK_THAT(refused.err, ContainsSubstring("Debian's package chromium") ||
+                              ContainsSubstring("IRDM_BUILD_PAGE"));
   CHECK(std::count(refused.err.begin(), refused.err.end(), '\n') == 1);
   stage.write("chromium", "#!/bin/sh\n");
   std::filesystem::permissions(stage.path("chromium"), std::filesystem::perms::owner_all);
@@ -87,9 +88,10 @@ TEST_CASE("pictures without a browser, or a video without ffmpeg, are refused in
                   stage.path("pictures").string(), "--video", stage.path("run.mp4").string()},
                  nowhere);
   CHECK(no_video.status == 1);
-  CHECK_THAT(no_video.err, Contains("Debian's package ffmpeg") || Contains("IRDM_BUILD_PAGE"));
+  CHECK_THAT(no_video.err,
+             ContainsSubstring("Debian's package ffmpeg") || ContainsSubstring("IRDM_BUILD_PAGE"));
   CHECK_FALSE(std::filesystem::exists(stage.path("pictures")));
   const FinishedProgram wrong = take(stage, "pictures", {"--size", "10x10"});
   CHECK(wrong.status == 1);
-  CHECK_THAT(wrong.err, Contains("WIDTHxHEIGHT"));
+  CHECK_THAT(wrong.err, ContainsSubstring("WIDTHxHEIGHT"));
 }

@@ -1,8 +1,8 @@
 // Scenes of the gallery (docs/configuration.md) with one object that styluses touch; where bodies
 // touch: test_gallery_bodies.cpp. What physics says of them, found in the trace.
 #include <algorithm>
-#include <catch2/catch.hpp>
 
+#include "tests/support/catch.hpp"
 #include "tests/system/played.hpp"
 
 using namespace irdm;

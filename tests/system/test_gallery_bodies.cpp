@@ -2,8 +2,8 @@
 // found in the trace.
 #include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
 
+#include "tests/support/catch.hpp"
 #include "tests/system/played.hpp"
 
 using namespace irdm;

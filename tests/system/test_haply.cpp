@@ -1,13 +1,13 @@
-#include <catch2/catch.hpp>
 #include <csignal>
 #include <string>
 
 #include "tests/haply/fake_service.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/left_out.hpp"
 #include "tests/system/stage.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using namespace irdm;
 using namespace irdm::test;
 
@@ -48,10 +48,10 @@ TEST_CASE("a Haply device feels the server's cube, also after its service was ki
   REQUIRE(haply.felt());
   bridge.signal(SIGTERM);
   CHECK(bridge.wait() == 0);
-  CHECK_THAT(bridge.out(), Contains("faults 0"));
+  CHECK_THAT(bridge.out(), ContainsSubstring("faults 0"));
   CHECK_THAT(bridge.err(),
-             Contains("Haply device 049D: inverse3, right-handed, Inverse Service 3.5") &&
-                 Contains("answers, round trip mean"));
+             ContainsSubstring("Haply device 049D: inverse3, right-handed, Inverse Service 3.5") &&
+                 ContainsSubstring("answers, round trip mean"));
   CHECK(haply.service.told().force.isZero(0.0));
   CHECK(haply.service.misuses().starts_with("0 "));
 }
@@ -67,22 +67,24 @@ TEST_CASE("a Haply device that cannot be had: the bridge says why in one line") 
   };
   haply.stage.write("bridge.toml", "[[device]]\ntype = \"haply\"\nname = \"1234\"\nservice = \"" +
                                        haply.address() + "\"\n");
-  CHECK_THAT(refused(), Contains("irdm-bridge: error: Haply device 1234: the service has no such "
-                                 "device") &&
-                            Contains("found: 049D"));
+  CHECK_THAT(refused(),
+             ContainsSubstring("irdm-bridge: error: Haply device 1234: the service has no such "
+                               "device") &&
+                 ContainsSubstring("found: 049D"));
   haply.service.kill();
-  CHECK_THAT(refused(), Contains("no connection to the service at " + haply.address()) &&
-                            Contains("start the Inverse Service"));
+  CHECK_THAT(refused(), ContainsSubstring("no connection to the service at " + haply.address()) &&
+                            ContainsSubstring("start the Inverse Service"));
 }
 
 TEST_CASE("doctor measures how long a Haply device's service takes to answer") {
   HaplyStage haply;
   const FinishedProgram doctor =
       run_to_end({IRDM_BRIDGE, "doctor", "--config", haply.stage.path("bridge.toml").string()});
-  CHECK_THAT(doctor.out, Contains("device 0 (haply): opens") && Contains("service of device 0: ") &&
-                             Contains("answers, 99 %"));
+  CHECK_THAT(doctor.out, ContainsSubstring("device 0 (haply): opens") &&
+                             ContainsSubstring("service of device 0: ") &&
+                             ContainsSubstring("answers, 99 %"));
   haply.service.order("late 4");
   const FinishedProgram slow =
       run_to_end({IRDM_BRIDGE, "doctor", "--config", haply.stage.path("bridge.toml").string()});
-  CHECK_THAT(slow.out, Contains("warning  service of device 0: "));
+  CHECK_THAT(slow.out, ContainsSubstring("warning  service of device 0: "));
 }

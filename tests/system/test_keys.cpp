@@ -1,9 +1,9 @@
-#include <catch2/catch.hpp>
 #include <csignal>
 
+#include "tests/support/catch.hpp"
 #include "tests/system/stage.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using namespace irdm::test;
 
 namespace {
@@ -43,9 +43,9 @@ TEST_CASE("server and bridge with the same key play") {
   ChildProcess bridge = stage.start_bridge(server, {"--duration", "0.5"});
   CHECK(bridge.wait() == 0);
   CHECK(end(server.process) == 0);
-  CHECK_THAT(bridge.out(), Contains("protocol errors 0"));
+  CHECK_THAT(bridge.out(), ContainsSubstring("protocol errors 0"));
   CHECK(number_after(bridge.out(), "forces: ") > 10);
-  CHECK_THAT(server.process.out(), !Contains("without the server's key"));
+  CHECK_THAT(server.process.out(), !ContainsSubstring("without the server's key"));
 }
 
 TEST_CASE("a bridge with another key ends with status 1 and one line on both sides") {
@@ -53,12 +53,15 @@ TEST_CASE("a bridge with another key ends with status 1 and one line on both sid
   Server server = stage.start_server();
   ChildProcess bridge = stage.start_bridge(server);
   CHECK(bridge.wait() == 1);
-  CHECK_THAT(bridge.err(), Contains("irdm-bridge: error: ") && Contains("the same key file"));
+  CHECK_THAT(bridge.err(),
+             ContainsSubstring("irdm-bridge: error: ") && ContainsSubstring("the same key file"));
   CHECK(bridge.out().empty());
-  CHECK_THAT(server.process.line_with("refused: ", false), Contains("not the server's key"));
+  CHECK_THAT(server.process.line_with("refused: ", false),
+             ContainsSubstring("not the server's key"));
   CHECK(end(server.process) == 0);
-  CHECK_THAT(server.process.out(), Contains("sessions: 0 accepted") &&
-                                       Contains("connections without the server's key: 1"));
+  CHECK_THAT(server.process.out(),
+             ContainsSubstring("sessions: 0 accepted") &&
+                 ContainsSubstring("connections without the server's key: 1"));
 }
 
 TEST_CASE("a server that others can reach does not start without a key") {
@@ -67,6 +70,6 @@ TEST_CASE("a server that others can reach does not start without a key") {
   const FinishedProgram server = run_to_end({IRDM_SERVER, stage.path("scene.toml").string()});
   CHECK(server.status == 1);
   CHECK_THAT(server.err,
-             Contains("irdm-server: error: 0.0.0.0:0: can be reached from other machines"
-                      ", and there is no key; set server.key_file"));
+             ContainsSubstring("irdm-server: error: 0.0.0.0:0: can be reached from other machines"
+                               ", and there is no key; set server.key_file"));
 }

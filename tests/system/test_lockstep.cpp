@@ -1,7 +1,6 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <csignal>
 #include <cstring>
@@ -9,11 +8,12 @@
 #include <vector>
 
 #include "common/hdf5/file.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/system/stage.hpp"
 #include "tests/system/trace.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using namespace irdm;
 using namespace irdm::test;
 
@@ -53,7 +53,8 @@ Trace play(const std::string& engine, int threads, const std::string& device = "
   ChildProcess bridge = stage.start_bridge(server, {}, options);
   REQUIRE(bridge.wait() == 0);
   REQUIRE(server.process.wait() == 0);  // the run is over when its bridge leaves
-  CHECK_THAT(bridge.out(), Contains("lockstep") && Contains("sessions 1") && Contains(" 0 gaps"));
+  CHECK_THAT(bridge.out(), ContainsSubstring("lockstep") && ContainsSubstring("sessions 1") &&
+                               ContainsSubstring(" 0 gaps"));
   return read_trace(stage.path("trace.h5"));
 }
 
@@ -115,9 +116,9 @@ TEST_CASE("lockstep: a disk that gets full changes no step and keeps what was co
   ChildProcess bridge = stage.start_bridge(server);
   REQUIRE(bridge.wait() == 0);
   CHECK(server.process.wait() == 1);
-  CHECK_THAT(bridge.out(), Contains(" 0 gaps"));
+  CHECK_THAT(bridge.out(), ContainsSubstring(" 0 gaps"));
   CHECK(number_after(server.process.out(), "steps: ") == static_cast<double>(whole.rows()));
-  CHECK_THAT(server.process.err(), Contains("recording ended early: " + path.string()));
+  CHECK_THAT(server.process.err(), ContainsSubstring("recording ended early: " + path.string()));
   const hdf5::File file = hdf5::File::open(path);
   const hsize_t rows = file.read<std::uint64_t>("/committed", {1})[0];
   REQUIRE(rows > 0);
@@ -174,7 +175,8 @@ TEST_CASE("lockstep: a server that is killed ends its bridge with one line and s
   server.process.signal(SIGKILL);
   CHECK(server.process.wait() == -SIGKILL);
   CHECK(bridge.wait() == 1);
-  CHECK_THAT(bridge.err(), Contains("irdm-bridge: error: ") && Contains("lost in lockstep"));
+  CHECK_THAT(bridge.err(),
+             ContainsSubstring("irdm-bridge: error: ") && ContainsSubstring("lost in lockstep"));
 }
 
 TEST_CASE("lockstep: a stylus with noise, encoders and motors leaves the same bits again") {

@@ -1,16 +1,16 @@
 // What a person does wrongly in the first hours: the exit status, one line, and what to do.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
 #include <string>
 #include <vector>
 
+#include "tests/support/catch.hpp"
 #include "tests/support/child_process.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/system/stage.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using Catch::Matchers::StartsWith;
 using namespace irdm;
 using namespace irdm::test;
@@ -92,7 +92,8 @@ void check(const std::string& program, const std::vector<Mistake>& mistakes) {
     CHECK(std::count(ended.err.begin(), ended.err.end(), '\n') == 1);
     CHECK_THAT(ended.err,
                StartsWith(std::filesystem::path(program).filename().string() + ": error: ") &&
-                   Contains(mistake.complaint) && Contains("; ") && Contains(mistake.remedy));
+                   ContainsSubstring(mistake.complaint) && ContainsSubstring("; ") &&
+                   ContainsSubstring(mistake.remedy));
     CHECK_FALSE(std::filesystem::exists(desk.path("model.h5")));
   }
 }
@@ -253,10 +254,10 @@ TEST_CASE("mistakes: commands and options") {
     const FinishedProgram ended = run_to_end(misspelt.words);
     CAPTURE(misspelt.words);
     CHECK(ended.status == 2);
-    CHECK_THAT(ended.err, Contains(misspelt.meant + "\n"));
+    CHECK_THAT(ended.err, ContainsSubstring(misspelt.meant + "\n"));
   }
   CHECK_THAT(run_to_end({IRDM_SERVER, "scene.toml", "--frobnicate"}).err,
-             !Contains("did you mean"));
+             !ContainsSubstring("did you mean"));
 }
 
 TEST_CASE("mistakes: a bridge") {

@@ -1,6 +1,6 @@
 // The measure of how deep nodes are inside other bodies, on a cube whose distances are known.
-#include <catch2/catch.hpp>
 
+#include "tests/support/catch.hpp"
 #include "tests/system/penetration.hpp"
 
 using namespace irdm;

@@ -2,7 +2,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -14,11 +13,12 @@
 
 #include "common/realtime/event_fd.hpp"
 #include "common/realtime/scheduling.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/left_out.hpp"
 #include "tests/system/stage.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using namespace irdm;
 using namespace irdm::test;
 
@@ -174,10 +174,10 @@ TEST_CASE("real time: threads have the priorities and the memory that the progra
       line_of("/proc/" + std::to_string(play.server->process.pid()) + "/status", "VmLck:");
   play.end();
   CHECK_THAT(play.server->process.out(),
-             Contains(permitted ? "real-time scheduling: SCHED_FIFO 60, memory "
-                                : "real-time scheduling: none ("));
-  CHECK_THAT(play.bridge->out(),
-             Contains(permitted ? "scheduling SCHED_FIFO 70, memory " : "scheduling none ("));
+             ContainsSubstring(permitted ? "real-time scheduling: SCHED_FIFO 60, memory "
+                                         : "real-time scheduling: none ("));
+  CHECK_THAT(play.bridge->out(), ContainsSubstring(permitted ? "scheduling SCHED_FIFO 70, memory "
+                                                             : "scheduling none ("));
   const bool some = locked.find(" 0 kB") == std::string::npos;
   INFO(locked);
   CHECK(some == (play.server->process.out().find(", memory locked\n") != std::string::npos));
@@ -204,8 +204,9 @@ TEST_CASE("real time: a program that requires what it may not have says what to 
   for (const FinishedProgram& program : {server, bridge}) {
     CHECK(program.status == 1);
     CHECK(program.out.empty());
-    CHECK_THAT(program.err, Contains(": error: ") && Contains("memlock unlimited") &&
-                                Contains("rtprio 90") && Contains("realtime = \"prefer\""));
+    CHECK_THAT(program.err,
+               ContainsSubstring(": error: ") && ContainsSubstring("memlock unlimited") &&
+                   ContainsSubstring("rtprio 90") && ContainsSubstring("realtime = \"prefer\""));
 #ifndef IRDM_SANITIZED  // whose runtime has lines of its own
     CHECK(std::count(program.err.begin(), program.err.end(), '\n') == 1);
 #endif

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <sstream>
 
@@ -9,6 +8,7 @@
 #include "scene/scene.hpp"
 #include "simulation/engine/response_engine.hpp"
 #include "simulation/step/simulation.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/system/stage.hpp"
 #include "tests/system/trace.hpp"
 

@@ -1,19 +1,19 @@
 // irdm-replay as a user has it, on traces of the real programs.
 #include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <csignal>
 #include <map>
 #include <sstream>
 
 #include "replay/compare/run_reader.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/edited_numbers.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/system/stage.hpp"
 #include "tests/system/trace.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using Catch::Matchers::StartsWith;
 using namespace irdm;
 using namespace irdm::test;
@@ -52,7 +52,7 @@ void check_near(const std::string& report) {
   CHECK(number_after(report, "position ") < 1e-9);
   CHECK(number_after(report, "orientation ") < 1e-9);
   CHECK(number_after(report, "velocity ") < 1e-9);
-  CHECK_THAT(report, !Contains("other contacts"));
+  CHECK_THAT(report, !ContainsSubstring("other contacts"));
 }
 
 /// A table with a head line.
@@ -203,7 +203,7 @@ TEST_CASE("irdm-replay writes surfaces that another reader finds whole and in th
                           stage.path("run" + twice + ".h5").string(), "--csv",
                           stage.path("run" + twice + ".csv").string()});
     REQUIRE(again.status == 0);
-    CHECK_THAT(again.out, Contains("; 42 frames"));
+    CHECK_THAT(again.out, ContainsSubstring("; 42 frames"));
   }
   CHECK(contents(stage.path("vtk1")) == contents(stage.path("vtk2")));
   CHECK(file_content(stage.path("run1.csv")) == file_content(stage.path("run2.csv")));
@@ -271,7 +271,7 @@ TEST_CASE("irdm-replay makes a run again by finite elements, and leaves no half 
   REQUIRE(eventually([&] { return std::filesystem::exists(part); }));
   interrupted.signal(SIGINT);
   CHECK(interrupted.wait() == 1);
-  CHECK_THAT(interrupted.err(), Contains("was interrupted after"));
+  CHECK_THAT(interrupted.err(), ContainsSubstring("was interrupted after"));
   CHECK_FALSE(std::filesystem::exists(part));
   CHECK_FALSE(std::filesystem::exists(fem));
   // What it had found is of another sub-step than this, and given up.
@@ -279,7 +279,7 @@ TEST_CASE("irdm-replay makes a run again by finite elements, and leaves no half 
       run_replay(trace, {"--reference", "fem", "--substep", "0.001", "--rate", "50", "-o", fem});
   REQUIRE(again.status == 0);
   CHECK_FALSE(std::filesystem::exists(fem + ".steps"));
-  CHECK_THAT(again.out, Contains("from forces, finite elements in sub-steps of 0.001 s"));
+  CHECK_THAT(again.out, ContainsSubstring("from forces, finite elements in sub-steps of 0.001 s"));
   REQUIRE(run_replay(trace, {"--rate", "50", "-o", modal}).status == 0);
   const FinishedProgram compared = run_to_end({IRDM_REPLAY, "compare", modal, fem});
   INFO(compared.out);
@@ -318,7 +318,7 @@ TEST_CASE("a reference that is killed goes on where it was, to the same result b
   std::filesystem::resize_file(journal, size() - 3);  // as if it had been written half
   const FinishedProgram rest = run_replay(trace, with_output(parts));
   REQUIRE(rest.status == 0);
-  CHECK_THAT(rest.out, Contains("of these steps are from a run that was interrupted"));
+  CHECK_THAT(rest.out, ContainsSubstring("of these steps are from a run that was interrupted"));
   CHECK(file_content(parts) == file_content(whole));
   CHECK_FALSE(std::filesystem::exists(journal));
 }
@@ -331,7 +331,7 @@ TEST_CASE("irdm-replay refuses what it cannot make again, in one line") {
     CHECK(program.status == 1);
     CHECK(program.out.empty());
     CHECK(std::count(program.err.begin(), program.err.end(), '\n') == 1);
-    CHECK_THAT(program.err, StartsWith("irdm-replay: error: ") && Contains(message));
+    CHECK_THAT(program.err, StartsWith("irdm-replay: error: ") && ContainsSubstring(message));
   };
   refused({}, "trace.h5: no such file");
   stage.write("trace.h5", "no trace");

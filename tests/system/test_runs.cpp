@@ -1,17 +1,17 @@
 #include <csignal>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 
 #include "common/checksum.hpp"
 #include "common/hdf5/file.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/left_out.hpp"
 #include "tests/system/one_session.hpp"
 #include "tests/system/stage.hpp"
 #include "tests/system/trace.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using namespace irdm;
 using namespace irdm::test;
 
@@ -41,7 +41,7 @@ void check_whole(const Trace& trace, const std::string& server_output) {
 
 void check_ended_well(ChildProcess& process) {
   CHECK(process.wait() == 0);
-  CHECK_THAT(process.err(), !Contains("error"));
+  CHECK_THAT(process.err(), !ContainsSubstring("error"));
 }
 
 }  // namespace
@@ -67,11 +67,11 @@ TEST_CASE("a run in real time: both end in order, and the trace says what they s
   CHECK(number_after(server.process.out(), "steps without a finite solution: ") == 0);
   CHECK(number_after(server.process.out(), "sessions: ") ==
         number_after(bridge.out(), "sessions "));
-  CHECK_THAT(server.process.out(), Contains(" accepted, 0 refused, 0 closed"));
+  CHECK_THAT(server.process.out(), ContainsSubstring(" accepted, 0 refused, 0 closed"));
   check_one_session(bridge.out());
   CHECK(number_after(bridge.out(), "forces: ") > 0);
   CHECK(number_after(bridge.out(), "contact models: ") > 10);
-  CHECK_THAT(bridge.out(), Contains(" 0 invalid"));
+  CHECK_THAT(bridge.out(), ContainsSubstring(" 0 invalid"));
   if (!kKeepsPace) return leave_out(kTooSlow);
   CHECK(rows_in(trace, kTouching) > 0);
   CHECK(rows_in(trace, kHolding) > 0);
@@ -86,7 +86,7 @@ TEST_CASE("a run in real time whose bridge holds the server's forces") {
   check_ended_well(bridge);
   server.process.signal(SIGTERM);
   check_ended_well(server.process);
-  CHECK_THAT(bridge.out(), !Contains("contact models"));
+  CHECK_THAT(bridge.out(), !ContainsSubstring("contact models"));
   if (!kKeepsPace) return leave_out(kTooSlow);
   CHECK(number_after(bridge.out(), "peak force: ") > 0.1);
 }
@@ -100,7 +100,7 @@ TEST_CASE("a run in real time with columns of R from the disk, as many as a fing
   server.process.signal(SIGTERM);
   check_ended_well(server.process);
   const std::string said = server.process.out();
-  CHECK_THAT(said, Contains(", cache misses: ") && !Contains("cannot be read"));
+  CHECK_THAT(said, ContainsSubstring(", cache misses: ") && !ContainsSubstring("cannot be read"));
   CHECK(number_after(said, "nodes whose columns were read: ") >= 12);
   CHECK(number_after(said, "steps without a finite solution: ") == 0);
   check_whole(read_trace(stage.path("trace.h5")), said);
@@ -113,8 +113,8 @@ TEST_CASE("a budget that is too small for a finger is refused") {
   stage.write("scene.toml", scene_text("", "dense") + "memory_budget = 4\n");
   ChildProcess server({IRDM_SERVER, stage.path("scene.toml").string()});
   CHECK(server.wait() == 1);
-  CHECK_THAT(server.err(), Contains("memory_budget of 4 MiB is too small") &&
-                               Contains("the columns of 12 nodes need 8 MiB; raise it"));
+  CHECK_THAT(server.err(), ContainsSubstring("memory_budget of 4 MiB is too small") &&
+                               ContainsSubstring("the columns of 12 nodes need 8 MiB; raise it"));
 }
 
 TEST_CASE("a server runs for its duration, to the step, and tells the bridge when it ends") {
@@ -198,8 +198,9 @@ TEST_CASE("a disk that gets full is told in one line at the end, with status 1")
                   "--record", stage.path("trace.h5").string(), "--duration", "2"});
   CHECK(server.status == 1);
   CHECK(std::count(server.err.begin(), server.err.end(), '\n') == 1);
-  CHECK_THAT(server.err, Catch::StartsWith("irdm-server: error: recording ended early: ") &&
-                             Contains("trace.h5") && Contains("check free space"));
+  CHECK_THAT(server.err,
+             Catch::Matchers::StartsWith("irdm-server: error: recording ended early: ") &&
+                 ContainsSubstring("trace.h5") && ContainsSubstring("check free space"));
   CHECK(number_after(server.out, "steps: ") == 1000);
   CHECK(hdf5::File::open(stage.path("trace.h5")).exists("/committed"));
 }

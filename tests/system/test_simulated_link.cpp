@@ -1,12 +1,12 @@
 // Bridge and server in lockstep behind a link that the bridge simulates (bridge.link).
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
 
+#include "tests/support/catch.hpp"
 #include "tests/system/stage.hpp"
 #include "tests/system/trace.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using namespace irdm;
 using namespace irdm::test;
 
@@ -33,7 +33,7 @@ Run play(const Stage& stage, const std::string& link, const std::string& mode = 
   ChildProcess bridge = stage.start_bridge(server);
   REQUIRE(bridge.wait() == 0);
   REQUIRE(server.process.wait() == 0);
-  CHECK_THAT(bridge.out(), Contains("lockstep") && Contains(" 0 gaps"));
+  CHECK_THAT(bridge.out(), ContainsSubstring("lockstep") && ContainsSubstring(" 0 gaps"));
   return {read_trace(path), number_after(bridge.out(), "peak force: "),
           number_after(bridge.out(), "impulse ")};
 }
@@ -67,7 +67,7 @@ TEST_CASE("simulated link: a run over a bad link is the same to the bit, and rep
   const FinishedProgram replay =
       run_to_end({IRDM_REPLAY, stage.path("trace.h5").string(), "--from", "inputs"});
   REQUIRE(replay.status == 0);
-  CHECK_THAT(replay.out, Contains("force 0 N") && Contains("position 0 m"));
+  CHECK_THAT(replay.out, ContainsSubstring("force 0 N") && ContainsSubstring("position 0 m"));
   const Run again = play(stage, kBusy + "loss = 0.05\nseed = 7\n");
   CHECK(first.trace.numbers == again.trace.numbers);
   CHECK(first.trace.contact == again.trace.contact);
@@ -120,5 +120,6 @@ TEST_CASE("simulated link: a server in real time is not one for it") {
   const Server server = stage.start_server();
   ChildProcess bridge = stage.start_bridge(server);
   CHECK(bridge.wait() == 1);
-  CHECK_THAT(bridge.err(), Contains("bridge.link is simulated") && Contains("--lockstep"));
+  CHECK_THAT(bridge.err(),
+             ContainsSubstring("bridge.link is simulated") && ContainsSubstring("--lockstep"));
 }

@@ -1,6 +1,5 @@
 // Torque from a tool in the server to the hand that holds it at the bridge.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <chrono>
 #include <cmath>
 #include <csignal>
@@ -10,12 +9,13 @@
 
 #include "common/hdf5/file.hpp"
 #include "common/motion/rigid_body.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/left_out.hpp"
 #include "tests/system/device_stage.hpp"
 #include "tests/system/stage.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using namespace irdm;
 using namespace irdm::test;
 
@@ -157,16 +157,19 @@ TEST_CASE(
   bridge.line_with("in contact");
   bridge.signal(SIGTERM);
   CHECK(bridge.wait() == 0);
-  CHECK_THAT(bridge.out(), Contains("peak torque"));
+  CHECK_THAT(bridge.out(), ContainsSubstring("peak torque"));
   CHECK(device.misuses() == "misuses 0 \n");
   // The rod lies on the plane, level: about its end it turns up.
-  Vector3 largest = Vector3::Zero();
+  // While it lands, a busy machine's late steps turn it either way.
+  double upwards = 0.0;
+  double largest = 0.0;
   for (const Frame& frame : device.frames()) {
     if (frame.tick < 1000) REQUIRE(frame.torque.norm() < 1e-3);  // at rest above the plane
-    if (frame.torque.norm() > largest.norm()) largest = frame.torque;
+    upwards = std::max(upwards, frame.torque.z());
+    largest = std::max(largest, frame.torque.norm());
   }
-  CHECK(largest.z() > 0.01);
-  CHECK(largest.norm() < 0.15 * (1.0 + 1e-9));
+  CHECK(upwards > 0.01);
+  CHECK(largest < 0.15 * (1.0 + 1e-9));
   CHECK(device.frames().back().torque.isZero(0.0));
 }
 

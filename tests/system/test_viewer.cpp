@@ -1,6 +1,5 @@
 // The viewer of a real irdm-server.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <chrono>
 #include <csignal>
 #include <cstring>
@@ -9,13 +8,14 @@
 #include "common/hdf5/file.hpp"
 #include "common/model/model_file.hpp"
 #include "common/model/model_writer.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/system/stage.hpp"
 #include "tests/system/trace.hpp"
 #include "tests/viewer/web_peer.hpp"
 #include "viewer/message.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using namespace irdm;
 using namespace irdm::test;
 
@@ -167,7 +167,7 @@ TEST_CASE("viewer: it can be left out, by the scene and by --no-viewer") {
                                                : std::vector<std::string>{});
   server.process.signal(SIGTERM);
   CHECK(server.process.wait() == 0);
-  CHECK_THAT(server.process.out(), !Contains("http"));
+  CHECK_THAT(server.process.out(), !ContainsSubstring("http"));
 }
 
 TEST_CASE("viewer: an address that can be reached from elsewhere needs a token") {
@@ -175,7 +175,7 @@ TEST_CASE("viewer: an address that can be reached from elsewhere needs a token")
   stage.write("scene.toml", "[viewer]\naddress = \"0.0.0.0\"\n" + scene_text());
   const FinishedProgram ended = run_to_end({IRDM_SERVER, stage.path("scene.toml").string()});
   CHECK(ended.status == 1);
-  CHECK_THAT(ended.err, Contains("set viewer.token"));
+  CHECK_THAT(ended.err, ContainsSubstring("set viewer.token"));
 }
 
 TEST_CASE("viewer: its stylus, friction and gravity act on the run and are in its trace") {
@@ -270,10 +270,10 @@ TEST_CASE("viewer: what --play cannot show is refused in one line") {
     CHECK(std::count(ended.err.begin(), ended.err.end(), '\n') == 1);
     return ended.err;
   };
-  CHECK_THAT(refusal("missing.h5"), Contains("missing.h5"));
-  CHECK_THAT(refusal("scene.toml"), Contains("scene.toml"));
+  CHECK_THAT(refusal("missing.h5"), ContainsSubstring("missing.h5"));
+  CHECK_THAT(refusal("scene.toml"), ContainsSubstring("scene.toml"));
   std::filesystem::copy_file(cube_model(), stage.path("model.h5"));
-  CHECK_THAT(refusal("model.h5"), Contains("is not a trace"));
+  CHECK_THAT(refusal("model.h5"), ContainsSubstring("is not a trace"));
 }
 
 namespace {
@@ -354,7 +354,7 @@ TEST_CASE("viewer: a run that is recorded or in lockstep keeps its scene, and sa
   CHECK(state.has_scenes);
   CHECK_FALSE(state.can_load);
   load(peer, "cube.toml");
-  CHECK_THAT(next_state(peer).notice, Contains("cube.toml: cannot be loaded"));
+  CHECK_THAT(next_state(peer).notice, ContainsSubstring("cube.toml: cannot be loaded"));
   server.process.signal(SIGTERM);
   CHECK(server.process.wait() == 0);
 }
@@ -366,7 +366,7 @@ TEST_CASE("viewer: without a folder of scenes there is nothing to load") {
   next(peer, kScene);
   CHECK_FALSE(next_state(peer).has_scenes);
   load(peer, "scene.toml");
-  CHECK_THAT(next_state(peer).notice, Contains("--scenes"));
+  CHECK_THAT(next_state(peer).notice, ContainsSubstring("--scenes"));
 }
 
 TEST_CASE("a bridge that is sent to the page's port says so in one line, and ends") {

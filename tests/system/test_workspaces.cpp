@@ -1,13 +1,13 @@
 // Devices with workspaces of their own, as processes: what each of them does in D is done in W.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <sstream>
 
+#include "tests/support/catch.hpp"
 #include "tests/system/stage.hpp"
 #include "tests/system/trace.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using namespace irdm;
 using namespace irdm::test;
 
@@ -107,7 +107,7 @@ TEST_CASE("two styluses of one bridge, each with a workspace of its own, squeeze
   REQUIRE(bridge.wait() == 0);
   REQUIRE(server.process.wait() == 0);
   check_squeezed(read_trace(stage.path("trace.h5"), 2));
-  CHECK_THAT(bridge.out(), Contains("styluses 2"));
+  CHECK_THAT(bridge.out(), ContainsSubstring("styluses 2"));
 }
 
 TEST_CASE("a clutched stylus that holds the object stays in W while its device goes elsewhere") {

@@ -1,10 +1,10 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <memory>
 #include <string>
 
+#include "tests/support/catch.hpp"
 #include "tests/viewer/frames.hpp"
 #include "viewer/scene_message.hpp"
 

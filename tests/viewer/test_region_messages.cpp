@@ -1,6 +1,6 @@
-#include <catch2/catch.hpp>
 #include <memory>
 
+#include "tests/support/catch.hpp"
 #include "tests/viewer/frames.hpp"
 #include "viewer/scene_message.hpp"
 

@@ -1,7 +1,7 @@
 // Which pages of which hosts may talk to the viewer's server.
-#include <catch2/catch.hpp>
 #include <string>
 
+#include "tests/support/catch.hpp"
 #include "viewer/request_rules.hpp"
 
 using namespace irdm::viewer;

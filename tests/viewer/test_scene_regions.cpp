@@ -1,8 +1,8 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
 
 #include "precompute/mesh/surface.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/synthetic_model.hpp"
 #include "viewer/scene_regions.hpp"
 

@@ -1,7 +1,7 @@
 // What a viewer that hardly reads costs the server: what the kernel holds for it, one message that
 // is being written, and one of each kind that waits.
-#include <catch2/catch.hpp>
 
+#include "tests/support/catch.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/viewer/example_run.hpp"
 #include "tests/viewer/web_peer.hpp"

@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
 #include <cstdint>
 #include <vector>
 
 #include "common/wire/datagram_channel.hpp"
 #include "tests/support/allocation_guard.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/wire/from_hex.hpp"
 
 using irdm::test::AllocationGuard;

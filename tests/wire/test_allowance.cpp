@@ -1,6 +1,5 @@
-#include <catch2/catch.hpp>
-
 #include "common/wire/token_bucket.hpp"
+#include "tests/support/catch.hpp"
 
 using irdm::TokenBucket;
 

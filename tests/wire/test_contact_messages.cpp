@@ -1,5 +1,4 @@
 #include <bit>
-#include <catch2/catch.hpp>
 #include <limits>
 #include <span>
 #include <vector>
@@ -7,6 +6,7 @@
 #include "common/wire/frame.hpp"
 #include "common/wire/payload.hpp"
 #include "common/wire/protocol_error.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 using namespace irdm::wire;

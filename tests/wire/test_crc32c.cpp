@@ -1,9 +1,9 @@
-#include <catch2/catch.hpp>
 #include <cstdint>
 #include <string_view>
 #include <vector>
 
 #include "common/wire/frame.hpp"
+#include "tests/support/catch.hpp"
 
 using irdm::wire::crc32c;
 

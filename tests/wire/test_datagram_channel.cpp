@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cstdint>
 #include <vector>
 
@@ -7,6 +6,7 @@
 #include "common/wire/frame.hpp"
 #include "common/wire/secret_key.hpp"
 #include "tests/support/allocation_guard.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/wire/from_hex.hpp"
 
 using namespace irdm::wire;

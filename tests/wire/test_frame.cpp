@@ -1,10 +1,10 @@
-#include <catch2/catch.hpp>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include "common/wire/frame.hpp"
 #include "common/wire/protocol_error.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/wire/from_hex.hpp"
 
 using namespace irdm::wire;

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cstdint>
 #include <numeric>
 #include <optional>
@@ -8,6 +7,7 @@
 
 #include "common/wire/frame.hpp"
 #include "common/wire/protocol_error.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm;
 using namespace irdm::wire;

@@ -1,5 +1,4 @@
 #include <bit>
-#include <catch2/catch.hpp>
 #include <cstdint>
 #include <limits>
 #include <random>
@@ -7,6 +6,7 @@
 
 #include "common/wire/frame.hpp"
 #include "common/wire/protocol_error.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm::wire;
 using irdm::Quaternion;

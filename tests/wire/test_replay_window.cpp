@@ -1,11 +1,11 @@
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cstdint>
 #include <limits>
 #include <random>
 #include <set>
 
 #include "common/wire/datagram_channel.hpp"
+#include "tests/support/catch.hpp"
 
 using irdm::wire::ReplayWindow;
 

@@ -1,14 +1,14 @@
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
 #include <string>
 
 #include "common/error.hpp"
 #include "common/wire/secret_key.hpp"
+#include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using namespace irdm;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 namespace fs = std::filesystem;
 
 namespace {
@@ -50,8 +50,8 @@ TEST_CASE("a key file with anything else in it is refused, and not quoted") {
        {std::string(), kDigits.substr(2), kDigits + "20", kDigits + "\n" + kDigits,
         kDigits.substr(1) + "g", kDigits.substr(1) + "-"}) {
     const std::string rejection = KeyFile(content).rejection();
-    CHECK_THAT(rejection, Contains("is not a key of 64 hexadecimal digits"));
-    CHECK_THAT(rejection, !Contains("0203"));
+    CHECK_THAT(rejection, ContainsSubstring("is not a key of 64 hexadecimal digits"));
+    CHECK_THAT(rejection, !ContainsSubstring("0203"));
   }
 }
 
@@ -59,7 +59,7 @@ TEST_CASE("a key file that others may read or write is refused") {
   for (const fs::perms more : {fs::perms::group_read, fs::perms::others_read,
                                fs::perms::group_write, fs::perms::others_exec}) {
     CHECK_THAT(KeyFile(kDigits, kOwner | more).rejection(),
-               Contains("others may read or write") && Contains("chmod 600 "));
+               ContainsSubstring("others may read or write") && ContainsSubstring("chmod 600 "));
   }
   CHECK(KeyFile(kDigits, fs::perms::owner_read).rejection().empty());
 }
@@ -67,6 +67,6 @@ TEST_CASE("a key file that others may read or write is refused") {
 TEST_CASE("a key file that is none is refused, with the way to make one") {
   const test::TemporaryFolder folder;
   CHECK_THROWS_WITH(wire::read_key_file(folder.path() / "none"),
-                    Contains("no such file") && Contains("openssl rand -hex 32"));
-  CHECK_THROWS_WITH(wire::read_key_file(folder.path()), Contains("is not a file"));
+                    ContainsSubstring("no such file") && ContainsSubstring("openssl rand -hex 32"));
+  CHECK_THROWS_WITH(wire::read_key_file(folder.path()), ContainsSubstring("is not a file"));
 }

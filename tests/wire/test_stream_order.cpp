@@ -1,8 +1,8 @@
-#include <catch2/catch.hpp>
 #include <cstdint>
 #include <limits>
 
 #include "common/wire/stream.hpp"
+#include "tests/support/catch.hpp"
 
 using namespace irdm::wire;
 

@@ -24,7 +24,7 @@
 
 #include "bench/frame_relay.hpp"
 #include "bench/statistics.hpp"
-#include "common/program/program.hpp"
+#include "common/program/stop_signal.hpp"
 #include "common/realtime/clock.hpp"
 #include "device_bridge/network_client.hpp"
 #include "device_bridge/servo_thread.hpp"

@@ -14,7 +14,7 @@
 
 #include "bench/frame_relay.hpp"
 #include "common/error.hpp"
-#include "common/program/program.hpp"
+#include "common/program/stop_signal.hpp"
 #include "common/realtime/clock.hpp"
 #include "common/realtime/histogram.hpp"
 #include "device_bridge/network_client.hpp"

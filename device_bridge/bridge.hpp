@@ -4,7 +4,7 @@
 #include <limits>
 #include <string>
 
-#include "common/program/program.hpp"
+#include "common/program/stop_signal.hpp"
 #include "device_bridge/bridge_config.hpp"
 #include "device_bridge/network_client.hpp"
 #include "device_bridge/servo_thread.hpp"

@@ -1,5 +1,6 @@
 #include "ros_bridge/ros_bridge.hpp"
 
+#include <CLI/CLI.hpp>
 #include <memory>
 #include <optional>
 #include <string>
@@ -7,7 +8,7 @@
 
 #include "common/config/toml_reader.hpp"
 #include "common/error.hpp"
-#include "common/program/program.hpp"
+#include "common/program/stop_signal.hpp"
 #include "ros_bridge/surface_topics.hpp"
 
 namespace irdm::ros {
@@ -109,7 +110,7 @@ std::string fault_of_name(const std::string& text) {
 
 }  // namespace
 
-std::function<int()> add_options(CLI::App& app) {
+Command add_options(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::Option* server =
       app.add_option("--server", options->server, "HOST:PORT of irdm-server: styluses");

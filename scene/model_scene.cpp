@@ -1,11 +1,12 @@
 #include "scene/model_scene.hpp"
 
-#include <Eigen/Eigenvalues>
+#include <toml++/toml.h>
 #include <algorithm>
 #include <mutex>
 #include <numbers>
 #include <sstream>
 
+#include "common/dense_algebra.hpp"
 #include "common/hdf5/handle.hpp"
 #include "common/model/model_file.hpp"
 
@@ -43,9 +44,7 @@ void add_tether(const Model& model, toml::table& object) {
   const double bound = kSlowestPerStep / model.dt;
   const double frequency = std::min(2.0 * std::numbers::pi * kTetherFrequency, bound);
   const double damping = std::min(kTetherDamping, bound);
-  const double inertia =
-      Eigen::SelfAdjointEigenSolver<Matrix3>(model.body.inertia, Eigen::EigenvaluesOnly)
-          .eigenvalues()[0];
+  const double inertia = symmetric_eigenvalues(model.body.inertia)(0);
   const double square = frequency * frequency;
   object.insert("tether",
                 pair("stiffness", model.body.mass * square, "angular_stiffness", inertia * square));

@@ -1,5 +1,6 @@
 #include "scene/saved_scene.hpp"
 
+#include <toml++/toml.h>
 #include <algorithm>
 #include <cctype>
 #include <sstream>

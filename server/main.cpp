@@ -1,31 +1,8 @@
-#include "common/program/program.hpp"
-#include "server/run_server.hpp"
+#include "server/command.hpp"
 
 int main(int argc, char** argv) {
   irdm::wait_passively_in_openmp(argv);
-  irdm::ServerOptions options;
-  CLI::App app("Renders a soft, free-floating object to force-feedback styluses.", "irdm-server");
-  app.add_option("scene", options.scene, "Scene file (TOML)")->required();
-  app.add_option("--port", options.port,
-                 "TCP port to listen on; 0: any free one (default: the scene's)")
-      ->check(CLI::Range(0, 65535));
-  app.add_option("--record", options.record,
-                 "Trace file (HDF5) to record the run in; must not exist");
-  app.add_option("--duration", options.duration,
-                 "Seconds to run, simulated ones in lockstep (default: until stopped)")
-      ->check(irdm::positive_number());
-  app.add_flag("--lockstep", options.lockstep,
-               "Simulated clock: step k uses exactly sample k of every stylus");
-  app.add_flag("--no-viewer", options.no_viewer, "Do not serve the view for browsers");
-  app.add_option("--recordings", options.recordings,
-                 "Folder for what is recorded from the browser (default: the scene's)");
-  app.add_option("--scenes", options.scenes,
-                 "Folder of scenes and models that the browser may load, and save scenes into "
-                 "(default: the scene's)");
-  app.add_option("--play", options.play,
-                 "Trace file to show in the browser in place of a live run of the scene")
-      ->excludes("--record", "--lockstep", "--no-viewer", "--duration", "--scenes");
-  return irdm::run_program(app, argc, argv, [&] {
-    return options.play ? irdm::run_playback(options) : irdm::run_server(options);
-  });
+  return irdm::run_commands("irdm-server",
+                            "Renders a soft, free-floating object to force-feedback styluses.",
+                            argc, argv, irdm::add_server_command, {});
 }

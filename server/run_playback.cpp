@@ -6,7 +6,7 @@
 #include "common/checksum.hpp"
 #include "common/error.hpp"
 #include "common/number_text.hpp"
-#include "common/program/program.hpp"
+#include "common/program/stop_signal.hpp"
 #include "common/realtime/event_fd.hpp"
 #include "scene/scene.hpp"
 #include "server/run_server.hpp"

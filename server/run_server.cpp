@@ -4,7 +4,7 @@
 #include <cmath>
 #include <memory>
 
-#include "common/program/program.hpp"
+#include "common/program/stop_signal.hpp"
 #include "server/prepared_run.hpp"
 #include "server/scene_loader.hpp"
 #include "server/server_run.hpp"

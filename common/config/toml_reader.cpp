@@ -1,5 +1,6 @@
 #include "common/config/toml_reader.hpp"
 
+#include <toml++/toml.h>
 #include <algorithm>
 
 #include "common/config/input_file.hpp"
@@ -16,18 +17,63 @@ constexpr std::size_t kLongestFileName = 255;
 
 }  // namespace
 
-TomlTable TomlTable::adopt(toml::table root, std::string name, std::filesystem::path folder) {
-  auto document =
-      std::make_shared<Document>(Document{std::move(root), std::move(name), std::move(folder)});
-  const toml::table* table = &document->root;
-  return {std::move(document), table, ""};
-}
+struct TomlTable::Table {
+  struct Document {
+    toml::table root;
+    std::string name;
+    std::filesystem::path folder;
+  };
+
+  std::shared_ptr<const Document> document;
+  const toml::table* nodes;
+
+  static std::shared_ptr<const Table> root(toml::table nodes, std::string name,
+                                           std::filesystem::path folder) {
+    auto document =
+        std::make_shared<Document>(Document{std::move(nodes), std::move(name), std::move(folder)});
+    const toml::table* root = &document->root;
+    return std::make_shared<Table>(Table{std::move(document), root});
+  }
+
+  std::shared_ptr<const Table> child(const toml::table* table) const {
+    return std::make_shared<Table>(Table{document, table});
+  }
+
+  /// Returns the node of a key and marks the key as read; nullptr when it is absent.
+  static const toml::node* find(TomlTable& table, const std::string& key) {
+    table.read_.insert(key);
+    return table.table_->nodes->get(key);
+  }
+
+  static const toml::node& need(TomlTable& table, const std::string& key) {
+    const toml::node* node = find(table, key);
+    if (node == nullptr) {
+      const std::optional<std::string> meant = nearest_word(key, table.keys_not_read());
+      table.fail(key, "is missing",
+                 meant ? "add it, or is it " + in_quotes(*meant) + "?" : "add it");
+    }
+    return *node;
+  }
+
+  static double checked(const TomlTable& table, const std::string& key, const toml::node& node,
+                        const Range& range) {
+    const std::optional<double> value = node.value<double>();
+    if (!node.is_number() || !value) {
+      table.fail(key, "is not a number", "give " + describe(range));
+    }
+    if (!range.contains(*value)) {
+      table.fail(key, "is " + number_text(*value), "give " + describe(range));
+    }
+    return *value;
+  }
+};
 
 TomlTable TomlTable::parse_file(const std::filesystem::path& path) {
   require_file(path);
   try {
-    return adopt(toml::parse_file(path.string()), path.string(),
-                 std::filesystem::absolute(path).parent_path());
+    return {Table::root(toml::parse_file(path.string()), path.string(),
+                        std::filesystem::absolute(path).parent_path()),
+            ""};
   } catch (const toml::parse_error& error) {
     throw Error(path.string() + ":" + std::to_string(error.source().begin.line),
                 shortened(error.description(), kMostOfParser), "correct the TOML syntax");
@@ -41,7 +87,7 @@ TomlTable TomlTable::parse_text(const std::string& text, const std::string& name
 TomlTable TomlTable::parse_text(const std::string& text, const std::string& name,
                                 const std::filesystem::path& folder) {
   try {
-    return adopt(toml::parse(text), name, folder);
+    return {Table::root(toml::parse(text), name, folder), ""};
   } catch (const toml::parse_error& error) {
     throw Error(name + ":" + std::to_string(error.source().begin.line),
                 shortened(error.description(), kMostOfParser), "correct the TOML syntax");
@@ -54,50 +100,29 @@ std::string TomlTable::full_name(const std::string& key) const {
 
 void TomlTable::fail(const std::string& key, const std::string& what,
                      const std::string& remedy) const {
-  const toml::node* node = key.empty() ? nullptr : table_->get(key);
-  const auto line = node != nullptr ? node->source().begin.line : table_->source().begin.line;
-  std::string where = document_->name;
+  const toml::table& nodes = *table_->nodes;
+  const toml::node* node = key.empty() ? nullptr : nodes.get(key);
+  const auto line = node != nullptr ? node->source().begin.line : nodes.source().begin.line;
+  std::string where = table_->document->name;
   if (line > 0) where += ":" + std::to_string(line);
   throw Error(where, (key.empty() ? "[" + name_ + "]" : full_name(key)) + " " + what, remedy);
 }
 
 bool TomlTable::has(const std::string& key) const {
-  return table_->contains(key);
-}
-
-const toml::node* TomlTable::find(const std::string& key) {
-  read_.insert(key);
-  return table_->get(key);
-}
-
-const toml::node& TomlTable::need(const std::string& key) {
-  const toml::node* node = find(key);
-  if (node == nullptr) {
-    const std::optional<std::string> meant = nearest_word(key, keys_not_read());
-    fail(key, "is missing", meant ? "add it, or is it " + in_quotes(*meant) + "?" : "add it");
-  }
-  return *node;
-}
-
-double TomlTable::checked(const std::string& key, const toml::node& node,
-                          const Range& range) const {
-  const std::optional<double> value = node.value<double>();
-  if (!node.is_number() || !value) fail(key, "is not a number", "give " + describe(range));
-  if (!range.contains(*value)) fail(key, "is " + number_text(*value), "give " + describe(range));
-  return *value;
+  return table_->nodes->contains(key);
 }
 
 double TomlTable::number(const std::string& key, const Range& range) {
-  return checked(key, need(key), range);
+  return Table::checked(*this, key, Table::need(*this, key), range);
 }
 
 double TomlTable::number(const std::string& key, const Range& range, double fallback) {
-  const toml::node* node = find(key);
-  return node == nullptr ? fallback : checked(key, *node, range);
+  const toml::node* node = Table::find(*this, key);
+  return node == nullptr ? fallback : Table::checked(*this, key, *node, range);
 }
 
 int TomlTable::integer(const std::string& key, int lowest, int highest) {
-  const toml::node& node = need(key);
+  const toml::node& node = Table::need(*this, key);
   const std::string wanted =
       "give a whole number from " + std::to_string(lowest) + " to " + std::to_string(highest);
   if (!node.is_integer()) fail(key, "is not a whole number", wanted);
@@ -107,18 +132,18 @@ int TomlTable::integer(const std::string& key, int lowest, int highest) {
 }
 
 int TomlTable::integer(const std::string& key, int lowest, int highest, int fallback) {
-  return has(key) ? integer(key, lowest, highest) : (find(key), fallback);
+  return has(key) ? integer(key, lowest, highest) : (Table::find(*this, key), fallback);
 }
 
 bool TomlTable::boolean(const std::string& key, bool fallback) {
-  const toml::node* node = find(key);
+  const toml::node* node = Table::find(*this, key);
   if (node == nullptr) return fallback;
   if (!node->is_boolean()) fail(key, "is not true or false", "give true or false");
   return node->value<bool>().value_or(fallback);
 }
 
 std::string TomlTable::text(const std::string& key) {
-  const toml::node& node = need(key);
+  const toml::node& node = Table::need(*this, key);
   if (!node.is_string()) fail(key, "is not text", "give text in quotes");
   std::string text = node.value<std::string>().value_or("");
   if (text.size() > lab::kLongestText) {
@@ -129,7 +154,7 @@ std::string TomlTable::text(const std::string& key) {
 }
 
 std::string TomlTable::text(const std::string& key, const std::string& fallback) {
-  return has(key) ? text(key) : (find(key), fallback);
+  return has(key) ? text(key) : (Table::find(*this, key), fallback);
 }
 
 std::string TomlTable::choice(const std::string& key, const std::vector<std::string>& words,
@@ -151,37 +176,39 @@ std::filesystem::path TomlTable::path(const std::string& key) {
     fail(key, "has the file name " + in_quotes(part.string()),
          "give names of at most " + std::to_string(kLongestFileName) + " bytes");
   }
-  return (document_->folder / name).lexically_normal();
+  return (table_->document->folder / name).lexically_normal();
 }
 
 std::vector<double> TomlTable::numbers(const std::string& key, std::size_t count,
                                        const Range& range) {
-  const toml::array* array = need(key).as_array();
+  const toml::array* array = Table::need(*this, key).as_array();
   const std::string wanted = "give a list of " + std::to_string(count) + " numbers";
   if (array == nullptr) fail(key, "is not a list", wanted);
   if (array->size() != count) {
     fail(key, "has " + std::to_string(array->size()) + " entries", wanted);
   }
   std::vector<double> values;
-  for (const toml::node& node : *array) values.push_back(checked(key, node, range));
+  for (const toml::node& node : *array) {
+    values.push_back(Table::checked(*this, key, node, range));
+  }
   return values;
 }
 
 std::vector<double> TomlTable::numbers(const std::string& key, std::size_t count,
                                        const Range& range, const std::vector<double>& fallback) {
-  return has(key) ? numbers(key, count, range) : (find(key), fallback);
+  return has(key) ? numbers(key, count, range) : (Table::find(*this, key), fallback);
 }
 
 TomlTable TomlTable::table(const std::string& key, bool required) {
-  const toml::node* node = required ? &need(key) : find(key);
-  if (node == nullptr) return {document_, &kEmptyTable, full_name(key)};
+  const toml::node* node = required ? &Table::need(*this, key) : Table::find(*this, key);
+  if (node == nullptr) return {table_->child(&kEmptyTable), full_name(key)};
   if (!node->is_table()) fail(key, "is not a table", "write it as [" + full_name(key) + "]");
-  return {document_, node->as_table(), full_name(key)};
+  return {table_->child(node->as_table()), full_name(key)};
 }
 
 std::vector<TomlTable> TomlTable::tables(const std::string& key) {
   std::vector<TomlTable> found;
-  const toml::node* node = find(key);
+  const toml::node* node = Table::find(*this, key);
   if (node == nullptr) return found;
   const toml::array* array = node->as_array();
   if (array == nullptr || !std::all_of(array->begin(), array->end(),
@@ -189,8 +216,8 @@ std::vector<TomlTable> TomlTable::tables(const std::string& key) {
     fail(key, "is not a list of tables", "write it as [[" + full_name(key) + "]]");
   }
   for (const toml::node& each : *array) {
-    found.push_back(
-        {document_, each.as_table(), full_name(key) + "[" + std::to_string(found.size()) + "]"});
+    found.push_back({table_->child(each.as_table()),
+                     full_name(key) + "[" + std::to_string(found.size()) + "]"});
   }
   return found;
 }
@@ -206,7 +233,7 @@ void TomlTable::finish() const {
 
 std::vector<std::string> TomlTable::keys_not_read() const {
   std::vector<std::string> keys;
-  for (const auto& [key, node] : *table_) {
+  for (const auto& [key, node] : *table_->nodes) {
     if (!read_.contains(std::string(key.str()))) keys.emplace_back(key.str());
   }
   return keys;

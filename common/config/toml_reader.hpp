@@ -1,6 +1,5 @@
 #pragma once
 
-#include <toml++/toml.h>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -56,22 +55,13 @@ class TomlTable {
                          const std::string& remedy) const;
 
  private:
-  struct Document {
-    toml::table root;
-    std::string name;
-    std::filesystem::path folder;
-  };
-  TomlTable(std::shared_ptr<const Document> document, const toml::table* table, std::string name)
-      : document_(std::move(document)), table_(table), name_(std::move(name)) {}
-  static TomlTable adopt(toml::table root, std::string name, std::filesystem::path folder);
-  const toml::node* find(const std::string& key);
-  const toml::node& need(const std::string& key);
+  struct Table;  ///< a table of toml++ and the document that owns it; defined in the source alone
+  TomlTable(std::shared_ptr<const Table> table, std::string name)
+      : table_(std::move(table)), name_(std::move(name)) {}
   std::vector<std::string> keys_not_read() const;
   std::string full_name(const std::string& key) const;
-  double checked(const std::string& key, const toml::node& node, const Range& range) const;
 
-  std::shared_ptr<const Document> document_;
-  const toml::table* table_ = nullptr;
+  std::shared_ptr<const Table> table_;
   std::string name_;
   std::set<std::string> read_;
 };

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/config/range.hpp"
+#include "common/dense_algebra.hpp"
 #include "common/model/model_writer.hpp"
 
 namespace irdm {
@@ -124,8 +125,7 @@ FaultText inertia_fault(const Model& model) {
   if ((inertia - inertia.transpose()).norm() > 1e-9 * inertia.norm()) {
     return "/body inertia is not symmetric";
   }
-  const Vector3 moments =
-      Eigen::SelfAdjointEigenSolver<Matrix3>(inertia, Eigen::EigenvaluesOnly).eigenvalues();
+  const Vector3 moments = symmetric_eigenvalues(inertia);
   const double scale = model.body.mass * std::pow(radius(model.mesh), 2);
   if (!(moments.minCoeff() > 1e-14 * scale)) return "/body inertia must be positive definite";
   if (!(moments.maxCoeff() < 10.0 * scale)) {

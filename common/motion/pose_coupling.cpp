@@ -1,10 +1,10 @@
 #include "common/motion/pose_coupling.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <string>
 
+#include "common/dense_algebra.hpp"
 #include "common/error.hpp"
 
 namespace irdm {
@@ -42,29 +42,25 @@ Matrix6 mobility_at(const BodyProperties& body, const Vector3& reference) {
 // Least mass at the reference point [kg].
 double least_mass(const BodyProperties& body, const Vector3& reference) {
   const Matrix3 at_point = mobility_at(body, reference).topLeftCorner<3, 3>();
-  return 1.0 /
-         Eigen::SelfAdjointEigenSolver<Matrix3>(at_point, Eigen::EigenvaluesOnly).eigenvalues()[2];
+  return 1.0 / symmetric_eigenvalues(at_point)(2);
 }
 
 double largest_inertia(const BodyProperties& body) {
-  return Eigen::SelfAdjointEigenSolver<Matrix3>(body.inertia, Eigen::EigenvaluesOnly)
-      .eigenvalues()[2];
+  return symmetric_eigenvalues(body.inertia)(2);
 }
 
 // `constant` about all axes, but about none more than `share` of its moment of inertia.
 Matrix3 limited_by_inertia(double constant, double share, const Matrix3& inertia) {
-  const Eigen::SelfAdjointEigenSolver<Matrix3> axes(inertia);
-  const Vector3 limited = (share * axes.eigenvalues()).cwiseMin(constant);
+  const SymmetricEigen axes = symmetric_eigenpairs(inertia);
+  const Vector3 limited = (share * axes.values).cwiseMin(constant);
   if (limited.minCoeff() == constant) return constant * Matrix3::Identity();
-  return axes.eigenvectors() * limited.asDiagonal() * axes.eigenvectors().transpose();
+  return axes.vectors * limited.asDiagonal() * axes.vectors.transpose();
 }
 
 // Largest eigenvalue of mobility times `constants`, both symmetric and the mobility definite.
 double largest_rate(const Matrix6& mobility, const Matrix6& constants) {
   const Matrix6 root = Eigen::LLT<Matrix6>(mobility).matrixL();
-  return Eigen::SelfAdjointEigenSolver<Matrix6>(root.transpose() * constants * root,
-                                                Eigen::EigenvaluesOnly)
-      .eigenvalues()[5];
+  return symmetric_eigenvalues(Matrix6(root.transpose() * constants * root))(5);
 }
 
 Matrix6 both(double constant, const Matrix3& angular) {

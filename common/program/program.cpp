@@ -1,16 +1,14 @@
 #include "common/program/program.hpp"
 
-#include <poll.h>
-#include <sys/signalfd.h>
 #include <unistd.h>
+#include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <csignal>
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <iostream>
+#include <map>
 #include <new>
 #include <optional>
 #include <vector>
@@ -19,41 +17,6 @@
 #include "common/error.hpp"
 
 namespace irdm {
-
-StopSignal::StopSignal() {
-  std::signal(SIGPIPE, SIG_IGN);
-  std::signal(SIGXFSZ, SIG_IGN);  // what does not fit is an error of the write
-  sigset_t signals;
-  sigemptyset(&signals);
-  sigaddset(&signals, SIGINT);
-  sigaddset(&signals, SIGTERM);
-  // A terminal that closes; nohup's children ignore it.
-  struct sigaction hangup {};
-  const bool ignored = sigaction(SIGHUP, nullptr, &hangup) == 0 && hangup.sa_handler == SIG_IGN;
-  if (!ignored) sigaddset(&signals, SIGHUP);
-  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-  descriptor_ = signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK);
-  if (descriptor_ < 0) {
-    throw Error("system", "no file descriptor for signals is left", "raise the limit (ulimit -n)");
-  }
-}
-
-StopSignal::~StopSignal() {
-  ::close(descriptor_);
-}
-
-bool StopSignal::wait(int other_descriptor, int third_descriptor) {
-  pollfd entries[3] = {
-      {descriptor_, POLLIN, 0}, {other_descriptor, POLLIN, 0}, {third_descriptor, POLLIN, 0}};
-  while (::poll(entries, 3, -1) < 0 && errno == EINTR) {
-  }
-  return entries[0].revents != 0;
-}
-
-bool StopSignal::wait_for(int timeout_ms, int other_descriptor) {
-  pollfd entries[2] = {{descriptor_, POLLIN, 0}, {other_descriptor, POLLIN, 0}};
-  return ::poll(entries, 2, timeout_ms) > 0 && entries[0].revents != 0;
-}
 
 void wait_passively_in_openmp(char** argv) {
   for (const char* name : {"OMP_WAIT_POLICY", "GOMP_SPINCOUNT", "KMP_BLOCKTIME"}) {
@@ -154,6 +117,19 @@ int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>
   } catch (const std::exception& error) {
     return complain(app.get_name(), error.what());
   }
+}
+
+int run_commands(const std::string& name, const std::string& description, int argc, char** argv,
+                 AddCommand main_command, const std::vector<Subcommand>& subcommands) {
+  CLI::App app(description, name);
+  app.require_subcommand(0, 1);
+  const Command run = main_command(app);
+  std::map<std::string, Command> commands;
+  for (const Subcommand& each : subcommands) commands.emplace(each.name, each.add(app));
+  return run_program(app, argc, argv, [&] {
+    const auto chosen = app.get_subcommands();
+    return chosen.empty() ? run() : commands.at(chosen.front()->get_name())();
+  });
 }
 
 }  // namespace irdm

@@ -1,29 +1,16 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <string>
+#include <vector>
+
+// Declared here so that only sources which define options read CLI11's large header.
+namespace CLI {
+class App;
+class Validator;
+}  // namespace CLI
 
 namespace irdm {
-
-/// SIGINT and SIGTERM as something to wait for. Make one in main before any thread starts: the
-/// signals are blocked from then on in every thread, and SIGPIPE is ignored.
-class StopSignal {
- public:
-  StopSignal();
-  StopSignal(const StopSignal&) = delete;
-  StopSignal& operator=(const StopSignal&) = delete;
-  ~StopSignal();
-
-  /// Waits until a signal has come (true) or one of the others is readable (false); -1: no other.
-  bool wait(int other_descriptor = -1, int third_descriptor = -1);
-  /// Waits at most `timeout_ms`, or until `other_descriptor` is readable; true when a signal has
-  /// come.
-  bool wait_for(int timeout_ms, int other_descriptor = -1);
-
- private:
-  int descriptor_;
-};
 
 /// Threads of OpenMP that have nothing to do are to sleep: by default they turn round and round for
 /// about a millisecond after each loop, beside the real-time threads. The runtime reads how it is
@@ -42,5 +29,22 @@ CLI::Validator positive_number();
 /// out of `body` becomes one line on stderr, `NAME: error: WHAT`, and status 1. Beside wrong usage
 /// it names the option or command that was probably meant.
 int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& body);
+
+/// Runs a parsed command and returns the exit status; errors are thrown.
+using Command = std::function<int()>;
+
+/// Adds a command's options to the command line and returns the command.
+using AddCommand = Command (*)(CLI::App& app);
+
+/// Name of a subcommand and the function that adds it.
+struct Subcommand {
+  std::string name;
+  AddCommand add;
+};
+
+/// Parses the command line of a program with subcommands and runs the one that was given, or
+/// `main_command` when none was. Returns the exit status as run_program() does.
+int run_commands(const std::string& name, const std::string& description, int argc, char** argv,
+                 AddCommand main_command, const std::vector<Subcommand>& subcommands);
 
 }  // namespace irdm

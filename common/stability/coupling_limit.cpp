@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/dense_algebra.hpp"
 #include "common/motion/rigid_body.hpp"
 #include "common/response/modal_response.hpp"
 #include "common/response/stored_response.hpp"
@@ -52,7 +53,7 @@ InverseStability analyse_inverse(const DrivingPoint& record, const Matrix3& rigi
 double held_stiffness(const DrivingPoint& record, const Matrix3& rigid) {
   const Matrix3 first = record.col(0).reshaped(3, 3);
   const Matrix3 compliance = 0.5 * (first + first.transpose()) + rigid;
-  return 1.0 / Eigen::SelfAdjointEigenSolver<Matrix3>(compliance).eigenvalues()(0);
+  return 1.0 / symmetric_eigenvalues(compliance)(0);
 }
 
 namespace {

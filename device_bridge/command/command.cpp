@@ -1,6 +1,7 @@
 #include "device_bridge/command/command.hpp"
 
 #include <spdlog/spdlog.h>
+#include <CLI/CLI.hpp>
 #include <iostream>
 #include <limits>
 #include <memory>
@@ -9,7 +10,7 @@
 #include <string>
 
 #include "common/error.hpp"
-#include "common/program/program.hpp"
+#include "common/program/stop_signal.hpp"
 #include "device_bridge/bridge.hpp"
 #include "device_bridge/device_registry.hpp"
 #include "device_bridge/doctor/examine.hpp"

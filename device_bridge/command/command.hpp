@@ -1,13 +1,10 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
-#include <functional>
+#include "common/program/program.hpp"
 
 /// The commands of irdm-bridge. Each function adds a command's options to the command line and
 /// returns what it does once they are parsed: its value is the exit status, its errors are thrown.
 namespace irdm::bridge {
-
-using Command = std::function<int()>;
 
 /// Without a word for it: BRIDGE.toml runs the bridge.
 Command add_run_command(CLI::App& app);

@@ -1,5 +1,6 @@
 #include <sys/prctl.h>
 #include <unistd.h>
+#include <CLI/CLI.hpp>
 
 #include <cctype>
 #include <csignal>
@@ -10,7 +11,7 @@
 #include <vector>
 
 #include "common/error.hpp"
-#include "common/program/program.hpp"
+#include "common/program/stop_signal.hpp"
 #include "device_bridge/command/command.hpp"
 #include "device_bridge/commission/commission.hpp"
 #include "device_bridge/commission/terminal.hpp"

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "common/program/program.hpp"
+#include "common/program/stop_signal.hpp"
 #include "device_bridge/bridge_config.hpp"
 #include "device_bridge/commission/person.hpp"
 #include "device_bridge/commission/report.hpp"

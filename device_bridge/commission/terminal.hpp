@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "common/program/program.hpp"
+#include "common/program/stop_signal.hpp"
 #include "device_bridge/commission/guided_stylus.hpp"
 #include "device_bridge/commission/person.hpp"
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "common/program/program.hpp"
+#include "common/program/stop_signal.hpp"
 #include "common/realtime/histogram.hpp"
 #include "device_bridge/bridge_config.hpp"
 #include "device_bridge/network_client.hpp"

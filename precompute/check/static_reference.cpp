@@ -1,5 +1,6 @@
 #include "precompute/check/static_reference.hpp"
 
+#include "common/dense_algebra.hpp"
 #include "common/error.hpp"
 #include "precompute/fem/rigid_motions.hpp"
 
@@ -42,8 +43,7 @@ Eigen::VectorXd StaticReference::displacement(int b) const {
 StaticComparison compare_static(const Eigen::VectorXd& found, const Eigen::VectorXd& expected,
                                 const Eigen::MatrixXd& surface_rigid) {
   const Eigen::VectorXd difference = found - expected;
-  const Eigen::VectorXd rigid =
-      surface_rigid * surface_rigid.colPivHouseholderQr().solve(difference);
+  const Eigen::VectorXd rigid = surface_rigid * least_squares(surface_rigid, difference);
   const double scale = expected.cwiseAbs().maxCoeff();
   return {rigid.cwiseAbs().maxCoeff() / scale, (difference - rigid).cwiseAbs().maxCoeff() / scale};
 }

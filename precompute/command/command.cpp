@@ -1,6 +1,7 @@
 #include "precompute/command/command.hpp"
 
 #include <unistd.h>
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <iostream>
 #include <memory>

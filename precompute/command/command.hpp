@@ -1,13 +1,10 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
-#include <functional>
+#include "common/program/program.hpp"
 
 /// The commands of irdm-precompute. Each function adds a command's options to the command line and
 /// returns what it does once they are parsed: its value is the exit status, its errors are thrown.
 namespace irdm::precompute {
-
-using Command = std::function<int()>;
 
 /// Without a word for it: CONFIG.toml -o MODEL.h5 computes a model file.
 Command add_compute_command(CLI::App& app);

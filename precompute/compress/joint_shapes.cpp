@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "common/dense_algebra.hpp"
 #include "common/error.hpp"
 #include "precompute/blas.hpp"
 
@@ -75,7 +76,7 @@ Eigen::MatrixXd recursion(const Core& core) {
   product(before, Of::kItself, before, Of::kTransposed, normal);
   product(before, Of::kItself, next, Of::kTransposed, right);
   normal.diagonal().array() += 1e-10 * normal.trace() / static_cast<double>(2 * r);
-  const Eigen::MatrixXd solution = Eigen::LDLT<Eigen::MatrixXd>(normal).solve(right);
+  const Eigen::MatrixXd solution = solve_symmetric(normal, right);
   return solution.topRows(r).transpose();
 }
 
@@ -87,7 +88,7 @@ RowMatrix<double> first_shapes(const Core& core) {
 RowMatrix<double> solve_from_right(const RowMatrix<double>& right, Eigen::MatrixXd matrix,
                                    double ridge) {
   matrix.diagonal().array() += ridge * matrix.trace() / static_cast<double>(matrix.rows());
-  return Eigen::LDLT<Eigen::MatrixXd>(matrix).solve(right.transpose()).transpose();
+  return solve_symmetric(matrix, right.transpose()).transpose();
 }
 
 class Improvement {

@@ -4,6 +4,8 @@
 #include <complex>
 #include <vector>
 
+#include "common/dense_algebra.hpp"
+
 namespace irdm::precompute {
 namespace {
 
@@ -18,16 +20,17 @@ Eigen::MatrixXd window_space(const Eigen::VectorXd& y, Eigen::Index window) {
   const Eigen::Index count = y.size() - window + 1;
   Eigen::MatrixXd hankel(window, count);
   for (Eigen::Index i = 0; i < count; ++i) hankel.col(i) = y.segment(i, window);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(hankel * hankel.transpose());
-  return eigen.eigenvectors().rowwise().reverse();
+  return symmetric_eigenpairs(Eigen::MatrixXd(hankel * hankel.transpose()))
+      .vectors.rowwise()
+      .reverse();
 }
 
 // One of each conjugate pair.
 std::vector<Complex> poles_of(const Eigen::MatrixXd& space, Eigen::Index order) {
   const Eigen::MatrixXd upper = space.topLeftCorner(space.rows() - 1, order);
   const Eigen::MatrixXd lower = space.bottomLeftCorner(space.rows() - 1, order);
-  const Eigen::MatrixXd shift = upper.colPivHouseholderQr().solve(lower);
-  const Eigen::VectorXcd values = shift.eigenvalues();
+  const Eigen::MatrixXd shift = least_squares(upper, lower);
+  const Eigen::VectorXcd values = eigenvalues(shift);
   std::vector<Complex> poles;
   for (Eigen::Index i = 0; i < order; ++i) {
     Complex pole = values(i);
@@ -51,7 +54,7 @@ PoleFit fit_amplitudes(const Eigen::VectorXd& y, const std::vector<Complex>& pol
     }
     has_imaginary.push_back(complex);
   }
-  const Eigen::VectorXd weights = terms.colPivHouseholderQr().solve(y);
+  const Eigen::VectorXd weights = least_squares(terms, y);
   const auto count = static_cast<Eigen::Index>(poles.size());
   PoleFit fit{Eigen::VectorXcd(count), Eigen::VectorXcd(count), (y - terms * weights).norm()};
   Eigen::Index at = 0;

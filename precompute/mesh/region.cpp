@@ -1,11 +1,11 @@
 #include "precompute/mesh/region.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <set>
 #include <span>
 
+#include "common/dense_algebra.hpp"
 #include "common/error.hpp"
 
 namespace irdm::precompute {
@@ -97,9 +97,8 @@ bool collinear(const TetMesh& mesh, const std::vector<int>& nodes) {
   if (nodes.size() < 3) return true;
   const Points points = mesh.nodes(nodes, Eigen::all);
   const Points arms = points.rowwise() - points.colwise().mean();
-  const Eigen::SelfAdjointEigenSolver<Matrix3> spread(arms.transpose() * arms,
-                                                      Eigen::EigenvaluesOnly);
-  return spread.eigenvalues()(1) <= 1e-12 * spread.eigenvalues()(2);
+  const Eigen::VectorXd spread = symmetric_eigenvalues(Matrix3(arms.transpose() * arms));
+  return spread(1) <= 1e-12 * spread(2);
 }
 
 }  // namespace

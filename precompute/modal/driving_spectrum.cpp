@@ -1,9 +1,9 @@
 #include "precompute/modal/driving_spectrum.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <numbers>
 
+#include "common/dense_algebra.hpp"
 #include "common/response/modal_response.hpp"
 
 namespace irdm::precompute {
@@ -70,14 +70,13 @@ class Lanczos {
 
   DrivingSpectrum spectrum() const {
     const auto m = static_cast<Eigen::Index>(diagonal_.size());
-    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> pairs;
-    pairs.computeFromTridiagonal(Eigen::Map<const Eigen::VectorXd>(diagonal_.data(), m),
-                                 Eigen::Map<const Eigen::VectorXd>(off_diagonal_.data(), m - 1));
-    const Eigen::VectorXd& theta = pairs.eigenvalues();
+    const SymmetricEigen pairs =
+        tridiagonal_eigenpairs(Eigen::Map<const Eigen::VectorXd>(diagonal_.data(), m),
+                               Eigen::Map<const Eigen::VectorXd>(off_diagonal_.data(), m - 1));
+    const Eigen::VectorXd& theta = pairs.values;
     Eigen::Index first = 0;  // rounding may leave one at zero or below
     while (first + 1 < m && theta(first) <= 1e-14 * theta(m - 1)) ++first;
-    const Eigen::VectorXd weight =
-        norm_ * norm_ * pairs.eigenvectors().row(0).transpose().cwiseAbs2();
+    const Eigen::VectorXd weight = norm_ * norm_ * pairs.vectors.row(0).transpose().cwiseAbs2();
     return {theta.tail(m - first).reverse().cwiseInverse().cwiseSqrt(),
             weight.tail(m - first).reverse()};
   }

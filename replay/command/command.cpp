@@ -1,5 +1,6 @@
 #include "replay/command/command.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fstream>
 #include <iostream>
 #include <memory>

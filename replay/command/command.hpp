@@ -1,13 +1,10 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
-#include <functional>
+#include "common/program/program.hpp"
 
 /// The commands of irdm-replay. Each function adds a command's options to the command line and
 /// returns what it does once they are parsed: its value is the exit status, its errors are thrown.
 namespace irdm::replay {
-
-using Command = std::function<int()>;
 
 /// Without a word for it: TRACE.h5 makes a recorded run again (docs/replay.md).
 Command add_replay_command(CLI::App& app);

@@ -1,14 +1,12 @@
 #include "replay/measures/ringing.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <limits>
 #include <numbers>
 
+#include "common/dense_algebra.hpp"
 #include "replay/measures/perception.hpp"
 
 namespace irdm::replay {
@@ -80,15 +78,17 @@ Eigen::MatrixXd windows(const Points& signal, Eigen::Index length) {
 
 // z of each term z^k that the signal is the sum of.
 Eigen::VectorXcd poles(const Points& signal) {
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd(windows(signal, signal.rows() / 3), Eigen::ComputeThinU);
-  const Eigen::VectorXd& sizes = svd.singularValues();
-  if (!(sizes[0] > 0.0)) return {};
-  const Eigen::Index above = (sizes.array() > kSmallestSingular * sizes[0]).count();
-  const Eigen::Index rank = std::min({above, kMostPoles, svd.matrixU().rows() - 1});
-  const Eigen::MatrixXd U = svd.matrixU().leftCols(rank);
+  // Left singular vectors; singular values down to 1e-4 of the largest keep eight digits squared.
+  const Eigen::MatrixXd all = windows(signal, signal.rows() / 3);
+  const SymmetricEigen squared = symmetric_eigenpairs(all * all.transpose());
+  const double largest = squared.values.reverse()(0);
+  if (!(largest > 0.0)) return {};
+  const Eigen::Index above =
+      (squared.values.array() > kSmallestSingular * kSmallestSingular * largest).count();
+  const Eigen::Index rank = std::min({above, kMostPoles, all.rows() - 1});
+  const Eigen::MatrixXd U = squared.vectors.rightCols(rank);
   const Eigen::Index rows = U.rows() - 1;
-  const Eigen::MatrixXd shift = U.topRows(rows).colPivHouseholderQr().solve(U.bottomRows(rows));
-  return Eigen::EigenSolver<Eigen::MatrixXd>(shift, false).eigenvalues();
+  return eigenvalues(least_squares(U.topRows(rows), U.bottomRows(rows)));
 }
 
 // Of each pole, the size of its term in the first row, over components.
@@ -98,8 +98,14 @@ Eigen::VectorXd sizes_of(const Eigen::VectorXcd& z, const Points& signal) {
   for (Eigen::Index k = 1; k < signal.rows(); ++k) {
     powers.row(k) = powers.row(k - 1).cwiseProduct(z.transpose());
   }
-  const Eigen::MatrixXcd values = signal.cast<std::complex<double>>();
-  return Eigen::MatrixXcd(powers.colPivHouseholderQr().solve(values)).rowwise().norm();
+  // The complex system as a real one of twice the size.
+  const Eigen::Index m = powers.rows();
+  const Eigen::Index n = powers.cols();
+  Eigen::MatrixXd system(2 * m, 2 * n);
+  system << powers.real(), -powers.imag(), powers.imag(), powers.real();
+  Eigen::MatrixXd values = Eigen::MatrixXd::Zero(2 * m, signal.cols());
+  values.topRows(m) = signal;
+  return least_squares(system, values).reshaped(n, 2 * signal.cols()).rowwise().norm();
 }
 
 const Ringing& nearest(const std::vector<Ringing>& list, double frequency) {

@@ -1,5 +1,7 @@
 #include "replay/reference/broyden_solver.hpp"
 
+#include "common/dense_algebra.hpp"
+
 namespace irdm::replay {
 
 void BroydenSolver::differentiate(const Function& function, const Eigen::VectorXd& x,
@@ -21,7 +23,7 @@ bool BroydenSolver::solve(const Function& function, Eigen::VectorXd& x, double t
   }
   for (int i = 0; i < kMost; ++i) {
     if (value.cwiseAbs().maxCoeff() <= tolerance) return true;
-    const Eigen::VectorXd way = -jacobian_.partialPivLu().solve(value);
+    const Eigen::VectorXd way = -solve_square(jacobian_, value);
     x += way;
     const Eigen::VectorXd next = function(x);
     // value + J way is zero: what is left of it is what J lacks along the way.

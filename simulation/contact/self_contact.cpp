@@ -1,9 +1,9 @@
 #include "simulation/contact/self_contact.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include "common/dense_algebra.hpp"
 #include "simulation/state/state_archive.hpp"
 
 namespace irdm {
@@ -53,8 +53,7 @@ double sight(const RestSurface& surface, const ContactSampling& sampling,
 
 // A direction that no two parts face across.
 Vector3 leading_direction(const Matrix3& facings) {
-  const Eigen::SelfAdjointEigenSolver<Matrix3> principal(facings);
-  const Matrix3& axes = principal.eigenvectors();
+  const Matrix3 axes = symmetric_eigenpairs(facings).vectors;
   return axes.col(2) + kSecond * axes.col(1) + kThird * axes.col(0);
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "common/dense_algebra.hpp"
 #include "common/error.hpp"
 #include "simulation/step/simulation_config.hpp"
 
@@ -45,9 +46,7 @@ void check_restraints(const Model& model, const ObjectSettings& settings, const 
         name, "has a damping that is too strong for its model's dt of " + std::to_string(dt) + " s",
         "use at most " + std::to_string(0.5 / dt) + " 1/s");
   }
-  const double inertia =
-      Eigen::SelfAdjointEigenSolver<Matrix3>(model.body.inertia, Eigen::EigenvaluesOnly)
-          .eigenvalues()[0];
+  const double inertia = symmetric_eigenvalues(model.body.inertia)(0);
   const double stiffest = model.body.mass / (dt * dt);
   const double stiffest_angular = inertia / (dt * dt);
   if (settings.tether.stiffness > stiffest ||

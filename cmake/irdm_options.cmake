@@ -7,12 +7,17 @@ set(warnings
   -Wunused -Wdouble-promotion -Wformat=2
   $<$<BOOL:${IRDM_WERROR}>:-Werror>)
 target_compile_options(irdm_options INTERFACE "$<BUILD_INTERFACE:${warnings}>")
+# GCC collects its garbage less often: a tenth less time for up to 1 GB of memory a compiler.
+target_compile_options(irdm_options INTERFACE
+  "$<BUILD_INTERFACE:$<$<COMPILE_LANG_AND_ID:CXX,GNU>:SHELL:--param ggc-min-heapsize=524288>>")
 # Identical inputs give identical bits: no contraction that depends on the optimiser's mood.
 target_compile_options(irdm_options INTERFACE -ffp-contract=off)
 target_compile_definitions(irdm_options INTERFACE $<BUILD_INTERFACE:IRDM_VERSION="${PROJECT_VERSION}">)
 # Eigen's own threads wait in a spin that is a data race, and its sums would depend on their number.
 # Large products go to OpenBLAS; our own loops say themselves when they are parallel.
 target_compile_definitions(irdm_options INTERFACE EIGEN_DONT_PARALLELIZE)
+# One set of flags for all targets, so that they can share precompiled headers.
+target_link_libraries(irdm_options INTERFACE OpenMP::OpenMP_CXX Threads::Threads)
 # An embedding program may be built for a newer processor: its matrices must be laid out as those of the libraries.
 target_compile_definitions(irdm_options INTERFACE $<INSTALL_INTERFACE:EIGEN_MAX_ALIGN_BYTES=16>)
 
@@ -20,11 +25,6 @@ if(IRDM_SANITIZE)
   # Half the time to compile of -O2 -g, and reports still name functions and lines.
   target_compile_options(irdm_options INTERFACE
     -O1 -g1 -fsanitize=${IRDM_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
-  # Sources of tests, most of what is compiled, and of servers of sockets in half the time; what computes is optimised.
-  # Not with the thread sanitizer, which is slower.
-  if(IRDM_SANITIZE MATCHES "address")
-    target_compile_options(irdm_options INTERFACE $<$<BOOL:$<TARGET_PROPERTY:IRDM_UNOPTIMISED>>:-O0>)
-  endif()
   target_link_options(irdm_options INTERFACE -fsanitize=${IRDM_SANITIZE})
   if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
     target_link_options(irdm_options INTERFACE -fuse-ld=lld)
@@ -43,40 +43,92 @@ if(IRDM_SANITIZE)
   endif()
 endif()
 
-# Headers that most files of a target need, read once: saves half of the time to compile where there are several unity
-# batches. Not in the preset `debug`: there every file has to name what it needs.
-function(irdm_precompile name)
-  get_target_property(sources ${name} SOURCES)
-  list(LENGTH sources count)
-  if(IRDM_PRECOMPILE AND count GREATER 24)
-    target_precompile_headers(${name} PRIVATE ${ARGN})
+# Optimisation levels of the presets. Each target has one, and all targets of a level share its precompiled headers.
+#   step   loops of the force step and of the deformation
+#   work   finite elements, files, references: seconds to minutes offline
+#   shell  configuration, messages, sockets, commands: they wait more than they compute, and compile in half the time
+#   test   the tests' own sources
+# With the address sanitizer, shells and tests are not optimised: most of what is compiled, in half the time.
+set(irdm_flags_step -O3)
+set(irdm_flags_work -O2)
+set(irdm_flags_shell -O1)
+set(irdm_flags_test -O1)
+set(irdm_headers_step <Eigen/Dense>)
+set(irdm_headers_work <Eigen/Dense>)
+set(irdm_headers_shell <Eigen/Dense> "${PROJECT_SOURCE_DIR}/common/wire/asio.hpp" <spdlog/spdlog.h>)
+set(irdm_headers_test "${PROJECT_SOURCE_DIR}/tests/support/catch.hpp" <Eigen/Dense>)
+set(irdm_common_headers
+  <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <map> <memory> <optional> <span> <sstream> <string>
+  <utility> <variant> <vector>)
+
+# irdm_set_level(TARGET LEVEL) compiles a target at a level, with that level's precompiled headers. Not in the preset
+# `debug`: there every file has to name the headers that it needs.
+function(irdm_set_level name level)
+  if(IRDM_SANITIZE MATCHES "address" AND level MATCHES "shell|test")
+    target_compile_options(${name} PRIVATE -O0)
+  elseif(NOT IRDM_SANITIZE)
+    target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:${irdm_flags_${level}}>)
   endif()
+  if(IRDM_FUZZ AND NOT level STREQUAL "test")
+    target_compile_options(${name} PRIVATE -fsanitize=fuzzer-no-link)
+  endif()
+  if(NOT level STREQUAL "test")
+    # Libraries become part of the Python module and of the C library; none of their functions is replaced from outside.
+    set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+    target_compile_options(${name} PRIVATE -fno-semantic-interposition)
+  endif()
+  if(level STREQUAL "shell")
+    target_link_libraries(${name} PRIVATE spdlog::spdlog)
+  endif()
+  if(level MATCHES "shell|test")
+    # GCC sees less at -O1 and warns where nothing is wrong; the other levels keep this warning.
+    target_compile_options(${name} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
+  endif()
+  if(NOT IRDM_PRECOMPILE)
+    return()
+  endif()
+  # Reading the headers again costs more than most sources.
+  target_compile_options(${name} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Werror=invalid-pch>)
+  set(headers irdm_headers_of_${level})
+  if(NOT TARGET ${headers})
+    file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/${headers}.cpp CONTENT "")
+    add_library(${headers} STATIC ${PROJECT_BINARY_DIR}/${headers}.cpp)
+    target_link_libraries(${headers} PRIVATE irdm_options Eigen3::Eigen)
+    if(level STREQUAL "shell")
+      target_link_libraries(${headers} PRIVATE Boost::headers)
+    elseif(level STREQUAL "test")
+      target_link_libraries(${headers} PRIVATE Catch2::Catch2)
+    endif()
+    set(IRDM_PRECOMPILE OFF)
+    irdm_set_level(${headers} ${level})
+    target_precompile_headers(${headers} PRIVATE ${irdm_common_headers} ${irdm_headers_${level}})
+  endif()
+  target_precompile_headers(${name} REUSE_FROM ${headers})
 endfunction()
 
-# irdm_optimise_more(SOURCES...) compiles these with -O3, each by itself; the presets build all else with -O2. Without the
-# precompiled header: with it GCC compiles as the header was, with -O2.
-function(irdm_optimise_more)
-  if(NOT IRDM_SANITIZE)
-    set_source_files_properties(${ARGN} PROPERTIES
-      COMPILE_OPTIONS $<$<CONFIG:Release>:-O3> SKIP_PRECOMPILE_HEADERS ON SKIP_UNITY_BUILD_INCLUSION ON)
-  endif()
-endfunction()
-
-# irdm_add_library(NAME SOURCES... ) makes one static library target for a folder. The Python module and the C library
-# are made of them; none of their functions is replaced from outside.
-function(irdm_add_library name)
+# irdm_add_library(NAME LEVEL SOURCES...) makes one static library target for a folder.
+function(irdm_add_library name level)
   add_library(${name} STATIC ${ARGN})
-  set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
-  target_compile_options(${name} PRIVATE -fno-semantic-interposition)
   target_link_libraries(${name} PUBLIC irdm_options)
-  irdm_precompile(${name} <Eigen/Dense> <algorithm> <functional> <memory> <string> <vector>)
+  irdm_set_level(${name} ${level})
+endfunction()
+
+# irdm_add_part(LIBRARY LEVEL SOURCES...) adds sources to a library that are compiled at another level than the rest.
+# Call it after target_link_libraries(LIBRARY ...).
+function(irdm_add_part library level)
+  set(name ${library}_${level})
+  add_library(${name} OBJECT ${ARGN})
+  get_target_property(links ${library} LINK_LIBRARIES)
+  target_link_libraries(${name} PRIVATE ${links})
+  target_include_directories(${name} SYSTEM PRIVATE $<TARGET_PROPERTY:${library},INCLUDE_DIRECTORIES>)
+  target_compile_definitions(${name} PRIVATE $<TARGET_PROPERTY:${library},COMPILE_DEFINITIONS>)
+  irdm_set_level(${name} ${level})
+  target_sources(${library} PRIVATE $<TARGET_OBJECTS:${name}>)
 endfunction()
 
 # irdm_add_program(NAME LIBRARY) makes a program from the folder's main.cpp and its library.
 function(irdm_add_program name library)
   add_executable(${name} main.cpp)
   target_link_libraries(${name} PRIVATE ${library})
-  # It reads the command line and calls the library.
-  target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
   install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime)
 endfunction()

@@ -21,8 +21,6 @@ BUILD = ROOT / "build" / "names"
 
 def syntax_only(entry):
     words = shlex.split(entry["command"])
-    if os.path.basename(words[0]) == "ccache":
-        del words[0]
     output = words.index("-o")
     del words[output : output + 2]
     words.remove("-c")

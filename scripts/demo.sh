@@ -2,12 +2,13 @@
 # The main job from nothing: sets up, builds, precomputes the paper's cube (kept for the next time), plays
 # ten scripted seconds in real time with server and bridge as two processes, and shows what came of it.
 # Then it keeps the cube on a soft tether until Ctrl-C, to be pushed with the mouse in a browser. The first time this can
-# be done while the bridge is built, too.
+# be done while the bridge is built, too. Packages that compiling does not need are installed while it goes on.
 #   scripts/demo.sh [--dense] [--once]
 #     --dense: the paper's own engine on the cube's smaller sibling
 #     --once: ends after the ten seconds
 set -euo pipefail
 cd "$(dirname "$0")/.."
+. scripts/progress.sh
 
 model=paper-cube scene=paper-cube
 once=no
@@ -28,20 +29,44 @@ fail() {
   [ -z "${2:-}" ] || cat "$2" >&2
   exit 1
 }
-stop_server() { [ -z "$server" ] || kill "$server" 2>/dev/null || true; }
-trap stop_server EXIT
+others= precomputing= building=
+stop_children() {
+  local child
+  for child in $server $others $precomputing $building; do kill "$child" 2>/dev/null || true; done
+}
+trap stop_children EXIT
 
-scripts/setup.sh --demo
-scripts/build.sh release irdm-precompute irdm-server
+# The first time only what these three programs need is configured. A build folder that was configured for all stays so.
+lean=(-DIRDM_BUILD_TESTS=OFF -DIRDM_BUILD_BENCH=OFF -DIRDM_BUILD_PYTHON=OFF -DIRDM_WITH_ROS_BRIDGE=OFF)
+settings=build/release/.settings
+if [ -f $settings ] && [ -z "$(cat $settings)" ]; then lean=(); fi
+build() { scripts/build.sh release ${lean[@]+"${lean[@]}"} "$@"; }
 
-# The model is made again when its configuration is newer.
 config=configs/models/$model.toml
-if [ ! -f "$out/$model.h5" ] || [ "$config" -nt "$out/$model.h5" ]; then
-  echo "demo: precomputing $model"
-  "$bin/irdm-precompute" "$config" -o "$out/$model.h5" || fail "precomputation failed"
-else
-  echo "demo: $out/$model.h5 is there from the last time"
-fi
+# The model is made again when its configuration is newer.
+start_precompute() {
+  if [ -f "$out/$model.h5" ] && [ ! "$config" -nt "$out/$model.h5" ]; then
+    echo "demo: $out/$model.h5 is there from the last time"
+    return
+  fi
+  echo "demo: precomputing $model (log: $out/precompute.log)"
+  "$bin/irdm-precompute" "$config" -o "$out/$model.h5" >"$out/precompute.log" 2>&1 &
+  precomputing=$!
+}
+finish_precompute() {
+  [ -n "$precomputing" ] || return 0
+  wait $precomputing || fail "precomputation failed" "$out/precompute.log"
+  precomputing=
+  cat "$out/precompute.log"
+}
+
+# until_built PROGRAM: waits while the build goes on; its own messages say what fails.
+until_built() {
+  until [ -x "$bin/$1" ]; do
+    kill -0 $building 2>/dev/null || [ -x "$bin/$1" ] || fail "$1 was not built"
+    sleep 0.5
+  done
+}
 
 # The address that a server prints for bridges or, as `page`, for browsers, when it is there.
 printed() { sed -n "s/^listening on \\($2\\)/\\1/p" "$out/$1.log"; }
@@ -63,18 +88,41 @@ start_live() {
 # The page stays where it is, so that a browser finds the next server by itself.
 keep_port() { [ -z "${page:-}" ] || printf '[viewer]\nport = %s\n' "$(sed 's/.*:\([0-9]*\).*/\1/' <<<"$page")"; }
 
-build_bridge() { nice -n 19 scripts/build.sh release irdm-bridge; }
 
 page=
-if [ $once = no ] && [ ! -x "$bin/irdm-bridge" ]; then
-  start_live
-  echo "demo: the cube is at $page, to be pushed with the mouse; the bridge is being built"
-  build_bridge
-  kill -TERM "$server"
-  wait "$server" || fail "the server failed" "$out/live.log"
-  server=
+if [ -x "$bin/irdm-bridge" ]; then
+  scripts/setup.sh --demo
+  build -DIRDM_BUILD_PAGE=ON irdm-precompute irdm-server irdm-bridge
+  start_precompute
+  finish_precompute
 else
-  build_bridge
+  echo "demo: installs packages, builds three programs, computes the cube, plays ten seconds: $(about 480) here"
+  scripts/setup.sh --build
+  # What only the page and the plot need is installed while programs are compiled, and the model is computed while the
+  # server is built.
+  scripts/setup.sh --demo >"$out/setup.log" 2>&1 &
+  others=$!
+  build -DIRDM_BUILD_PAGE=OFF irdm-precompute irdm-server irdm-bridge &
+  building=$!
+  until_built irdm-precompute
+  start_precompute
+  until_built irdm-server
+  wait $others || fail "the setup failed" "$out/setup.log"
+  others=
+  node viewer/page/build.mjs --out build/release/share/irdm/viewer >"$out/page.log" 2>&1 ||
+    fail "the page was not built" "$out/page.log"
+  finish_precompute
+  if [ $once = no ]; then
+    start_live
+    echo "demo: the cube is at $page, to be pushed with the mouse, after $SECONDS s; next the bridge is built"
+  fi
+  wait $building || fail "the bridge was not built"
+  building=
+  if [ $once = no ]; then
+    kill -TERM "$server"
+    wait "$server" || fail "the server failed" "$out/live.log"
+    server=
+  fi
 fi
 
 { cat "configs/scenes/$scene.toml"; keep_port; } >"$out/scene.toml"

@@ -103,7 +103,7 @@ def quietly(command, limit=None):
 
 def configure():
     command = ["cmake", "-S", str(SOURCE), "-B", str(BUILD), "-G", "Ninja",
-               "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_CXX_COMPILER_LAUNCHER=ccache",
+               "-DCMAKE_BUILD_TYPE=Release",
                "-DIRDM_BUILD_BENCH=OFF", "-DIRDM_BUILD_PAGE=OFF", "-DIRDM_UNITY_TESTS=ON"]
     return quietly(command) == 0
 

@@ -2,19 +2,21 @@
 # Installs what irdm needs: Debian's packages (scripts/packages.txt), and the npm packages that the viewer's page
 # is built from, as its lock file says. Does nothing when all is there. dpkg does not wait for the disk after each file
 # (--force-unsafe-io): if the machine loses power meanwhile, packages may have to be installed again.
-#   scripts/setup.sh [--run | --demo]    --run: without what only the tests need; --demo: for scripts/demo.sh only
+#   scripts/setup.sh [--build | --demo | --run | --all]
+#     --build: to compile the programs; --demo: for scripts/demo.sh; --run: all but what only tests need;
+#     without: for scripts/test.sh; --all: for scripts/test.sh --all
 set -euo pipefail
 cd "$(dirname "$0")"
 
 case "${1:-}" in
-  "") unwanted='^(#|$)' ;;
-  --run) unwanted='^(#|$)| tests$' ;;
-  --demo) unwanted='^(#|$)| (tests|gallery)$' ;;
-  *) echo "usage: scripts/setup.sh [--run | --demo]" >&2; exit 2 ;;
+  --build) groups='build' ;;
+  --demo) groups='build|page|plot' ;;
+  --run) groups='build|page|plot|gallery|bind' ;;
+  "") groups='build|page|plot|gallery|bind|tests' ;;
+  --all) groups='[a-z]+' ;;
+  *) echo "usage: scripts/setup.sh [--build | --demo | --run | --all]" >&2; exit 2 ;;
 esac
-# What npm needs comes first: it downloads while the others are unpacked.
-for_npm='^(ca-certificates|nodejs|npm)$'
-mapfile -t packages < <(grep -Ev "$unwanted" packages.txt | cut -d ' ' -f 1)
+mapfile -t packages < <(sed -nE "s/^([a-z0-9.+-]+) ($groups)\$/\1/p" packages.txt)
 
 # install_packages NAME...
 install_packages() {
@@ -31,7 +33,9 @@ install_packages() {
     as_root=(sudo)
   fi
   echo "setup: installing ${missing[*]}"
-  "${as_root[@]}" apt-get update -qq
+  # Lists that are less than an hour old are new enough.
+  find /var/lib/apt/lists -maxdepth 1 -name '*Packages*' -mmin -60 2>/dev/null | grep -q . ||
+    "${as_root[@]}" apt-get update -qq
   "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
     apt-get install -y -qq --no-install-recommends -o Dpkg::Options::=--force-unsafe-io "${missing[@]}" >/dev/null
 }
@@ -49,10 +53,15 @@ install_page_packages() {
   npm ci --no-audit --no-fund --loglevel=error
 }
 
-mapfile -t first < <(printf '%s\n' "${packages[@]}" | grep -E "$for_npm")
-mapfile -t others < <(printf '%s\n' "${packages[@]}" | grep -Ev "$for_npm")
-install_packages "${first[@]}"
-install_page_packages &
-install_packages "${others[@]}"
-wait $!
+# What npm needs comes first: it downloads while the others are unpacked.
+case " ${packages[*]} " in
+  *" npm "*)
+    install_packages ca-certificates nodejs npm
+    install_page_packages &
+    page=$!
+    install_packages "${packages[@]}"
+    wait $page
+    ;;
+  *) install_packages "${packages[@]}" ;;
+esac
 echo "setup: all ${#packages[@]} packages are installed"

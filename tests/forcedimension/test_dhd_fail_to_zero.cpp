@@ -77,7 +77,7 @@ TEST_CASE("Force Dimension: whatever goes wrong with the link, force and torque 
 TEST_CASE("Force Dimension: whatever goes wrong with the device, it is sent none within 50 ms") {
   struct Fault {
     const char* name;
-    void (*begin)();
+    void (*cause)();
     bool ready;
   };
   const Fault fault = GENERATE(Fault{"force button", [] { fakedhd_force_off(0, 1); }, false},
@@ -87,7 +87,7 @@ TEST_CASE("Force Dimension: whatever goes wrong with the device, it is sent none
                                Fault{"readings fail", [] { fakedhd_unplug(0, 1); }, true});
   CAPTURE(fault.name);
   SteppedLoop stepped;
-  fault.begin();
+  fault.cause();
   stepped.tick(kMostTicks);
   CHECK(stepped.loop->shown().isZero(0.0));
   CHECK(stepped.loop->shown_torque().isZero(0.0));

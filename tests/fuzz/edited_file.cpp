@@ -161,7 +161,11 @@ EditedFile::EditedFile(const std::filesystem::path& valid) : image_(content(vali
     return 0;
   };
   std::vector<std::pair<std::string, bool>> objects;
+#if H5_VERSION_GE(1, 12, 0)
+  H5Ovisit3(file.id(), H5_INDEX_NAME, H5_ITER_INC, add_name, &objects, H5O_INFO_BASIC);
+#else
   H5Ovisit1(file.id(), H5_INDEX_NAME, H5_ITER_INC, add_name, &objects);
+#endif
   for (const auto& [name, is_set] : objects) {
     if (is_set) datasets_.push_back(name);
     const Handle owner(H5Oopen(file.id(), name.c_str(), H5P_DEFAULT), H5Oclose);

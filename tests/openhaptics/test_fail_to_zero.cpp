@@ -34,7 +34,7 @@ TEST_CASE("OpenHaptics: whatever goes wrong with the link, the motors are at zer
 TEST_CASE("OpenHaptics: whatever goes wrong with the device, the motors are at zero within 50 ms") {
   struct Fault {
     const char* name;
-    void (*begin)();
+    void (*cause)();
     bool ready, failed, lost;  // afterwards
   };
   const Fault fault =
@@ -52,7 +52,7 @@ TEST_CASE("OpenHaptics: whatever goes wrong with the device, the motors are at z
   const FakeSession session;
   SteppedLoop stepped;
   stepped.engage(kFeltForce);
-  fault.begin();
+  fault.cause();
   int ticks = 0;
   while (stepped.force() > 0.0 && ticks <= kMostTicks) {
     stepped.tick(1, kFeltForce);

@@ -6,6 +6,7 @@ of this repository that exist and options that the programs have. Fails with a l
 """
 
 import re
+import shutil
 import subprocess
 import sys
 from functools import cache
@@ -20,7 +21,9 @@ OWN_FOLDERS = ("configs/", "scripts/", "examples/", "benchmark/")
 
 
 def pages():
-    listed = subprocess.run(["git", "ls-files", "*.md"], cwd=ROOT, capture_output=True, text=True, check=False)
+    # A copy without git, or without its history, has pages, too.
+    git = ["git", "ls-files", "*.md"] if shutil.which("git") else ["true"]
+    listed = subprocess.run(git, cwd=ROOT, capture_output=True, text=True, check=False)
     names = listed.stdout.split() or [str(path.relative_to(ROOT)) for path in ROOT.glob("**/*.md")
                                       if not {"build", "out", "node_modules"} & set(path.parts)]
     return [ROOT / name for name in names]

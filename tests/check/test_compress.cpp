@@ -67,7 +67,7 @@ TEST_CASE("pole fit takes no more poles than the error needs, and none that grow
   CHECK(fit_poles(growing, 0.0).pole.cwiseAbs().maxCoeff() < 1.0);
 }
 
-TEST_CASE("compress: the stated errors are those of the file, twice to the same bits") {
+TEST_CASE("compress: the stated errors are those of the file, twice to the same bits", "[slow]") {
   const double allowed = GENERATE(0.03, 0.001);
   Workshop work;
   DenseCube cube(200);

@@ -100,7 +100,10 @@ TEST_CASE("an edge length that does not fit the body is refused") {
   CHECK_THROWS_WITH(read_mesh_file(path, 250.0), ContainsSubstring("mind mesh.unit"));
   CHECK_THROWS_WITH(read_mesh_file(path, 0.25e-3), ContainsSubstring("millions of tetrahedra") &&
                                                        ContainsSubstring("mind mesh.unit"));
-  CHECK_THROWS_WITH(read_mesh_file(ball(files), 9.0), ContainsSubstring("changes its volume by"));
+  // Gmsh 4.8 meshes it, 4.13 does not.
+  CHECK_THROWS_WITH(read_mesh_file(ball(files), 9.0),
+                    ContainsSubstring("changes its volume by") ||
+                        ContainsSubstring("try another mesh.edge_length"));
 }
 
 TEST_CASE("triangles that are turned wrongly, double vertices and left-over ones do no harm") {

@@ -400,7 +400,8 @@ TEST_CASE("self-contact: arms that clap make no energy, and no momentum", "[slow
   }
 }
 
-TEST_CASE("self-contact: with all engines it is the same to the bit again, and nothing allocates") {
+TEST_CASE("self-contact: with all engines it is the same to the bit again, and nothing allocates",
+          "[slow]") {
   if (!AllocationGuard::active()) return leave_out(kNotCounted);
   const ResponseKind kind =
       GENERATE(ResponseKind::kModal, ResponseKind::kDense, ResponseKind::kCompressed);

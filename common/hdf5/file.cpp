@@ -214,15 +214,58 @@ void File::close() {
   file_ = Handle();
 }
 
+namespace {
+
+// HDF5 follows links into other files by itself; a callback that fails is how to forbid it.
+herr_t refuse_external_link(const char*, const char*, const char*, const char*, unsigned*, hid_t,
+                            void*) {
+  return -1;
+}
+
+Handle make_link_access(hid_t kind) {
+  Handle properties(H5Pcreate(kind), H5Pclose);
+  H5Pset_elink_cb(properties.get(), refuse_external_link, nullptr);
+  return properties;
+}
+
+}  // namespace
+
+void File::fail_foreign(const std::string& what) const {
+  throw Error(name_, what, "only files that hold all of their data are read; write it as one file");
+}
+
+void File::check_links(const std::string& path) const {
+  for (std::size_t end = path.find('/', 1);; end = path.find('/', end + 1)) {
+    const std::string part = path.substr(0, end);
+    H5L_info_t link{};
+    if (H5Lget_info(file_.get(), part.c_str(), &link, H5P_DEFAULT) >= 0 &&
+        link.type == H5L_TYPE_EXTERNAL) {
+      fail_foreign(part + " is a link to another file");
+    }
+    if (end == std::string::npos) return;
+  }
+}
+
 Handle File::open_object(const std::string& path) const {
-  Handle object(H5Oopen(file_.get(), path.c_str(), H5P_DEFAULT), H5Oclose);
+  const Handle access = make_link_access(H5P_LINK_ACCESS);
+  Handle object(H5Oopen(file_.get(), path.c_str(), access.get()), H5Oclose);
+  if (object.get() < 0) check_links(path);
   if (object.get() < 0) fail_read("has no " + path);
   return object;
 }
 
 Handle File::open_dataset(const std::string& path) const {
-  Handle dataset(H5Dopen2(file_.get(), path.c_str(), H5P_DEFAULT), H5Dclose);
+  const Handle access = make_link_access(H5P_DATASET_ACCESS);
+  Handle dataset(H5Dopen2(file_.get(), path.c_str(), access.get()), H5Dclose);
+  if (dataset.get() < 0) check_links(path);
   if (dataset.get() < 0) fail_read("has no dataset " + path);
+  const Handle creation(H5Dget_create_plist(dataset.get()), H5Pclose);
+  if (H5Pget_external_count(creation.get()) > 0) {
+    fail_foreign("dataset " + path + " lies in another file (external storage)");
+  }
+  if (H5Pget_layout(creation.get()) == H5D_VIRTUAL) {
+    fail_foreign("dataset " + path + " is put together from other datasets (virtual)");
+  }
   return dataset;
 }
 

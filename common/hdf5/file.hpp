@@ -128,6 +128,10 @@ class File {
   void reserve_for(const Handle& dataset, hsize_t rows, hsize_t more);
   [[noreturn]] void fail_read(const std::string& what) const;
   [[noreturn]] void fail_write(const std::string& what) const;
+  /// Throws Error about data that lie outside the file.
+  [[noreturn]] void fail_foreign(const std::string& what) const;
+  /// Throws Error when a part of the path is a link to another file.
+  void check_links(const std::string& path) const;
   Handle open_object(const std::string& path) const;
   Handle open_dataset(const std::string& path) const;
   Handle make_dataset(const std::string& path, hid_t type, hid_t space, const Handle& creation);

@@ -50,6 +50,11 @@ std::string File::read_string_attribute(const std::string& object, const std::st
   if (attribute.get() < 0) fail_read("has no attribute " + name + " at " + object);
   const Handle stored(H5Aget_type(attribute.get()), H5Tclose);
   if (H5Tget_class(stored.get()) != H5T_STRING) fail_read("attribute " + name + " is not text");
+  // H5Aread writes one value for each point of the attribute's space.
+  const Handle space(H5Aget_space(attribute.get()), H5Sclose);
+  if (H5Sget_simple_extent_npoints(space.get()) != 1) {
+    fail_read("attribute " + name + " of " + object + " is not one text");
+  }
   if (H5Tis_variable_str(stored.get()) > 0) {  // as h5py writes it
     char* text = nullptr;
     const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);

@@ -1,0 +1,158 @@
+#include <hdf5.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "common/error.hpp"
+#include "common/hdf5/file.hpp"
+#include "common/model/model_file.hpp"
+#include "tests/common/one_tet_model.hpp"
+#include "tests/support/catch.hpp"
+
+using Catch::Matchers::ContainsSubstring;
+using irdm::hdf5::File;
+using irdm::hdf5::Handle;
+
+namespace {
+
+/// Files as other programs can make them, by HDF5's own interface.
+class ForeignFiles {
+ public:
+  ForeignFiles() { std::filesystem::create_directories(folder_); }
+  ~ForeignFiles() { std::filesystem::remove_all(folder_); }
+
+  std::string path(const char* name) const { return (folder_ / name).string(); }
+
+  Handle create(const char* name) const {
+    return {H5Fcreate(path(name).c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose};
+  }
+
+ private:
+  std::filesystem::path folder_ =
+      std::filesystem::temp_directory_path() / ("irdm-test-foreign-" + std::to_string(::getpid()));
+};
+
+/// Writes an attribute of `count` texts, each "floating".
+void write_texts(hid_t object, const char* name, hsize_t count, bool variable) {
+  const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+  H5Tset_size(type.get(), variable ? H5T_VARIABLE : 8);
+  const Handle space(H5Screate_simple(1, &count, nullptr), H5Sclose);
+  const Handle attribute(
+      H5Acreate2(object, name, type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  const std::vector<const char*> pointers(count, "floating");
+  std::string text;
+  for (hsize_t i = 0; i < count; ++i) text += "floating";
+  const void* values = text.data();
+  if (variable) values = pointers.data();
+  REQUIRE(H5Awrite(attribute.get(), type.get(), values) >= 0);
+}
+
+}  // namespace
+
+TEST_CASE("a text attribute that is a list is refused, however long it is") {
+  const ForeignFiles files;
+  const hsize_t count = GENERATE(2, 3, 3000);
+  const bool variable = GENERATE(false, true);
+  write_texts(files.create("list.h5").get(), "support", count, variable);
+  const File file = File::open(files.path("list.h5"));
+  CHECK_THROWS_WITH(file.read_string_attribute("/", "support"),
+                    ContainsSubstring("attribute support of / is not one text"));
+}
+
+TEST_CASE("a text attribute of one text is read, as h5py writes it and with one axis") {
+  const ForeignFiles files;
+  const bool variable = GENERATE(false, true);
+  write_texts(files.create("one.h5").get(), "support", 1, variable);
+  CHECK(File::open(files.path("one.h5")).read_string_attribute("/", "support") == "floating");
+}
+
+TEST_CASE("a text attribute without any text is refused") {
+  const ForeignFiles files;
+  {
+    const Handle file = files.create("none.h5");
+    const Handle space(H5Screate(H5S_NULL), H5Sclose);
+    const Handle attribute(
+        H5Acreate2(file.get(), "support", H5T_C_S1, space.get(), H5P_DEFAULT, H5P_DEFAULT),
+        H5Aclose);
+  }
+  CHECK_THROWS_WITH(File::open(files.path("none.h5")).read_string_attribute("/", "support"),
+                    ContainsSubstring("is not one text"));
+}
+
+TEST_CASE("a model whose support is a list of texts is refused by name") {
+  const ForeignFiles files;
+  irdm::Model model = irdm::test::one_tet_model(3);
+  irdm::ModalResponse response;
+  response.angular_frequency = Eigen::Vector2d(10, 20);
+  response.decay_rate = Eigen::Vector2d(1, 2);
+  response.shapes = irdm::RowMatrix<float>(irdm::RowMatrix<float>::Random(12, 2));
+  model.response = response;
+  irdm::write_model(files.path("model.h5"), model);
+  {
+    const Handle file(H5Fopen(files.path("model.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
+    const Handle body(H5Gopen2(file.get(), "/body", H5P_DEFAULT), H5Gclose);
+    REQUIRE(H5Adelete(body.get(), "support") >= 0);
+    write_texts(body.get(), "support", 3000, true);
+  }
+  CHECK_THROWS_WITH(irdm::read_model(files.path("model.h5")),
+                    ContainsSubstring("attribute support of /body is not one text"));
+}
+
+TEST_CASE("a dataset in HDF5's external storage is refused, and what it names is not read") {
+  const ForeignFiles files;
+  std::ofstream(files.path("secret")) << "root:x:0:0";
+  {
+    const Handle file = files.create("external.h5");
+    const hsize_t count = 10;
+    const Handle space(H5Screate_simple(1, &count, nullptr), H5Sclose);
+    const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+    H5Pset_external(creation.get(), files.path("secret").c_str(), 0, count);
+    const Handle set(H5Dcreate2(file.get(), "texture", H5T_NATIVE_UINT8, space.get(), H5P_DEFAULT,
+                                creation.get(), H5P_DEFAULT),
+                     H5Dclose);
+    REQUIRE(set.get() >= 0);
+  }
+  const File file = File::open(files.path("external.h5"));
+  CHECK_THROWS_WITH(file.read<std::uint8_t>("/texture", {0}),
+                    ContainsSubstring("dataset /texture lies in another file"));
+}
+
+TEST_CASE("a virtual dataset is refused, also where its source is gone and it reads as zero") {
+  const ForeignFiles files;
+  {
+    const Handle file = files.create("virtual.h5");
+    const hsize_t count = 4;
+    const Handle space(H5Screate_simple(1, &count, nullptr), H5Sclose);
+    const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+    H5Pset_virtual(creation.get(), space.get(), files.path("gone.h5").c_str(), "/shapes",
+                   space.get());
+    const Handle set(H5Dcreate2(file.get(), "shapes", H5T_NATIVE_DOUBLE, space.get(), H5P_DEFAULT,
+                                creation.get(), H5P_DEFAULT),
+                     H5Dclose);
+    REQUIRE(set.get() >= 0);
+  }
+  const File file = File::open(files.path("virtual.h5"));
+  CHECK_THROWS_WITH(file.read<double>("/shapes", {0}),
+                    ContainsSubstring("dataset /shapes is put together from other datasets"));
+}
+
+TEST_CASE("links to other files are refused, on every part of a path") {
+  const ForeignFiles files;
+  {
+    const Handle other = files.create("other.h5");
+    const Handle group(H5Gcreate2(other.get(), "body", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                       H5Gclose);
+    write_texts(group.get(), "support", 1, true);
+    const Handle file = files.create("linked.h5");
+    REQUIRE(H5Lcreate_external(files.path("other.h5").c_str(), "/body", file.get(), "body",
+                               H5P_DEFAULT, H5P_DEFAULT) >= 0);
+  }
+  const File file = File::open(files.path("linked.h5"));
+  CHECK_THROWS_WITH(file.read_string_attribute("/body", "support"),
+                    ContainsSubstring("/body is a link to another file"));
+  CHECK_THROWS_WITH(file.read<double>("/body/mass", {0}),
+                    ContainsSubstring("another file") || ContainsSubstring("has no dataset"));
+}

@@ -8,6 +8,8 @@ namespace {
 
 // Parts of one body as near as this, by the samples' spacing, are given to the solver: a force of
 // this step bends both.
+// Distance below the surface at which two bodies are looked for that begin in one place [m].
+constexpr double kInside = 1e-3;
 constexpr double kNearItself = 0.1;
 // As those of the floor: how far a sample may be from where it would be at rest, to be looked at.
 constexpr double kLeastReach = 2e-3;
@@ -246,22 +248,27 @@ void BodyContacts::write(int i, const ContactConstraint& solved,
 
 double BodyContacts::initial_depth() noexcept {
   if (self_) return 0.0;
+  // Depth in the other one of a point of this body, B; 0 outside.
+  const auto depth = [this](const Vector3& point) {
+    const Vector3 x = body_.motion.start.position + body_.motion.start.orientation * point;
+    if (other_body_ == nullptr) return std::max(0.0, -closest(scenery_->now, x).signed_distance);
+    const Vector3 y = other_body_->motion.start.orientation.conjugate() *
+                      (x - other_body_->motion.start.position);
+    if (!other_box_.contains(y)) return 0.0;
+    return std::max(0.0, -other_body_->surface.closest(y).signed_distance);
+  };
+  const auto inner_depth = [&](const Vector3& point) {
+    return body_.surface.closest(point).signed_distance < 0.0 ? depth(point) : 0.0;
+  };
   double deepest = 0.0;
   for (const ContactSampling::Sample& shape :
        body_.sampling.samples().subspan(static_cast<std::size_t>(first_sample_))) {
-    const Vector3 x =
-        body_.motion.start.position + body_.motion.start.orientation * shape.place.position;
-    double distance = 0.0;
-    if (other_body_ == nullptr) {
-      distance = closest(scenery_->now, x).signed_distance;
-    } else {
-      const Vector3 y = other_body_->motion.start.orientation.conjugate() *
-                        (x - other_body_->motion.start.position);
-      if (!other_box_.contains(y)) continue;
-      distance = other_body_->surface.closest(y).signed_distance;
-    }
-    deepest = std::max(deepest, -distance);
+    deepest = std::max(deepest, depth(shape.place.position));
+    // Surfaces that coincide hold no point of each other, their insides do.
+    if (other_body_ == nullptr) continue;
+    deepest = std::max(deepest, inner_depth(shape.place.position - kInside * shape.normal));
   }
+  if (other_body_ != nullptr) deepest = std::max(deepest, inner_depth(Vector3::Zero()));
   return deepest;
 }
 

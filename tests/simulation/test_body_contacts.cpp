@@ -324,6 +324,16 @@ TEST_CASE("bodies: those that begin inside one another are refused, by name and 
   CHECK_NOTHROW(Simulation(config));
 }
 
+TEST_CASE("bodies: those that begin in one place, or nearly, are refused") {
+  const double offset = GENERATE(0.0, 1e-4, 4e-4);
+  SimulationConfig config = stacked(2, {.cells = 3}, {0.5, 0.5});
+  config.objects[1].position = config.objects[0].position + Vector3(0, offset, 0);
+  CHECK_THROWS_WITH(Simulation(config), Catch::Matchers::ContainsSubstring(
+                                            "object 1 and object 2 are inside one another"));
+  config.between_objects = false;
+  CHECK_NOTHROW(Simulation(config));
+}
+
 // Where the edge passes the middle of a post, the post's normal is that of the face beside it.
 TEST_CASE("body contacts: edges of a cube that is pushed between two posts do not sink into them",
           "[slow]") {

@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
@@ -15,19 +16,22 @@ namespace irdm {
 namespace {
 
 constexpr int kMostNumbers = 9999;
-constexpr mode_t kReadableByAll = 0644;
 
 [[noreturn]] void fail(const std::filesystem::path& folder, int cause) {
   throw Error(folder.string(), "takes no new file: " + std::generic_category().message(cause),
               "check the folder, its permissions and the disk");
 }
 
-/// A file without a name that anybody looks for; gone at the end unless it got one.
+/// A file without a name that anybody looks for, with the permissions that the umask leaves; gone
+/// at the end unless it got a name.
 class Unnamed {
  public:
-  explicit Unnamed(const std::filesystem::path& folder)
-      : path_((folder / ".irdm-XXXXXX").string()),
-        descriptor_(::mkostemp(path_.data(), O_CLOEXEC)) {
+  explicit Unnamed(const std::filesystem::path& folder) {
+    do {
+      path_ = (folder / (".irdm-" + std::to_string(::getpid()) + "-" + std::to_string(next())))
+                  .string();
+      descriptor_ = ::open(path_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
+    } while (descriptor_ < 0 && errno == EEXIST);  // left by a process that was killed
     if (descriptor_ < 0) fail(folder, errno);
   }
   Unnamed(const Unnamed&) = delete;
@@ -45,7 +49,7 @@ class Unnamed {
       if (count < 0 && errno != EINTR) return false;
       if (count > 0) written += static_cast<std::size_t>(count);
     }
-    return ::fchmod(descriptor_, kReadableByAll) == 0 && ::fsync(descriptor_) == 0;
+    return ::fsync(descriptor_) == 0;
   }
   /// 0, or the cause: EEXIST where somebody has that name.
   int take_name(const std::filesystem::path& name) {
@@ -58,8 +62,13 @@ class Unnamed {
   }
 
  private:
+  static unsigned next() {
+    static std::atomic<unsigned> count{0};
+    return ++count;
+  }
+
   std::string path_;
-  int descriptor_;
+  int descriptor_ = -1;
 };
 
 }  // namespace

@@ -2,8 +2,12 @@
 
 #include <toml++/toml.h>
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <functional>
 #include <sstream>
+#include <utility>
+#include <vector>
 
 #include "common/error.hpp"
 #include "scene/new_file.hpp"
@@ -81,6 +85,23 @@ void change_gravity(toml::table& scene, const Vector3& gravity) {
   world->insert_or_assign("gravity", toml::array{gravity.x(), gravity.y(), gravity.z()});
 }
 
+constexpr std::array<const char*, 2> kSecretKeys{"token", "onlooker_token"};
+
+// Where a position of toml++ is in the text: lines and characters of UTF-8 are counted from 1.
+std::size_t offset(const std::string& text, const toml::source_position& position) {
+  std::size_t at = 0;
+  for (toml::source_index line = 1; line < position.line; ++line) at = text.find('\n', at) + 1;
+  if (at == 0 && text.starts_with("\xEF\xBB\xBF")) at = 3;
+  const auto continues = [](char byte) {
+    return (static_cast<unsigned char>(byte) & 0xC0) == 0x80;
+  };
+  for (toml::source_index column = 1; column < position.column && at < text.size(); ++column) {
+    do ++at;
+    while (at < text.size() && continues(text[at]));
+  }
+  return std::min(at, text.size());
+}
+
 toml::table parse(const SceneSource& source) {
   read_scene(source);  // so that what is wrong with it is said with its line
   return toml::parse(source.text);
@@ -136,9 +157,29 @@ std::string scene_text_with(const SceneSource& source, const Settings& initial,
   for (std::size_t i = 0; i < objects.size() && i < settings.object.size(); ++i) {
     change_object(*objects[i].as_table(), initial.object[i], settings.object[i]);
   }
+  // A file that others may read holds no secret.
+  if (toml::table* viewer = scene["viewer"].as_table()) {
+    for (const char* key : kSecretKeys) viewer->erase(key);
+  }
   std::ostringstream text;
   text << scene << '\n';
   return text.str();
+}
+
+std::string without_secrets(const SceneSource& source) {
+  std::string text = source.text;
+  const toml::table scene = toml::parse(source.text);
+  const toml::table* viewer = scene["viewer"].as_table();
+  if (viewer == nullptr) return text;
+  std::vector<std::pair<std::size_t, std::size_t>> places;  // from, to
+  for (const char* key : kSecretKeys) {
+    const toml::node* node = viewer->get(key);
+    if (node == nullptr) continue;
+    places.emplace_back(offset(text, node->source().begin), offset(text, node->source().end));
+  }
+  std::ranges::sort(places, std::greater<>());  // the last first, so that the others stay
+  for (const auto& [from, to] : places) text.replace(from, to - from, "\"\"");
+  return text;
 }
 
 std::string save_scene(const SceneSource& source, const Settings& initial, const Settings& settings,

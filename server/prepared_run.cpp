@@ -1,6 +1,7 @@
 #include "server/prepared_run.hpp"
 
 #include "common/checksum.hpp"
+#include "scene/saved_scene.hpp"
 #include "viewer/scene_message.hpp"
 
 namespace irdm {
@@ -50,7 +51,7 @@ PreparedRun::PreparedRun(SceneSource from, SceneConfig read, bool in_lockstep, b
       config(checked_config(scene, viewer_stylus, columns, source.name)),
       simulation(config),
       notes(scene_notes(scene, config, viewer_stylus, lockstep, source.name)) {
-  if (records) header = trace_header(scene, source.text, config);
+  if (records) header = trace_header(scene, without_secrets(source), config);
   if (scene.viewer.enabled) seen = live_scene(scene, config, viewer_stylus, lockstep);
 }
 

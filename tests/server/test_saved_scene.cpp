@@ -5,6 +5,7 @@
 
 #include "common/error.hpp"
 #include "scene/saved_scene.hpp"
+#include "server/prepared_run.hpp"
 #include "tests/server/model_files.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -124,6 +125,41 @@ TEST_CASE("a saved scene takes the first free number, and no other file's name")
   struct stat status {};
   REQUIRE(::stat((original.to() / "two-4.toml").c_str(), &status) == 0);
   CHECK((status.st_mode & 0777) == 0644);
+}
+
+TEST_CASE("a saved scene holds no token, and has the permissions that the umask leaves") {
+  Original original;
+  original.source.text +=
+      "[viewer]\ntoken = \"0123456789abcdef\"\nonlooker_token = "
+      "\"fedcba9876543210\"\nport = 8080\n";
+  ::umask(027);
+  const std::string name =
+      save_scene(original.source, original.initial, original.settings, original.to());
+  const std::string text = original.saved(name).text;
+  CHECK(text.find("0123456789abcdef") == std::string::npos);
+  CHECK(text.find("fedcba9876543210") == std::string::npos);
+  CHECK_THAT(text, ContainsSubstring("8080"));
+  struct stat status {};
+  REQUIRE(::stat((original.to() / name).c_str(), &status) == 0);
+  CHECK((status.st_mode & 0777) == 0640);
+}
+
+TEST_CASE("the scene in a trace has its tokens emptied, and all else to the byte") {
+  Original original;
+  // Escapes, a comment that looks like a key, characters of several bytes, and the other quotes.
+  const std::string before = kText + "[viewer]  # token = \"no value\"\nport = 8080\n";
+  original.source.text = before + "token = \"0123456789abcd\\u0065f\"  # \xC3\xA4\n" +
+                         "onlooker_token = 'fedcba9876543210'\n";
+  const SceneConfig scene = read_scene(original.source);
+  REQUIRE(scene.viewer.token == "0123456789abcdef");
+  const std::string blank = without_secrets(original.source);
+  CHECK(blank == before + "token = \"\"  # \xC3\xA4\nonlooker_token = \"\"\n");
+  const PreparedRun run(original.source, scene, false, true);
+  CHECK(run.header.scene == blank);
+  original.source.text = kText;
+  CHECK(without_secrets(original.source) == kText);
+  original.source.text = kText + "[viewer]\n\"token\" = \"\"\"0123456789abcdef\"\"\"\n";
+  CHECK(without_secrets(original.source) == kText + "[viewer]\n\"token\" = \"\"\n");
 }
 
 TEST_CASE("what cannot be saved is refused, and leaves nothing") {

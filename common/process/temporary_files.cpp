@@ -48,7 +48,10 @@ std::filesystem::path fresh_part_name(const std::filesystem::path& path) {
 
 TemporaryFolder::TemporaryFolder(const std::string& prefix) {
   std::error_code error;
-  std::string name = (std::filesystem::temp_directory_path(error) / (prefix + "-XXXXXX")).string();
+  // Absolute: the programs that work there have a folder of their own.
+  std::string name = (std::filesystem::absolute(std::filesystem::temp_directory_path(error)) /
+                      (prefix + "-XXXXXX"))
+                         .string();
   if (error || ::mkdtemp(name.data()) == nullptr) {
     throw Error(name, "no temporary folder can be made", "check TMPDIR and the space left there");
   }

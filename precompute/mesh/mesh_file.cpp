@@ -8,6 +8,7 @@
 
 #include "common/error.hpp"
 #include "precompute/mesh/format/readers.hpp"
+#include "precompute/mesh/format/token_reader.hpp"
 #include "precompute/mesh/gmsh_program.hpp"
 #include "precompute/mesh/mesh_check.hpp"
 #include "precompute/mesh/shaded_surface.hpp"
@@ -25,10 +26,18 @@ TetMesh read_geometry(const std::filesystem::path& path) {
   return mesh_geometry(path);
 }
 
+// Both of VTK's formats are found under either name.
+TetMesh read_any_vtk(const std::filesystem::path& path) {
+  const std::string text = text_content(path);
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  const bool is_xml = first != std::string::npos && text[first] == '<';
+  return is_xml ? read_vtu(path) : read_vtk(path);
+}
+
 const std::map<std::string, Format> kFormats{
     {".msh", {.read_mesh = read_gmsh}},     {".node", {.read_mesh = read_tetgen}},
-    {".ele", {.read_mesh = read_tetgen}},   {".vtk", {.read_mesh = read_vtk}},
-    {".vtu", {.read_mesh = read_vtu}},      {".mesh", {.read_mesh = read_medit}},
+    {".ele", {.read_mesh = read_tetgen}},   {".vtk", {.read_mesh = read_any_vtk}},
+    {".vtu", {.read_mesh = read_any_vtk}},  {".mesh", {.read_mesh = read_medit}},
     {".geo", {.read_mesh = read_geometry}}, {".stl", {.read_surface = read_stl}},
     {".obj", {.read_surface = read_obj}},   {".ply", {.read_surface = read_ply}}};
 

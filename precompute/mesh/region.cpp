@@ -51,10 +51,24 @@ std::string group_list(const TetMesh& mesh) {
   return list;
 }
 
+// The groups of that name or number that the file has in several dimensions; empty: none.
+std::string of_several_dimensions(const TetMesh& mesh, const std::string& group) {
+  std::string list;
+  for (const char* dimension : {"point", "curve", "surface", "volume"}) {
+    const std::string full = std::string(dimension) + " " + group;
+    if (mesh.groups.contains(full)) list += (list.empty() ? "" : " or ") + in_quotes(full);
+  }
+  return list;
+}
+
 const MeshGroup& find_group(const TetMesh& mesh, const std::string& group,
                             const std::string& name) {
   const auto found = mesh.groups.find(group);
   if (found == mesh.groups.end()) {
+    const std::string meant = of_several_dimensions(mesh, group);
+    if (!meant.empty()) {
+      throw Error(name, "the mesh has several groups " + in_quotes(group), "say which: " + meant);
+    }
     throw Error(name, "the mesh has no group " + in_quotes(group),
                 mesh.groups.empty()
                     ? "only Gmsh and Medit files have groups: use a box or a half-space"

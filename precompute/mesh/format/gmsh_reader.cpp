@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdlib>
 #include <map>
+#include <set>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -29,6 +30,8 @@ const std::unordered_map<std::int64_t, ElementType> element_types{
 constexpr std::int64_t kLinearTet = 4;
 constexpr std::int64_t kQuadraticTet = 11;
 
+constexpr std::array<const char*, 4> kDimensions{"point", "curve", "surface", "volume"};
+
 using Tag = std::pair<std::int64_t, std::int64_t>;  // dimension and number
 
 class GmshReader {
@@ -41,8 +44,10 @@ class GmshReader {
     bool elements = false;
     while (!in_.at_end()) {
       const std::string section(in_.word());
-      if (section == "$Nodes") {
-        version_ == "2.2" ? read_nodes_2() : read_nodes_4();
+      // Mesh.SaveParametric names the section of version 2.2 otherwise.
+      const bool parametric = section == "$ParametricNodes" && version_ == "2.2";
+      if (section == "$Nodes" || parametric) {
+        version_ == "2.2" ? read_nodes_2(parametric) : read_nodes_4();
         nodes = true;
       } else if (section == "$Elements") {
         if (!nodes) in_.fail("$Elements comes before $Nodes", "write the mesh again with gmsh");
@@ -74,7 +79,11 @@ class GmshReader {
   }
 
   void read_format() {
-    if (in_.word() != "$MeshFormat") {
+    const std::string_view first = in_.word();
+    if (first == "$NOD") {
+      in_.fail("MSH version 1 is not read", "convert it: gmsh -save FILE -format msh41 -o NEW.msh");
+    }
+    if (first != "$MeshFormat") {
       in_.fail("is not a Gmsh file", "it should begin with $MeshFormat");
     }
     version_ = std::string(in_.word());
@@ -92,9 +101,13 @@ class GmshReader {
     for (std::int64_t i = 0; i < count; ++i) {
       const std::int64_t dimension = in_.integer(0, 3, "dimension of a physical group");
       const std::int64_t tag = in_.integer();
-      std::string name(in_.word());
-      while (name.size() < 2 || !name.ends_with('"')) name.append(" ").append(in_.word());
-      group_names_[{dimension, std::abs(tag)}] = name.substr(1, name.size() - 2);
+      const std::string_view line = in_.rest_of_line();
+      const std::size_t begin = line.find('"');
+      const std::size_t end = line.rfind('"');
+      if (begin == std::string_view::npos || end == begin) {
+        in_.fail("the name of a physical group is not in quotes", "write the mesh again with gmsh");
+      }
+      group_names_[{dimension, std::abs(tag)}] = line.substr(begin + 1, end - begin - 1);
     }
   }
 
@@ -122,13 +135,17 @@ class GmshReader {
     coordinates_.push_back({x, y, z});
   }
 
-  void read_nodes_2() {
+  void read_nodes_2(bool parametric) {
     const std::int64_t count = in_.integer(0, kMaxCount, "number of nodes");
     for (std::int64_t i = 0; i < count; ++i) {
       const std::int64_t tag = in_.integer();
       const double x = in_.number();
       const double y = in_.number();
       add_node(tag, x, y, in_.number());
+      if (!parametric) continue;
+      const std::int64_t dimension = in_.integer(0, 3, "dimension of an entity");
+      in_.skip(1);  // entity
+      if (dimension < 3) in_.skip(dimension);
     }
   }
 
@@ -180,7 +197,10 @@ class GmshReader {
     std::vector<int> nodes;
     for (std::int64_t i = 0; i < element.nodes; ++i) nodes.push_back(node_number());
     if (type == kQuadraticTet) std::swap(nodes[8], nodes[9]);
-    if (is_tet) add_tet(nodes);
+    // Version 2.2 has an element once for each of its physical groups.
+    const bool again =
+        version_ == "2.2" && !groups.empty() && is_tet && !grouped_.insert(nodes).second;
+    if (is_tet && !again) add_tet(nodes);
     for (const std::int64_t group : groups) {
       groups_[{element.dimension, std::abs(group)}].push_back(nodes);
     }
@@ -239,13 +259,21 @@ class GmshReader {
       std::copy(tets_[i].begin(), tets_[i].end(),
                 mesh.tets.row(static_cast<Eigen::Index>(i)).begin());
     }
+    // Numbers and names of physical groups are unique in one dimension only.
+    std::map<std::string, int> uses;
+    for (const auto& [key, group] : groups_) ++uses[group_name(key)];
     for (const auto& [key, group] : groups_) {
-      const auto named = group_names_.find(key);
-      MeshGroup& target =
-          mesh.groups[named == group_names_.end() ? std::to_string(key.second) : named->second];
-      target.insert(target.end(), group.begin(), group.end());
+      const std::string name = group_name(key);
+      const auto dimension = static_cast<std::size_t>(key.first);
+      mesh.groups[uses[name] == 1 ? name : std::string(kDimensions[dimension]) + " " + name] =
+          group;
     }
     return mesh;
+  }
+
+  std::string group_name(const Tag& key) const {
+    const auto named = group_names_.find(key);
+    return named == group_names_.end() ? std::to_string(key.second) : named->second;
   }
 
   TokenReader in_;
@@ -253,6 +281,7 @@ class GmshReader {
   std::unordered_map<std::int64_t, int> number_;
   std::vector<std::array<double, 3>> coordinates_;
   std::vector<std::vector<int>> tets_;
+  std::set<std::vector<int>> grouped_;  ///< tetrahedra of version 2.2 that are in a group
   std::map<Tag, std::string> group_names_;
   std::map<Tag, std::vector<std::int64_t>> entity_groups_;
   std::map<Tag, MeshGroup> groups_;

@@ -63,15 +63,20 @@ Corner read_corner(const std::string& word, const ObjContent& content, bool look
 }
 
 void read_face(TokenReader& in, bool looks, ObjContent& content) {
-  std::istringstream words{std::string(in.rest_of_line())};
+  std::string line(in.rest_of_line());
+  while (line.ends_with('\\')) {  // goes on in the next line
+    line.pop_back();
+    line += ' ';
+    line += in.rest_of_line();
+  }
+  std::istringstream words{line};
   std::vector<Corner> corners;
   for (std::string word; words >> word;) corners.push_back(read_corner(word, content, looks, in));
   if (corners.size() < 3) in.fail("a face has less than three corners", "write the surface again");
   std::vector<int> nodes;
   for (const Corner& corner : corners) nodes.push_back(corner.vertex);
-  content.surface.add_polygon(nodes);
-  for (std::size_t i = 2; i < corners.size(); ++i) {
-    content.corners.insert(content.corners.end(), {corners[0], corners[i - 1], corners[i]});
+  for (const std::array<int, 3>& triangle : content.surface.add_polygon(nodes)) {
+    for (const int i : triangle) content.corners.push_back(corners[static_cast<std::size_t>(i)]);
   }
 }
 

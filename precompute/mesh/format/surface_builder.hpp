@@ -1,8 +1,10 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
+#include "precompute/mesh/format/polygon.hpp"
 #include "precompute/mesh/surface_mesh.hpp"
 
 namespace irdm::precompute {
@@ -14,11 +16,17 @@ class SurfaceBuilder {
     coordinates_.insert(coordinates_.end(), {x, y, z});
   }
 
-  /// A flat convex polygon of nodes in range, cut into triangles from its first corner.
-  void add_polygon(const std::vector<int>& corners) {
-    for (std::size_t i = 2; i < corners.size(); ++i) {
-      corners_.insert(corners_.end(), {corners[0], corners[i - 1], corners[i]});
+  /// Adds a flat polygon of nodes in range and returns its triangles, as numbers of its corners.
+  std::vector<std::array<int, 3>> add_polygon(const std::vector<int>& corners) {
+    std::vector<Vector3> places;
+    for (const int corner : corners) {
+      places.emplace_back(coordinates_.data() + 3 * static_cast<std::size_t>(corner));
     }
+    std::vector<std::array<int, 3>> triangles = cut_polygon(places);
+    for (const std::array<int, 3>& triangle : triangles) {
+      for (const int i : triangle) corners_.push_back(corners[static_cast<std::size_t>(i)]);
+    }
+    return triangles;
   }
 
   int node_count() const { return static_cast<int>(coordinates_.size() / 3); }

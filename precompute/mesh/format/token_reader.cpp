@@ -36,8 +36,15 @@ std::string file_content(const std::filesystem::path& path) {
   return text;
 }
 
+std::string text_content(const std::filesystem::path& path) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  std::string text = file_content(path);
+  if (text.starts_with(kByteOrderMark)) text.erase(0, kByteOrderMark.size());
+  return text;
+}
+
 TokenReader::TokenReader(const std::filesystem::path& path, char comment)
-    : name_(path.string()), text_(file_content(path)), comment_(comment) {
+    : name_(path.string()), text_(text_content(path)), comment_(comment) {
   if (at_end()) throw Error(name_, "is empty", "write the mesh again");
 }
 
@@ -45,9 +52,9 @@ void TokenReader::skip_blanks() {
   while (position_ < text_.size()) {
     const char c = text_[position_];
     if (comment_ != 0 && c == comment_) {
-      position_ = std::min(text_.find('\n', position_), text_.size());
+      position_ = std::min(text_.find_first_of("\r\n", position_), text_.size());
     } else if (is_blank(c)) {
-      line_ += c == '\n' ? 1 : 0;
+      line_ += ends_line(position_) ? 1 : 0;
       ++position_;
     } else {
       return;
@@ -106,13 +113,18 @@ void TokenReader::skip_past(std::string_view wanted) {
 
 std::string_view TokenReader::rest_of_line() {
   const std::size_t start = position_;
-  const std::size_t end = std::min(text_.find('\n', start), text_.size());
-  position_ = std::min(end + 1, text_.size());
+  const std::size_t end = std::min(text_.find_first_of("\r\n", start), text_.size());
+  const bool two_bytes = text_.compare(end, 2, "\r\n") == 0;
+  position_ = std::min(end + (two_bytes ? 2 : 1), text_.size());
   line_ += end < text_.size() ? 1 : 0;
   std::string_view line = std::string_view(text_).substr(start, end - start);
   if (comment_ != 0) line = line.substr(0, line.find(comment_));
-  if (line.ends_with('\r')) line.remove_suffix(1);
   return line;
+}
+
+// Lines end with LF, CR LF or, as on old Macintoshes, CR alone.
+bool TokenReader::ends_line(std::size_t at) const {
+  return text_[at] == '\n' || (text_[at] == '\r' && text_.compare(at, 2, "\r\n") != 0);
 }
 
 std::string_view TokenReader::bytes(std::size_t count) {

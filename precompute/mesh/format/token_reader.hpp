@@ -15,6 +15,10 @@ inline constexpr std::int64_t kMaxCount = 100'000'000;
 /// The bytes of a file. Throws Error when it is missing, unreadable or empty.
 std::string file_content(const std::filesystem::path& path);
 
+/// Returns the content of a text file without the byte order mark that some editors write before
+/// it. Throws Error as file_content() does.
+std::string text_content(const std::filesystem::path& path);
+
 /// Reads a text file, or one with binary blocks between the text, word by word and says file and
 /// line of what is wrong.
 class TokenReader {
@@ -47,6 +51,7 @@ class TokenReader {
 
  private:
   void skip_blanks();
+  bool ends_line(std::size_t at) const;
 
   std::string name_;
   std::string text_;

@@ -1,5 +1,6 @@
 #include "precompute/mesh/format/readers.hpp"
 
+#include <algorithm>
 #include <boost/property_tree/ptree.hpp>
 #include <boost/property_tree/xml_parser.hpp>
 #include <iterator>
@@ -27,7 +28,7 @@ std::string attribute(const xml::ptree& element, const std::string& key,
 class VtuReader {
  public:
   explicit VtuReader(const std::filesystem::path& path) : name_(path.string()) {
-    std::string text = file_content(path);
+    std::string text = text_content(path);
     split_appended(text);
     parse(text);
   }
@@ -64,7 +65,26 @@ class VtuReader {
     text = text.substr(0, tag) + "</VTKFile>";
   }
 
+  // The parser calls itself for each level, and a file from elsewhere must not exhaust the stack.
+  void check_depth(const std::string& text) const {
+    constexpr int kDeepest = 64;  // VTK's own files have about six levels
+    int depth = 0;
+    for (std::size_t at = text.find('<'); at < text.size(); at = text.find('<', at + 1)) {
+      const std::size_t end = std::min(text.find('>', at), text.size() - 1);
+      if (text[at + 1] == '/') {
+        --depth;
+      } else if (text[at + 1] != '?' && text[at + 1] != '!' && text[end - 1] != '/') {
+        ++depth;
+      }
+      if (depth > kDeepest) {
+        fail("its elements are nested more than " + std::to_string(kDeepest) + " deep",
+             "it is no mesh of VTK: write the mesh again");
+      }
+    }
+  }
+
   void parse(const std::string& text) {
+    check_depth(text);
     std::istringstream stream(text);
     try {
       xml::read_xml(stream, tree_, xml::xml_parser::no_comments);

@@ -26,12 +26,20 @@ TetMesh read_geometry(const std::filesystem::path& path) {
   return mesh_geometry(path);
 }
 
-// Both of VTK's formats are found under either name.
+std::string extension(const std::filesystem::path& path) {
+  std::string text = path.extension().string();
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+// Both of VTK's formats are found under either name. What is neither is judged by its name.
 TetMesh read_any_vtk(const std::filesystem::path& path) {
   const std::string text = text_content(path);
-  const std::size_t first = text.find_first_not_of(" \t\r\n");
-  const bool is_xml = first != std::string::npos && text[first] == '<';
-  return is_xml ? read_vtu(path) : read_vtk(path);
+  const std::string begin = text.substr(0, text.find_first_of("\r\n"));
+  if (begin.starts_with("<?xml") || begin.starts_with("<VTKFile")) return read_vtu(path);
+  if (begin.starts_with("# vtk")) return read_vtk(path);
+  return extension(path) == ".vtu" ? read_vtu(path) : read_vtk(path);
 }
 
 const std::map<std::string, Format> kFormats{
@@ -43,13 +51,6 @@ const std::map<std::string, Format> kFormats{
 
 // More tetrahedra than any way to R takes; gmsh would work on them for hours.
 constexpr double kMaxTetrahedra = 2e6;
-
-std::string extension(const std::filesystem::path& path) {
-  std::string text = path.extension().string();
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
 
 void check_edge_length(const SurfaceMesh& surface, double length, const std::string& name) {
   const double size = diagonal(surface);

@@ -13,7 +13,7 @@
 #include "tests/support/catch.hpp"
 
 using Catch::Matchers::ContainsSubstring;
-using irdm::hdf5::File;
+namespace hdf5 = irdm::hdf5;
 using irdm::hdf5::Handle;
 
 namespace {
@@ -57,7 +57,7 @@ TEST_CASE("a text attribute that is a list is refused, however long it is") {
   const hsize_t count = GENERATE(2, 3, 3000);
   const bool variable = GENERATE(false, true);
   write_texts(files.create("list.h5").get(), "support", count, variable);
-  const File file = File::open(files.path("list.h5"));
+  const hdf5::File file = hdf5::File::open(files.path("list.h5"));
   CHECK_THROWS_WITH(file.read_string_attribute("/", "support"),
                     ContainsSubstring("attribute support of / is not one text"));
 }
@@ -66,7 +66,7 @@ TEST_CASE("a text attribute of one text is read, as h5py writes it and with one 
   const ForeignFiles files;
   const bool variable = GENERATE(false, true);
   write_texts(files.create("one.h5").get(), "support", 1, variable);
-  CHECK(File::open(files.path("one.h5")).read_string_attribute("/", "support") == "floating");
+  CHECK(hdf5::File::open(files.path("one.h5")).read_string_attribute("/", "support") == "floating");
 }
 
 TEST_CASE("a text attribute without any text is refused") {
@@ -78,7 +78,7 @@ TEST_CASE("a text attribute without any text is refused") {
         H5Acreate2(file.get(), "support", H5T_C_S1, space.get(), H5P_DEFAULT, H5P_DEFAULT),
         H5Aclose);
   }
-  CHECK_THROWS_WITH(File::open(files.path("none.h5")).read_string_attribute("/", "support"),
+  CHECK_THROWS_WITH(hdf5::File::open(files.path("none.h5")).read_string_attribute("/", "support"),
                     ContainsSubstring("is not one text"));
 }
 
@@ -90,14 +90,19 @@ TEST_CASE("a model whose support is a list of texts is refused by name") {
   response.decay_rate = Eigen::Vector2d(1, 2);
   response.shapes = irdm::RowMatrix<float>(irdm::RowMatrix<float>::Random(12, 2));
   model.response = response;
-  irdm::write_model(files.path("model.h5"), model);
+  {
+    irdm::ModelFileWriter writer(files.path("model.h5"));
+    writer.write_description(model);
+    writer.write_modal(response);
+    writer.commit();
+  }
   {
     const Handle file(H5Fopen(files.path("model.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
     const Handle body(H5Gopen2(file.get(), "/body", H5P_DEFAULT), H5Gclose);
     REQUIRE(H5Adelete(body.get(), "support") >= 0);
     write_texts(body.get(), "support", 3000, true);
   }
-  CHECK_THROWS_WITH(irdm::read_model(files.path("model.h5")),
+  CHECK_THROWS_WITH(irdm::read_model(files.path("model.h5"), irdm::ResponseKind::kModal),
                     ContainsSubstring("attribute support of /body is not one text"));
 }
 
@@ -115,7 +120,7 @@ TEST_CASE("a dataset in HDF5's external storage is refused, and what it names is
                      H5Dclose);
     REQUIRE(set.get() >= 0);
   }
-  const File file = File::open(files.path("external.h5"));
+  const hdf5::File file = hdf5::File::open(files.path("external.h5"));
   CHECK_THROWS_WITH(file.read<std::uint8_t>("/texture", {0}),
                     ContainsSubstring("dataset /texture lies in another file"));
 }
@@ -134,7 +139,7 @@ TEST_CASE("a virtual dataset is refused, also where its source is gone and it re
                      H5Dclose);
     REQUIRE(set.get() >= 0);
   }
-  const File file = File::open(files.path("virtual.h5"));
+  const hdf5::File file = hdf5::File::open(files.path("virtual.h5"));
   CHECK_THROWS_WITH(file.read<double>("/shapes", {0}),
                     ContainsSubstring("dataset /shapes is put together from other datasets"));
 }
@@ -150,7 +155,7 @@ TEST_CASE("links to other files are refused, on every part of a path") {
     REQUIRE(H5Lcreate_external(files.path("other.h5").c_str(), "/body", file.get(), "body",
                                H5P_DEFAULT, H5P_DEFAULT) >= 0);
   }
-  const File file = File::open(files.path("linked.h5"));
+  const hdf5::File file = hdf5::File::open(files.path("linked.h5"));
   CHECK_THROWS_WITH(file.read_string_attribute("/body", "support"),
                     ContainsSubstring("/body is a link to another file"));
   CHECK_THROWS_WITH(file.read<double>("/body/mass", {0}),

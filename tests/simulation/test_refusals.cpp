@@ -17,6 +17,7 @@ SimulationConfig two() {
   for (SimulationObject& object : config.objects) {
     object.model = std::make_shared<const Model>(synthetic_cube(2, 5, 10));
   }
+  config.objects[1].position.x() = 1.0;
   return config;
 }
 

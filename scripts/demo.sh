@@ -96,7 +96,7 @@ if [ -x "$bin/irdm-bridge" ]; then
   start_precompute
   finish_precompute
 else
-  echo "demo: installs packages, builds three programs, computes the cube, plays ten seconds: $(about 480) here"
+  echo "demo: installs packages, builds three programs, computes the cube, plays ten seconds: $(about 600) here"
   scripts/setup.sh --build
   # What only the page and the plot need is installed while programs are compiled, and the model is computed while the
   # server is built.

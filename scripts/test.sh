@@ -56,12 +56,12 @@ run_tests() {
 }
 
 if [ $all = yes ]; then
-  echo "test: sets up; builds and runs the quick tests under two sanitizers, fuzzes, then runs all tests: $(about 3000) here"
+  echo "test: sets up; builds and runs the quick tests under two sanitizers, fuzzes, then runs all tests: $(about 3600) here"
   scripts/setup.sh --all
   echo "format: checking"
   scripts/format.sh --check
 else
-  echo "test: sets up, builds all programs and tests, runs those that are quick: $(about 900) here"
+  echo "test: sets up, builds all programs and tests, runs those that are quick: $(about 1100) here"
   scripts/setup.sh
 fi
 echo "includes: checking"

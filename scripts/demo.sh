@@ -92,7 +92,8 @@ keep_port() { [ -z "${page:-}" ] || printf '[viewer]\nport = %s\n' "$(sed 's/.*:
 page=
 if [ -x "$bin/irdm-bridge" ]; then
   scripts/setup.sh --demo
-  build -DIRDM_BUILD_PAGE=ON irdm-precompute irdm-server irdm-bridge
+  if [ ${#lean[@]} -gt 0 ]; then lean+=(-DIRDM_BUILD_PAGE=ON); fi
+  build irdm-precompute irdm-server irdm-bridge
   start_precompute
   finish_precompute
 else

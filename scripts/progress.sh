@@ -39,5 +39,6 @@ follow() {
     echo "$label: ${count:+$1 of $2, }$((SECONDS - started)) s$left"
   done
   wait $process || status=$?
+  trap - TERM
   return $status
 }

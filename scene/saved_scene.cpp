@@ -87,7 +87,7 @@ void change_gravity(toml::table& scene, const Vector3& gravity) {
 
 constexpr std::array<const char*, 2> kSecretKeys{"token", "onlooker_token"};
 
-// Where a position of toml++ is in the text: lines and characters of UTF-8 are counted from 1.
+// Returns the byte offset of a position of toml++, which counts lines and UTF-8 characters from 1.
 std::size_t offset(const std::string& text, const toml::source_position& position) {
   std::size_t at = 0;
   for (toml::source_index line = 1; line < position.line; ++line) at = text.find('\n', at) + 1;

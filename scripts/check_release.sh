@@ -29,7 +29,7 @@ cp -L /etc/resolv.conf "$root/etc/resolv.conf"
 # Whom this machine trusts, the root trusts: a proxy that looks into TLS, say.
 mkdir -p "$root/usr/local/share/ca-certificates"
 cp -a /usr/local/share/ca-certificates/. "$root/usr/local/share/ca-certificates/" 2>/dev/null || true
-git clone -q --no-hardlinks . "$root/root/irdm"
+git clone -q --no-hardlinks . "$root/srv/irdm"
 
 inside() {
   unshare --mount --pid --fork bash -c '
@@ -39,7 +39,7 @@ inside() {
     mount -t sysfs -o ro sysfs "$root/sys"
     mount --rbind /dev "$root/dev"
     exec chroot "$root" /usr/bin/env -i HOME=/root LANG=C.UTF-8 PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
-      ${OPENBLAS_CORETYPE:+OPENBLAS_CORETYPE=$OPENBLAS_CORETYPE} bash -c "cd /root/irdm; time $*"' _ "$root" "$@"
+      ${OPENBLAS_CORETYPE:+OPENBLAS_CORETYPE=$OPENBLAS_CORETYPE} bash -c "cd /srv/irdm; time $*"' _ "$root" "$@"
 }
 echo "check_release: $(sed -n 's/^PRETTY_NAME="\(.*\)"/\1/p' "$root/etc/os-release"), $(nproc) cores," \
   "$(openssl speed -seconds 1 sha256 2>/dev/null | sed -n 's/^sha256 .* //p') of SHA-256 a second"

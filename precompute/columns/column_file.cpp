@@ -62,7 +62,8 @@ void ColumnFileWriter::open_locked() {
       throw Error(path_.string(), std::string("cannot be opened: ") + std::strerror(errno),
                   "check that the folder exists and is writable");
     }
-    // File systems without locks (NFS without lockd) say so by other causes; they are used unlocked.
+    // File systems without locks (NFS without lockd) say so by other causes; they are used
+    // unlocked.
     if (::flock(file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
       throw Error(path_.string(), "is being written by another run",
                   "wait for its end or choose another output");

@@ -71,7 +71,7 @@ std::string place(const SurfaceMesh& surface, int node) {
 
 double diagonal(const SurfaceMesh& surface) {
   if (surface.triangles.size() == 0) return 0.0;
-  // Of the nodes that triangles use: a stray one far away would make all others meet.
+  // Only nodes that triangles use count: a stray one far away would make all others meet.
   const Points used = surface.nodes(surface.triangles.reshaped<Eigen::RowMajor>(), Eigen::all);
   return (used.colwise().maxCoeff() - used.colwise().minCoeff()).norm();
 }

@@ -54,16 +54,27 @@ class SpawnOptions {
 
 ChildProgram::ChildProgram(const std::vector<std::string>& command, const ChildSettings& settings)
     : own_group_(settings.own_group) {
-  std::vector<std::string> words = command;
+  const auto failed = [&command](const std::string& why) {
+    return Error(command.front(), "cannot be started: " + why,
+                 "install it, or see whether it works by itself");
+  };
+  if (!program_exists(command.front())) throw failed("there is no such program in PATH");
+  std::vector<std::string> words;
+  // The kernel ends the program where this process has no time to. The words are of util-linux,
+  // which Debian always has.
+  if (program_exists("setpriv")) words = {"setpriv", "--pdeathsig", "KILL", "--"};
+  words.insert(words.end(), command.begin(), command.end());
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
   const SpawnOptions options(settings);
   const int error = ::posix_spawnp(&pid_, argv.front(), options.actions(), options.attributes(),
                                    argv.data(), ::environ);
-  if (error == 0) return;
-  throw Error(command.front(), "cannot be started: " + std::generic_category().message(error),
-              "install it, or see whether it works by itself");
+  if (error != 0) {
+    pid_ = 0;
+    throw failed(std::generic_category().message(error));
+  }
+  cleanup_.emplace(CleanupAction{.kill = own_group_ ? -pid_ : pid_});
 }
 
 ChildProgram::~ChildProgram() {
@@ -103,6 +114,8 @@ void ChildProgram::collect() noexcept {
     found = ::waitpid(pid_, &status, 0);
   } while (found < 0 && errno == EINTR);
   status_ = found > 0 && WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  if (own_group_) ::kill(-pid_, SIGKILL);  // programs that it has started itself
+  cleanup_.reset();
   pid_ = 0;
 }
 

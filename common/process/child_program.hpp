@@ -4,8 +4,11 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "common/process/signal_cleanup.hpp"
 
 namespace irdm {
 
@@ -17,7 +20,8 @@ struct ChildSettings {
   std::map<int, int> descriptors = {};      ///< by the number that it has them under: ours
 };
 
-/// A program that runs beside this one and ends with this object at the latest.
+/// A program that runs beside this one. It ends with this object, the thread that made it or the
+/// process at the latest, however these end.
 class ChildProgram {
  public:
   /// @param command first the program, looked up in PATH; no shell sees it
@@ -39,6 +43,7 @@ class ChildProgram {
 
   bool own_group_;
   pid_t pid_ = 0;  // 0: it has ended
+  std::optional<SignalCleanup> cleanup_;
   int status_ = -1;
 };
 

@@ -3,12 +3,14 @@
 #include <unistd.h>
 #include <cerrno>
 #include <charconv>
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <thread>
 
 #include "common/error.hpp"
 
@@ -56,11 +58,26 @@ TemporaryFolder::TemporaryFolder(const std::string& prefix) {
     throw Error(name, "no temporary folder can be made", "check TMPDIR and the space left there");
   }
   path_ = name;
+  cleanup_.emplace(CleanupAction{.remove = path_});
 }
 
 TemporaryFolder::~TemporaryFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
+  // The last processes of a program that was killed may still make files there.
+  constexpr int kMostTries = 10;
+  std::error_code failed;
+  for (int i = 0; i < kMostTries; ++i) {
+    std::filesystem::remove_all(path_, failed);
+    if (!failed) return;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+}
+
+void TemporaryFolder::require_space() const {
+  std::error_code unknown;
+  const std::filesystem::space_info space = std::filesystem::space(path_, unknown);
+  if (unknown || space.available > 0) return;
+  throw Error(path_.parent_path().string(), "no space is left for temporary files",
+              "make room there, or set TMPDIR to another folder");
 }
 
 }  // namespace irdm

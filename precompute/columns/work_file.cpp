@@ -3,11 +3,11 @@
 #include <exception>
 
 #include "common/error.hpp"
+#include "common/process/signal_cleanup.hpp"
 #include "common/response/modal_response.hpp"
 #include "precompute/columns/assemble.hpp"
 #include "precompute/columns/column_file.hpp"
 #include "precompute/columns/compute_columns.hpp"
-#include "precompute/process/signal_cleanup.hpp"
 
 namespace irdm::precompute {
 namespace {

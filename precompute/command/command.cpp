@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "common/error.hpp"
+#include "common/process/signal_cleanup.hpp"
 #include "common/process/temporary_files.hpp"
 #include "common/program/program.hpp"
 #include "precompute/blas.hpp"
@@ -16,7 +17,6 @@
 #include "precompute/columns/assemble.hpp"
 #include "precompute/compress/compress_model.hpp"
 #include "precompute/precompute.hpp"
-#include "precompute/process/signal_cleanup.hpp"
 
 namespace irdm::precompute {
 namespace {

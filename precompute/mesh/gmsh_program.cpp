@@ -15,7 +15,6 @@ namespace irdm::precompute {
 namespace {
 
 constexpr double kMaxVolumeChange = 0.1;  // share of the volume
-constexpr double kFlatMeanRatio = 0.01;   // mean ratio; sound meshes of gmsh are above 0.2
 
 // Angle of edges that stay: 40 degrees. The patches between them are cut until each has a map into
 // the plane (1, 1), and curves are cut nowhere (Pi).
@@ -52,6 +51,7 @@ TetMesh run_gmsh(const Job& job, const TemporaryFolder& folder, const std::strin
                 {std::filesystem::absolute(job.script).string(), "-3", "-format", "msh41", "-o",
                  output.string(), "-setnumber", "General.AbortOnError", "2"},
                 folder.path(), log, time_limit_s);
+  folder.require_space();
   if (end == ChildEnd::kNotFound) {
     throw Error(program, "the program cannot be started", "install the package gmsh");
   }

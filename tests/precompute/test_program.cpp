@@ -14,6 +14,7 @@
 #include "tests/support/child_process.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/file_size_limit.hpp"
+#include "tests/support/small_disk.hpp"
 
 using Catch::Matchers::ContainsSubstring;
 using namespace irdm;
@@ -302,7 +303,11 @@ TEST_CASE("bad mesh: one line on stderr, status 1, no output") {
   refused(with_words(kMsh, "1 2 3 4", "2 1 3 4"), "1 of 2 tetrahedra are inverted");
   refused(with_words(with_words(kMsh, "1 2 3 4", "2 1 3 4"), "2 3 4 5", "3 2 4 5"),
           "all 2 tetrahedra are inverted");
-  refused(with_words(kMsh, "5 1 1 1", "5 0.25 0.25 0.5"), "element 2 has zero volume");
+  refused(with_words(kMsh, "5 1 1 1", "5 0.25 0.25 0.5"),
+          "the tetrahedron around (0.3125, 0.3125, 0.375) has zero volume");
+  refused(with_words(kMsh, "5 1 1 1", "5 0.33333333 0.33333333 0.33333337"),
+          "the lowest modes are lost in rounding beside the stiffness of the tetrahedron around "
+          "(0.333333, 0.333333, 0.333333) m, which is flat (mean ratio");
   const std::string eight_nodes = with_words(with_words(kMsh, "$Nodes\n5", "$Nodes\n8"),
                                              "5 1 1 1\n", "5 9 0 0\n6 10 0 0\n7 9 1 0\n8 9 0 1\n");
   refused(with_words(eight_nodes, "2 3 4 5", "5 6 7 8"), "2 pieces");
@@ -392,6 +397,92 @@ TEST_CASE("SIGINT and SIGTERM leave neither the model nor its temporary file") {
     CHECK(process.wait() == -signal);
     CHECK(std::filesystem::is_empty(run.path() / "made"));
   }
+}
+
+namespace {
+
+// A folder with a gmsh that begins a file in its folder, says its process and never ends, and one
+// for temporary files.
+struct EndlessGmsh : ProgramRun {
+  std::filesystem::path temporary = path() / "tmp";
+
+  EndlessGmsh() {
+    std::filesystem::create_directories(path() / "bin");
+    std::filesystem::create_directory(temporary);
+    const std::filesystem::path program = path() / "bin" / "gmsh";
+    write("bin/gmsh", "#!/bin/sh\n: > begun\necho $$ > '" + pid_file().string() + ".new'\nmv '" +
+                          pid_file().string() + ".new' '" + pid_file().string() +
+                          "'\nexec sleep 100000\n");
+    std::filesystem::permissions(program, std::filesystem::perms::owner_all);
+    write("a.geo", "SetFactory(\"OpenCASCADE\");\nBox(1) = {0, 0, 0, 1, 1, 1};\n");
+    write("c.toml", "[mesh]\nfile = \"a.geo\"\n" + kProgramMaterial);
+  }
+  std::filesystem::path pid_file() const { return path() / "pid"; }
+  ChildProcess begin() const {
+    return ChildProcess({IRDM_PROGRAM, "c.toml", "-o", model().string()},
+                        {.folder = path(),
+                         .environment = {"TMPDIR=" + temporary.string(),
+                                         "PATH=" + (path() / "bin").string() + ":/usr/bin:/bin"}});
+  }
+  // Waits for it.
+  pid_t gmsh() const {
+    REQUIRE(
+        eventually([&] { return std::filesystem::exists(pid_file()); }, ChildProcess::kDeadlineMs));
+    pid_t pid = 0;
+    std::ifstream(pid_file()) >> pid;
+    return pid;
+  }
+};
+
+// A process that has ended and waits for init is gone, too.
+bool is_gone(pid_t pid) {
+  std::ifstream stat("/proc/" + std::to_string(pid) + "/stat");
+  std::string number;
+  std::string name;
+  std::string state;
+  return !(stat >> number >> name >> state) || state == "Z" || state == "X";
+}
+
+}  // namespace
+
+TEST_CASE("a signal that ends the program ends gmsh, too, and leaves no temporary folder") {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    CAPTURE(signal);
+    EndlessGmsh run;
+    ChildProcess process = run.begin();
+    const pid_t gmsh = run.gmsh();
+    CHECK_FALSE(std::filesystem::is_empty(run.temporary));
+    process.signal(signal);
+    CHECK(process.wait() == -signal);
+    CHECK(is_gone(gmsh));
+    CHECK(std::filesystem::is_empty(run.temporary));
+    CHECK(std::filesystem::is_empty(run.path() / "made"));
+  }
+}
+
+TEST_CASE("gmsh ends with a program that is killed") {
+  EndlessGmsh run;
+  ChildProcess process = run.begin();
+  const pid_t gmsh = run.gmsh();
+  process.signal(SIGKILL);
+  CHECK(process.wait() == -SIGKILL);
+  CHECK(eventually([&] { return is_gone(gmsh); }, ChildProcess::kDeadlineMs));
+}
+
+TEST_CASE("no space for TetGen's files: that is what is said") {
+  const auto disk = small_disk("tmpfs", "size=64k");
+  if (!disk) return;
+  ProgramRun run;
+  run.write("c.toml", "[mesh]\nbox = { size = [1, 1, 1], cells = [8, 8, 8] }\n" + kProgramMaterial);
+  // A name that the program's children have for it, too.
+  const std::string folder = with_words(disk->path().string(), "self", std::to_string(::getpid()));
+  const FinishedProgram ended =
+      run_to_end({IRDM_PROGRAM, "c.toml", "-o", run.model().string()},
+                 {.folder = run.path(), .environment = {"TMPDIR=" + folder}});
+  CHECK(ended.status == 1);
+  CHECK_THAT(ended.err, ContainsSubstring("no space is left for temporary files; make room there, "
+                                          "or set TMPDIR"));
+  CHECK(std::filesystem::is_empty(disk->path()));
 }
 
 TEST_CASE("a model that does not fit on the disk: one error, and nothing is left of it") {

@@ -25,6 +25,10 @@ constexpr const char* kFlags = "-pYq1.1";
 // is between leaves TetGen room.
 constexpr double kInnerSize = 2.0;
 
+// Mean edges for which the largest volume is written with few digits, and enough of them.
+constexpr double kSmallestEdge = 1e-5;
+constexpr double kLargestEdge = 1e5;
+
 // TetGen's input: nodes and facets, numbered from 0.
 void write_poly(const SurfaceMesh& surface, const std::filesystem::path& path) {
   std::ofstream file(path);
@@ -65,8 +69,10 @@ void run_tetgen(const SurfaceMesh& surface, const std::string& flags, const Temp
                 const std::string& program, double time_limit_s, const std::string& subject,
                 const std::string& remedy) {
   write_poly(surface, folder.path() / "surface.poly");
-  switch (run_child(program, {flags, "surface.poly"}, folder.path(), folder.path() / "log",
-                    time_limit_s)) {
+  const ChildEnd end = run_child(program, {flags, "surface.poly"}, folder.path(),
+                                 folder.path() / "log", time_limit_s);
+  folder.require_space();
+  switch (end) {
     case ChildEnd::kSuccess:
       return;
     case ChildEnd::kNotFound:
@@ -103,13 +109,19 @@ TetMesh tetrahedralise(const SurfaceMesh& surface, const std::string& program,
 
 TetMesh fill_surface(const SurfaceMesh& surface, const std::string& name,
                      const std::string& program, double time_limit_s, const std::string& remedy) {
-  const double edge = mean_edge(surface);
+  const double own_edge = mean_edge(surface);
+  const bool in_range = own_edge > kSmallestEdge && own_edge < kLargestEdge;
+  const double unit = in_range ? 1.0 : std::exp2(std::ilogb(own_edge));  // changes no digit
+  const SurfaceMesh scaled{surface.nodes / unit, surface.triangles};
+  const double edge = mean_edge(scaled);
   char size[32];  // without an exponent, which the program would take for another flag
   std::snprintf(size, sizeof size, "a%.20f",
                 kInnerSize * edge * edge * edge / (6.0 * std::sqrt(2.0)));
   const TemporaryFolder folder("irdm-tetgen");
-  run_tetgen(surface, kFlags + std::string(size), folder, program, time_limit_s, name, remedy);
-  return read_filled(surface, folder, program, name);
+  run_tetgen(scaled, kFlags + std::string(size), folder, program, time_limit_s, name, remedy);
+  TetMesh mesh = read_filled(scaled, folder, program, name);
+  mesh.nodes *= unit;
+  return mesh;
 }
 
 void check_self_intersection(const SurfaceMesh& surface, const std::string& name,

@@ -44,6 +44,56 @@ TEST_CASE("VTK, VTU and Medit files of meshio and VTK hold the mesh that was wri
   }
 }
 
+TEST_CASE("base64 of a .vtu whose length is padded on its own is read") {
+  const MeshFiles files;
+  std::string wide = replaced(content(sample("split-header-inline.vtu")), "UInt32", "UInt64");
+  for (std::size_t at = wide.find("AA=="); at != std::string::npos; at = wide.find("AA==")) {
+    wide.replace(at, 4, "AAAAAAA=");  // eight bytes
+  }
+  for (const auto& path : {sample("split-header-inline.vtu"), sample("split-header-appended.vtu"),
+                           files.write("wide.vtu", wide)}) {
+    CAPTURE(path);
+    const TetMesh mesh = read_mesh_file(path);
+    CHECK(mesh.node_count() == 27);
+    CHECK(mesh.tet_count() == 48);
+    CHECK(volume(mesh) == Approx(1e-3));
+    CHECK_NOTHROW(check_mesh(mesh, "cube"));
+  }
+}
+
+TEST_CASE("second-order tetrahedra of Medit are named, whatever comes before them") {
+  const MeshFiles files;
+  files.write("block.geo", kBlock);
+  files.run("gmsh -3 -order 2 block.geo -o m.mesh");
+  REQUIRE_THAT(content(files.path() / "m.mesh"), ContainsSubstring("EdgesP2"));
+  check_refused(files.path() / "m.mesh", "second-order tetrahedra");
+  const std::string linear = content(sample("meshio.mesh"));
+  const std::string edges = "EdgesP2\n1\n1 2 3 0\nTrianglesP2\n1\n1 2 3 4 5 6 0\n";
+  check_block(read_mesh_file(
+      files.write("e.mesh", replaced(linear, "\nTetrahedra", "\n" + edges + "Tetrahedra"))));
+}
+
+TEST_CASE("groups of a Gmsh file in partitions are those of the whole") {
+  const MeshFiles files;
+  files.write("block.geo", kBlock +
+                               "Physical Volume(\"body\") = {1};\n"
+                               "Physical Surface(\"base\") = {5};\n");
+  for (const std::string format : {"msh41", "msh22"}) {
+    CAPTURE(format);
+    files.run("gmsh -3 block.geo -format " + format + " -o whole.msh");
+    files.run("gmsh -3 -part 2 block.geo -format " + format + " -o parts.msh");
+    const TetMesh whole = read_mesh_file(files.path() / "whole.msh");
+    const TetMesh parts = read_mesh_file(files.path() / "parts.msh");
+    CHECK(parts.tet_count() == whole.tet_count());
+    for (const std::string name : {"body", "base"}) {
+      CAPTURE(name);
+      const auto nodes = nodes_in(parts, GroupRegion{name}, "m");
+      CHECK(nodes.size() == nodes_in(whole, GroupRegion{name}, "m").size());
+      for (const int node : nodes) CHECK((name == "body" || parts.nodes(node, 2) == 0.0));
+    }
+  }
+}
+
 TEST_CASE("VTK and Medit files of Gmsh are read") {
   const MeshFiles files;
   files.write("block.geo", kBlock);

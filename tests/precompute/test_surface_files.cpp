@@ -57,6 +57,19 @@ TEST_CASE("surfaces written by meshio are filled and keep their triangles") {
   }
 }
 
+TEST_CASE("a surface is filled whatever its unit is") {
+  const MeshFiles files;
+  for (const double unit : {1e-7, 1e-4, 1e6}) {
+    CAPTURE(unit);
+    SurfaceMesh cube = checked_surface(weld(read_obj(files.write("c.obj", kCube))), "c");
+    cube.nodes *= unit;
+    const TetMesh mesh = fill_surface(cube, "c", "tetgen", 120.0, "");
+    CHECK_NOTHROW(check_mesh(mesh, "c"));
+    CHECK(volume(mesh) == Approx(unit * unit * unit));
+    CHECK(mesh.nodes.topRows(8) == cube.nodes);
+  }
+}
+
 TEST_CASE("surfaces written by Gmsh are filled with tetrahedra of the size of their triangles") {
   const MeshFiles files;
   const TetMesh binary = read_mesh_file(ball(files));

@@ -56,7 +56,9 @@ class GmshReader {
       } else if (section == "$PhysicalNames") {
         read_group_names();
       } else if (section == "$Entities" && version_ == "4.1") {
-        read_entities();
+        read_entities(false);
+      } else if (section == "$PartitionedEntities" && version_ == "4.1") {
+        read_entities(true);
       } else if (section.starts_with("$")) {
         in_.skip_past("$End" + section.substr(1));
         continue;
@@ -112,12 +114,21 @@ class GmshReader {
   }
 
   // Which physical groups each point, curve, surface and volume of the geometry belongs to.
-  void read_entities() {
+  // Entities of partitions take the place of those that they are parts of.
+  void read_entities(bool partitioned) {
+    if (partitioned) {
+      in_.skip(1);  // number of partitions
+      in_.skip(2 * in_.integer(0, kMaxCount, "number of ghost entities"));
+    }
     std::array<std::int64_t, 4> counts{};
     for (std::int64_t& count : counts) count = in_.integer(0, kMaxCount, "number of entities");
     for (std::int64_t dimension = 0; dimension < 4; ++dimension) {
       for (std::int64_t i = 0; i < counts[static_cast<std::size_t>(dimension)]; ++i) {
         const std::int64_t tag = in_.integer();
+        if (partitioned) {
+          in_.skip(2);  // the entity that it is a part of
+          in_.skip(in_.integer(0, kMaxCount, "number of partitions"));
+        }
         in_.skip(dimension == 0 ? 3 : 6);  // bounding box
         const std::int64_t groups = in_.integer(0, kMaxCount, "number of physical groups");
         for (std::int64_t g = 0; g < groups; ++g) {

@@ -13,12 +13,22 @@ namespace {
 const std::map<std::string, int> kElements{{"Edges", 2}, {"Triangles", 3}, {"Tetrahedra", 4}};
 
 // Sections that say nothing to us: how many words each of their entries has.
-const std::map<std::string, int> kSkipped{
-    {"Quadrilaterals", 5},           {"Corners", 1},          {"Ridges", 1},
-    {"RequiredVertices", 1},         {"RequiredEdges", 1},    {"RequiredTriangles", 1},
-    {"RequiredTetrahedra", 1},       {"Normals", 3},          {"NormalAtVertices", 2},
-    {"NormalAtTriangleVertices", 3}, {"Tangents", 3},         {"TangentAtVertices", 2},
-    {"TangentAtEdges", 3},           {"SubDomainFromMesh", 4}};
+const std::map<std::string, int> kSkipped{{"Quadrilaterals", 5},
+                                          {"Corners", 1},
+                                          {"Ridges", 1},
+                                          {"RequiredVertices", 1},
+                                          {"RequiredEdges", 1},
+                                          {"RequiredTriangles", 1},
+                                          {"RequiredTetrahedra", 1},
+                                          {"Normals", 3},
+                                          {"NormalAtVertices", 2},
+                                          {"NormalAtTriangleVertices", 3},
+                                          {"Tangents", 3},
+                                          {"TangentAtVertices", 2},
+                                          {"TangentAtEdges", 3},
+                                          {"SubDomainFromMesh", 4},
+                                          {"EdgesP2", 4},
+                                          {"TrianglesP2", 7}};
 
 const std::map<std::string, std::string> kRefused{{"Hexahedra", "hexahedra"},
                                                   {"Prisms", "prisms"},

@@ -51,6 +51,11 @@ class ByteRuns {
     return bytes;
   }
 
+  // Whether a run of base64 is padded after these bytes.
+  bool ends_after(std::size_t count) const {
+    return base64_ && count % 3 != 0 && text_[stored(count) - 1] == '=';
+  }
+
   // No run can be longer than this.
   std::size_t left() const { return text_.size(); }
 
@@ -108,11 +113,13 @@ std::string compressed_bytes(ByteRuns runs, const VtuCoding& coding) {
   return bytes;
 }
 
-// Header: the number of bytes.
+// Header: the number of bytes; in one run with the data, or in a run of its own.
 std::string plain_bytes(ByteRuns runs, const VtuCoding& coding) {
   const std::size_t word = size_of(coding.header);
   const std::size_t size = decode_size(runs.peek(word), coding, runs.left());
-  return runs.take(word + size).substr(word);
+  if (!runs.ends_after(word)) return runs.take(word + size).substr(word);
+  runs.take(word);
+  return runs.take(size);
 }
 
 }  // namespace

@@ -13,6 +13,12 @@ void bind_model(pybind11::module_& module);
 void bind_simulation(pybind11::module_& module);
 void bind_stylus(pybind11::module_& module);
 
+/// While the interpreter is free: lets Ctrl-C through.
+inline void look_at_signals() {
+  const pybind11::gil_scoped_acquire held;
+  if (PyErr_CheckSignals() != 0) throw pybind11::error_already_set();
+}
+
 /// A view of numbers that `owner` keeps alive, which cannot be written to.
 template <typename Number>
 pybind11::array view(std::vector<pybind11::ssize_t> shape, const Number* numbers,

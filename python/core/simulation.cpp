@@ -1,10 +1,13 @@
 #include <pybind11/stl.h>
 
 #include <atomic>
+#include <chrono>
 #include <cstring>
+#include <optional>
 #include <stdexcept>
 
 #include "common/error.hpp"
+#include "python/core/arrays.hpp"
 #include "python/core/model.hpp"
 #include "python/core/module.hpp"
 #include "scene/scene_run.hpp"
@@ -15,40 +18,58 @@ namespace py = pybind11;
 namespace irdm::python {
 namespace {
 
-// What a caller gives for one or many steps; rows of all styluses, step after step.
-using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
-using Buttons = py::array_t<std::uint32_t, py::array::c_style | py::array::forcecast>;
-using Flags = py::array_t<bool, py::array::c_style | py::array::forcecast>;
+// What a caller gives for one or many steps: rows of all styluses, step after step.
+struct Given {
+  py::object tips;
+  py::object buttons;
+  py::object orientations;
+  py::object present;
+};
 
-// Commands of `count` steps, checked.
+// Commands of `steps` steps, or of one that is given without its axis, checked.
 class Commands {
  public:
-  Commands(const std::optional<Numbers>& tips, const std::optional<Buttons>& buttons,
-           const std::optional<Numbers>& orientations, const std::optional<Flags>& present,
-           std::size_t steps, std::size_t styluses)
-      : steps_(steps), styluses_(styluses) {
-    const std::size_t rows = steps * styluses;
+  Commands(const Given& given, std::optional<std::size_t> steps, std::size_t styluses)
+      : styluses_(styluses) {
+    const std::size_t rows = steps.value_or(1) * styluses;
     commands_.resize(rows);
-    if (!tips) {
-      if (buttons || orientations || present) {
-        throw py::value_error("tips are missing: give them, or nothing else either");
+    if (given.tips.is_none()) {
+      if (given.buttons.is_none() && given.orientations.is_none() && given.present.is_none()) {
+        return;
       }
-      return;
+      throw py::value_error("tips are missing: give them, or nothing else either");
     }
-    const double* tip = numbers(*tips, "tips", 3);
-    const double* turn = orientations ? numbers(*orientations, "orientations", 4) : nullptr;
-    const std::uint32_t* pressed = buttons ? numbers(*buttons, "buttons", 1) : nullptr;
-    const bool* there = present ? numbers(*present, "present", 1) : nullptr;
+    // The axis of the styluses may be left out where there is one.
+    const auto shapes = [&](std::optional<py::ssize_t> width) {
+      std::vector<Shape> all;
+      for (const bool without : {false, true}) {
+        if (without && styluses != 1) continue;
+        Shape& shape = all.emplace_back();
+        if (steps) shape.push_back(static_cast<py::ssize_t>(*steps));
+        if (!without) shape.push_back(static_cast<py::ssize_t>(styluses));
+        if (width) shape.push_back(*width);
+      }
+      return all;
+    };
+    const auto tips = numbers(given.tips, "tips", shapes(3));
+    std::optional<py::array_t<double>> orientations;
+    std::optional<py::array_t<std::uint32_t>> buttons;
+    std::optional<py::array_t<bool>> present;
+    if (!given.orientations.is_none()) {
+      orientations = numbers(given.orientations, "orientations", shapes(4));
+    }
+    if (!given.buttons.is_none()) buttons = bit_fields(given.buttons, "buttons", shapes({}));
+    if (!given.present.is_none()) present = flags(given.present, "present", shapes({}));
     for (std::size_t r = 0; r < rows; ++r) {
       StylusCommand& command = commands_[r];
-      if (there != nullptr && !there[r]) continue;
+      if (present && !present->data()[r]) continue;
       command.present = true;
-      command.tip = Vector3(tip[3 * r], tip[3 * r + 1], tip[3 * r + 2]);
-      if (turn != nullptr) {
-        const double* q = turn + 4 * r;
+      command.tip = Vector3(tips.data() + 3 * r);
+      if (orientations) {
+        const double* q = orientations->data() + 4 * r;
         command.orientation = Quaternion(q[0], q[1], q[2], q[3]);
       }
-      if (pressed != nullptr) command.buttons = pressed[r];
+      if (buttons) command.buttons = buttons->data()[r];
       const char* const fault = fault_of(command);
       if (fault == nullptr) continue;
       throw py::value_error("step " + std::to_string(r / styluses) + ", stylus " +
@@ -61,17 +82,6 @@ class Commands {
   }
 
  private:
-  template <typename Number>
-  const Number* numbers(const py::array_t<Number, py::array::c_style | py::array::forcecast>& array,
-                        const char* name, std::size_t width) const {
-    if (static_cast<std::size_t>(array.size()) == steps_ * styluses_ * width) return array.data();
-    throw py::value_error(std::string(name) + " has " + std::to_string(array.size()) +
-                          " numbers, not " + std::to_string(steps_ * styluses_ * width) + ": " +
-                          std::to_string(width) + " for each of " + std::to_string(styluses_) +
-                          " styluses a step");
-  }
-
-  std::size_t steps_;
   std::size_t styluses_;
   std::vector<StylusCommand> commands_;
 };
@@ -127,16 +137,18 @@ struct Steps {
   py::array time, styluses, objects, contacts, first;
 };
 
+constexpr std::chrono::milliseconds kBetweenSignals(50);  ///< that Ctrl-C waits for, and a step
+
 class PythonSimulation {
  public:
   PythonSimulation(const std::string& text, const std::string& file)
       : run_(file.empty() ? TomlTable::parse_text(text, "scene") : TomlTable::parse_file(file)),
         surfaces_(static_cast<std::size_t>(run_.simulation().object_count())) {}
 
-  Step step(const std::optional<Numbers>& tips, const std::optional<Buttons>& buttons,
-            const std::optional<Numbers>& orientations, const std::optional<Flags>& present) {
+  Step step(const py::object& tips, const py::object& buttons, const py::object& orientations,
+            const py::object& present) {
     const Use use(*this);
-    const Commands commands(tips, buttons, orientations, present, 1, styluses());
+    const Commands commands({tips, buttons, orientations, present}, {}, styluses());
     rows_ = Rows{};
     {
       const py::gil_scoped_release released;
@@ -147,18 +159,24 @@ class PythonSimulation {
             rows(rows_.contacts)};
   }
 
-  Steps step_many(const Numbers& tips, const std::optional<Buttons>& buttons,
-                  const std::optional<Numbers>& orientations, const std::optional<Flags>& present) {
+  Steps step_many(const py::object& tips, const py::object& buttons, const py::object& orientations,
+                  const py::object& present) {
     const Use use(*this);
-    if (tips.ndim() < 1) throw py::value_error("tips must have the shape (steps, styluses, 3)");
-    const auto steps = static_cast<std::size_t>(tips.shape(0));
-    const Commands commands(tips, buttons, orientations, present, steps, styluses());
+    const auto shape = py::module_::import("numpy").attr("shape")(tips).cast<py::tuple>();
+    if (shape.empty()) throw py::value_error("tips must have the shape (steps, styluses, 3)");
+    const auto steps = shape[0].cast<std::size_t>();
+    const Commands commands({tips, buttons, orientations, present}, steps, styluses());
     Rows all;
     {
       const py::gil_scoped_release released;
+      auto looked = std::chrono::steady_clock::now();
       for (std::size_t k = 0; k < steps; ++k) {
         run_.step(commands.of(k));
         all.take(run_);
+        const auto now = std::chrono::steady_clock::now();
+        if (now - looked < kBetweenSignals) continue;
+        looked = now;
+        look_at_signals();
       }
     }
     return {rows(all.time), rows(all.styluses, steps), rows(all.objects, steps), rows(all.contacts),
@@ -170,12 +188,9 @@ class PythonSimulation {
     run_.reset();
   }
 
-  void set_gravity(const Numbers& gravity) {
+  void set_gravity(const py::object& gravity) {
     const Use use(*this);
-    if (gravity.ndim() != 1 || gravity.size() != 3) {
-      throw py::value_error("gravity must have the shape (3)");
-    }
-    run_.set_gravity(Vector3(gravity.data()));
+    run_.set_gravity(Vector3(numbers(gravity, "gravity", {{3}}).data()));
   }
 
   py::bytes save_state() {
@@ -302,14 +317,16 @@ The sum of an object's forces and its weight is the change of its momentum over 
            py::arg("orientations") = py::none(), py::arg("present") = py::none(), R"(One step of dt.
 
 tips: (s, 3) at the end of the step [m], W; None: nobody is there. buttons: (s), irdm.GRAB | irdm.RESET. orientations: (s, 4)
-w x y z in W, of styluses that lead a tool. present: (s) of bool, who is there; None: all. Returns a Step. Raises ValueError for
-wrong sizes, numbers that are not finite or beyond 1e4 m, orientations whose length is not 1.)")
+w x y z in W, of styluses that lead a tool. present: (s) of bool, who is there; None: all. With one stylus the axis s may be
+left out. Returns a Step. Raises ValueError for another shape, numbers that are not finite or beyond 1e4 m, buttons that are
+no whole numbers from 0 to 2^32 - 1, orientations whose length is not 1; TypeError for what is not an array of real numbers
+(complex, masked).)")
       .def("step_many", &Self::step_many, py::arg("tips"), py::arg("buttons") = py::none(),
            py::arg("orientations") = py::none(), py::arg("present") = py::none(),
            R"(Several steps, with the interpreter free meanwhile.
 
 tips: (steps, s, 3); buttons, orientations, present: (steps, s, ...); as of step(). Nothing is done where one of them is
-wrong. Returns Steps. Raises as step().)")
+wrong. Returns Steps. Raises as step(), and KeyboardInterrupt within 0.1 s: the steps until then have been done.)")
       .def("reset", &Self::reset,
            "Puts everything back to the start before the next step; its number goes on.")
       .def("save_state", &Self::save_state,
@@ -344,7 +361,8 @@ Read-only and not copied: the next call for this object writes it anew. Raises I
             return py::array_t<double>(3, g.data());
           },
           &Self::set_gravity,
-          "(3) [m/s^2], W. What is set holds from the next step on. Raises ValueError, irdm.Error.")
+          "(3) [m/s^2], W. What is set holds from the next step on. Raises ValueError, TypeError, "
+          "irdm.Error.")
       .def_property_readonly(
           "object_names", [](const Self& self) { return names(self.run().scene().objects); },
           "By number.")

@@ -1,10 +1,12 @@
 #include <pybind11/stl.h>
+#include <unistd.h>
 
 #include <memory>
 #include <optional>
 #include <stdexcept>
 
 #include "device_bridge/stylus_client.hpp"
+#include "python/core/arrays.hpp"
 #include "python/core/module.hpp"
 
 namespace py = pybind11;
@@ -12,25 +14,11 @@ namespace py = pybind11;
 namespace irdm::python {
 namespace {
 
-using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
-
-// While the interpreter is free: lets Ctrl-C through.
-void look_at_signals() {
-  const py::gil_scoped_acquire held;
-  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-}
-
 std::unique_ptr<StylusClient> connect(const std::string& address, const std::string& options) {
   const StylusSettings settings =
       read_stylus_settings(address, TomlTable::parse_text(options, "options"));
   const py::gil_scoped_release released;
   return std::make_unique<StylusClient>(settings, look_at_signals);
-}
-
-const double* numbers(const Numbers& array, py::ssize_t count, const char* name) {
-  if (array.size() == count) return array.data();
-  throw py::value_error(std::string(name) + " has " + std::to_string(array.size()) +
-                        " numbers, not " + std::to_string(count));
 }
 
 py::array_t<double> vector(const Vector3& v) {
@@ -45,12 +33,12 @@ class PythonStylus {
   PythonStylus& operator=(const PythonStylus&) = delete;
   ~PythonStylus() { close(); }
 
-  void set(const Numbers& tip, const std::optional<Numbers>& orientation, std::uint32_t buttons) {
+  void set(const py::object& tip, const py::object& orientation, std::uint32_t buttons) {
     if (client().lockstep()) throw std::runtime_error("the run is in lockstep: use step()");
     client().set(pose(tip, orientation, buttons));
   }
 
-  py::array_t<double> step(const Numbers& tip, const std::optional<Numbers>& orientation,
+  py::array_t<double> step(const py::object& tip, const py::object& orientation,
                            std::uint32_t buttons) {
     if (!client().lockstep()) throw std::runtime_error("not connected in lockstep: use set()");
     const StylusPose at = pose(tip, orientation, buttons);
@@ -71,6 +59,12 @@ class PythonStylus {
   }
 
   void close() {
+    if (::getpid() != process_) {
+      // Threads of the client are in the parent, and what it signals and sends would reach there:
+      // this copy is left as it is.
+      [[maybe_unused]] StylusClient* const copy = client_.release();
+      return;
+    }
     if (stepping_) throw std::runtime_error("another thread is in step()");
     std::unique_ptr<StylusClient> gone = std::move(client_);
     const py::gil_scoped_release released;
@@ -79,25 +73,27 @@ class PythonStylus {
 
   bool closed() const { return !client_; }
   StylusClient& client() const {
-    if (client_) return *client_;
-    throw std::runtime_error("the stylus is closed");
+    if (!client_) throw std::runtime_error("the stylus is closed");
+    if (::getpid() == process_) return *client_;
+    throw std::runtime_error("the stylus is of the process before fork(): connect another one");
   }
   StylusClient& idle_client() const {
     if (stepping_) throw std::runtime_error("another thread is in step()");
     return client();
   }
   StylusFeedback get() const { return idle_client().get(); }
-  std::string state() const { return client_ && !stepping_ ? client_->state() : closed_or_busy(); }
+  std::string state() const { return client_ && !stepping_ ? client().state() : closed_or_busy(); }
 
  private:
   std::string closed_or_busy() const { return client_ ? "ready: in step()" : "closed"; }
 
-  StylusPose pose(const Numbers& tip, const std::optional<Numbers>& orientation,
+  StylusPose pose(const py::object& tip, const py::object& orientation,
                   std::uint32_t buttons) const {
     StylusPose pose;
-    pose.tip = Vector3(numbers(tip, 3, "tip"));
-    if (orientation) {
-      const double* q = numbers(*orientation, 4, "orientation");
+    pose.tip = Vector3(numbers(tip, "tip", {{3}}).data());
+    if (!orientation.is_none()) {
+      const auto given = numbers(orientation, "orientation", {{4}});
+      const double* q = given.data();
       pose.orientation = Quaternion(q[0], q[1], q[2], q[3]);
     }
     pose.buttons = buttons;
@@ -107,6 +103,7 @@ class PythonStylus {
 
   std::unique_ptr<StylusClient> client_;  ///< null: closed
   bool stepping_ = false;                 ///< all under the interpreter's lock
+  pid_t process_ = ::getpid();            ///< that has connected
 };
 
 }  // namespace
@@ -120,14 +117,16 @@ void bind_stylus(py::module_& module) {
            py::arg("buttons") = 0, R"(Real time: where the stylus is from now on.
 
 tip: (3) [m], within 2 m of the origin of its frame, which is W without a `workspace`. orientation: (4) w x y z, of length
-1; None: not turned. buttons: irdm.GRAB | irdm.RESET. Raises ValueError, and then nothing has changed.)")
+1; None: not turned. buttons: irdm.GRAB | irdm.RESET. Raises ValueError or TypeError, and then nothing has changed.)")
       .def("step", &Self::step, py::arg("tip"), py::arg("orientation") = py::none(),
            py::arg("buttons") = 0,
            R"(Lockstep: the server's next step, at whose end the tip is there.
 
 tip: (3) [m], W, within 1000 m; the rest as of set(). Returns the force on the stylus, (3) [N], W. Other threads go on
 meanwhile. Raises ValueError, and irdm.Error when the run is over; Ctrl-C ends the connection.)")
-      .def("close", &Self::close, "Lets the force fade and says goodbye; in up to half a second.")
+      .def("close", &Self::close,
+           "Lets the force fade and says goodbye; in up to half a second. In a child of os.fork() "
+           "only the child's copy is closed.")
       .def_property_readonly("closed", &Self::closed)
       .def_property_readonly(
           "force", [](const Self& self) { return vector(self.get().force); },

@@ -1,4 +1,5 @@
 import os
+from collections.abc import Sequence
 from typing import Any, Optional, Union
 
 import numpy
@@ -20,6 +21,8 @@ _Path = Union[str, os.PathLike[str]]
 _Numbers = NDArray[numpy.float64]
 
 class Error(ValueError): ...
+
+def numbers(given: ArrayLike, name: str, shape: Sequence[int]) -> _Numbers: ...
 
 class Model:
     def __init__(self, path: _Path, response: str = ...) -> None: ...

@@ -1,10 +1,13 @@
 """What irdm-precompute does, from Python."""
 
+import contextlib
 import os
 import re
 import shutil
+import signal
 import subprocess
 import tempfile
+import threading
 import tomllib
 import weakref
 from collections.abc import Mapping
@@ -24,17 +27,43 @@ class CheckLine(NamedTuple):
 
 
 def _program():
-    installed = Path(__file__).resolve().parents[4] / "bin" / "irdm-precompute"
-    program = str(installed) if installed.is_file() else shutil.which("irdm-precompute")
+    package = Path(__file__).resolve().parent
+    # Where it is installed, and in a build folder: BUILD/python/irdm and BUILD/bin.
+    for folder in (package.parents[3] / "bin", package.parents[1] / "bin"):
+        if (folder / "irdm-precompute").is_file():
+            return str(folder / "irdm-precompute")
+    program = shutil.which("irdm-precompute")
     if program is None:
-        raise _core.Error("irdm-precompute: is not on PATH; install the package irdm")
+        raise _core.Error(
+            f"irdm-precompute: is neither beside the package ({package}) nor in PATH; install the package irdm, or add the "
+            "folder that the program is in to PATH"
+        )
     return program
 
 
+@contextlib.contextmanager
+def _until_terminated():
+    """SIGTERM, which would end Python without a word, becomes SystemExit, so that what was begun is put away."""
+    main = threading.current_thread() is threading.main_thread()
+    if not main or signal.getsignal(signal.SIGTERM) is not signal.SIG_DFL:
+        yield
+        return
+
+    def end(number, _frame):
+        raise SystemExit(128 + number)
+
+    signal.signal(signal.SIGTERM, end)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, signal.SIG_DFL)
+
+
 def _run(arguments, progress=None):
-    """Its lines. The program ends with this call, however it ends."""
+    """Its lines. The program ends with this call, however it ends, and with this process."""
+    with_parent = ["setpriv", "--pdeathsig", "TERM", "--"] if shutil.which("setpriv") else []
     with tempfile.TemporaryFile("w+") as complaints, subprocess.Popen(
-        [_program(), *arguments], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=complaints, text=True
+        [*with_parent, _program(), *arguments], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=complaints, text=True
     ) as process:
         try:
             lines = []
@@ -58,14 +87,15 @@ def precompute(config, output=None, *, progress=None, threads=None):
     from the working directory. output: the model file [HDF5]; None: a temporary one, which lives as long as the Model.
     progress: called as progress(text, fraction) with each line that the program prints, fraction in 0..1 or None.
     threads: to compute with; None: all cores. Raises irdm.Error. KeyboardInterrupt and what `progress` raises end the
-    computation.
+    computation, and so does SIGTERM where the program has no handler of its own: it becomes SystemExit.
     """
-    folder = tempfile.mkdtemp(prefix="irdm-")
-    try:
-        model = _precompute(config, output, folder, progress, threads)
-    except BaseException:
-        shutil.rmtree(folder, ignore_errors=True)
-        raise
+    with _until_terminated():
+        folder = tempfile.mkdtemp(prefix="irdm-")
+        try:
+            model = _precompute(config, output, folder, progress, threads)
+        except BaseException:
+            shutil.rmtree(folder, ignore_errors=True)
+            raise
     if output is None:
         weakref.finalize(model, shutil.rmtree, folder, ignore_errors=True)
     else:

@@ -67,8 +67,11 @@ class Environment:
         """
         if self._last is None:
             raise _core.Error("step: no episode is under way; call reset()")
-        action = numpy.asarray(action, dtype=float)
-        if action.shape != self.action_space.shape or not numpy.isfinite(action).all():
+        try:
+            action = _core.numbers(action, "action", self.action_space.shape)
+        except (TypeError, ValueError) as error:
+            raise _core.Error(f"{error}; see action_space") from error
+        if not numpy.isfinite(action).all():
             raise _core.Error(f"action: is not {self.action_space.shape[0]} finite numbers; see action_space")
         action = action.clip(self.action_space.low, self.action_space.high)
         moves = self._to_world(action[: self.tips.size].reshape(self.tips.shape))

@@ -12,6 +12,24 @@ from support import cube, cube_config, folder
 import irdm
 
 
+def eventually(condition):
+    end = time.monotonic() + 60
+    while time.monotonic() < end:
+        if condition():
+            return True
+        time.sleep(0.01)
+    return False
+
+
+def running(pid):
+    """A process that has ended and waits for init is not."""
+    try:
+        with open(f"/proc/{pid}/stat", encoding="utf-8") as file:
+            return file.read().rsplit(")", 1)[1].split()[0] not in "ZX"
+    except FileNotFoundError:
+        return False
+
+
 class PrecomputeTest(unittest.TestCase):
     def test_progress(self):
         seen = []
@@ -79,6 +97,52 @@ class PrecomputeTest(unittest.TestCase):
             while os.listdir(place) and time.monotonic() < deadline:
                 time.sleep(0.05)
             self.assertEqual(os.listdir(place), [])
+
+
+    def test_terminated(self):
+        """SIGTERM and SIGKILL to Python: no program that goes on; after SIGTERM no temporary folder either."""
+        program = textwrap.dedent("""
+            import sys, irdm
+            config = {"mesh": {"file": sys.argv[1]},
+                      "material": {"youngs_modulus": 5000.0, "poisson_ratio": 0.4, "density": 110.0}}
+            irdm.precompute(config)
+            """)
+        for number in (signal.SIGTERM, signal.SIGKILL):
+            with self.subTest(number), tempfile.TemporaryDirectory() as place:
+                for name in ("bin", "tmp"):
+                    os.mkdir(os.path.join(place, name))
+                fake = os.path.join(place, "bin", "gmsh")
+                pid_file = os.path.join(place, "pid")
+                with open(fake, "w", encoding="utf-8") as file:
+                    file.write(f"#!/bin/sh\necho $$ > {pid_file}.new\nmv {pid_file}.new {pid_file}\nexec sleep 100000\n")
+                os.chmod(fake, 0o755)
+                script = os.path.join(place, "a.geo")
+                with open(script, "w", encoding="utf-8") as file:
+                    file.write('SetFactory("OpenCASCADE");\nBox(1) = {0, 0, 0, 1, 1, 1};\n')
+                environment = dict(os.environ, TMPDIR=os.path.join(place, "tmp"))
+                environment["PATH"] = os.path.join(place, "bin") + ":" + environment["PATH"]
+                with subprocess.Popen([sys.executable, "-c", program, script], env=environment) as run:
+                    self.assertTrue(eventually(lambda: os.path.exists(pid_file)))
+                    with open(pid_file, encoding="utf-8") as file:
+                        gmsh = int(file.read())
+                    run.send_signal(number)
+                    run.wait(60)
+                self.assertTrue(eventually(lambda: not running(gmsh)))
+                left = os.listdir(os.path.join(place, "tmp"))
+                if number == signal.SIGTERM:
+                    self.assertEqual(left, [])
+                else:
+                    self.assertFalse([name for name in left if name.startswith("irdm-gmsh")], left)
+
+    def test_program_of_a_build_folder(self):
+        """It is found without PATH; without both, the message says what to do."""
+        program = "import irdm; print(irdm.commands._program())"
+        environment = dict(os.environ, PATH="/usr/bin:/bin")
+        found = subprocess.run([sys.executable, "-c", program], env=environment, stdout=subprocess.PIPE, text=True)
+        self.assertTrue(found.stdout.strip().endswith("/bin/irdm-precompute"), found.stdout)
+        program = "import irdm, pathlib; irdm.commands.Path.is_file = lambda _: False; irdm.commands._program()"
+        lost = subprocess.run([sys.executable, "-c", program], env=environment, stderr=subprocess.PIPE, text=True)
+        self.assertIn("add the folder that the program is in to PATH", lost.stderr)
 
 
 class CheckTest(unittest.TestCase):

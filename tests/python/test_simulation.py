@@ -1,9 +1,11 @@
+import os
+import subprocess
 import sys
 import threading
 import unittest
 
 import numpy
-from support import block, cube, scene
+from support import block, cube, folder, scene
 
 import irdm
 
@@ -18,6 +20,34 @@ def tips(steps):
 
 
 class SimulationTest(unittest.TestCase):
+    def test_one_stylus_needs_no_axis(self):
+        table = scene(stylus=[{"radius": 0.02, "coupling_stiffness": 500}])
+        way = tips(20)[:, 0]
+        buttons = numpy.ones(20)
+        short = irdm.Simulation(table).step_many(way, buttons)
+        full = irdm.Simulation(table).step_many(way[:, None], buttons[:, None].astype(int))
+        self.assertEqual(short.styluses.tobytes(), full.styluses.tobytes())
+        with self.assertRaisesRegex(ValueError, r"give \(20, 1, 3\)"):
+            irdm.Simulation(table).step_many(way.reshape(20, 3, 1))
+
+    def test_ctrl_c(self):
+        """step_many() ends soon, and the steps until then are done."""
+        program = (
+            "import numpy, os, signal, sys, threading, time, irdm\n"
+            "simulation = irdm.Simulation(sys.argv[1])\n"
+            "start = threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT))\n"
+            "start.start()\n"
+            "try:\n"
+            "    simulation.step_many(numpy.zeros((3_000_000, 2, 3)), present=numpy.zeros((3_000_000, 2), bool))\n"
+            "except KeyboardInterrupt:\n"
+            "    print(simulation.next_step)\n"
+        )
+        path = os.path.join(folder.name, "ctrl_c.toml")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(irdm.to_toml(scene()))
+        run = subprocess.run([sys.executable, "-c", program, path], stdout=subprocess.PIPE, text=True, timeout=600)
+        self.assertTrue(0 < int(run.stdout) < 3_000_000, run.stdout)
+
     def test_forces_change_momentum(self):
         """Line by line: the forces on each object and its weight are the change of its momentum."""
         simulation = irdm.Simulation(scene())
@@ -186,16 +216,29 @@ class SimulationTest(unittest.TestCase):
         twin = irdm.Simulation(scene())
         good = tips(1)[0]
         wrong = [
-            ((good[:1],), {}, "6"),
+            ((good[:1],), {}, r"tips has the shape \(1, 3\): give \(2, 3\)"),
+            ((good.T,), {}, r"tips has the shape \(3, 2\): give \(2, 3\)"),
             ((numpy.full((2, 3), numpy.nan),), {}, "stylus 0"),
             (([[0, 1, 0], [0, 1e5, 0]],), {}, "stylus 1"),
             ((good,), {"orientations": numpy.zeros((2, 4))}, "orientation"),
             ((good,), {"buttons": [1]}, "buttons"),
+            ((good,), {"buttons": [-1, 0]}, "buttons has -1.0"),
+            ((good,), {"buttons": [0, 2**40]}, "buttons has"),
+            ((good,), {"buttons": [1.5, 0]}, "buttons has 1.5"),
+            ((good,), {"present": [2, 0]}, "present has 2.0"),
             ((), {"buttons": [1, 1]}, "tips"),
         ]
         for arguments, named, text in wrong:
             with self.subTest(text), self.assertRaisesRegex(ValueError, text):
                 simulation.step(*arguments, **named)
+        masked = numpy.ma.masked_array(good, mask=[[True, False, False]] * 2)
+        for odd, text in ((good + 1j, "complex"), (masked, "masked"), (good.astype(object), "object")):
+            with self.subTest(text), self.assertRaisesRegex(TypeError, text):
+                simulation.step(odd)
+            with self.subTest(text), self.assertRaisesRegex(TypeError, text):
+                simulation.step_many(numpy.ma.stack([odd]))
+            with self.subTest(text), self.assertRaisesRegex(TypeError, text):
+                simulation.gravity = odd[0]
         for odd in ("tips", [["a", "b", "c"]], object()):
             with self.assertRaises((TypeError, ValueError)):
                 simulation.step(odd)

@@ -175,18 +175,46 @@ class WrongUseTest(unittest.TestCase):
         with Server("--lockstep") as server:
             refused("runs in lockstep", server.address, [0, 0, 0])
 
+    def test_a_fork_closes_its_copy_only(self):
+        for lockstep in (False, True):
+            with self.subTest(lockstep=lockstep), Server(*["--lockstep"] * lockstep) as server:
+                tip = {} if lockstep else {"tip": [0, 0.2, 0]}
+                stylus = irdm.Stylus.connect(server.address, lockstep=lockstep, **tip)
+                child = os.fork()
+                if child == 0:
+                    try:
+                        stylus.set([0, 0.2, 0])
+                        os._exit(1)
+                    except RuntimeError as error:
+                        stylus.close()
+                        os._exit(0 if "before fork()" in str(error) and stylus.closed else 2)
+                self.assertEqual(os.waitpid(child, 0)[1], 0)
+                if lockstep:
+                    for _ in range(5):
+                        stylus.step([0, 0.2, 0])
+                    self.assertEqual(stylus.ticks, 5)
+                else:
+                    before = stylus.ticks
+                    self.assertTrue(eventually(lambda: stylus.set([0, 0.2, 0]) or stylus.ticks > before + 1000))
+                    self.assertTrue(eventually(lambda: stylus.set([0, 0.2, 0]) or stylus.ready), stylus.state)
+                    self.assertEqual(stylus.sessions, 1)
+                stylus.close()
+
     def test_set(self):
         with Server() as server, irdm.Stylus.connect(server.address, [0, 0.2, 0]) as stylus:
             for tip in ([numpy.nan, 0, 0], [0, numpy.inf, 0], [0, 0, 2.1]):
                 with self.assertRaisesRegex(ValueError, "within 2 m"):
                     stylus.set(tip)
-            with self.assertRaisesRegex(ValueError, "not 3"):
+            with self.assertRaisesRegex(ValueError, r"tip has the shape \(2,\): give \(3,\)"):
                 stylus.set([0, 0])
+            with self.assertRaisesRegex(TypeError, "complex"):
+                stylus.set([0, 0.2 + 1j, 0])
             for orientation in ([1, 1, 0, 0], [0, 0, 0, 0], [numpy.nan, 0, 0, 0]):
                 with self.assertRaisesRegex(ValueError, "length 1"):
                     stylus.set([0, 0.2, 0], orientation)
-            with self.assertRaises(TypeError):
-                stylus.set([0, 0.2, 0], buttons=-1)
+            for buttons in (-1, 2**40, 1.5):
+                with self.assertRaises(TypeError):
+                    stylus.set([0, 0.2, 0], buttons=buttons)
             with self.assertRaisesRegex(RuntimeError, "not connected in lockstep"):
                 stylus.step([0, 0.2, 0])
             # None of them counted as a tip.

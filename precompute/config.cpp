@@ -6,6 +6,7 @@
 
 #include "common/config/range.hpp"
 #include "common/error.hpp"
+#include "precompute/fem/material.hpp"
 
 namespace irdm::precompute {
 namespace {
@@ -113,7 +114,7 @@ Material read_material(TomlTable table) {
   Material material;
   table.boolean("rigid", false);  // see read_config
   material.youngs_modulus = table.number("youngs_modulus", lab::kYoungsModulus);
-  material.poisson_ratio = table.number("poisson_ratio", lab::kPoissonRatio);
+  material.poisson_ratio = table.number("poisson_ratio", kPoissonRatio);
   material.density = table.number("density", lab::kDensity);
   material.rayleigh_alpha = table.number("rayleigh_alpha", lab::kRayleighAlpha, 8.0);
   material.rayleigh_beta = table.number("rayleigh_beta", lab::kRayleighBeta, 2e-4);

@@ -12,6 +12,7 @@
 #include "common/error.hpp"
 #include "common/model/model_check.hpp"
 #include "common/number_text.hpp"
+#include "common/process/signal_cleanup.hpp"
 #include "precompute/blas.hpp"
 #include "precompute/columns/assemble.hpp"
 #include "precompute/columns/compute_columns.hpp"
@@ -29,7 +30,6 @@
 #include "precompute/modal/modal_method.hpp"
 #include "precompute/modal/reduced_modes.hpp"
 #include "precompute/modal/shared_modes.hpp"
-#include "precompute/process/signal_cleanup.hpp"
 
 namespace irdm::precompute {
 namespace {
@@ -172,9 +172,9 @@ bool shares_modes(const PrecomputeConfig& config) {
 }
 
 // All modes, or some; nothing on another rank than the first, which only helps.
-ModalResponse modes_of(const PrecomputeConfig& config, const TetMesh& mesh,
-                       const std::vector<int>& clamped, const Model& model, int threads,
-                       const Ranks& ranks, const Console& console) {
+ModalResponse chosen_modes(const PrecomputeConfig& config, const TetMesh& mesh,
+                           const std::vector<int>& clamped, const Model& model, int threads,
+                           const Ranks& ranks, const Console& console) {
   if (config.modes.all()) {
     const std::size_t moving = static_cast<std::size_t>(mesh.node_count()) - clamped.size();
     if (config.response.storage == Storage::kModal && moving >= kManyNodes) {
@@ -201,6 +201,21 @@ ModalResponse modes_of(const PrecomputeConfig& config, const TetMesh& mesh,
   if (ranks.size() > 1) solvers.statics = shared->solver();
   return compute_reduced_modes(mesh, clamped, model, config.modes, threads, console,
                                std::move(solvers));
+}
+
+// As chosen_modes(). Where modes are lost and an element is flat, that is the cause.
+ModalResponse modes_of(const PrecomputeConfig& config, const TetMesh& mesh,
+                       const std::vector<int>& clamped, const Model& model, int threads,
+                       const Ranks& ranks, const Console& console) {
+  try {
+    return chosen_modes(config, mesh, clamped, model, threads, ranks, console);
+  } catch (const LostModes&) {
+    const auto flattest = flattest_element(mesh);
+    if (!flattest) throw;
+    throw Error("mesh",
+                "the lowest modes are lost in rounding beside the stiffness of " + *flattest,
+                "remove that tetrahedron, or optimise the mesh (gmsh -optimize)");
+  }
 }
 
 // The columns that are asked for, of all of them.

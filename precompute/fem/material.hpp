@@ -2,10 +2,15 @@
 
 #include <Eigen/Dense>
 
+#include "common/config/range.hpp"
 #include "common/geometry.hpp"
 #include "common/model/model.hpp"
 
 namespace irdm::precompute {
+
+/// Poisson's ratios that are computed with. Nearer to -1 or 0.5 one of the two stiffnesses of the
+/// material, of shape or of volume, is lost in the rounding of the other.
+inline constexpr Range kPoissonRatio = between(-0.999999, 0.499999);
 
 /// Lame's parameters of linear isotropic elasticity.
 struct Lame {

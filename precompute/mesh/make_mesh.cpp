@@ -39,9 +39,9 @@ MadeMesh file_mesh(const std::filesystem::path& path, const MeshConfig& config) 
   std::optional<double> edge_length = config.edge_length;
   if (edge_length) *edge_length /= config.unit;
   MadeMesh made{read_mesh_file(path, edge_length)};
-  made.mesh.nodes *= config.unit;
   made.unused_nodes = drop_unused_nodes(made.mesh);
-  check_mesh(made.mesh, path.string());
+  check_mesh(made.mesh, path.string());  // whose places are those of the file
+  made.mesh.nodes *= config.unit;
   return made;
 }
 

@@ -9,13 +9,14 @@
 
 #include "common/config/range.hpp"
 #include "common/error.hpp"
+#include "precompute/fem/material.hpp"
 #include "precompute/mesh/format/token_reader.hpp"
 
 namespace irdm::precompute {
 
 std::array<MaterialKey, 3> material_keys(MaterialValues& values) {
   return {{{"youngs_modulus", &values.youngs_modulus, lab::kYoungsModulus},
-           {"poisson_ratio", &values.poisson_ratio, lab::kPoissonRatio},
+           {"poisson_ratio", &values.poisson_ratio, kPoissonRatio},
            {"density", &values.density, lab::kDensity}}};
 }
 

@@ -35,7 +35,8 @@ std::string edges(std::size_t count) {
   return std::to_string(count) + (count == 1 ? " edge" : " edges");
 }
 
-void check_edges(const SurfaceMesh& surface, const EdgeOwners& owners, const std::string& name) {
+void check_edges(const SurfaceMesh& surface, const EdgeOwners& owners, const std::string& name,
+                 const std::string& crowded_remedy) {
   std::vector<Edge> open;
   std::vector<Edge> crowded;
   for (const auto& [edge, triangles] : owners) {
@@ -52,7 +53,7 @@ void check_edges(const SurfaceMesh& surface, const EdgeOwners& owners, const std
     throw Error(name,
                 "the surface is not manifold: more than two triangles meet at " +
                     edges(crowded.size()) + ", for instance " + place(surface, crowded.front()),
-                "remove double triangles and inner walls there");
+                crowded_remedy);
   }
 }
 
@@ -96,7 +97,7 @@ SurfaceMesh checked_surface(const SurfaceMesh& surface, const std::string& name)
                 "give a closed surface of triangles");
   }
   const EdgeOwners owners = edge_owners(surface);
-  check_edges(surface, owners, name);
+  check_edges(surface, owners, name, "remove double triangles and inner walls there");
   SurfaceMesh turned = surface;
   const std::vector<bool> reached = turn_alike(turned, owners);
   const auto other = std::find(reached.begin(), reached.end(), false);
@@ -124,6 +125,18 @@ double mean_ratio(const TetMesh& mesh, int e) {
     squares += (mesh.position(mesh.tets(e, i)) - mesh.position(mesh.tets(e, j))).squaredNorm();
   }
   return 12.0 * std::pow(3.0 * signed_volume(mesh, e), 2.0 / 3.0) / squares;
+}
+
+std::optional<std::string> flattest_element(const TetMesh& mesh) {
+  int flattest = 0;
+  for (int e = 1; e < mesh.tet_count(); ++e) {
+    if (mean_ratio(mesh, e) < mean_ratio(mesh, flattest)) flattest = e;
+  }
+  const double quality = mean_ratio(mesh, flattest);
+  if (quality > kFlatMeanRatio) return std::nullopt;
+  char ratio[32];
+  std::snprintf(ratio, sizeof ratio, "%.2g", quality);
+  return tetrahedron_text(mesh, flattest) + " m, which is flat (mean ratio " + ratio + ")";
 }
 
 MeshReport report_mesh(const TetMesh& mesh) {
@@ -158,15 +171,13 @@ namespace {
 // one has 0.118); far below the worst slivers of mesh generators.
 constexpr double kSmallestVolume = 1e-9;
 
-std::string element(int e) {
-  return "element " + std::to_string(e + 1);
-}
-
 void check_coordinates(const TetMesh& mesh, const std::string& name) {
   for (int i = 0; i < mesh.node_count(); ++i) {
     if (mesh.nodes.row(i).allFinite()) continue;
-    throw Error(name, "node " + std::to_string(i + 1) + " has a coordinate that is not finite",
-                "write the mesh again");
+    throw Error(
+        name,
+        "the node at " + place_text(mesh.position(i)) + " has a coordinate that is not finite",
+        "write the mesh again");
   }
 }
 
@@ -176,18 +187,24 @@ void check_indices(const TetMesh& mesh, const std::string& name) {
     for (int i = 0; i < mesh.tets.cols(); ++i) {
       const int node = mesh.tets(e, i);
       if (node < 0 || node >= mesh.node_count()) {
-        throw Error(name, element(e) + " uses a node that does not exist", "write the mesh again");
+        throw Error(name,
+                    "tetrahedron " + std::to_string(e + 1) + " uses a node that does not exist",
+                    "write the mesh again");
       }
       used[static_cast<std::size_t>(node)] = true;
       for (int j = 0; j < i; ++j) {
         if (mesh.tets(e, j) != node) continue;
-        throw Error(name, element(e) + " uses the same node twice", "remove degenerate elements");
+        throw Error(name,
+                    "a tetrahedron uses the node at " + place_text(mesh.position(node)) + " twice",
+                    "remove degenerate elements");
       }
     }
   }
   for (std::size_t i = 0; i < used.size(); ++i) {
     if (used[i]) continue;
-    throw Error(name, "node " + std::to_string(i + 1) + " belongs to no tetrahedron",
+    throw Error(name,
+                "the node at " + place_text(mesh.position(static_cast<int>(i))) +
+                    " belongs to no tetrahedron",
                 "remove unused nodes");
   }
 }
@@ -209,7 +226,8 @@ void check_volumes(const TetMesh& mesh, const std::string& name) {
   for (int e = 0; e < mesh.tet_count(); ++e) {
     const double volume = signed_volume(mesh, e);
     if (!(std::abs(volume) > kSmallestVolume * std::pow(longest_edge(mesh, e), 3))) {
-      throw Error(name, element(e) + " has zero volume", "repair or optimise the mesh");
+      throw Error(name, tetrahedron_text(mesh, e) + " has zero volume",
+                  "repair or optimise the mesh");
     }
     if (volume > 0.0) continue;
     if (inverted++ == 0) first = e;
@@ -222,7 +240,7 @@ void check_volumes(const TetMesh& mesh, const std::string& name) {
   }
   throw Error(name,
               std::to_string(inverted) + " of " + std::to_string(mesh.tet_count()) +
-                  " tetrahedra are inverted, the first is " + element(first),
+                  " tetrahedra are inverted, for instance " + tetrahedron_text(mesh, first),
               "repair the mesh");
 }
 
@@ -238,7 +256,7 @@ bool folds(const TetMesh& mesh, int e) {
 void check_curved(const TetMesh& mesh, const std::string& name) {
   for (int e = 0; e < mesh.tet_count(); ++e) {
     if (is_straight(mesh, e) || !folds(mesh, e)) continue;
-    throw Error(name, element(e) + " folds over: its edges are curved too much",
+    throw Error(name, tetrahedron_text(mesh, e) + " folds over: its edges are curved too much",
                 "make it smaller, or let gmsh move the nodes (Mesh.HighOrderOptimize = 2)");
   }
 }
@@ -277,18 +295,8 @@ void check_connected(const TetMesh& mesh, const std::string& name) {
 
 void check_surface(const TetMesh& mesh, const std::string& name) {
   const Triangles triangles = boundary_faces(mesh, name);
-  std::map<std::pair<int, int>, int> edges;
-  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
-    for (int i = 0; i < 3; ++i) ++edges[{triangles(t, i), triangles(t, (i + 1) % 3)}];
-  }
-  for (const auto& [edge, count] : edges) {
-    const auto back = edges.find({edge.second, edge.first});
-    if (count == 1 && back != edges.end() && back->second == 1) continue;
-    throw Error(name,
-                "the surface is not manifold at the edge of nodes " +
-                    std::to_string(edge.first + 1) + " and " + std::to_string(edge.second + 1),
-                "separate or join the parts that touch there");
-  }
+  check_edges({mesh.nodes, triangles}, edge_owners({mesh.nodes, triangles}), name,
+              "separate or join the parts that touch there");
 }
 
 }  // namespace

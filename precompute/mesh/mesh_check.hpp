@@ -14,6 +14,9 @@ namespace irdm::precompute {
 /// Self-intersection is left to check_self_intersection.
 SurfaceMesh checked_surface(const SurfaceMesh& surface, const std::string& name);
 
+/// Mean ratio up to which an element is called flat; those of sound meshes are above 0.1.
+inline constexpr double kFlatMeanRatio = 0.01;
+
 /// What a person should see of a mesh before trusting it.
 struct MeshReport {
   Vector3 extent = Vector3::Zero();  ///< edge lengths of the bounding box [m]
@@ -25,6 +28,10 @@ struct MeshReport {
 /// Relationship between tetrahedron shape measures, BIT 34, 1994). 1 for a regular tetrahedron,
 /// near 0 for a flat one.
 double mean_ratio(const TetMesh& mesh, int e);
+
+/// The tetrahedron of the lowest mean ratio, for messages, where that is flat: "the tetrahedron
+/// around (0.1, 0, 0.02) m, which is flat (mean ratio 1.2e-05)".
+std::optional<std::string> flattest_element(const TetMesh& mesh);
 
 /// @param mesh that passed check_mesh
 MeshReport report_mesh(const TetMesh& mesh);
@@ -40,7 +47,7 @@ std::optional<std::string> unit_hint(const Vector3& extent);
 /// coordinates; indices in range and distinct within an element; every node used; volumes positive
 /// and not vanishing, also where edges are curved; one piece, joined through faces; a closed
 /// surface in which two triangles meet at every edge. `name` stands for the mesh in the messages,
-/// which count elements and nodes from 1 in the order of the mesh.
+/// which say places in the coordinates of the mesh, as the numbers of a file are not known here.
 void check_mesh(const TetMesh& mesh, const std::string& name);
 
 }  // namespace irdm::precompute

@@ -136,9 +136,7 @@ std::vector<int> elements_in(const TetMesh& mesh, const Region& region, const st
   const double tolerance = kRounding * size_of(mesh);
   std::vector<int> elements;
   for (int e = 0; e < mesh.tet_count(); ++e) {
-    Vector3 centroid = Vector3::Zero();
-    for (int i = 0; i < 4; ++i) centroid += 0.25 * mesh.position(mesh.tets(e, i));
-    if (contains(region, centroid, tolerance)) elements.push_back(e);
+    if (contains(region, centroid_of(mesh, e), tolerance)) elements.push_back(e);
   }
   return elements;
 }

@@ -57,15 +57,16 @@ std::vector<TetFace> lone_faces(const TetMesh& mesh, const std::string& name) {
   for (const auto& [nodes, owners] : faces_by_nodes(mesh)) {
     if (owners.size() > 2) {
       throw Error(name,
-                  "one face belongs to " + std::to_string(owners.size()) + " tetrahedra (element " +
-                      std::to_string(owners.back().tet + 1) + ")",
+                  "one face belongs to " + std::to_string(owners.size()) + " tetrahedra, " +
+                      tetrahedron_text(mesh, owners.back().tet) + " among them",
                   "remove duplicate or overlapping elements");
     }
     if (owners.size() == 1) boundary.push_back(owners.front());
     if (owners.size() == 2 && same_side(mesh, owners[0], owners[1])) {
       throw Error(name,
-                  "elements " + std::to_string(owners[0].tet + 1) + " and " +
-                      std::to_string(owners[1].tet + 1) + " lie on the same side of a common face",
+                  tetrahedron_text(mesh, owners[0].tet) + " and " +
+                      tetrahedron_text(mesh, owners[1].tet) +
+                      " lie on the same side of a common face",
                   "remove duplicate or overlapping elements");
     }
   }

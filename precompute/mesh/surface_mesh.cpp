@@ -62,11 +62,14 @@ class Welder {
 
 }  // namespace
 
-std::string place(const SurfaceMesh& surface, int node) {
+std::string place_text(const Vector3& place) {
   char text[80];
-  std::snprintf(text, sizeof text, "(%.6g, %.6g, %.6g)", surface.nodes(node, 0),
-                surface.nodes(node, 1), surface.nodes(node, 2));
+  std::snprintf(text, sizeof text, "(%.6g, %.6g, %.6g)", place.x(), place.y(), place.z());
   return text;
+}
+
+std::string place(const SurfaceMesh& surface, int node) {
+  return place_text(surface.nodes.row(node).transpose());
 }
 
 double diagonal(const SurfaceMesh& surface) {

@@ -12,7 +12,10 @@ struct SurfaceMesh {
   Triangles triangles;  ///< (t, 3) into nodes
 };
 
-/// "(0.1, 0.2, 0.3)": a node's coordinates, for messages.
+/// "(0.1, 0.2, 0.3)", for messages.
+std::string place_text(const Vector3& place);
+
+/// A node's coordinates in this form.
 std::string place(const SurfaceMesh& surface, int node);
 
 /// Length of the diagonal of the bounding box.

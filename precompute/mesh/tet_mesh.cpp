@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "precompute/mesh/surface_mesh.hpp"
+
 namespace irdm::precompute {
 namespace {
 
@@ -23,6 +25,10 @@ void add_middles(MeshGroup& group, const std::map<Edge, int>& middles) {
 }
 
 }  // namespace
+
+std::string tetrahedron_text(const TetMesh& mesh, int e) {
+  return "the tetrahedron around " + place_text(centroid_of(mesh, e));
+}
 
 TetMesh quadratic_mesh(const TetMesh& linear) {
   std::map<Edge, int> middles;

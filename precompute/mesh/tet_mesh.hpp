@@ -46,6 +46,17 @@ inline double signed_volume(const TetMesh& mesh, int e) {
   return ab.cross(ac).dot(ad) / 6.0;
 }
 
+/// Mean of the corners of tetrahedron e [m].
+inline Vector3 centroid_of(const TetMesh& mesh, int e) {
+  Vector3 sum = Vector3::Zero();
+  for (int i = 0; i < 4; ++i) sum += 0.25 * mesh.position(mesh.tets(e, i));
+  return sum;
+}
+
+/// "the tetrahedron around (0.1, 0.2, 0.3)", for messages: the numbers of a file are not known
+/// here.
+std::string tetrahedron_text(const TetMesh& mesh, int e);
+
 /// Whether the edges of element e are straight, its mid-side nodes in their middles.
 inline bool is_straight(const TetMesh& mesh, int e) {
   for (std::size_t k = 0; mesh.order() == 2 && k < kTetEdges.size(); ++k) {

@@ -86,8 +86,7 @@ ElasticStatics::ElasticStatics(SparseMatrix stiffness, const Points& nodes,
   try {
     solver_->factorise(stiffness);
   } catch (const Error&) {
-    throw Error("mesh", "its stiffness is not positive definite where the body is held",
-                "check for elements that hang on a single node or edge, and for very thin parts");
+    throw LostModes("its stiffness is not positive definite where the body is held");
   }
 }
 

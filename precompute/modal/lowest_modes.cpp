@@ -44,8 +44,9 @@ namespace {
 
 constexpr int kMostRestarts = 1000;
 constexpr double kLanczosTolerance = 1e-10;
-// Of the largest stiffness over mass; up to here omega^2 is zero.
-constexpr double kRigidShare = 1e-12;
+// Of the largest stiffness over mass; up to here omega^2 is zero. The factors keep small stiffness
+// beside large, so that this is nearer to the rounding than where all modes are computed.
+constexpr double kRigidShare = 1e-14;
 
 // What Spectra asks for: M^1/2 K^+ M^1/2.
 class Flexibility {
@@ -67,8 +68,7 @@ class Flexibility {
 
 void check_lowest(const Eigen::VectorXd& omega, double largest_square) {
   if (omega(0) * omega(0) > kRigidShare * largest_square) return;
-  throw Error("mesh", "there are motions without elastic energy besides the rigid ones",
-              "check for elements that hang on a single node or edge, and for very thin parts");
+  throw LostModes("there are motions without elastic energy besides the rigid ones");
 }
 
 int most_lowest_modes(const ElasticStatics& statics) {

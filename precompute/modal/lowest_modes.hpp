@@ -35,7 +35,7 @@ ElasticModes lowest_modes(const ElasticStatics& statics, int count);
 /// LAPACK are the better way.
 int most_lowest_modes(const ElasticStatics& statics);
 
-/// Throws Error when the lowest of these modes has no elastic energy.
+/// Throws LostModes when the lowest of these modes has no elastic energy.
 /// @param omega (r), increasing [rad/s]; not a number where rounding made its square negative
 /// @param largest_square a scale of omega^2, as of ElasticStatics [1/s^2]
 void check_lowest(const Eigen::VectorXd& omega, double largest_square);

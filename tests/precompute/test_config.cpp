@@ -241,6 +241,8 @@ TEST_CASE("configuration refuses each bad material entry") {
   check_refused(kMesh + material("youngs_modulus", "inf"), "youngs_modulus is inf");
   check_refused(kMesh + material("youngs_modulus", "\"soft\""), "is not a number");
   check_refused(kMesh + material("poisson_ratio", "0.5"), "poisson_ratio is 0.5");
+  check_refused(kMesh + material("poisson_ratio", "0.49999999999999"),
+                "give a finite number >= -0.999999 and <= 0.499999");
   check_refused(kMesh + material("poisson_ratio", "0.6"), "poisson_ratio is 0.6");
   check_refused(kMesh + material("poisson_ratio", "-1"), "poisson_ratio is -1");
   check_refused(kMesh + material("density", "-110"), "density is -110");

@@ -1,6 +1,7 @@
 #include "common/error.hpp"
 #include "precompute/mesh/surface.hpp"
 #include "precompute/modal/elastic_modes.hpp"
+#include "precompute/modal/elastic_statics.hpp"
 #include "precompute/modal/lowest_modes.hpp"
 #include "tests/precompute/discrete.hpp"
 #include "tests/precompute/meshes.hpp"
@@ -114,6 +115,39 @@ TEST_CASE("bodies with more than six modes without energy are refused") {
   const Discrete body(mesh, kModesMaterial);
   CHECK_THROWS_WITH(elastic_modes(body.stiffness, body.mesh.nodes, body.mass),
                     ContainsSubstring("7 modes without elastic energy"));
+}
+
+// A flat tetrahedron on a face of a box, whose apex lies `height` above the middle of the face.
+TetMesh with_flat_tet(const TetMesh& box, double height) {
+  TetMesh mesh = box;
+  const Triangles surface = boundary_faces(box, "box");
+  const Vector3 a = box.position(surface(0, 0));
+  const Vector3 b = box.position(surface(0, 1));
+  const Vector3 c = box.position(surface(0, 2));
+  const Vector3 apex = (a + b + c) / 3.0 + height * (b - a).cross(c - a).normalized();
+  mesh.nodes.conservativeResize(box.node_count() + 1, 3);
+  mesh.nodes.row(box.node_count()) = apex.transpose();
+  mesh.tets.conservativeResize(box.tet_count() + 1, 4);
+  mesh.tets.row(box.tet_count()) << surface(0, 0), surface(0, 1), surface(0, 2), box.node_count();
+  return mesh;
+}
+
+TEST_CASE("a tetrahedron a millionth as high as the body changes no frequency") {
+  const TetMesh box = test::box_mesh(Vector3::Constant(0.1), {2, 2, 2});
+  const double height = GENERATE(1e-6, 1e-7);
+  CAPTURE(height);
+  const Discrete sound(box, kModesMaterial);
+  const Discrete flat(with_flat_tet(box, height), kModesMaterial);
+  const Eigen::VectorXd expected =
+      elastic_modes(sound.stiffness, sound.mesh.nodes, sound.mass).angular_frequency;
+  const ElasticModes all = elastic_modes(flat.stiffness, flat.mesh.nodes, flat.mass);
+  const ElasticModes lowest =
+      lowest_modes(ElasticStatics(flat.stiffness, flat.mesh.nodes, flat.mass, {}), 6);
+  for (int i = 0; i < 6; ++i) {
+    CAPTURE(i);
+    CHECK(all.angular_frequency(i) == Approx(expected(i)).epsilon(1e-3));
+    CHECK(lowest.angular_frequency(i) == Approx(expected(i)).epsilon(1e-4));
+  }
 }
 
 TEST_CASE("lowest elastic frequency of the paper's cube is 10.7 Hz", "[slow]") {

@@ -44,23 +44,24 @@ TEST_CASE("mesh check names each fault") {
   }
   SECTION("not a number") {
     mesh.nodes(2, 1) = std::numeric_limits<double>::quiet_NaN();
-    CHECK_THROWS_WITH(check_mesh(mesh, "m"),
-                      ContainsSubstring("node 3") && ContainsSubstring("not finite"));
+    CHECK_THROWS_WITH(check_mesh(mesh, "m"), ContainsSubstring("the node at (") &&
+                                                 ContainsSubstring("nan") &&
+                                                 ContainsSubstring("not finite"));
   }
   SECTION("infinite") {
     mesh.nodes(4, 0) = std::numeric_limits<double>::infinity();
     CHECK_THROWS_WITH(check_mesh(mesh, "m"),
-                      ContainsSubstring("node 5") && ContainsSubstring("not finite"));
+                      ContainsSubstring("the node at (inf, ") && ContainsSubstring("not finite"));
   }
   SECTION("index too large") {
     mesh.tets(1, 2) = 5;
     CHECK_THROWS_WITH(check_mesh(mesh, "m"),
-                      ContainsSubstring("element 2 uses a node that does not exist"));
+                      ContainsSubstring("tetrahedron 2 uses a node that does not exist"));
   }
   SECTION("negative index") {
     mesh.tets(0, 0) = -1;
     CHECK_THROWS_WITH(check_mesh(mesh, "m"),
-                      ContainsSubstring("element 1 uses a node that does not exist"));
+                      ContainsSubstring("tetrahedron 1 uses a node that does not exist"));
   }
   SECTION("node twice in an element") {
     mesh.tets(1, 3) = mesh.tets(1, 0);
@@ -69,12 +70,13 @@ TEST_CASE("mesh check names each fault") {
   }
   SECTION("unused node") {
     mesh.tets.conservativeResize(1, 4);
-    CHECK_THROWS_WITH(check_mesh(mesh, "m"), ContainsSubstring("node 5 belongs to no tetrahedron"));
+    CHECK_THROWS_WITH(check_mesh(mesh, "m"),
+                      ContainsSubstring("the node at (1, 1, 1) belongs to no tetrahedron"));
   }
   SECTION("one inverted") {
     std::swap(mesh.tets(1, 0), mesh.tets(1, 1));
     CHECK_THROWS_WITH(check_mesh(mesh, "m"), ContainsSubstring("1 of 2 tetrahedra are inverted") &&
-                                                 ContainsSubstring("element 2"));
+                                                 ContainsSubstring("around (0.5, 0.5, 0.5)"));
   }
   SECTION("all inverted") {
     mesh.tets.col(0).swap(mesh.tets.col(1));
@@ -83,7 +85,9 @@ TEST_CASE("mesh check names each fault") {
   }
   SECTION("zero volume") {
     mesh.nodes.row(4) << 0.25, 0.25, 0.5;
-    CHECK_THROWS_WITH(check_mesh(mesh, "m"), ContainsSubstring("element 2 has zero volume"));
+    CHECK_THROWS_WITH(
+        check_mesh(mesh, "m"),
+        ContainsSubstring("the tetrahedron around (0.3125, 0.3125, 0.375) has zero volume"));
   }
   SECTION("disconnected") {
     CHECK_THROWS_WITH(check_mesh(together(one_tet(), one_tet()), "m"),
@@ -123,6 +127,15 @@ TEST_CASE("mesh check names each fault") {
     for (const int k : {0, 1, 3, 4}) mesh.tets.row(e++) << 0, 2 + k, 2 + (k + 1) % 6, 1;
     for (int k = 0; k < 6; ++k) mesh.tets.row(e++) << 8, 2 + k, 2 + (k + 1) % 6, 0;
     CHECK_THROWS_WITH(check_mesh(mesh, "m"),
-                      ContainsSubstring("not manifold at the edge of nodes 1 and 2"));
+                      ContainsSubstring("more than two triangles meet at 1 edge, for instance from "
+                                        "(0, 0, 0) to (0, 0, 1)"));
   }
+}
+
+TEST_CASE("a flat tetrahedron is named by its place and its mean ratio") {
+  CHECK_FALSE(flattest_element(two_tets()).has_value());
+  TetMesh flat = two_tets();
+  flat.nodes.row(4) << 0.5, 0.5, 1e-6;
+  CHECK(flattest_element(flat) ==
+        "the tetrahedron around (0.375, 0.375, 0.25) m, which is flat (mean ratio 8.9e-05)");
 }

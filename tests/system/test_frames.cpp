@@ -1,7 +1,10 @@
 // Pictures of a recorded run, as another program than ours sees them.
 #include <algorithm>
+#include <csignal>
+#include <filesystem>
 
 #include "tests/support/catch.hpp"
+#include "tests/support/eventually.hpp"
 #include "tests/support/left_out.hpp"
 #include "tests/system/stage.hpp"
 
@@ -67,6 +70,31 @@ TEST_CASE("frames of a recorded run show the object, from frame to frame another
   const FinishedProgram again = take(stage, "plain", options);
   CHECK(again.status == 1);
   CHECK_THAT(again.err, ContainsSubstring("is not empty"));
+}
+
+TEST_CASE("a signal that ends irdm-replay ends its browser, too, and removes the profile", "[slow]") {
+  if (!can_draw()) return;
+  const Stage stage;
+  record(stage, true);
+  const std::filesystem::path temporary = stage.path("tmp");
+  std::filesystem::create_directory(temporary);
+  const auto profile = [&] {
+    for (const auto& entry : std::filesystem::directory_iterator(temporary)) {
+      if (entry.path().filename().string().starts_with("irdm-pictures")) return entry.path();
+    }
+    return std::filesystem::path();
+  };
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    CAPTURE(signal);
+    ChildProcess replay({IRDM_REPLAY, stage.path("trace.h5").string(), "--frames",
+                         stage.path("pictures" + std::to_string(signal)).string()},
+                        {.environment = {"TMPDIR=" + temporary.string()}});
+    REQUIRE(eventually([&] { return !profile().empty() && !is_empty(profile()); },
+                       ChildProcess::kDeadlineMs));
+    replay.signal(signal);
+    CHECK(replay.wait() == (signal == SIGHUP ? -SIGHUP : 1));
+    CHECK(profile().empty());
+  }
 }
 
 TEST_CASE("pictures without a browser, or a video without ffmpeg, are refused in one line") {

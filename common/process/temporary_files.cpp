@@ -75,7 +75,8 @@ TemporaryFolder::~TemporaryFolder() {
 void TemporaryFolder::require_space() const {
   std::error_code unknown;
   const std::filesystem::space_info space = std::filesystem::space(path_, unknown);
-  if (unknown || space.available > 0) return;
+  // Some file systems, as those in memory without a limit, have no size.
+  if (unknown || space.capacity == 0 || space.available > 0) return;
   throw Error(path_.parent_path().string(), "no space is left for temporary files",
               "make room there, or set TMPDIR to another folder");
 }

@@ -46,7 +46,9 @@ class Paths {
 
 void move_paths(toml::table& scene, const Paths& paths) {
   for (const char* key : {"key_file", "black_box"}) paths.move(scene["server"].as_table(), key);
-  for (const char* key : {"recordings", "scenes"}) paths.move(scene["viewer"].as_table(), key);
+  for (const char* key : {"recordings", "scenes", "token_file", "onlooker_token_file"}) {
+    paths.move(scene["viewer"].as_table(), key);
+  }
   paths.move_each(scene["object"].as_array(), nullptr, "model");
   paths.move_each(scene["scenery"].as_array(), "mesh", "model");
 }

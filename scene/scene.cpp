@@ -16,6 +16,7 @@
 #include "common/hdf5/handle.hpp"
 #include "common/model/model_file.hpp"
 #include "common/number_text.hpp"
+#include "common/secret/secret_file.hpp"
 #include "scene/common_keys.hpp"
 #include "scene/scenery_keys.hpp"
 #include "simulation/step/default_fingertip.hpp"
@@ -45,17 +46,38 @@ ServerConfig read_server(TomlTable table, int styluses) {
 }
 
 std::string read_token(TomlTable& table, const std::string& key) {
-  constexpr std::size_t kShortest = 16;
-  constexpr std::size_t kLongest = 128;
   const std::string token = table.text(key, "");
-  const bool printable = std::all_of(token.begin(), token.end(),
-                                     [](char letter) { return letter > 0x20 && letter < 0x7F; });
-  const std::size_t length = token.size();
-  if (!printable || (length > 0 && length < kShortest) || length > kLongest) {
+  if (!token.empty() && !is_token(token)) {
     table.fail(key, "is not 16 to 128 printable ASCII characters without blanks",
                "give such a one, for instance from: openssl rand -hex 16");
   }
   return token;
+}
+
+// The file is read where viewers are served, not here: replay has no need of it.
+// @param token the value of the key without _file
+std::optional<std::filesystem::path> read_token_path(TomlTable& table, const std::string& key,
+                                                     const std::string& token) {
+  if (!table.has(key)) return std::nullopt;
+  if (!token.empty()) table.fail(key, "is given beside the token itself", "give one of them");
+  return table.path(key);
+}
+
+void read_tokens(TomlTable& table, ViewerConfig& config) {
+  config.token = read_token(table, "token");
+  config.token_file = read_token_path(table, "token_file", config.token);
+  config.onlooker_token = read_token(table, "onlooker_token");
+  config.onlooker_token_file = read_token_path(table, "onlooker_token_file", config.onlooker_token);
+  if (!config.onlooker_token.empty() && config.token.empty() && !config.token_file) {
+    table.fail("onlooker_token", "is set without a token", "set viewer.token_file or viewer.token");
+  }
+  // What is saved and recorded of a scene has no token, and must still be a scene.
+  if (config.onlooker_token_file && !config.token_file) {
+    table.fail("onlooker_token_file", "is set without viewer.token_file", "set that one, too");
+  }
+  if (!config.onlooker_token.empty() && config.onlooker_token == config.token) {
+    table.fail("onlooker_token", "is the token itself", "give another one");
+  }
 }
 
 // @param radius of the first [[stylus]]; none: it names none
@@ -76,14 +98,7 @@ ViewerConfig read_viewer(TomlTable table, std::optional<double> radius) {
   config.enabled = table.boolean("enabled", config.enabled);
   config.address = table.text("address", config.address);
   config.port = table.integer("port", 0, 65535, config.port);
-  config.token = read_token(table, "token");
-  config.onlooker_token = read_token(table, "onlooker_token");
-  if (!config.onlooker_token.empty() && config.token.empty()) {
-    table.fail("onlooker_token", "is set without a token", "set viewer.token too");
-  }
-  if (!config.onlooker_token.empty() && config.onlooker_token == config.token) {
-    table.fail("onlooker_token", "is the token itself", "give another one");
-  }
+  read_tokens(table, config);
   if (table.has("recordings")) config.recordings = table.path("recordings");
   if (table.has("scenes")) config.scenes = table.path("scenes");
   config.mouse = table.boolean("mouse", config.mouse);

@@ -38,6 +38,9 @@ struct ViewerConfig {
   int port = 0;                       ///< 0..65535; 0: any free one
   std::string token;           ///< what a viewer has to know, 0 or 16..128 printable characters
   std::string onlooker_token;  ///< the same for viewers that may only look on
+  /// Files that hold them in place of the keys above (read_token_file()); none: no file
+  std::optional<std::filesystem::path> token_file;
+  std::optional<std::filesystem::path> onlooker_token_file;
   std::optional<std::filesystem::path>
       recordings;  ///< folder for what viewers record; none: they cannot
   /// Folder of scenes and models that viewers may load, and save into; none: they cannot

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "common/error.hpp"
+#include "common/utf8.hpp"
 #include "scene/model_scene.hpp"
 
 namespace irdm {
@@ -21,7 +22,7 @@ bool is_listable(const std::string& name) {
     const auto code = static_cast<unsigned char>(letter);
     return code < 0x20 || code == 0x7F;
   });
-  return plain && name.size() <= kLongestSceneName && name.front() != '.';
+  return plain && is_utf8(name) && name.size() <= kLongestSceneName && name.front() != '.';
 }
 
 // Also where it is no TOML: what is wrong is then said when it is loaded.

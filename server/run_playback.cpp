@@ -1,7 +1,6 @@
 #include <omp.h>
 
 #include <algorithm>
-#include <iostream>
 
 #include "common/checksum.hpp"
 #include "common/error.hpp"
@@ -9,6 +8,7 @@
 #include "common/program/stop_signal.hpp"
 #include "common/realtime/event_fd.hpp"
 #include "scene/scene.hpp"
+#include "server/run_report.hpp"
 #include "server/run_server.hpp"
 #include "server/viewer_session/playback.hpp"
 #include "trace/recording.hpp"
@@ -52,7 +52,8 @@ void check_model(const SceneConfig& scene, const TraceHeader& header, const std:
 
 int run_playback(const ServerOptions& options) {
   StopSignal stop;
-  const SceneConfig scene = read_scene(TomlTable::parse_file(options.scene));
+  SceneConfig scene = read_scene(TomlTable::parse_file(options.scene));
+  load_tokens(scene.viewer);
   const std::string trace = options.play->string();
   const TraceHeader header = read_trace_header(*options.play);
   check_parts(scene, options.scene.string(), header, trace);
@@ -69,7 +70,7 @@ int run_playback(const ServerOptions& options) {
   columns.start(false);
   player.start();
   viewers.start();
-  std::cout << "listening on " + viewers.url() + "\n" << std::flush;
+  say_where(viewers.urls());
   const EventFd never;
   stop.wait(never.descriptor());
   viewers.stop();

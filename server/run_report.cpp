@@ -17,6 +17,11 @@ std::string microseconds(const Histogram& histogram) {
 
 }  // namespace
 
+// Each line in one piece, so that no other thread's line comes between.
+void say_where(const std::vector<std::string>& places) {
+  for (const std::string& place : places) std::cout << "listening on " + place + "\n" << std::flush;
+}
+
 int print_report(const FinishedRun& run) {
   const ForceThreadReport& force = run.force.report();
   std::cout << "steps: " << force.steps << '\n';

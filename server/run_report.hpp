@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "scene/columns/column_store.hpp"
 #include "server/network/network_server.hpp"
@@ -24,6 +25,9 @@ struct FinishedRun {
   const SceneColumns& columns;
   std::uint64_t viewers_unlogged;  ///< complaints about viewers beyond what is logged
 };
+
+/// Prints `listening on WHERE` for each place.
+void say_where(const std::vector<std::string>& places);
 
 /// Prints how the run went and returns the exit status: 1 when the recording is not whole.
 int print_report(const FinishedRun& run);

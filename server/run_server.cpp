@@ -8,6 +8,7 @@
 #include "server/prepared_run.hpp"
 #include "server/scene_loader.hpp"
 #include "server/server_run.hpp"
+#include "viewer/scene_message.hpp"
 
 namespace irdm {
 namespace {
@@ -15,6 +16,7 @@ namespace {
 SceneConfig first_scene(const SceneSource& source, const ServerOptions& options) {
   SceneConfig scene = read_scene(source);
   if (options.no_viewer) scene.viewer.enabled = false;
+  if (scene.viewer.enabled) load_tokens(scene.viewer);  // once, for every scene that follows
   if (options.recordings) scene.viewer.recordings = options.recordings;
   if (options.scenes) scene.viewer.scenes = options.scenes;
   if (options.port) scene.server.port = *options.port;

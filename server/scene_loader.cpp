@@ -54,13 +54,14 @@ void SceneLoader::load(const std::string& name) {
 
 void SceneLoader::save(const SceneSource& source, const Settings& initial,
                        const Settings& settings) {
-  ask({"", source, initial, settings});
+  if (ask({"", source, initial, settings})) ++saves_;
 }
 
-void SceneLoader::ask(const Request& request) {
-  if (!possible() || busy() || !requests_.push(request)) return;
+bool SceneLoader::ask(const Request& request) {
+  if (!possible() || busy() || !requests_.push(request)) return false;
   ++asked_count_;
   asked_.signal();
+  return true;
 }
 
 void SceneLoader::run() {

@@ -54,6 +54,8 @@ class SceneLoader {
   /// These do nothing while busy().
   void load(const std::string& name);
   void save(const SceneSource& source, const Settings& initial, const Settings& settings);
+  /// Requests to save since the program began.
+  std::size_t saves() const noexcept { return saves_; }
 
   /// Signalled when a scene is prepared.
   EventFd& ready() noexcept { return ready_; }
@@ -67,7 +69,7 @@ class SceneLoader {
     Settings initial = {};
     Settings settings = {};
   };
-  void ask(const Request& request);
+  bool ask(const Request& request);
   void run();
   void handle(const Request& request);
   std::string load_now(const std::string& name);
@@ -81,6 +83,7 @@ class SceneLoader {
   std::atomic<bool> stopping_{false};
   TripleBuffer<SceneLoaderStatus> status_;
   std::uint64_t asked_count_ = 0;     ///< of whoever asks
+  std::size_t saves_ = 0;             ///< of whoever asks
   SceneLoaderStatus now_;             ///< of the loader's thread
   std::atomic<bool> waiting_{false};  ///< a prepared scene waits to be taken
   std::mutex prepared_mutex_;

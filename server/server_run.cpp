@@ -49,11 +49,6 @@ std::optional<std::filesystem::path> recordings_folder(const ViewerConfig& confi
   return config.enabled ? config.recordings : std::nullopt;
 }
 
-// In one piece, so that no other thread's line comes between.
-void say_where(const std::string& where) {
-  std::cout << "listening on " + where + "\n" << std::flush;
-}
-
 }  // namespace
 
 ServerRun::ServerRun(PreparedRun& run, SceneLoader& loader, const Options& options)
@@ -113,10 +108,10 @@ void ServerRun::start() {
   black_box_.start(force_);
   run_.lockstep ? network_.open() : network_.start();
   run_.notes.say();
-  say_where(network_.endpoint());
+  say_where(network_.endpoints());
   if (viewers_) {
     viewers_->start();
-    say_where(viewers_->url());
+    say_where(viewers_->urls());
   }
   if (recorder_) recorder_->start();
   deformation_.start(real_time());

@@ -1,3 +1,6 @@
+#include <utility>
+
+#include "common/utf8.hpp"
 #include "viewer/message_parts.hpp"
 
 namespace irdm::viewer {
@@ -104,7 +107,9 @@ SceneRequest get_scene_request(Reader& reader) {
   const auto length = reader.get<std::uint16_t>();
   if (length < 1 || length > kMaxSceneName) throw MessageError("a name is too long or empty");
   reader.skip(2);
-  return {reader.get_text(length)};
+  std::string name = reader.get_text(length);
+  if (!is_utf8(name)) throw MessageError("a name is not UTF-8");
+  return {std::move(name)};
 }
 
 ClientMessage get_client_message(Reader& reader) {

@@ -47,6 +47,17 @@ void set_security(Response& response) {
   response.set("Cross-Origin-Resource-Policy", "same-origin");
 }
 
+// Returns why the header is refused; null: it is not. Proxies and servers that take different ones
+// of two fields can be played off against each other (RFC 9112, section 3.2).
+const char* fault_of(const Request& request) {
+  constexpr unsigned kVersion11 = 11;
+  const std::size_t hosts = request.count(http::field::host);
+  if (hosts > 1) return "more than one Host\n";
+  if (hosts == 0 && request.version() >= kVersion11) return "no Host\n";
+  if (request.count(http::field::origin) > 1) return "more than one Origin\n";
+  return nullptr;
+}
+
 class BeastConnection final : public Connection,
                               public std::enable_shared_from_this<BeastConnection> {
  public:
@@ -58,7 +69,7 @@ class BeastConnection final : public Connection,
   }
 
   void start() override { read_request(); }
-  bool upgraded() const override { return socket_.has_value(); }
+  std::int64_t heard_ns() const override { return heard_ns_; }
   bool watching() const override { return watching_ && !closing_; }
   bool looks_on() const override { return looks_on_; }
   void offer_frame(SharedBytes frame) override { offer(frame_, std::move(frame)); }
@@ -98,9 +109,9 @@ class BeastConnection final : public Connection,
   std::string text_;  ///< body of a response that is no file
   std::array<char, 4096> waste_;
   std::size_t wasted_ = 0;
+  std::int64_t heard_ns_ = monotonic_ns();
 
   std::optional<Socket> socket_;
-  std::int64_t opened_ns_ = 0;
   bool accepted_ = false;
   bool watching_ = false;
   bool looks_on_ = false;
@@ -137,7 +148,14 @@ void BeastConnection::take_request(error_code error) {
     return answer_failure(http::status::bad_request, "not HTTP\n");
   }
   if (error) return abort();
+  heard_ns_ = monotonic_ns();
   const Request request = parser_->get();
+  if (const char* fault = fault_of(request)) {
+    return answer_failure(http::status::bad_request, fault, request);
+  }
+  if (request.count(http::field::transfer_encoding) > 0 && !parser_->chunked()) {
+    return answer_failure(http::status::not_implemented, "an unknown transfer coding\n", request);
+  }
   const bool has_body = parser_->chunked() || parser_->content_length().value_or(0) > 0;
   if (request.method() != http::verb::get && request.method() != http::verb::head) {
     return answer_failure(http::status::method_not_allowed, "only GET and HEAD\n");
@@ -230,11 +248,11 @@ void BeastConnection::open_socket(const Request& request) {
     return answer_failure(http::status::forbidden, "another origin\n", request);
   }
   if (!hub_.has_room()) {
+    hub_.complain("refused one viewer too many");
     return answer_failure(http::status::service_unavailable, "too many viewers\n", request);
   }
   stream_.expires_never();
   socket_.emplace(std::move(stream_));
-  opened_ns_ = monotonic_ns();
   websocket::stream_base::timeout limits;
   limits.handshake_timeout = std::chrono::milliseconds(hub_.settings().hello_timeout_ms);
   limits.idle_timeout = std::chrono::milliseconds(hub_.settings().idle_timeout_ms);
@@ -283,6 +301,10 @@ void BeastConnection::take(const Hello& hello) {
   if (!full && !onlooker) {
     hub_.complain("wrong token; connection closed");
     return close(websocket::close_code::policy_error, "wrong token");
+  }
+  if (!hub_.has_room()) {
+    hub_.complain("refused one viewer too many");
+    return close(websocket::close_code::try_again_later, "too many viewers");
   }
   watching_ = true;
   looks_on_ = !full || hello.looks_on;
@@ -349,7 +371,7 @@ void BeastConnection::close(websocket::close_code code, const char* reason) {
 
 void BeastConnection::check_time(std::int64_t now_ns) {
   const std::int64_t limit = hub_.settings().hello_timeout_ms * kNanosecondsPerMillisecond;
-  if (upgraded() && !watching_ && now_ns - opened_ns_ > limit) abort();
+  if (socket_ && !watching_ && now_ns - heard_ns_ > limit) abort();
 }
 
 void BeastConnection::finish() {

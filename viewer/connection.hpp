@@ -20,7 +20,7 @@ class Hub {
   virtual const ViewerSettings& settings() const = 0;
   /// Of the scene, as many as settings have to be for.
   virtual std::size_t objects() const = 0;
-  /// Whether one more WebSocket may be opened.
+  /// Whether one more viewer may watch.
   virtual bool has_room() const = 0;
   virtual SharedBytes scene() = 0;
   virtual SharedBytes newest_frame() = 0;
@@ -41,8 +41,10 @@ class Connection {
  public:
   virtual ~Connection() = default;
   virtual void start() = 0;
-  /// It is, or is about to become, a WebSocket.
-  virtual bool upgraded() const = 0;
+  /// When it was accepted, last asked for something over HTTP, or became a WebSocket, whichever was
+  /// last; monotonic [ns]. Of those that do not watch, the one that has said nothing for the
+  /// longest time makes room for others.
+  virtual std::int64_t heard_ns() const = 0;
   /// Its Hello was right.
   virtual bool watching() const = 0;
   /// It may not ask for anything.

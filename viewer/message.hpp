@@ -21,6 +21,7 @@ inline constexpr std::size_t kMaxNameLength = 256;
 inline constexpr std::size_t kMaxTokenLength = 128;
 inline constexpr std::size_t kMaxRecordingName = 64;
 inline constexpr std::size_t kMaxRecordings = 100;
+inline constexpr std::size_t kMaxSaves = 100;   ///< of settings as a scene, by one server
 inline constexpr std::size_t kMaxScenes = 200;  ///< to choose from
 inline constexpr std::size_t kMaxSceneName = 128;
 inline constexpr std::size_t kMaxNotice = 512;

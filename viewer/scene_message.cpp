@@ -2,7 +2,10 @@
 
 #include <cmath>
 
+#include "common/error.hpp"
 #include "common/response/stored_response.hpp"
+#include "common/secret/secret_file.hpp"
+#include "common/utf8.hpp"
 #include "simulation/contact/fingertip_loads.hpp"
 #include "simulation/step/default_fingertip.hpp"
 #include "viewer/display_message.hpp"
@@ -56,6 +59,16 @@ viewer::Scene viewer_scene(const std::vector<std::string>& names, const Simulati
     seen.objects.push_back(viewer_object(names.at(i), *config.objects[i].model, radius));
   }
   return seen;
+}
+
+void load_tokens(ViewerConfig& config) {
+  if (config.token_file) config.token = read_token_file(*config.token_file);
+  if (config.onlooker_token_file) {
+    config.onlooker_token = read_token_file(*config.onlooker_token_file);
+  }
+  if (!config.token.empty() && config.token == config.onlooker_token) {
+    throw Error("viewer.onlooker_token", "is the token itself", "give another one");
+  }
 }
 
 viewer::ViewerSettings viewer_settings(const ViewerConfig& config) {
@@ -195,7 +208,7 @@ SceneRegions get_regions(Reader& reader, std::size_t count, int flags, std::size
 }
 
 void put_object(Writer& writer, const SceneObject& object) {
-  const std::string name = object.name.substr(0, kMaxNameLength);
+  const std::string name = as_utf8(object.name, kMaxNameLength);
   writer.put(static_cast<std::uint32_t>(object.rest.rows()));
   writer.put(static_cast<std::uint32_t>(object.triangles.rows()));
   writer.put(static_cast<std::uint32_t>(name.size()));
@@ -300,7 +313,7 @@ SceneryShape shape_of(int number, const Vector3& size) {
 }
 
 void put_scenery(Writer& writer, const SceneryConfig& scenery) {
-  const std::string name = scenery.name.substr(0, kMaxNameLength);
+  const std::string name = as_utf8(scenery.name, kMaxNameLength);
   const Vector3 size = std::visit([](const auto& shape) { return sizes(shape); }, scenery.shape);
   writer.put(static_cast<std::uint16_t>(scenery.shape.index()));
   writer.put(static_cast<std::uint16_t>(name.size()));

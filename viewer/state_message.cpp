@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 
+#include "common/utf8.hpp"
 #include "viewer/message_parts.hpp"
 
 namespace irdm::viewer {
@@ -89,7 +90,7 @@ auto flags_of(AnyState& state) {
 
 void put_scenes(Writer& writer, std::span<const std::string> scenes) {
   for (const std::string& scene : scenes) {
-    const std::string name = scene.substr(0, kMaxSceneName);
+    const std::string name = as_utf8(scene, kMaxSceneName);
     writer.put(static_cast<std::uint16_t>(name.size()));
     writer.put_text(name);
   }
@@ -117,7 +118,7 @@ Bytes encode(const State& state) {
     if (*flag) flags |= bit;
     bit <<= 1U;
   }
-  const std::string notice = state.notice.substr(0, kMaxNotice);
+  const std::string notice = as_utf8(state.notice, kMaxNotice);
   const std::size_t recordings = std::min(state.recordings.size(), kMaxRecordings);
   const std::size_t scenes = std::min(state.scenes.size(), kMaxScenes);
   writer.put(flags);
@@ -135,7 +136,7 @@ Bytes encode(const State& state) {
     put_settings(writer, state.settings.object[i], state.choices[i]);
   }
   for (std::size_t i = 0; i < recordings; ++i) {
-    const std::string name = state.recordings[i].name.substr(0, kMaxRecordingName);
+    const std::string name = as_utf8(state.recordings[i].name, kMaxRecordingName);
     writer.put(state.recordings[i].number);
     writer.put(static_cast<std::uint16_t>(name.size()));
     writer.put_text(name);

@@ -6,15 +6,17 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <limits>
 #include <list>
-#include <sstream>
 #include <thread>
 #include <vector>
 
 #include "common/error.hpp"
 #include "common/realtime/clock.hpp"
+#include "common/wire/open_endpoints.hpp"
 #include "common/wire/token_bucket.hpp"
 #include "viewer/connection.hpp"
+#include "viewer/notice_text.hpp"
 #include "viewer/viewer_session.hpp"
 
 namespace irdm::viewer {
@@ -47,7 +49,7 @@ class ViewerServer::Impl final : public Hub {
 
   void start();
   void stop();
-  std::string url() const;
+  std::vector<std::string> urls() const;
 
   const ViewerSettings& settings() const override { return settings_; }
   std::size_t objects() const override { return run_.scene().objects.size(); }
@@ -71,6 +73,7 @@ class ViewerServer::Impl final : public Hub {
   void run() noexcept;
   void accept();
   void admit(tcp::socket socket);
+  bool make_room();
   template <typename Use>
   void for_each_watching(const Use& use);
   void await_surface(std::size_t source);
@@ -109,8 +112,9 @@ void ViewerServer::Impl::listen() {
   const auto address = boost::asio::ip::make_address(settings_.address, error);
   if (error) throw Error("viewer " + wanted, "is not an address", "give a numeric address");
   if (!address.is_loopback() && settings_.token.empty()) {
-    throw Error("viewer " + wanted, "can be reached from elsewhere and has no token",
-                "set viewer.token, for instance to what this prints: openssl rand -hex 16");
+    throw Error(
+        "viewer " + wanted, "can be reached from elsewhere and has no token",
+        "set viewer.token_file, and make that file with: (umask 077; openssl rand -hex 16 > FILE)");
   }
   try {
     const tcp::endpoint endpoint(address, settings_.port);
@@ -125,10 +129,12 @@ void ViewerServer::Impl::listen() {
   }
 }
 
-std::string ViewerServer::Impl::url() const {
-  std::ostringstream text;
-  text << "http://" << tcp::endpoint(boost::asio::ip::make_address(settings_.address), port_);
-  return text.str();
+std::vector<std::string> ViewerServer::Impl::urls() const {
+  std::vector<std::string> urls;
+  for (const std::string& endpoint : wire::open_endpoints(settings_.address, port_)) {
+    urls.push_back("http://" + endpoint);
+  }
+  return urls;
 }
 
 void ViewerServer::Impl::start() {
@@ -173,10 +179,30 @@ void ViewerServer::Impl::accept() {
 
 void ViewerServer::Impl::admit(tcp::socket socket) {
   tidy();
-  if (connections_.size() >= settings_.max_connections) return;  // closes it
+  if (connections_.size() >= settings_.max_connections && !make_room()) {
+    complain("refused one connection too many");
+    return;  // closes it
+  }
   const std::shared_ptr<Connection> connection = make_connection(std::move(socket), *this);
   connections_.push_back(connection);
   connection->start();
+}
+
+// Ends the connection that has been silent for the longest time, unless all of them watch.
+bool ViewerServer::Impl::make_room() {
+  auto silent = connections_.end();
+  std::int64_t since_ns = std::numeric_limits<std::int64_t>::max();
+  for (auto each = connections_.begin(); each != connections_.end(); ++each) {
+    const auto connection = each->lock();
+    if (!connection || connection->watching() || connection->heard_ns() >= since_ns) continue;
+    since_ns = connection->heard_ns();
+    silent = each;
+  }
+  if (silent == connections_.end()) return false;
+  complain("too many connections that say nothing; the oldest of them closed");
+  if (const auto connection = silent->lock()) connection->abort();
+  connections_.erase(silent);
+  return true;
 }
 
 void ViewerServer::Impl::tidy() {
@@ -191,11 +217,12 @@ void ViewerServer::Impl::tidy() {
 }
 
 bool ViewerServer::Impl::has_room() const {
-  const auto open = std::count_if(connections_.begin(), connections_.end(), [](const auto& weak) {
-    const auto connection = weak.lock();
-    return connection && connection->upgraded();
-  });
-  return static_cast<std::size_t>(open) < settings_.max_viewers;
+  const auto watching =
+      std::count_if(connections_.begin(), connections_.end(), [](const auto& weak) {
+        const auto connection = weak.lock();
+        return connection && connection->watching();
+      });
+  return static_cast<std::size_t>(watching) < settings_.max_viewers;
 }
 
 SharedBytes ViewerServer::Impl::newest_frame() {
@@ -263,6 +290,7 @@ void ViewerServer::Impl::for_each_watching(const Use& use) {
 State ViewerServer::Impl::common_state() {
   State state = run_.state();
   state.stylus_free = run_.scene().viewer_stylus && stylus_.free();
+  state.notice = file_names_only(state.notice);
   return state;
 }
 
@@ -347,8 +375,8 @@ ViewerServer::ViewerServer(ViewerSettings settings, ViewerSession& run)
     : impl_(std::make_unique<Impl>(std::move(settings), run)) {}
 ViewerServer::~ViewerServer() = default;
 
-std::string ViewerServer::url() const {
-  return impl_->url();
+std::vector<std::string> ViewerServer::urls() const {
+  return impl_->urls();
 }
 std::uint16_t ViewerServer::port() const noexcept {
   return impl_->port_;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "viewer/page_files.hpp"
 #include "viewer/viewer_session.hpp"
@@ -15,11 +16,11 @@ struct ViewerSettings {
   std::string token = {};             ///< needed off the loopback address
   std::string onlooker_token = {};    ///< for viewers that may only look on
   PageFiles page = {};
-  std::size_t max_viewers = 16;
-  std::size_t max_connections = 64;
-  int hello_timeout_ms = 5000;      ///< from WebSocket to Hello
-  int idle_timeout_ms = 20'000;     ///< without a sign of life from a viewer
-  int request_timeout_ms = 10'000;  ///< for an HTTP request, and to take its answer
+  std::size_t max_viewers = 16;      ///< that watch: those that said nothing yet do not count
+  std::size_t max_connections = 64;  ///< beyond, the one that is silent for the longest time ends
+  int hello_timeout_ms = 5000;       ///< from WebSocket to Hello
+  int idle_timeout_ms = 20'000;      ///< without a sign of life from a viewer
+  int request_timeout_ms = 10'000;   ///< for an HTTP request, and to take its answer
   int health_period_ms = 500;
   int stylus_timeout_ms = 250;  ///< in which the viewer that holds the stylus has to say so again
 };
@@ -35,8 +36,8 @@ class ViewerServer {
   ViewerServer& operator=(const ViewerServer&) = delete;
   ~ViewerServer();  ///< stops
 
-  /// Where it listens, as http://ADDRESS:PORT, and the port alone.
-  std::string url() const;
+  /// Where a browser finds it, as http://ADDRESS:PORT, one or more; and the port alone.
+  std::vector<std::string> urls() const;
   std::uint16_t port() const noexcept;
   /// Viewers that have shown the right token; any thread.
   std::uint32_t viewers() const noexcept;

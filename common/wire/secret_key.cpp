@@ -3,12 +3,11 @@
 #include <openssl/rand.h>
 #include <algorithm>
 #include <charconv>
-#include <fstream>
-#include <iterator>
 #include <stdexcept>
 #include <string>
 
 #include "common/error.hpp"
+#include "common/secret/secret_file.hpp"
 
 namespace irdm::wire {
 
@@ -28,36 +27,10 @@ DatagramKeys keys_of(const KeyMaterial& material) noexcept {
   return keys;
 }
 
-namespace {
-
-namespace fs = std::filesystem;
-
-void check_permissions(const fs::path& path) {
-  const std::string name = path.string();
-  std::error_code error;
-  const fs::file_status status = fs::status(path, error);
-  if (!fs::exists(status)) {
-    throw Error(name, "cannot read the key: there is no such file",
-                "make one with: (umask 077; openssl rand -hex 32 > " + name + ")");
-  }
-  if (!fs::is_regular_file(status)) throw Error(name, "is not a file", "name a key file");
-  constexpr fs::perms kOthers = fs::perms::group_all | fs::perms::others_all;
-  if ((status.permissions() & kOthers) != fs::perms::none) {
-    throw Error(name, "is a key that others may read or write", "chmod 600 " + name);
-  }
-}
-
-}  // namespace
-
-SecretKey read_key_file(const fs::path& path) {
-  check_permissions(path);
-  std::ifstream file(path);
-  if (!file) throw Error(path.string(), "cannot read the key", "check who owns the file");
-  std::string digits;
-  std::string more;
-  file >> digits >> more;
+SecretKey read_key_file(const std::filesystem::path& path) {
+  const std::string digits = read_secret_file(path, {"key", 32});
   SecretKey key{};
-  bool good = digits.size() == 2 * key.size() && more.empty();
+  bool good = digits.size() == 2 * key.size();
   for (std::size_t i = 0; good && i < key.size(); ++i) {
     const char* begin = digits.data() + 2 * i;
     const auto [end, error] = std::from_chars(begin, begin + 2, key[i], 16);

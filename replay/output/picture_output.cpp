@@ -75,7 +75,7 @@ PictureOutput::PictureOutput(const PicturePlaces& places, const PictureLook& loo
   make_new_folder(places_.folder);
   for (const SimulationObject& object : scene.config.objects) models_.push_back(object.model);
   server_.start();
-  page_.emplace(server_.url(), look);
+  page_.emplace(server_.urls().front(), look);
 }
 
 void PictureOutput::put(const ReplayFrame& frame) {

@@ -11,12 +11,12 @@
 #include <functional>
 #include <list>
 #include <random>
-#include <sstream>
 #include <thread>
 #include <utility>
 
 #include "common/error.hpp"
 #include "common/realtime/clock.hpp"
+#include "common/wire/open_endpoints.hpp"
 #include "common/wire/tls.hpp"
 #include "server/network/session.hpp"
 
@@ -87,7 +87,7 @@ class NetworkServer::Impl {
   void start();
   void serve() noexcept;
   void stop();
-  std::string endpoint() const;
+  std::vector<std::string> endpoints() const;
 
   const NetworkSettings settings_;
   NetworkStats stats_;
@@ -175,7 +175,7 @@ void NetworkServer::Impl::listen_for_datagrams() {
         io_.get_executor(),
         DatagramPort::Endpoint(boost::asio::ip::make_address(settings_.address), port_), any_port);
   } catch (const boost::system::system_error& failure) {
-    throw Error(endpoint(), "cannot listen for datagrams: " + failure.code().message(),
+    throw Error(endpoints().front(), "cannot listen for datagrams: " + failure.code().message(),
                 "choose another port, end the program that uses it, or set server.udp = false");
   }
 }
@@ -188,10 +188,8 @@ void NetworkServer::Impl::take_datagram(std::uint32_t id, std::span<const std::u
   stats_.datagrams_foreign.fetch_add(1);
 }
 
-std::string NetworkServer::Impl::endpoint() const {
-  std::ostringstream text;
-  text << tcp::endpoint(boost::asio::ip::make_address(settings_.address), port_);
-  return text.str();
+std::vector<std::string> NetworkServer::Impl::endpoints() const {
+  return wire::open_endpoints(settings_.address, port_);
 }
 
 void NetworkServer::Impl::open() {
@@ -367,8 +365,8 @@ NetworkServer::NetworkServer(const NetworkSettings& settings)
     : impl_(std::make_unique<Impl>(settings)) {}
 NetworkServer::~NetworkServer() = default;
 
-std::string NetworkServer::endpoint() const {
-  return impl_->endpoint();
+std::vector<std::string> NetworkServer::endpoints() const {
+  return impl_->endpoints();
 }
 std::uint16_t NetworkServer::port_number() const noexcept {
   return impl_->port_;

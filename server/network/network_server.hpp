@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "common/realtime/event_fd.hpp"
 #include "common/realtime/scheduling.hpp"
@@ -105,8 +106,8 @@ class NetworkServer {
   NetworkServer& operator=(const NetworkServer&) = delete;
   ~NetworkServer();  ///< stops
 
-  /// Where it listens, as ADDRESS:PORT, and the port alone.
-  std::string endpoint() const;
+  /// Where bridges find it, as ADDRESS:PORT, one or more; and the port alone.
+  std::vector<std::string> endpoints() const;
   std::uint16_t port_number() const noexcept;
 
   int styluses() const noexcept;

@@ -126,7 +126,7 @@ void LiveRun::handle_live(const viewer::Command& command) {
     case CommandKind::kEndRecording:
       if (!parts_.recordings.recording()) return;
       parts_.recordings.end();
-      notice_ = "recorded: " + parts_.recordings.complete().back().string();
+      notice_ = "recorded: " + parts_.recordings.complete().back().filename().string();
       return;
     case CommandKind::kShowRecording:
       return show_recording(command.number);

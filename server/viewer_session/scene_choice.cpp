@@ -32,6 +32,10 @@ void SceneChoice::load(const std::string& name) {
 
 void SceneChoice::save(const Settings& settings) {
   expect_idle();
+  if (loader_.saves() >= viewer::kMaxSaves) {
+    throw Error("settings", "were saved " + std::to_string(loader_.saves()) + " times already",
+                "start the server again to save more");
+  }
   loader_.save(run_.source, initial_settings(run_.config), settings);
 }
 

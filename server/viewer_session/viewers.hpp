@@ -26,7 +26,7 @@ class Viewers {
 
   void start();
   void stop();
-  std::string url() const { return server_.url(); }
+  std::vector<std::string> urls() const { return server_.urls(); }
   std::uint16_t port() const noexcept { return server_.port(); }
   std::uint64_t unlogged() const noexcept { return server_.unlogged(); }
 

@@ -127,6 +127,18 @@ TEST_CASE("a saved scene takes the first free number, and no other file's name")
   CHECK((status.st_mode & 0777) == 0644);
 }
 
+TEST_CASE("a saved scene names the files of its tokens, from its own folder") {
+  Original original;
+  original.source.text +=
+      "[viewer]\ntoken_file = \"irdm.token\"\nonlooker_token_file = \"watch.token\"\n";
+  const std::string name =
+      save_scene(original.source, original.initial, original.settings, original.to());
+  const ViewerConfig viewer = read_scene(original.saved(name)).viewer;
+  CHECK(fs::weakly_canonical(*viewer.token_file) ==
+        fs::weakly_canonical(original.folder.path() / "from" / "irdm.token"));
+  CHECK(viewer.onlooker_token_file->filename() == "watch.token");
+}
+
 TEST_CASE("a saved scene holds no token, and has the permissions that the umask leaves") {
   Original original;
   original.source.text +=

@@ -187,6 +187,17 @@ TEST_CASE("the viewer of a scene: defaults, keys, and what is no token") {
        {std::string(15, 'x'), std::string(129, 'x'), std::string("sixteen or more x")}) {
     CHECK_THAT(with_token(bad), StartsWith("s.toml:2: viewer.token is not 16 to 128 printable"));
   }
+  const ViewerConfig by_file = scene(
+                                   "[viewer]\ntoken_file = \"/t/irdm.token\"\n"
+                                   "onlooker_token_file = \"watch.token\"\n" +
+                                   kObject)
+                                   .viewer;
+  CHECK(by_file.token_file == "/t/irdm.token");
+  CHECK(by_file.onlooker_token_file->filename() == "watch.token");
+  CHECK_THAT(rejection("[viewer]\ntoken = \"0123456789abcdef\"\ntoken_file = \"t\"\n" + kObject),
+             StartsWith("s.toml:3: viewer.token_file is given beside the token itself"));
+  CHECK_THAT(rejection("[viewer]\nonlooker_token_file = \"t\"\n" + kObject),
+             StartsWith("s.toml:2: viewer.onlooker_token_file is set without viewer.token_file"));
   CHECK_THAT(rejection("[viewer]\nport = 65536\n" + kObject), StartsWith("s.toml:2: viewer.port"));
   CHECK_THAT(rejection("[viewer]\nsize = 1\n" + kObject), StartsWith("s.toml:2: viewer.size"));
 }

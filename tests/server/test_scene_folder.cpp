@@ -34,6 +34,7 @@ TEST_CASE("scenes and models directly in the folder are listed, sorted, and noth
   write_text(folder.path() / "notes.txt");
   write_text(folder.path() / ".hidden.toml");
   write_text(folder.path() / "line\nbreak.toml");
+  write_text(folder.path() / "caf\xE9.toml");  // ISO 8859-1
   write_text(folder.path() / (std::string(124, 'x') + ".toml"));
   std::filesystem::create_directory(folder.path() / "folder.toml");
   std::filesystem::create_directory(folder.path() / "inside");

@@ -102,6 +102,22 @@ TEST_CASE("settings are saved beside the scenes and listed") {
         12.5);
 }
 
+TEST_CASE("a server saves at most 100 scenes, whichever run asks") {
+  Desk desk;
+  desk.loader().start();
+  const Settings settings = initial_settings(desk.run->config);
+  std::string notice;
+  for (std::size_t i = 0; i < viewer::kMaxSaves; ++i) {
+    SceneChoice choice(desk.loader(), *desk.run, "");
+    choice.save(settings);
+    REQUIRE(eventually([&] { return !state_of(choice, notice).preparing; }));
+    REQUIRE(notice == "saved: good-" + std::to_string(i + 1) + ".toml");
+  }
+  SceneChoice choice(desk.loader(), *desk.run, "");
+  CHECK_THROWS_WITH(choice.save(settings), ContainsSubstring("saved 100 times already"));
+  CHECK_FALSE(std::filesystem::exists(desk.path("good-101.toml")));
+}
+
 TEST_CASE("a file that comes while the server runs is listed") {
   Desk desk;
   desk.loader().start();

@@ -20,7 +20,8 @@ using irdm::wire::Welcome;
 
 TEST_CASE("server welcomes a bridge and says what it runs") {
   RunningServer running({.dt = 0.004});
-  CHECK(running.server.endpoint() == "127.0.0.1:" + std::to_string(running.server.port_number()));
+  CHECK(running.server.endpoints() ==
+        std::vector<std::string>{"127.0.0.1:" + std::to_string(running.server.port_number())});
   RawPeer peer = running.connect();
   peer.send(Hello{.version_min = 1, .version_max = 9, .styluses = 2, .name = "test"});
   const auto welcome = peer.receive_as<Welcome>();

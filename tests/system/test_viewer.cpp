@@ -178,6 +178,47 @@ TEST_CASE("viewer: an address that can be reached from elsewhere needs a token")
   CHECK_THAT(ended.err, ContainsSubstring("set viewer.token"));
 }
 
+TEST_CASE("viewer: a token's file opens to those who have the token, on loopback, too") {
+  const Stage stage;
+  const std::string token = "0123456789abcdef";
+  const std::filesystem::path file = stage.path("irdm.token");
+  stage.write("irdm.token", token + "\n");
+  stage.write("scene.toml", "[viewer]\ntoken_file = \"irdm.token\"\n" + scene_text());
+  std::filesystem::permissions(file, std::filesystem::perms(0644));
+  const FinishedProgram refused = run_to_end({IRDM_SERVER, stage.path("scene.toml").string()});
+  CHECK(refused.status == 1);
+  CHECK_THAT(refused.err,
+             ContainsSubstring("irdm.token: is a token that others may read or write"));
+  std::filesystem::permissions(file, std::filesystem::perms(0600));
+  Server server = stage.start_server({"--record", stage.path("trace.h5").string()});
+  const std::uint16_t port = viewer_port(server.process);
+  WebPeer stranger = watch(port);
+  const auto answer = stranger.receive();
+  REQUIRE(answer);
+  CHECK(answer->close_code() == 1008);
+  WebPeer peer(port);
+  peer.open();
+  peer.send_message(encode(viewer::ClientMessage(viewer::Hello{token, false})));
+  next(peer, kScene);
+  server.process.signal(SIGTERM);
+  CHECK(server.process.wait() == 0);
+  CHECK_THAT(file_content(stage.path("trace.h5")), !ContainsSubstring(token));
+}
+
+TEST_CASE("viewer: where all addresses are listened on, those that can be opened are printed") {
+  const Stage stage;
+  stage.write("irdm.token", "0123456789abcdef");
+  std::filesystem::permissions(stage.path("irdm.token"), std::filesystem::perms(0600));
+  stage.write("scene.toml",
+              "[viewer]\naddress = \"0.0.0.0\"\ntoken_file = \"irdm.token\"\n" + scene_text());
+  Server server = stage.start_server();
+  WebPeer peer(viewer_port(server.process));  // the first of the lines is of 127.0.0.1
+  peer.open();
+  server.process.signal(SIGTERM);
+  CHECK(server.process.wait() == 0);
+  CHECK_THAT(server.process.out(), !ContainsSubstring("0.0.0.0"));
+}
+
 TEST_CASE("viewer: its stylus, friction and gravity act on the run and are in its trace") {
   const Stage stage;
   Server server = stage.start_server({"--record", stage.path("trace.h5").string()});

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 
 #include "tests/viewer/frames.hpp"
 #include "viewer/viewer_session.hpp"
@@ -19,7 +20,7 @@ struct ExampleRun final : viewer::ViewerSession {
   viewer::Health health() override { return {.steps = steps}; }
   viewer::State state() override {
     viewer::State state = example_state();
-    state.notice = shown == 0 ? "the first one" : "the other one";
+    state.notice = shown == 0 ? notice : "the other one";
     return state;
   }
   void handle(const viewer::Command& command) override {
@@ -35,6 +36,7 @@ struct ExampleRun final : viewer::ViewerSession {
   }
 
   viewer::Scene scene_ = example_scene();
+  std::string notice = "the first one";
   TripleBuffer<SurfaceFrame> surfaces{example_frame(scene_, 0.001)};
   TripleBuffer<SurfaceFrame> other_surfaces{example_frame(scene_, 0.001, 5)};
   EventFd ready, other_ready;

@@ -385,6 +385,7 @@ TEST_CASE("names of scenes that are too long or too many are refused or cut") {
   const std::string longest(kMaxSceneName, 'a');
   const auto request = decode_client(encode(ClientMessage(SceneRequest{longest + "b"})));
   CHECK(std::get<SceneRequest>(request).name == longest);
+  CHECK_THROWS_AS(decode_client(encode(ClientMessage(SceneRequest{"caf\xE9.toml"}))), MessageError);
   Bytes bytes = encode(ClientMessage(SceneRequest{longest}));
   bytes[8] = kMaxSceneName + 1;
   bytes.push_back('b');

@@ -11,6 +11,7 @@
 #include "tests/support/eventually.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/viewer/show.hpp"
+#include "viewer/notice_text.hpp"
 #include "viewer/viewer_server.hpp"
 
 using Catch::Matchers::ContainsSubstring;
@@ -123,6 +124,34 @@ TEST_CASE("a request that breaks the rules is refused with a word of why") {
   CHECK_THAT(show.ask("IRDM\x01\x02\r\n\r\n"), StartsWith("HTTP/1.1 400"));
   CHECK_THAT(show.get("/live"), StartsWith("HTTP/1.1 426"));
   CHECK_THAT(show.get("/"), StartsWith("HTTP/1.1 200"));
+}
+
+TEST_CASE("a request has one Host and one Origin, and a transfer coding that is known") {
+  Show show;
+  const auto answer = [&](const std::string& version, const std::string& fields) {
+    return show.ask("GET / HTTP/" + version + "\r\nConnection: close\r\n" + fields + "\r\n");
+  };
+  CHECK_THAT(answer("1.1", "Host: x\r\n"), StartsWith("HTTP/1.1 200"));
+  CHECK_THAT(answer("1.0", ""), ContainsSubstring(" 200 "));
+  CHECK_THAT(answer("1.1", ""), StartsWith("HTTP/1.1 400"));
+  CHECK_THAT(answer("1.1", "Host: x\r\nHost: x\r\n"), StartsWith("HTTP/1.1 400"));
+  CHECK_THAT(answer("1.0", "Host: x\r\nhost: y\r\n"), StartsWith("HTTP/1.1 400"));
+  CHECK_THAT(answer("1.1", "Host: x\r\nOrigin: http://x\r\n"), StartsWith("HTTP/1.1 200"));
+  CHECK_THAT(answer("1.1", "Host: x\r\nOrigin: http://x\r\nOrigin: http://x\r\n"),
+             StartsWith("HTTP/1.1 400"));
+  CHECK_THAT(answer("1.1", "Host: x\r\nTransfer-Encoding: xchunked\r\n"),
+             StartsWith("HTTP/1.1 501"));
+  CHECK_THAT(answer("1.1", "Host: x\r\nTransfer-Encoding: gzip\r\n"), StartsWith("HTTP/1.1 501"));
+  CHECK_THAT(answer("1.1", "Host: x\r\nTransfer-Encoding: chunked\r\n"),
+             StartsWith("HTTP/1.1 413"));
+}
+
+TEST_CASE("a WebSocket is not opened by a request with two Origins") {
+  Show show;
+  const std::string host = "127.0.0.1:80";
+  CHECK_THAT(
+      WebPeer(show.server.port()).upgrade("http://" + host + "\r\nOrigin: http://" + host, host),
+      StartsWith("HTTP/1.1 400"));
 }
 
 TEST_CASE("a page that was not built is told") {
@@ -365,22 +394,86 @@ TEST_CASE("there is a limit to viewers") {
   CHECK_THAT(third.upgrade("http://" + host, host), StartsWith("HTTP/1.1 503"));
 }
 
-TEST_CASE("there is a limit to connections") {
-  // No connection ends by itself while the test waits.
-  Show show({.max_connections = 3, .request_timeout_ms = 10 * kDeadlineMs});
-  const std::string request = "HEAD / HTTP/1.1\r\nHost: x\r\n\r\n";
-  std::vector<WebPeer> served;
+TEST_CASE("WebSockets that say nothing keep no viewer out") {
+  const CapturedLog log;
+  Show show({.max_viewers = 2,
+             .hello_timeout_ms = 10 * kDeadlineMs,
+             .idle_timeout_ms = 10 * kDeadlineMs});
+  std::vector<WebPeer> silent;
   for (int i = 0; i < 3; ++i) {
-    served.emplace_back(show.server.port());
-    served.back().send(request);
-    CHECK_THAT(served.back().header(), StartsWith("HTTP/1.1 200"));
+    silent.emplace_back(show.server.port());
+    silent.back().open();
   }
+  WebPeer first = show.watch();
+  WebPeer second = show.watch();
+  next_frame(first, show.scene);
+  next_frame(second, show.scene);
+  CHECK(show.server.viewers() == 2);
+  // One that opened before there were two says Hello now.
+  silent.front().send_message(encode(ClientMessage(Hello{})));
+  CHECK(close_code(silent.front()) == 1013);
+  CHECK(log.lines() + show.server.unlogged() == 1);
+}
+
+TEST_CASE("beyond the limit of connections the oldest silent one makes room") {
+  // No connection ends by itself while the test waits.
+  const CapturedLog log;
+  Show show({.max_connections = 3,
+             .hello_timeout_ms = 10 * kDeadlineMs,
+             .idle_timeout_ms = 10 * kDeadlineMs,
+             .request_timeout_ms = 10 * kDeadlineMs});
+  WebPeer viewer = show.watch();
+  next_frame(viewer, show.scene);
+  WebPeer socket(show.server.port());
+  socket.open();
+  WebPeer asks(show.server.port());
+  const std::string request = "HEAD / HTTP/1.1\r\nHost: x\r\n\r\n";
+  asks.send(request);
+  CHECK_THAT(asks.header(), StartsWith("HTTP/1.1 200"));
+  // Again and again, whoever comes gets in: first the WebSocket without Hello makes room.
+  WebPeer next(show.server.port());
+  next.send(request);
+  CHECK_THAT(next.header(), StartsWith("HTTP/1.1 200"));
+  CHECK(socket.rest() == "");
+  asks.send(request);
+  CHECK_THAT(asks.header(), StartsWith("HTTP/1.1 200"));
+  WebPeer last = show.watch();
+  next_frame(last, show.scene);
+  CHECK(next.rest() == "");
+  asks.send(request);
+  CHECK_THAT(asks.header(), StartsWith("HTTP/1.1 200"));
+  show.publish(7000);
+  while (next_frame(viewer, show.scene).force_step != 7000) {
+  }
+  CHECK(log.lines() + show.server.unlogged() == 2);
+}
+
+TEST_CASE("connections that all watch are not ended for another one") {
+  Show show({.max_connections = 2, .idle_timeout_ms = 600'000});
+  WebPeer first = show.watch();
+  WebPeer second = show.watch();
+  next_frame(first, show.scene);
+  next_frame(second, show.scene);
   WebPeer beyond(show.server.port());
   CHECK(beyond.rest() == "");
-  for (WebPeer& peer : served) {
-    peer.send(request);
-    CHECK_THAT(peer.header(), StartsWith("HTTP/1.1 200"));
+  show.publish(7000);
+  while (next_frame(first, show.scene).force_step != 7000) {
   }
+}
+
+TEST_CASE("notices name files, not the server's folders, and are UTF-8") {
+  CHECK(file_names_only("/home/a b/lab/x.toml:3: object.model is missing; add it") ==
+        "x.toml:3: object.model is missing; add it");
+  CHECK(file_names_only("recorded: /srv/irdm/run 1") == "recorded: run 1");
+  CHECK(file_names_only("cannot open '/srv/my models/cube.h5'; see (/etc/irdm/server.toml)") ==
+        "cannot open 'cube.h5'; see (server.toml)");
+  for (const char* kept : {"", "coupling 300 N/m, 5 /s", "saved: a-1.toml", "/", "a / b"}) {
+    CHECK(file_names_only(kept) == kept);
+  }
+  Show show;
+  show.run.notice = "/secret/folder/caf\xE9.toml: is missing";
+  WebPeer peer = show.watch();
+  CHECK(next_state(peer).notice == "caf?.toml: is missing");
 }
 
 TEST_CASE("who says nothing is not waited for") {
@@ -455,5 +548,5 @@ TEST_CASE("stopping says goodbye to every viewer, and waits for none that does n
 TEST_CASE("a server that is not started ends well, too") {
   ExampleRun run;
   const ViewerServer server({}, run);
-  CHECK_THAT(server.url(), StartsWith("http://127.0.0.1:"));
+  CHECK_THAT(server.urls().front(), StartsWith("http://127.0.0.1:"));
 }

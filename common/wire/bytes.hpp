@@ -10,10 +10,16 @@
 #include <string>
 
 #include "common/geometry.hpp"
+#include "common/wire/protocol_error.hpp"
 
 /// Little-endian fields in a row of bytes. Running past the end is a broken invariant of this
 /// program (sizes are checked before), reported as std::logic_error.
 namespace irdm::wire {
+
+/// Whether a byte is a printable character of ASCII, the blank included.
+inline bool is_printable(std::uint8_t byte) noexcept {
+  return byte >= 0x20 && byte < 0x7F;
+}
 
 class ByteWriter {
  public:
@@ -39,11 +45,16 @@ class ByteWriter {
     put(q.y());
     put(q.z());
   }
-  /// Cut to `size` bytes, or filled up with zeros.
+  /// Cut to `size` bytes, or filled up with zeros; what is not printable ASCII becomes '?'.
   void put_text(const std::string& text, std::size_t size) {
     const std::span<std::uint8_t> field = take(size);
     std::fill(field.begin(), field.end(), std::uint8_t{0});
-    std::copy_n(text.begin(), std::min(text.size(), size), field.begin());
+    std::transform(text.begin(),
+                   text.begin() + static_cast<std::ptrdiff_t>(std::min(text.size(), size)),
+                   field.begin(), [](char letter) {
+                     const auto byte = static_cast<std::uint8_t>(letter);
+                     return is_printable(byte) ? byte : static_cast<std::uint8_t>('?');
+                   });
   }
   void put_zeros(std::size_t size) { put_text("", size); }
 
@@ -86,12 +97,16 @@ class ByteReader {
     q.z() = get_number();
     return q;
   }
-  /// Up to the first zero; what is not printable ASCII becomes '?', as it may end up in a log.
+  /// Up to the first zero. Throws ProtocolError where a byte before it is not printable ASCII: the
+  /// text may end up in a log.
   std::string get_text(std::size_t size) {
     std::string text;
     for (const std::uint8_t byte : take(size)) {
       if (byte == 0) break;
-      text += byte >= 0x20 && byte < 0x7F ? static_cast<char>(byte) : '?';
+      if (!is_printable(byte)) {
+        throw ProtocolError(ProtocolFault::kBadValue, "a text is not printable ASCII");
+      }
+      text += static_cast<char>(byte);
     }
     return text;
   }

@@ -123,6 +123,10 @@ TEST_CASE("reader refuses values outside their range") {
   CHECK(fault_of(with_value(hello, 0, 2, 2)) == ProtocolFault::kBadValue);   // empty version range
   CHECK(fault_of(with_value(hello, 8, 0, 2)) == ProtocolFault::kBadValue);   // no stylus
   CHECK(fault_of(with_value(hello, 10, 2, 1)) == ProtocolFault::kBadValue);  // flag
+  for (const std::uint64_t letter : {0x01, 0x1B, 0x7F, 0x80, 0xFF}) {
+    CHECK(fault_of(with_value(hello, 12, letter, 1)) == ProtocolFault::kBadValue);  // name
+    CHECK(fault_of(with_value(encoded_bytes(Refuse{}), 8, letter, 1)) == ProtocolFault::kBadValue);
+  }
   const Bytes welcome = encoded_bytes(Welcome{.session = 1, .dt = 0.002});
   CHECK(fault_of(with_value(welcome, 8, 0, 4)) == ProtocolFault::kBadValue);   // session
   CHECK(fault_of(with_value(welcome, 12, 2, 1)) == ProtocolFault::kBadValue);  // flag

@@ -40,8 +40,8 @@ std::string percentiles_text(const Histogram& histogram) {
 }  // namespace
 
 std::string to_text(const BridgeReport& report) {
-  const auto& [servo, client, scheduling, styluses, peak_force, impulse, peak_torque, filter] =
-      report;
+  const auto& [servo, client, scheduling, styluses, peak_force, impulse, peak_torque, filter,
+               device_fault] = report;
   const std::uint64_t reconnects = client.sessions > 0 ? client.sessions - 1 : 0;
   std::ostringstream text;
   text << std::fixed << std::setprecision(3);
@@ -170,16 +170,39 @@ class SessionWatch {
   bool began_ = false;
 };
 
+/// Tells a person whose press of a button is awaited before there is force. Main thread.
+class ArmingNotes {
+ public:
+  explicit ArmingNotes(const std::vector<ServoLink::Stylus>& styluses)
+      : styluses_(styluses), awaited_(styluses.size(), false) {}
+
+  void look() {
+    for (std::size_t i = 0; i < styluses_.size(); ++i) {
+      const bool awaited = styluses_[i].awaits_button;
+      if (awaited && !awaited_[i]) {
+        spdlog::info("stylus {}: no force until one of its buttons is pressed (arm = \"button\")",
+                     i);
+      }
+      awaited_[i] = awaited;
+    }
+  }
+
+ private:
+  const std::vector<ServoLink::Stylus>& styluses_;
+  std::vector<bool> awaited_;
+};
+
 // Until a signal comes, a thread of ours ends, a driver stops making ticks, or it is too late for a
 // session.
 void await_end(StopSignal& stop_signal, EventFd& done, const ServoThread& servo, DeviceWatch& watch,
-               SessionWatch& session) {
+               SessionWatch& session, ArmingNotes& arming) {
   constexpr int kLookMs = 100;
   constexpr int kSilentLooks = 3;  // one is seen by a process that was itself asleep
   int silent = 0;
   while (!stop_signal.wait_for(kLookMs, done.descriptor()) && !done.consume() &&
          silent < kSilentLooks && !session.over()) {
     watch.look();
+    arming.look();
     silent = servo.driver_silent(monotonic_ns()) ? silent + 1 : 0;
   }
   watch.look();
@@ -231,7 +254,7 @@ BridgeReport run_bridge(const BridgeConfig& config, StopSignal& stop_signal, dou
   bool torque = false;
   for (const auto& device : devices.all()) {
     const FilterLimits limits = allowed_limits(*device, config, config.devices[loops.size()]);
-    loops.emplace_back(*device, limits, config.devices[loops.size()].mapping);
+    loops.emplace_back(*device, limits, config.devices[loops.size()].mapping, config.arm_by_button);
     longest = std::max(longest, device->duration());
     simulated = simulated && device->simulated();
     torque = torque || limits.max_torque > 0.0;
@@ -262,7 +285,8 @@ BridgeReport run_bridge(const BridgeConfig& config, StopSignal& stop_signal, dou
   servo.start();
   DeviceWatch watch(devices.all());
   SessionWatch session(client, duration);
-  await_end(stop_signal, done, servo, watch, session);
+  ArmingNotes arming(link.styluses);
+  await_end(stop_signal, done, servo, watch, session, arming);
   const std::string no_session = session.over() ? session.failure(*config.server) : "";
   if (servo.driver_silent(monotonic_ns())) black_box.report("the device's driver makes no ticks");
   servo.stop();
@@ -283,7 +307,11 @@ BridgeReport run_bridge(const BridgeConfig& config, StopSignal& stop_signal, dou
     report.filter.trips += counts.trips;
     report.filter.faults += counts.faults;
   }
-  if (report.client.failure.empty()) report.client.failure = failure_of(report.servo.end, watch);
+  report.device_fault =
+      report.servo.end == ServoEnd::kDeviceLost || report.servo.end == ServoEnd::kDriverStuck;
+  if (report.device_fault || report.client.failure.empty()) {
+    report.client.failure = failure_of(report.servo.end, watch);
+  }
   if (report.client.failure.empty()) report.client.failure = no_session;
   return report;
 }

@@ -21,6 +21,8 @@ struct BridgeReport {
   double impulse = 0.0;      ///< of the force's magnitude, on all styluses together [N s]
   double peak_torque = 0.0;  ///< shown on any stylus [N m]
   FilterCounts filter = {};  ///< of all styluses
+  /// A device or its driver ended the run; then client.failure says how.
+  bool device_fault = false;
 };
 
 /// A few lines for a person, each `name: values`.

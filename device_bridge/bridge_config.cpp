@@ -15,6 +15,10 @@ std::vector<std::string> device_types() {
   return {"virtual", "openhaptics", "forcedimension", "haply"};
 }
 
+std::vector<std::string> arm_words() {
+  return {"automatic", "button"};
+}
+
 namespace {
 
 HandParameters read_hand(TomlTable table) {
@@ -150,10 +154,13 @@ SimulatedLink read_link(TomlTable table) {
   return link;
 }
 
-void read_bridge(TomlTable table, const std::string& file, BridgeConfig& config) {
+void read_bridge(TomlTable table, const std::string& file, const BridgeOverrides& overrides,
+                 BridgeConfig& config) {
   const std::string server = table.text("server", "");
   if (!server.empty()) config.server = parse_server_address(server, file + ": bridge.server");
   read_servo_keys(table, config);
+  const std::string arm = table.choice("arm", arm_words(), "automatic");
+  config.arm_by_button = (overrides.arm.empty() ? arm : overrides.arm) == "button";
   if (table.has("link")) config.link = read_link(table.table("link"));
   config.black_box = read_black_box(table);
   table.finish();
@@ -244,7 +251,7 @@ BridgeConfig load_bridge_config(const std::filesystem::path& path,
 BridgeConfig read_bridge_config(TomlTable root, const std::string& name,
                                 const BridgeOverrides& overrides) {
   BridgeConfig config;
-  read_bridge(root.table("bridge"), name, config);
+  read_bridge(root.table("bridge"), name, overrides, config);
   for (TomlTable& table : root.tables("device")) {
     config.devices.push_back(read_device(std::move(table), name, overrides));
     config.devices.back().realtime = config.realtime;

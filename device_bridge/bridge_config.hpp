@@ -61,6 +61,8 @@ struct DeviceConfig {
   // buttons.grab, buttons.clutch, buttons.reset: bits 0 to 31, no two the same; -1: none
 };
 
+/// The words of `bridge.arm` and --arm.
+std::vector<std::string> arm_words();
 /// The types that make_device() knows.
 std::vector<std::string> device_types();
 
@@ -87,6 +89,9 @@ struct BridgeConfig {
   /// key `bridge.stream`: "tcp" | "udp"; how samples, forces and contact models go. Where UDP does
   /// not get through, by TCP.
   bool udp = false;
+  /// key `bridge.arm`: "automatic" | "button": no force before a person has pressed a button of the
+  /// stylus
+  bool arm_by_button = false;
   double connect_timeout = 0.075;  ///< key `bridge.connect_timeout`: an attempt [s], 0.01 to 0.1
   /// key `bridge.key_file`: the server's key; none: the server is on this machine
   std::optional<std::filesystem::path> key_file;
@@ -101,6 +106,7 @@ struct BridgeConfig {
 struct BridgeOverrides {
   std::string server = {};   ///< takes the place of bridge.server; empty: not given
   std::string device = {};   ///< takes the place of every device's type; empty: not given
+  std::string arm = {};      ///< takes the place of bridge.arm; empty: not given
   std::string script = {};   ///< of the only device, whose table has none; empty: not given
   bool commissions = false;  ///< a report is made: none is read
 };
@@ -109,8 +115,8 @@ struct BridgeOverrides {
 /// @param name of the file, for messages
 BridgeConfig read_bridge_config(TomlTable root, const std::string& name,
                                 const BridgeOverrides& overrides = {});
-/// Reads the keys of [bridge] that say how a servo loop runs and connects: all but `server`, `link`
-/// and those of the black box. Throws Error.
+/// Reads the keys of [bridge] that say how a servo loop runs and connects: all but `server`, `arm`,
+/// `link` and those of the black box. Throws Error.
 void read_servo_keys(TomlTable& table, BridgeConfig& config);
 /// Reads a table `workspace`. Throws Error.
 Workspace read_workspace(TomlTable table);

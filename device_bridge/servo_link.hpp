@@ -40,6 +40,7 @@ struct ServoLink {
     TripleBuffer<OfSession<ContactModel>> model;     ///< network writes, in `predict`
     TripleBuffer<OfSession<AppliedForces>> applied;  ///< servo writes, then
     std::atomic<bool> armed{false};                  ///< servo writes; and the next
+    std::atomic<bool> awaits_button{false};          ///< of a person, before there is force
     std::atomic<double> success_rate{0.0};           ///< LinkGate's
     std::atomic<double> gain{1.0};                   ///< of the OscillationDetector
     std::atomic<double> energy_share{1.0};           ///< SafetyFilter's

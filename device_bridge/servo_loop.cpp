@@ -8,9 +8,19 @@
 
 namespace irdm {
 
-ServoLoop::ServoLoop(HapticDevice& device, const FilterLimits& limits, const DeviceMapping& mapping)
-    : device_(device), limits_(limits), mapping_(mapping), filter_(limits) {
-  filter_.arm();
+ServoLoop::ServoLoop(HapticDevice& device, const FilterLimits& limits, const DeviceMapping& mapping,
+                     bool arm_by_button)
+    : device_(device),
+      limits_(limits),
+      mapping_(mapping),
+      filter_(limits),
+      arm_by_button_(arm_by_button) {
+  arm();
+}
+
+void ServoLoop::arm() noexcept {
+  awaits_button_ = arm_by_button_;
+  if (!arm_by_button_) filter_.arm();
 }
 
 void ServoLoop::restart(bool link_matters) noexcept {
@@ -18,7 +28,7 @@ void ServoLoop::restart(bool link_matters) noexcept {
   FilterLimits limits = limits_;
   if (!link_matters) limits.needed_success = 0.0;
   filter_ = SafetyFilter(limits);
-  filter_.arm();
+  arm();
   clutch_ = Clutch{};
   contact_.reset();
   reading_.reset();
@@ -32,6 +42,7 @@ void ServoLoop::read(double device_time) noexcept {
   const StylusPose pose = device_.read(device_time);
   const bool finite = pose.tip.allFinite() && pose.orientation.coeffs().allFinite();
   device_state_ = device_.state();
+  pressed_ = reading_ && (pose.buttons & ~device_buttons_) != 0;
   device_buttons_ = pose.buttons;
   reading_ = finite ? pose.tip : Vector3::Constant(std::numeric_limits<double>::quiet_NaN());
   if (!finite) return;
@@ -97,6 +108,9 @@ void ServoLoop::update_device_state() noexcept {
   } else if (!device_state_.ready) {
     filter_.disarm();
   } else if (!was_ready) {
+    arm();
+  } else if (awaits_button_ && pressed_) {
+    awaits_button_ = false;
     filter_.arm();
   }
 }

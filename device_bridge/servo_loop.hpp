@@ -25,7 +25,10 @@ struct DeviceMapping {
 class ServoLoop {
  public:
   /// @param limits of force and torque at the device
-  ServoLoop(HapticDevice& device, const FilterLimits& limits, const DeviceMapping& mapping = {});
+  /// @param arm_by_button whenever the filter would arm, it waits until a button of the device goes
+  /// down; false: it arms by itself
+  ServoLoop(HapticDevice& device, const FilterLimits& limits, const DeviceMapping& mapping = {},
+            bool arm_by_button = false);
 
   /// Begins a session of the device's time: samples are numbered from 0 again, the clutch's
   /// offset is gone, and the filter is to arm.
@@ -71,6 +74,9 @@ class ServoLoop {
     rest();
   }
 
+  /// There is no force because a button was not pressed yet.
+  bool awaits_button() const noexcept { return awaits_button_; }
+
   const FilterLimits& limits() const noexcept { return limits_; }
   const SafetyFilter& filter() const noexcept { return filter_; }
   double peak_force() const noexcept { return peak_force_; }    ///< shown so far [N], D
@@ -94,6 +100,7 @@ class ServoLoop {
   void report_shown() noexcept;
   ForceDemand demand(std::int64_t now_ns, const ServoInput& input) noexcept;
   void update_device_state() noexcept;
+  void arm() noexcept;
   void show(const Wrench& wrench) noexcept {
     shown_ = wrench;
     device_.write(wrench);
@@ -111,6 +118,9 @@ class ServoLoop {
   std::optional<Vector3> reading_;
   Quaternion orientation_ = Quaternion::Identity();  ///< the last good one, D
   std::uint32_t device_buttons_ = 0;                 ///< as they were read last
+  bool arm_by_button_;
+  bool awaits_button_ = false;
+  bool pressed_ = false;  ///< a button went down with the last read(), which was not the first
   ForceDemand demanded_;
   Wrench shown_;
   DeviceState device_state_;

@@ -168,6 +168,7 @@ void ServoThread::render_tick(std::int64_t now_ns) noexcept {
     lost = lost || loops_[i].device_state().lost;
     const SafetyFilter& filter = loops_[i].filter();
     link_.styluses[i].armed = filter.state() != FilterState::kDisarmed;
+    link_.styluses[i].awaits_button = loops_[i].awaits_button();
     link_.styluses[i].success_rate = filter.success_rate();
     link_.styluses[i].gain = filter.gain();
     link_.styluses[i].energy_share = filter.energy_share();

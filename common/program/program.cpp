@@ -112,6 +112,9 @@ int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>
   }
   try {
     return body();
+  } catch (const StatusError& error) {
+    complain(app.get_name(), error.what());
+    return error.status();
   } catch (const std::bad_alloc&) {
     return complain(app.get_name(), "not enough memory; use a smaller model or free memory");
   } catch (const std::exception& error) {

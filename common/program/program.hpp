@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -22,11 +23,22 @@ void wait_passively_in_openmp(char** argv);
 // The frame that the mains share: exit 0 on success, 1 on a failure said in one line on stderr,
 // 2 on wrong usage.
 
+/// A failure with an exit status of its own; its text is one line, as Error's is.
+class StatusError : public std::runtime_error {
+ public:
+  StatusError(int status, const std::string& what) : std::runtime_error(what), status_(status) {}
+  int status() const noexcept { return status_; }
+
+ private:
+  int status_;
+};
+
 /// Of an option: a finite number above zero. (CLI11's own check lets "nan" through.)
 CLI::Validator positive_number();
 
 /// Adds --version, parses the command line and runs `body`; returns the exit status. An exception
-/// out of `body` becomes one line on stderr, `NAME: error: WHAT`, and status 1. Beside wrong usage
+/// out of `body` becomes one line on stderr, `NAME: error: WHAT`, and status 1, or that of a
+/// StatusError. Beside wrong usage
 /// it names the option or command that was probably meant.
 int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& body);
 

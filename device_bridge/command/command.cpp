@@ -97,6 +97,8 @@ Command add_doctor_command(CLI::App& app) {
 namespace irdm::bridge {
 namespace {
 
+constexpr int kDeviceFault = 3;  // exit status, which irdm-bridge.service does not restart
+
 struct RunOptions {
   std::string config;
   BridgeOverrides overrides;
@@ -108,6 +110,7 @@ int run(const RunOptions& options) {
   const BridgeConfig config = load_bridge_config(options.config, options.overrides);
   const BridgeReport report = run_bridge(config, stop_signal, options.duration);
   if (report.client.sessions > 0) std::cout << to_text(report) << std::flush;
+  if (report.device_fault) throw StatusError(kDeviceFault, report.client.failure);
   if (!report.client.failure.empty()) throw std::runtime_error(report.client.failure);
   return 0;
 }
@@ -122,6 +125,10 @@ Command add_run_command(CLI::App& app) {
   app.add_option("--device", options->overrides.device,
                  "Type of all devices, instead of the configured one")
       ->check(CLI::IsMember(device_types()));
+  app.add_option(
+         "--arm", options->overrides.arm,
+         "automatic, or button: no force before a person has pressed a button of the stylus")
+      ->check(CLI::IsMember(arm_words()));
   app.add_option("--script", options->overrides.script, "Motion of the virtual stylus (CSV)");
   app.add_option("--duration", options->duration, "End after this many seconds of session")
       ->check(positive_number());

@@ -311,7 +311,7 @@ void ServerSession::send_reports(std::int64_t now_ns) {
 // A person who feels nothing, or not for long, should know why.
 void ServerSession::tell_of_arming(std::int64_t now_ns) {
   const auto good = [](const ServoLink::Stylus& each) {
-    return each.armed && each.success_rate >= LinkGate::kNeeded;
+    return each.awaits_button || (each.armed && each.success_rate >= LinkGate::kNeeded);
   };
   const std::vector<ServoLink::Stylus>& styluses = shared_.link.styluses;
   const bool all = std::all_of(styluses.begin(), styluses.end(), good);

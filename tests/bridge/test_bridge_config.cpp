@@ -186,6 +186,18 @@ TEST_CASE("the command line names server, device and script") {
   CHECK(config.devices[0].script == "b.csv");
 }
 
+TEST_CASE("a stylus is armed by itself or by a button, and the command line decides") {
+  const auto by_button = [](const std::string& text, const std::string& option = "") {
+    return ConfigFile(text + kDevice).load({.arm = option}).arm_by_button;
+  };
+  CHECK_FALSE(by_button(""));
+  CHECK_FALSE(by_button("[bridge]\narm = \"automatic\"\n"));
+  CHECK(by_button("[bridge]\narm = \"button\"\n"));
+  CHECK(by_button("[bridge]\narm = \"automatic\"\n", "button"));
+  CHECK_FALSE(by_button("[bridge]\narm = \"button\"\n", "automatic"));
+  check_refused("[bridge]\narm = \"never\"\n" + kDevice, "arm is 'never'");
+}
+
 TEST_CASE("bridge configuration refuses what does not fit") {
   check_refused("", "no device");
   check_refused("device = 3", "not a list of tables");

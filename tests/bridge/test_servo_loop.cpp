@@ -75,6 +75,50 @@ TEST_CASE("servo loop keeps the last good reading of a device that fails") {
   CHECK(loop.take_sample(0).tip == Vector3(1, 2, 3));
 }
 
+TEST_CASE("servo loop that is armed by a button shows no force until one goes down") {
+  ProbeDevice device;
+  ServoLoop loop(device, {}, {}, true);
+  loop.restart();
+  const Vector3 force(0, 0.25, 0);
+  device.pose.buttons = 2;  // held from the start on, which is no press
+  std::int64_t now_ns = show(loop, 0, 200, force);
+  CHECK(loop.awaits_button());
+  CHECK(device.force == Vector3::Zero());
+  CHECK(loop.peak_force() == 0.0);
+  device.pose.buttons = 0;
+  now_ns = show(loop, now_ns, 200, force);
+  CHECK(device.force == Vector3::Zero());
+  device.pose.buttons = 1;
+  now_ns = show(loop, now_ns, 1, force);
+  CHECK_FALSE(loop.awaits_button());
+  now_ns = show(loop, now_ns, 20, force);
+  CHECK(device.force.isApprox(force));
+  // A press is enough; later ones change nothing.
+  device.pose.buttons = 0;
+  now_ns = show(loop, now_ns, 20, force);
+  CHECK(device.force.isApprox(force));
+
+  // A device that was not ready is armed by another press, none while it is not ready.
+  device.said.ready = false;
+  now_ns = show(loop, now_ns, 5, force);
+  device.pose.buttons = 1;
+  now_ns = show(loop, now_ns, 5, force);
+  CHECK(device.force == Vector3::Zero());
+  device.said.ready = true;
+  now_ns = show(loop, now_ns, 200, force);
+  CHECK(device.force == Vector3::Zero());
+  device.pose.buttons = 0;
+  now_ns = show(loop, now_ns, 5, force);
+  device.pose.buttons = 4;
+  now_ns = show(loop, now_ns, 20, force);
+  CHECK(device.force.isApprox(force));
+
+  // So is each run of the device.
+  loop.restart();
+  now_ns = show(loop, now_ns, 200, force);
+  CHECK(device.force == Vector3::Zero());
+}
+
 TEST_CASE("servo loop shows the filtered force and remembers the largest") {
   ProbeDevice device;
   ServoLoop loop(device, {.max_force = 2.0});

@@ -149,7 +149,7 @@ TEST_CASE("black box: a driver that hangs leaves the ticks that it made until th
   ChildOptions options = device.with(DeviceStage::in_contact("hang"));
   options.folder = device.stage.path("");
   ChildProcess bridge = device.stage.start_bridge(server, {}, options);
-  CHECK(bridge.wait() == 1);
+  CHECK(bridge.wait() == 3);
   const hdf5::File file = black_box(device.stage, "irdm-bridge-");
   CHECK_THAT(file.read_string_attribute("/", "fault"), ContainsSubstring("no ticks"));
   CHECK(file.shape("/tick/0/time")[0] > 50);

@@ -78,6 +78,38 @@ void check_same_bits(const Trace& a, const Trace& b) {
 
 }  // namespace
 
+TEST_CASE("a stylus that is armed by a button feels nothing before it is pressed") {
+  // Half a second into the cube, pressed or not, and half a second more.
+  const auto play_arming = [](const char* pressed) {
+    const Stage stage;
+    stage.write("scene.toml",
+                scene_text() + "tether = { stiffness = 200, angular_stiffness = 1 }\n");
+    stage.write("script.csv", "time,x,y,z,button\n0,0,0.07,0,0\n0.3,0,0.05,0,0\n0.8,0,0.05,0," +
+                                  std::string(pressed) + "\n1.3,0,0.05,0," + pressed + "\n");
+    stage.write("bridge.toml",
+                "[bridge]\narm = \"button\"\n" + file_content(stage.path("bridge.toml")));
+    Server server = stage.start_server({"--lockstep", "--record", stage.path("trace.h5").string()});
+    ChildProcess bridge = stage.start_bridge(server);
+    REQUIRE(bridge.wait() == 0);
+    REQUIRE(server.process.wait() == 0);
+    return std::pair(read_trace(stage.path("trace.h5")),
+                     number_after(bridge.out(), "peak force: "));
+  };
+  const auto [silent, no_force] = play_arming("0");
+  const auto [felt, force] = play_arming("8");
+  CHECK(no_force == 0.0);
+  CHECK(force > 0.1);
+  REQUIRE(silent.rows() == felt.rows());
+  REQUIRE(felt.contact[felt.rows() / 2] != 0);
+  const auto height = [](const Trace& trace, std::size_t k) {
+    return trace.vector("/stylus/0/tip", k).y();
+  };
+  const std::size_t before = felt.rows() / 2;
+  CHECK(height(silent, before) == height(felt, before));
+  CHECK(height(silent, silent.rows() - 1) == Approx(0.05).margin(1e-5));
+  CHECK(height(felt, felt.rows() - 1) > 0.0505);
+}
+
 TEST_CASE("lockstep: the same script leaves the same bits with 1 or 2 threads, idle or loaded") {
   const std::string engine = GENERATE("modal", "dense");
   CAPTURE(engine);

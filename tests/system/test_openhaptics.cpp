@@ -83,7 +83,7 @@ TEST_CASE("a device that is unplugged in contact: the force goes to zero, the br
   Server server = device.stage.start_server();
   ChildProcess bridge =
       device.stage.start_bridge(server, {}, device.with(DeviceStage::in_contact("unplug")));
-  CHECK(bridge.wait() == 1);
+  CHECK(bridge.wait() == 3);
   CHECK_THAT(bridge.err(), ContainsSubstring("irdm-bridge: error: ") &&
                                ContainsSubstring("HD_COMM_ERROR") &&
                                ContainsSubstring("check power and cable"));
@@ -142,7 +142,7 @@ TEST_CASE("a driver that hangs ends the bridge with a word about it") {
   Server server = device.stage.start_server();
   ChildProcess bridge =
       device.stage.start_bridge(server, {}, device.with(DeviceStage::in_contact("hang")));
-  CHECK(bridge.wait() == 1);
+  CHECK(bridge.wait() == 3);
   CHECK_THAT(bridge.err(), ContainsSubstring("its driver no longer makes ticks"));
 }
 

@@ -32,15 +32,21 @@ class Endpoint {
   dds_entity_t handle_;
 };
 
+/// Who may be a participant beside ours.
+enum class Reach {
+  kThisMachine,  ///< loopback interface, no multicast; CYCLONEDDS_URI is not read
+  kNetwork,      ///< as Cyclone DDS and CYCLONEDDS_URI have it
+};
+
 /// A DDS participant whose topics are named as ROS 2 names them. Any thread.
 class Participant {
  public:
   /// Throws Error.
   /// @param domain ROS_DOMAIN_ID  @param name_space of all topics, "irdm" say
-  Participant(std::uint32_t domain, const std::string& name_space);
+  Participant(std::uint32_t domain, const std::string& name_space, Reach reach);
   Participant(const Participant&) = delete;
   Participant& operator=(const Participant&) = delete;
-  ~Participant() { dds_delete(handle_); }
+  ~Participant();
 
   /// Reliable, volatile, the last 10: found by readers of any usual quality of service. Throws
   /// Error.
@@ -56,6 +62,7 @@ class Participant {
  private:
   dds_entity_t topic(const dds_topic_descriptor_t& type, const std::string& name) const;
 
+  dds_entity_t domain_;  ///< 0: as it is by default
   dds_entity_t handle_;
   std::string name_space_;
 };

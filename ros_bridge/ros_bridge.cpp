@@ -1,14 +1,18 @@
 #include "ros_bridge/ros_bridge.hpp"
 
+#include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
+#include <cstdlib>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/config/toml_reader.hpp"
 #include "common/error.hpp"
 #include "common/program/stop_signal.hpp"
+#include "common/secret/secret_file.hpp"
 #include "ros_bridge/surface_topics.hpp"
 
 namespace irdm::ros {
@@ -17,8 +21,9 @@ namespace {
 struct Options {
   std::string server;
   std::string viewer;
-  std::string token;
+  std::string token_file;
   std::string config;
+  bool network = false;
   std::vector<int> styluses;
   std::vector<double> tip{0.0, 0.0, 1.0};
   double stale_after = StylusSettings{}.stale_after;
@@ -65,15 +70,38 @@ SurfaceTopics::Styluses connect(const Options& options, const Participant& parti
   return styluses;
 }
 
+// A command line is seen in the list of processes, so that a token does not stand there.
+std::string token_of(const Options& options) {
+  if (!options.token_file.empty()) return read_token_file(options.token_file);
+  const char* token = std::getenv("IRDM_TOKEN");
+  return token == nullptr ? "" : token;
+}
+
+bool is_set(const char* variable) {
+  const char* value = std::getenv(variable);
+  return value != nullptr && *value != '\0';
+}
+
+Reach reach(const Options& options) {
+  const char* localhost_only = std::getenv("ROS_LOCALHOST_ONLY");
+  if (options.network && localhost_only != nullptr && std::string_view(localhost_only) == "1") {
+    throw Error("--network", "contradicts ROS_LOCALHOST_ONLY=1", "leave one of them out");
+  }
+  if (options.network) return Reach::kNetwork;
+  if (is_set("CYCLONEDDS_URI")) spdlog::warn("CYCLONEDDS_URI is read with --network only");
+  return Reach::kThisMachine;
+}
+
 int run(const Options& options) {
   StopSignal stop;
-  const Participant participant(options.domain, options.name_space);
+  const std::string token = token_of(options);
+  const Participant participant(options.domain, options.name_space, reach(options));
   try {
     const SurfaceTopics::Styluses styluses = connect(options, participant, stop);
     std::optional<SurfaceTopics> surfaces;
     if (!options.viewer.empty()) {
       surfaces.emplace(participant, options.frame, parse_server_address(options.viewer, "--viewer"),
-                       options.token, styluses);
+                       token, styluses);
     }
     const int period_ms = styluses.empty() ? -1 : 1;
     while (!stop.wait_for(period_ms)) {
@@ -115,8 +143,20 @@ Command add_options(CLI::App& app) {
   CLI::Option* server =
       app.add_option("--server", options->server, "HOST:PORT of irdm-server: styluses");
   app.add_option("--viewer", options->viewer, "HOST:PORT of its viewers: surfaces, poses");
-  app.add_option("--token", options->token, "The viewers' token (viewer.onlooker_token)")
-      ->envname("IRDM_VIEWER_TOKEN");
+  app.add_option("--token-file", options->token_file,
+                 "File of the viewers' token (of viewer.onlooker_token), else IRDM_TOKEN is read");
+  app.add_option_function<std::string>(
+         "--token",
+         [](const std::string&) {
+           throw CLI::ValidationError(
+               "--token",
+               "is no option any more, as the list of processes shows it; give "
+               "--token-file FILE or set IRDM_TOKEN");
+         })
+      ->group("");
+  app.add_flag("--network", options->network,
+               "Take part in the network's DDS domain, where anyone may command the styluses "
+               "(default: this machine only)");
   app.add_option("--stylus", options->styluses,
                  "Numbers of the styluses to lead (default: the first free one)")
       ->check(CLI::Range(0, 15))

@@ -107,7 +107,7 @@ bool ViewerClient::good(ErrorCode error) {
   if (!error) return true;
   const bool refused = error == websocket::error::closed &&
                        socket_->reason().code == websocket::close_code::policy_error;
-  try_again(refused ? "wrong token (--token)" : error.message());
+  try_again(refused ? "wrong token (--token-file, IRDM_TOKEN)" : error.message());
   return false;
 }
 

@@ -1,4 +1,7 @@
 // The programs as a ROS user has them, and a node of ROS 2 in two stacks of DDS.
+#include <net/if.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -9,6 +12,7 @@
 #include <limits>
 
 #include "common/model/model_file.hpp"
+#include "ros_bridge/dds.hpp"
 #include "ros_bridge/messages.hpp"
 #include "tests/ros_bridge/ros_peer.hpp"
 #include "tests/support/catch.hpp"
@@ -32,12 +36,10 @@ class Programs {
   Programs() {
     std::ofstream(path("bridge.toml")) << "[bridge]\nmode = \"hold\"\n";
     start_server("0", "0");
-    const std::string xml = kLoopbackOnly;
-    bridge_.emplace(
-        std::vector<std::string>{IRDM_ROS_BRIDGE, "--server", "127.0.0.1:" + port_, "--viewer",
-                                 "127.0.0.1:" + viewer_port_, "--config", path("bridge.toml"),
-                                 "--domain", std::to_string(domain()), "--namespace", name_space()},
-        ChildOptions{.environment = {"CYCLONEDDS_URI=" + xml}});
+    bridge_.emplace(std::vector<std::string>{
+        IRDM_ROS_BRIDGE, "--server", "127.0.0.1:" + port_, "--viewer", "127.0.0.1:" + viewer_port_,
+        "--config", path("bridge.toml"), "--domain", std::to_string(domain()), "--namespace",
+        name_space()});
   }
 
   /// Kills the server and starts another one in its place.
@@ -200,6 +202,25 @@ TEST_CASE("ROS bridge: a node of ROS 2 is a stylus and sees the surface, Cyclone
   play(make_cyclone_peer);
 }
 
+TEST_CASE("ROS bridge: what is for this machine has no socket that hears others") {
+  const std::uint32_t domain = 101 + static_cast<std::uint32_t>(::getpid()) % 100;
+  const ros::Participant participant(domain, "irdm", ros::Reach::kThisMachine);
+  std::size_t sockets = 0;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
+    const int descriptor = std::stoi(entry.path().filename().string());
+    sockaddr_in address{};
+    socklen_t size = sizeof address;
+    if (::getsockname(descriptor, reinterpret_cast<sockaddr*>(&address), &size) != 0) continue;
+    if (address.sin_family != AF_INET) continue;
+    ++sockets;
+    char bound_to[IFNAMSIZ] = "";
+    size = sizeof bound_to;
+    REQUIRE(::getsockopt(descriptor, SOL_SOCKET, SO_BINDTODEVICE, bound_to, &size) == 0);
+    CHECK((std::string(bound_to) == "lo" || address.sin_addr.s_addr == htonl(INADDR_LOOPBACK)));
+  }
+  CHECK(sockets >= 2);
+}
+
 #ifdef IRDM_WITH_FAST_DDS
 TEST_CASE("ROS bridge: a node of ROS 2 is a stylus and sees the surface, Fast DDS") {
   play(make_fast_peer);
@@ -226,8 +247,7 @@ TEST_CASE("ROS bridge: wrong use is refused in one line", "[slow]") {
   const auto run = [](const std::vector<std::string>& arguments) {
     std::vector<std::string> command{IRDM_ROS_BRIDGE};
     command.insert(command.end(), arguments.begin(), arguments.end());
-    const std::string xml = kLoopbackOnly;
-    return run_to_end(command, {.environment = {"CYCLONEDDS_URI=" + xml}});
+    return run_to_end(command);
   };
   CHECK(run({}).status == 2);
   CHECK(run({"--viewer", "127.0.0.1:1", "--stylus", "0"}).status == 2);
@@ -240,6 +260,18 @@ TEST_CASE("ROS bridge: wrong use is refused in one line", "[slow]") {
     CAPTURE(name);
     CHECK(run({"--viewer", "127.0.0.1:1", "--namespace", name}).status == 2);
   }
+  const FinishedProgram token = run({"--viewer", "127.0.0.1:1", "--token", "secret of sixteen"});
+  CHECK(token.status == 2);
+  CHECK_THAT(token.err, ContainsSubstring("give --token-file FILE or set IRDM_TOKEN") &&
+                            !ContainsSubstring("secret of"));
+  const FinishedProgram no_file =
+      run({"--viewer", "127.0.0.1:1", "--token-file", "/nowhere/token"});
+  CHECK(no_file.status == 1);
+  CHECK_THAT(no_file.err, ContainsSubstring("cannot read the token: there is no such file"));
+  const FinishedProgram both = run_to_end({IRDM_ROS_BRIDGE, "--viewer", "127.0.0.1:1", "--network"},
+                                          {.environment = {"ROS_LOCALHOST_ONLY=1"}});
+  CHECK(both.status == 1);
+  CHECK_THAT(both.err, ContainsSubstring("--network: contradicts ROS_LOCALHOST_ONLY=1"));
   const FinishedProgram address = run({"--viewer", "localhost"});
   CHECK(address.status == 1);
   CHECK_THAT(address.err, ContainsSubstring("irdm-ros-bridge: error: --viewer: "));

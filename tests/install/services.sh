@@ -13,6 +13,13 @@ for unit in irdm-server irdm-bridge; do
   grep -qx 'LimitMEMLOCK=infinity' "$units/$unit.service"
   grep -qx 'RestrictRealtime=no' "$units/$unit.service"
 done
+# A device fault does not end in a restart, and no force comes before a person wants it.
+grep -qx 'RestartPreventExitStatus=3' "$units/irdm-bridge.service"
+grep -qx 'ExecStart=irdm-bridge /etc/irdm/bridge.toml --arm button' "$units/irdm-bridge.service"
+for secret in irdm.key irdm.token irdm.onlooker-token; do
+  grep -qx "LoadCredential=$secret" "$units/irdm-server.service"
+done
+grep -qx 'LoadCredential=irdm.key' "$units/irdm-bridge.service"
 # The priorities of their threads (docs/architecture.md).
 grep -qx 'LimitRTPRIO=60' "$units/irdm-server.service"
 grep -qx 'LimitRTPRIO=70' "$units/irdm-bridge.service"

@@ -10,6 +10,11 @@ std::string number_text(double value) {
   return stream.str();
 }
 
+std::string address_text(const std::string& host, int port) {
+  const bool ipv6 = host.find(':') != std::string::npos;
+  return (ipv6 ? "[" + host + "]" : host) + ":" + std::to_string(port);
+}
+
 std::string styluses_text(std::size_t count) {
   return std::to_string(count) + (count == 1 ? " stylus" : " styluses");
 }

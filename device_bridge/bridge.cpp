@@ -158,9 +158,9 @@ class SessionWatch {
   /// Why; empty: there was one.
   std::string failure(const ServerAddress& server) const {
     if (began_) return {};
-    return server.host + ":" + std::to_string(server.port) + ": no session in " +
-           number_text(duration_) + " s: " + client_.progress().trouble +
-           "; start irdm-server there, or correct --server";
+    return address_text(server.host, server.port) + ": no session in " + number_text(duration_) +
+           " s: " + client_.progress().trouble +
+           (client_.progress().answered ? "" : "; start irdm-server there, or correct --server");
   }
 
  private:

@@ -8,6 +8,7 @@
 
 #include "common/blackbox/black_box_file.hpp"
 #include "common/error.hpp"
+#include "common/number_text.hpp"
 #include "device_bridge/device_registry.hpp"
 
 namespace irdm {
@@ -171,7 +172,7 @@ void check_names(const std::vector<DeviceConfig>& devices, const std::string& fi
   std::set<std::array<std::string, 3>> seen;
   for (const DeviceConfig& device : devices) {
     const ServerAddress service = device.service.value_or(ServerAddress{});
-    const std::string where = service.host + ":" + std::to_string(service.port);
+    const std::string where = address_text(service.host, service.port);
     if (device.type == "virtual" || seen.insert({device.type, where, device.name}).second) continue;
     throw Error(
         file, "has two devices of type " + device.type + " with the name " + in_quotes(device.name),

@@ -1,11 +1,13 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include "common/hdf5/handle.hpp"
 #include "device_bridge/command/command.hpp"
 
 using namespace irdm;
 
 int main(int argc, char** argv) {
+  hdf5::leave_files_at_exit();
   spdlog::set_default_logger(spdlog::stderr_color_mt("irdm-bridge"));
   // A further command is one file in device_bridge/command and one line here.
   return run_commands(

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "common/error.hpp"
+#include "common/number_text.hpp"
 #include "common/realtime/clock.hpp"
 #include "common/realtime/triple_buffer.hpp"
 #include "common/wire/tls.hpp"
@@ -81,7 +82,7 @@ NetworkClient::Impl::Impl(ServoLink& link, const ClientSettings& settings, Event
     : link_(link),
       settings_(settings),
       gave_up_(gave_up),
-      server_(settings.server.host + ":" + std::to_string(settings.server.port)),
+      server_(address_text(settings.server.host, settings.server.port)),
       samples_descriptor_(io_),
       timer_(io_),
       back_off_ms_(settings.back_off_ms) {
@@ -214,6 +215,7 @@ void NetworkClient::Impl::ended(const SessionEnd& end) {
                                           "; the run cannot be continued, start both again");
   }
   complained_ = complained_ && !end.welcomed;
+  progress_.answered = progress_.answered || end.refused || end.welcomed;
   rest(end.refused ? settings_.refused_ms : settings_.back_off_ms,
        end.welcomed ? "connection lost" : "no connection", end.reason);
 }

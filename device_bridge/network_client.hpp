@@ -70,6 +70,7 @@ struct ClientSettings {
 struct ClientProgress {
   LinkState link = {};       ///< as of the newest session
   std::string trouble = {};  ///< why the last attempt or session ended; empty: it goes on
+  bool answered = false;     ///< a server has answered, if only to refuse the stylus
   bool gave_up = false;      ///< and there will be no other one
 };
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/error.hpp"
+#include "common/number_text.hpp"
 #include "common/realtime/clock.hpp"
 
 namespace irdm {
@@ -142,7 +143,7 @@ ClientSettings StylusClient::client_settings() const {
 }
 
 std::string StylusClient::address() const {
-  return settings_.bridge.server->host + ":" + std::to_string(settings_.bridge.server->port);
+  return address_text(settings_.bridge.server->host, settings_.bridge.server->port);
 }
 
 void StylusClient::await_session(const Meanwhile& meanwhile) {
@@ -158,7 +159,8 @@ void StylusClient::await_session(const Meanwhile& meanwhile) {
     }
     if (monotonic_ns() > deadline_ns) {
       throw Error(address(), progress.trouble.empty() ? "no connection" : progress.trouble,
-                  "check the address and the stylus, and start the server first");
+                  progress.answered ? "the server is there; correct what it refuses"
+                                    : "check the address, and start the server first");
     }
     done_.wait(kLookMs);
     if (meanwhile) meanwhile();

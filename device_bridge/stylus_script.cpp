@@ -6,6 +6,7 @@
 #include <fstream>
 #include <string_view>
 
+#include "common/config/input_file.hpp"
 #include "common/error.hpp"
 
 namespace irdm {
@@ -142,6 +143,8 @@ StylusScript StylusScript::parse(std::istream& text, const std::string& name) {
 }
 
 StylusScript StylusScript::load(const std::filesystem::path& path) {
+  constexpr std::uintmax_t kMostBytes = 256 << 20;  // some hours of rows
+  if (std::filesystem::is_regular_file(path)) require_file(path, kMostBytes);
   std::ifstream file(path);
   if (!std::filesystem::is_regular_file(path) || !file) {
     throw Error(path.string(), "no such stylus script", "check the path");

@@ -1,10 +1,12 @@
 #include <cstdlib>
 
+#include "common/hdf5/handle.hpp"
 #include "replay/command/command.hpp"
 
 using namespace irdm;
 
 int main(int argc, char** argv) {
+  hdf5::leave_files_at_exit();
   // The factors of a reference are too small for more, and its sums should not depend on them. Read
   // when the program is loaded, that is when the next line starts it again.
   ::setenv("OPENBLAS_NUM_THREADS", "1", 0);

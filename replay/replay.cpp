@@ -6,6 +6,7 @@
 #include <cmath>
 #include <csignal>
 #include <iostream>
+#include <limits>
 #include <memory>
 #include <sstream>
 #include <string>
@@ -91,8 +92,23 @@ namespace {
 
 using Outputs = std::vector<std::unique_ptr<FrameOutput>>;
 
-Recording read_recording(const TracedScene& scene, const std::string& trace) {
-  Recording recording(trace, scene.config, scene.names());
+// What is wrong with later steps is no reason to refuse those up to --end.
+Recording read_steps_to_end(const TracedScene& scene, const std::string& trace,
+                            const RunPart& part) {
+  try {
+    return {trace, scene.config, scene.names()};
+  } catch (const Error& error) {
+    const double steps = std::ceil(part.end / scene.dt());
+    if (!(steps < static_cast<double>(std::numeric_limits<int>::max()))) throw;
+    Recording recording(trace, scene.config, scene.names(), static_cast<std::size_t>(steps));
+    std::cerr << "irdm-replay: warning: only the steps up to --end are read: " << error.what()
+              << '\n';
+    return recording;
+  }
+}
+
+Recording read_recording(const TracedScene& scene, const std::string& trace, const RunPart& part) {
+  Recording recording = read_steps_to_end(scene, trace, part);
   if (recording.lost_steps() == 0) return recording;
   throw Error(trace,
               "lacks " + std::to_string(recording.lost_steps()) +
@@ -212,7 +228,7 @@ int replay(const ReplayOptions& options) {
   for (const std::string& warning : scene.warnings) {
     std::cerr << "irdm-replay: warning: " << warning << '\n';
   }
-  const Recording recording = read_recording(scene, options.trace.string());
+  const Recording recording = read_recording(scene, options.trace.string(), options.part);
   const FrameSteps frames(recording.steps(), scene.dt(), frame_rate(options), options.part);
   const auto path = journal_path(options);
   LongRun run(frames.steps(), options.reference.has_value(), path.has_value());

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/blackbox/black_box_file.hpp"
+#include "common/config/input_file.hpp"
 #include "common/config/range.hpp"
 #include "common/error.hpp"
 #include "common/hdf5/handle.hpp"
@@ -297,6 +298,7 @@ SceneConfig read_scene(TomlTable file) {
 }
 
 std::string read_text(const std::filesystem::path& path) {
+  if (std::filesystem::exists(path)) require_file(path, kMostConfigBytes);
   std::ifstream stream(path, std::ios::binary);
   if (!stream) throw Error(path.string(), "cannot be read", "check the path and its permissions");
   std::ostringstream text;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <sstream>
 #include <string_view>
 #include <system_error>
 
@@ -27,10 +28,12 @@ bool is_listable(const std::string& name) {
 
 // Also where it is no TOML: what is wrong is then said when it is loaded.
 bool has_object(const fs::path& path) {
+  std::string text(kMostLookedAt, '\0');
   std::ifstream file(path, std::ios::binary);
-  std::string line;
-  for (std::size_t read = 0; read < kMostLookedAt && std::getline(file, line);
-       read += line.size()) {
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
     std::erase_if(line, [](char letter) { return letter == ' ' || letter == '\t'; });
     if (line.starts_with("[[object]]") || line.starts_with("object=")) return true;
   }

@@ -1,11 +1,8 @@
 #include "scene/scene_source.hpp"
 
-#include "common/config/input_file.hpp"
-
 namespace irdm {
 
 SceneSource read_scene_source(const std::filesystem::path& path) {
-  require_file(path);
   return {path.string(), read_text(path), std::filesystem::absolute(path).parent_path()};
 }
 

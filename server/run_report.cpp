@@ -73,10 +73,7 @@ int print_report(const FinishedRun& run) {
   faults("nodes whose columns cannot be read", run.columns.failed());
   faults("steps that the deformation did not see", run.deformation.lost_steps());
   if (run.recorder == nullptr) return 0;
-  if (!run.recorder->error().empty()) {
-    std::cerr << "irdm-server: error: recording ended early: " << run.recorder->error() << '\n';
-    return 1;
-  }
+  if (!run.recorder->error().empty()) return 1;  // logged when it happened
   std::cout << "recorded: " << run.recorder->rows() << " steps in " << run.trace << std::endl;
   if (const std::uint64_t lost = run.recorder->lost()) {
     std::cerr << "irdm-server: error: " << lost << " steps are missing in the trace: "

@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <iostream>
 #include <memory>
+#include <thread>
 
 #include "common/program/stop_signal.hpp"
+#include "common/realtime/event_fd.hpp"
 #include "server/prepared_run.hpp"
 #include "server/scene_loader.hpp"
 #include "server/server_run.hpp"
@@ -37,10 +41,35 @@ void keep_place(const SceneConfig& first, SceneConfig& scene) {
   scene.viewer = viewer;
 }
 
+[[noreturn]] void end_at_once(int status) {
+  std::cout << std::flush;
+  std::_Exit(status);
+}
+
 // 0: no end.
 std::uint64_t steps_in(double duration, double dt) {
   return static_cast<std::uint64_t>(std::llround(std::ceil(duration / dt - 1e-9)));
 }
+
+/// Ends the program at once where a signal asks it to stop while a scene or a model is read, which
+/// cannot be interrupted: nothing is running or written yet.
+class StopWhileLoading {
+ public:
+  explicit StopWhileLoading(StopSignal& stop)
+      : thread_([this, &stop] {
+          if (stop.wait(done_.descriptor())) end_at_once(0);
+        }) {}
+  StopWhileLoading(const StopWhileLoading&) = delete;
+  StopWhileLoading& operator=(const StopWhileLoading&) = delete;
+  ~StopWhileLoading() {
+    done_.signal();
+    thread_.join();
+  }
+
+ private:
+  EventFd done_;
+  std::thread thread_;
+};
 
 /// A server's runs, one after the other at the same place.
 class Runs {
@@ -55,10 +84,14 @@ class Runs {
                 [this](const SceneSource& source) { return prepare(source); }) {}
 
   int run_all() {
-    prepared_ = make(source_, first_);
+    {
+      const StopWhileLoading stopping(stop_);
+      prepared_ = make(source_, first_);
+    }
     prepared_->name = loader_.name_of(source_);
     int status = 0;
     for (; prepared_; prepared_ = std::move(next_)) status = std::max(status, run_one());
+    if (loader_.loading()) end_at_once(status);
     return status;
   }
 

@@ -78,6 +78,7 @@ void SceneLoader::run() {
 }
 
 void SceneLoader::handle(const Request& request) {
+  loading_.store(!request.name.empty());
   try {
     now_.notice = request.name.empty() ? save_now(request) : load_now(request.name);
   } catch (const std::bad_alloc&) {
@@ -85,6 +86,7 @@ void SceneLoader::handle(const Request& request) {
   } catch (const std::exception& error) {
     now_.notice = error.what();
   }
+  loading_.store(false);
   ++now_.done;
 }
 

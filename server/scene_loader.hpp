@@ -48,6 +48,9 @@ class SceneLoader {
   /// Waits for a scene that is being read.
   void finish();
 
+  /// Whether a scene or its models are being read, which cannot be interrupted. Any thread.
+  bool loading() const noexcept { return loading_.load(); }
+
   // Whoever asks; nothing waits.
   bool busy();
   const SceneLoaderStatus& status();
@@ -81,6 +84,7 @@ class SceneLoader {
   EventFd asked_;
   EventFd ready_;
   std::atomic<bool> stopping_{false};
+  std::atomic<bool> loading_{false};
   TripleBuffer<SceneLoaderStatus> status_;
   std::uint64_t asked_count_ = 0;     ///< of whoever asks
   std::size_t saves_ = 0;             ///< of whoever asks

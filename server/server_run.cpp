@@ -92,9 +92,9 @@ std::unique_ptr<Viewers> ServerRun::make_viewers() {
         {run_.simulation.dt(), viewer.stylus.coupling_stiffness, viewer.max_force});
   }
   if (!viewer.enabled) return nullptr;
-  return std::make_unique<Viewers>(
-      run_, deformation_threads(run_.scene.server), no_other_scene(),
-      Viewers::Parts{deformation_, force_, control_, network_, recordings_, loader_});
+  return std::make_unique<Viewers>(run_, deformation_threads(run_.scene.server), no_other_scene(),
+                                   Viewers::Parts{deformation_, force_, control_, network_,
+                                                  recordings_, loader_, recorder_.get()});
 }
 
 std::string ServerRun::no_other_scene() const {

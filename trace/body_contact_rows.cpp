@@ -61,17 +61,6 @@ void check_place(const BodyContactRecord& contact, const SimulationConfig& confi
               "use the scene and the model that it was recorded with");
 }
 
-// Of steps up to the last one.
-std::vector<std::uint64_t> read_steps(const EventReader& reader, std::uint64_t last_step,
-                                      const std::string& file) {
-  auto steps = reader.read<std::uint64_t>("/force_step");
-  if (!std::is_sorted(steps.begin(), steps.end())) {
-    throw Error(file, "/body_contact/force_step decreases", "record it again");
-  }
-  steps.erase(std::upper_bound(steps.begin(), steps.end(), last_step), steps.end());
-  return steps;
-}
-
 }  // namespace
 
 BodyContactRows read_body_contacts(const hdf5::File& file, const SimulationConfig& config,
@@ -81,8 +70,9 @@ BodyContactRows read_body_contacts(const hdf5::File& file, const SimulationConfi
   if (!file.exists(group + "/force_step")) return rows;
   const EventReader reader(file, group,
                            {"/force_step", "/object", "/other", "/sample", "/slipping", "/triangle",
-                            "/weights", "/force", "/position", "/normal", "/slip", "/area"});
-  rows.force_step = read_steps(reader, last_step, file.name());
+                            "/weights", "/force", "/position", "/normal", "/slip", "/area"},
+                           last_step);
+  rows.force_step = reader.force_step();
   const std::size_t count = rows.force_step.size();
   const auto object = reader.read<std::int32_t>("/object");
   const auto other = reader.read<std::int32_t>("/other");
@@ -96,14 +86,12 @@ BodyContactRows read_body_contacts(const hdf5::File& file, const SimulationConfi
   const auto slip = reader.read<double>("/slip", 3);
   const auto area = reader.read<double>("/area");
   const TraceCheck check(file.name(), rows.force_step);
-  const auto first = [&](const std::vector<double>& values, std::size_t width) {
-    return std::span(values).first(count * width);
-  };
-  check.numbers(group + "/force", first(force, 3), 3);
-  check.numbers(group + "/position", first(position, 3), 3);
-  check.directions(group + "/normal", first(normal, 3));
-  check.numbers(group + "/slip", first(slip, 3), 3);
-  check.numbers(group + "/area", first(area, 1), 1, kArea);
+  check.numbers(group + "/force", force, 3);
+  check.numbers(group + "/position", position, 3);
+  check.directions(group + "/normal", normal);
+  check.numbers(group + "/slip", slip, 3);
+  check.numbers(group + "/area", area, 1, kArea);
+  check.flags(group + "/slipping", slipping);
   SampleCounts samples(config);
   rows.contact.reserve(count);
   for (std::size_t e = 0; e < count; ++e) {

@@ -28,7 +28,7 @@ void TraceCheck::refuse(const std::string& set, std::size_t row, const std::stri
 void TraceCheck::number(const std::string& set, std::size_t row, double value,
                         const Range& range) const {
   if (range.contains(value)) return;
-  refuse(set, row, "is " + number_text(value) + ", not " + describe(range));
+  refuse(set, row, outside_text(range, value));
 }
 
 void TraceCheck::numbers(const std::string& set, std::span<const double> values, std::size_t width,
@@ -50,6 +50,15 @@ void TraceCheck::directions(const std::string& set, std::span<const double> valu
     double square = 0.0;
     for (const double part : values.subspan(3 * row, 3)) square += part * part;
     if (!(std::abs(square - 1.0) <= kRounding)) refuse(set, row, "is no direction of length 1");
+  }
+}
+
+void TraceCheck::flags(const std::string& set, std::span<const std::uint8_t> values,
+                       std::size_t width, std::uint8_t highest) const {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (values[i] <= highest) continue;
+    refuse(set, i / width,
+           "is " + std::to_string(values[i]) + ", not from 0 to " + std::to_string(highest));
   }
 }
 
@@ -88,7 +97,7 @@ struct Recording::Data {
   std::vector<trace::StylusRows> styluses;
   std::vector<trace::ObjectRows> objects;
 
-  void read(const hdf5::File& file, const std::vector<std::string>& names);
+  void read(const hdf5::File& file, const std::vector<std::string>& names, std::size_t most);
   void read_objects(const hdf5::File& file, const trace::RowReader& reader,
                     const trace::TraceCheck& check, const std::vector<std::string>& names);
   void read_styluses(const hdf5::File& file, const trace::RowReader& reader,
@@ -105,8 +114,9 @@ struct Recording::Data {
                         const Quaternion& halfway) const;
 };
 
-void Recording::Data::read(const hdf5::File& file, const std::vector<std::string>& names) {
-  const trace::RowReader reader(file);
+void Recording::Data::read(const hdf5::File& file, const std::vector<std::string>& names,
+                           std::size_t most) {
+  const trace::RowReader reader(file, most);
   dt = trace::read_dt(file);
   force_step = reader.read<std::uint64_t>("/step/force_step");
   reset = reader.read<std::uint8_t>("/step/reset");
@@ -119,9 +129,12 @@ void Recording::Data::read(const hdf5::File& file, const std::vector<std::string
     throw Error(file.name(), "/step/force_step does not increase", "record it again");
   }
   const trace::TraceCheck check(file.name(), force_step);
-  settings = trace::read_settings(file, config);
-  late = trace::read_late(file, config);
-  bridged = trace::read_bridged(file, config);
+  check.numbers("/step/time", reader.read<double>("/step/time"), 1);
+  check.flags("/step/reset", reset);
+  check.flags(trace::kAsleep, asleep, config.objects.size());
+  settings = trace::read_settings(file, config, force_step.back());
+  late = trace::read_late(file, config, force_step.back());
+  bridged = trace::read_bridged(file, config, force_step.back());
   touching = trace::read_body_contacts(file, config, force_step.back());
   read_styluses(file, reader, check);
   read_objects(file, reader, check, names);
@@ -139,6 +152,7 @@ void Recording::Data::read_styluses(const hdf5::File& file, const trace::RowRead
         reader.read<double>(path + "/tip", 3),        reader.read<double>(path + "/proxy", 3),
         reader.read<double>(path + "/force", 3),      reader.read<std::uint8_t>(path + "/present"),
         reader.read<std::int32_t>(path + "/buttons"), {}};
+    check.flags(path + "/present", rows.present);
     check.numbers(path + "/tip", rows.tip, 3);
     check.numbers(path + "/proxy", rows.proxy, 3);
     check.numbers(path + "/force", rows.force, 3);
@@ -329,12 +343,12 @@ void Recording::Data::tool(std::size_t s, std::size_t k, StylusRecord& stylus) c
 }
 
 Recording::Recording(const std::filesystem::path& path, const SimulationConfig& config,
-                     const std::vector<std::string>& names)
+                     const std::vector<std::string>& names, std::size_t most)
     : data_(std::make_unique<Data>()) {
   const std::lock_guard lock(hdf5::library_mutex());
   const hdf5::File file = hdf5::File::open(path);
   data_->config = config;
-  data_->read(file, names);
+  data_->read(file, names, most);
 }
 
 Recording::Recording(Recording&&) noexcept = default;

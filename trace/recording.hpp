@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -32,6 +33,9 @@ class TraceCheck {
   void orientations(const std::string& set, std::span<const double> values) const;
   /// Vectors of length 1.
   void directions(const std::string& set, std::span<const double> values) const;
+  /// Numbers that are 0 or 1, `width` of them a row; or up to `highest`.
+  void flags(const std::string& set, std::span<const std::uint8_t> values, std::size_t width = 1,
+             std::uint8_t highest = 1) const;
   /// Three barycentric weights.
   void weights(const std::string& set, std::span<const double> values, std::size_t row) const;
 
@@ -52,8 +56,10 @@ class Recording {
  public:
   /// Reads a trace of these objects and styluses. Throws Error. Holds hdf5::library_mutex().
   /// @param names of the objects
+  /// @param most steps that are read: what is wrong with later ones does not matter then
   Recording(const std::filesystem::path& path, const SimulationConfig& config,
-            const std::vector<std::string>& names);
+            const std::vector<std::string>& names,
+            std::size_t most = std::numeric_limits<std::size_t>::max());
   Recording(Recording&&) noexcept;
   Recording& operator=(Recording&&) noexcept;
   ~Recording();

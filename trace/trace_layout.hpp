@@ -77,6 +77,8 @@ template <typename T>
 std::vector<T> read_rows(const hdf5::File& file, const std::string& set, hsize_t rows,
                          hsize_t width, const char* wrong) {
   const hdf5::Shape shape = file.stored_shape(set);
+  const std::string unit = unit_of(set);
+  if (!unit.empty()) file.require_text(set, "unit", unit);
   const hdf5::Shape wanted = width == 1 ? hdf5::Shape{rows} : hdf5::Shape{rows, width};
   if (shape.size() != wanted.size() || shape[0] < rows || (width > 1 && shape[1] != width)) {
     throw Error(file.name(), set + wrong, "record it again");
@@ -106,12 +108,23 @@ inline Vector3 vector_of(const std::vector<double>& values, std::size_t row) {
 class RowReader {
  public:
   /// Throws Error when the file has no steps to count.
-  explicit RowReader(const hdf5::File& file) : file_(file) {
+  /// @param most rows that are read
+  explicit RowReader(const hdf5::File& file, hsize_t most = std::numeric_limits<hsize_t>::max())
+      : file_(file) {
     const hdf5::Shape steps = file.stored_shape("/step/time");
     if (steps.size() != 1) throw Error(file.name(), "/step/time is no list", "record it again");
     rows_ = steps[0];
-    if (!file.exists(kCommitted)) return;  // an older trace
-    rows_ = std::min<hsize_t>(rows_, file.read<std::uint64_t>(kCommitted, {1})[0]);
+    if (file.exists(kCommitted)) {  // not in an older trace
+      const std::uint64_t committed = file.read<std::uint64_t>(kCommitted, {1})[0];
+      if (committed > rows_) {
+        throw Error(file.name(),
+                    "says that it has " + std::to_string(committed) + " steps and has " +
+                        std::to_string(rows_) + " rows",
+                    "record it again");
+      }
+      rows_ = committed;
+    }
+    rows_ = std::min(rows_, most);
   }
 
   hsize_t rows() const { return rows_; }
@@ -126,22 +139,32 @@ class RowReader {
   hsize_t rows_ = 0;
 };
 
-/// Reads sets with a row for each event: as many rows as all of them have. A server that was
-/// killed may leave some that are longer.
+/// Reads sets with a row for each event: as many rows as all of them have, of steps up to the last
+/// one that counts. A server that was killed may leave some that are longer.
 class EventReader {
  public:
-  EventReader(const hdf5::File& file, std::string group, const std::vector<const char*>& sets)
+  /// @param sets with `/force_step`, whose numbers must not decrease
+  EventReader(const hdf5::File& file, std::string group, const std::vector<const char*>& sets,
+              std::uint64_t last_step)
       : file_(file), group_(std::move(group)), rows_(std::numeric_limits<hsize_t>::max()) {
     for (const char* set : sets) {
       const hdf5::Shape shape = file_.stored_shape(group_ + set);
       rows_ = std::min<hsize_t>(rows_, shape.empty() ? 0 : shape[0]);
     }
+    force_step_ = read<std::uint64_t>("/force_step");
+    if (!std::is_sorted(force_step_.begin(), force_step_.end())) {
+      throw Error(file_.name(), group_ + "/force_step decreases", "record it again");
+    }
+    force_step_.erase(std::upper_bound(force_step_.begin(), force_step_.end(), last_step),
+                      force_step_.end());
+    rows_ = force_step_.size();
   }
 
   hsize_t rows() const { return rows_; }
+  const std::vector<std::uint64_t>& force_step() const { return force_step_; }
   /// Throws Error.
   template <typename T>
-  std::vector<T> read(const char* set, hsize_t width = 1) const {
+  std::vector<T> read(const std::string& set, hsize_t width = 1) const {
     return read_rows<T>(file_, group_ + set, rows_, width, " has not the right shape");
   }
 
@@ -149,6 +172,7 @@ class EventReader {
   const hdf5::File& file_;
   std::string group_;
   hsize_t rows_;
+  std::vector<std::uint64_t> force_step_;
 };
 
 }  // namespace irdm::trace

@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <limits>
+#include <string_view>
 
 #include "common/error.hpp"
 #include "simulation/step/settings.hpp"
 
 namespace irdm::trace {
 namespace {
+
+constexpr std::string_view kSettings = "/settings";
+constexpr std::uint8_t kLastContactState = 2;
 
 void check_late(const LateForce& late, const SimulationConfig& config, const std::string& file) {
   const auto within = [](int value, std::size_t count) {
@@ -64,6 +68,8 @@ ContactRows::ContactRows(const hdf5::File& file, const RowReader& reader, const 
       proxy(reader.read<double>(path + "/proxy", 3)),
       offset(reader.read<double>(path + "/offset", 3)),
       arm_shift(reader.read<double>(path + "/arm_shift", 3)) {
+  check.flags(path + "/contact", state, 1, kLastContactState);
+  check.flags(path + "/slipping", slipping);
   check.numbers(path + "/force", force, 3);
   check.numbers(path + "/proxy", proxy, 3);
   check.numbers(path + "/offset", offset, 3, lab::kPlace);
@@ -71,7 +77,7 @@ ContactRows::ContactRows(const hdf5::File& file, const RowReader& reader, const 
   for (std::size_t k = 0; k < state.size(); ++k) {
     if (state[k] == 0) continue;
     for (std::size_t i = 0; i < 3; ++i) {
-      if (state[k] <= 2 && nodes[3 * k + i] >= 0 && nodes[3 * k + i] < node_count) continue;
+      if (nodes[3 * k + i] >= 0 && nodes[3 * k + i] < node_count) continue;
       throw Error(file.name(), path + " touches a node that the model does not have",
                   "use the model that it was recorded with");
     }
@@ -102,40 +108,39 @@ FloorRows read_floor(const hdf5::File& file, const RowReader& reader, const Trac
     }
     rows.first.push_back(next);
   }
-  for (const std::int32_t node : rows.node) {
-    if (node >= 0 && node < node_count) continue;
+  for (std::size_t r = 0; r < rows.first.back(); ++r) {
+    if (rows.node[r] >= 0 && rows.node[r] < node_count) continue;
     throw Error(file.name(), path + " touches a node that the model does not have",
                 "use the model that it was recorded with");
   }
   return rows;
 }
 
-SettingsRows read_settings(const hdf5::File& file, const SimulationConfig& config) {
+SettingsRows read_settings(const hdf5::File& file, const SimulationConfig& config,
+                           std::uint64_t last_step) {
   SettingsRows rows;
-  if (!file.exists("/settings/force_step")) {  // an older trace
-    rows.force_step = {0};
-    rows.settings = {initial_settings(config)};
-    return rows;
-  }
-  rows.force_step = file.read<std::uint64_t>("/settings/force_step", {0});
-  const hsize_t count = rows.force_step.size();
+  const EventReader reader(file, std::string(kSettings), {"/force_step", "/gravity"}, last_step);
+  rows.force_step = reader.force_step();
+  const hsize_t count = reader.rows();
   if (count == 0) throw Error(file.name(), "/settings has no row", "record it again");
   rows.settings.resize(count);
   const TraceCheck check(file.name(), rows.force_step);
-  const auto gravity = file.read<double>("/settings/gravity", {count, 3});
+  const auto gravity = reader.read<double>("/gravity", 3);
   check.numbers("/settings/gravity", gravity, 3, lab::kGravity);
   for (std::size_t e = 0; e < count; ++e) rows.settings[e].gravity = vector_of(gravity, e);
   for (std::size_t i = 0; i < config.objects.size(); ++i) {
     const std::string group = settings_path(i);
-    const auto friction = file.read<double>(group + "/friction", {count, 2});
-    const auto damping = file.read<double>(group + "/damping", {count, 2});
-    const auto tether = file.read<double>(group + "/tether", {count, 2});
-    const auto material = file.read<double>(group + "/material_damping", {count});
-    const auto loading = file.read<std::uint8_t>(group + "/inertial_loading", {count});
+    const std::string object = group.substr(kSettings.size());
+    const auto friction = reader.read<double>(object + "/friction", 2);
+    const auto damping = reader.read<double>(object + "/damping", 2);
+    const auto tether = reader.read<double>(object + "/tether", 2);
+    const auto material = reader.read<double>(object + "/material_damping");
+    const auto loading = reader.read<std::uint8_t>(object + "/inertial_loading");
     check_friction(group + "/friction", friction, check);
     check.numbers(group + "/damping", damping, 2, lab::kStiffness);  // restraints say more
     check.numbers(group + "/tether", tether, 2, lab::kStiffness);
     check.numbers(group + "/material_damping", material, 1, lab::kMaterialDamping);
+    check.flags(group + "/inertial_loading", loading);
     for (std::size_t e = 0; e < count; ++e) {
       rows.settings[e].object[i] = {{friction[2 * e], friction[2 * e + 1]},
                                     {damping[2 * e], damping[2 * e + 1]},
@@ -148,14 +153,15 @@ SettingsRows read_settings(const hdf5::File& file, const SimulationConfig& confi
   return rows;
 }
 
-LateRows read_late(const hdf5::File& file, const SimulationConfig& config) {
+LateRows read_late(const hdf5::File& file, const SimulationConfig& config,
+                   std::uint64_t last_step) {
   LateRows rows;
-  if (!file.exists("/late/force_step")) return rows;  // an older trace
   const EventReader reader(
       file, "/late",
       {"/force_step", "/age", "/object", "/stylus", "/contact_nodes", "/contact_weights", "/force",
-       "/arm", "/body_position", "/body_orientation", "/body_velocity", "/body_angular_momentum"});
-  rows.force_step = reader.read<std::uint64_t>("/force_step");
+       "/arm", "/body_position", "/body_orientation", "/body_velocity", "/body_angular_momentum"},
+      last_step);
+  rows.force_step = reader.force_step();
   const hsize_t count = reader.rows();
   const auto age = reader.read<std::int32_t>("/age");
   const auto object = reader.read<std::int32_t>("/object");
@@ -188,12 +194,12 @@ LateRows read_late(const hdf5::File& file, const SimulationConfig& config) {
   return rows;
 }
 
-BridgedRows read_bridged(const hdf5::File& file, const SimulationConfig& config) {
+BridgedRows read_bridged(const hdf5::File& file, const SimulationConfig& config,
+                         std::uint64_t last_step) {
   BridgedRows rows;
-  if (!file.exists("/bridged/force_step")) return rows;  // an older trace
   const EventReader reader(file, "/bridged",
-                           {"/force_step", "/stylus", "/object", "/force", "/arm"});
-  rows.force_step = reader.read<std::uint64_t>("/force_step");
+                           {"/force_step", "/stylus", "/object", "/force", "/arm"}, last_step);
+  rows.force_step = reader.force_step();
   const hsize_t count = reader.rows();
   rows.stylus = reader.read<std::int32_t>("/stylus");
   const auto object = reader.read<std::int32_t>("/object");

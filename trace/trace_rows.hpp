@@ -72,11 +72,14 @@ struct BridgedRows {
   std::vector<BridgedForce> bridged;
 };
 
-/// None of them in an older trace: that is no error.
+/// Throw Error; a trace of a scene without a floor has no rows of it.
+/// @param last_step that counts
 FloorRows read_floor(const hdf5::File& file, const RowReader& reader, const TraceCheck& check,
                      const std::string& path, int node_count);
-SettingsRows read_settings(const hdf5::File& file, const SimulationConfig& config);
-LateRows read_late(const hdf5::File& file, const SimulationConfig& config);
-BridgedRows read_bridged(const hdf5::File& file, const SimulationConfig& config);
+SettingsRows read_settings(const hdf5::File& file, const SimulationConfig& config,
+                           std::uint64_t last_step);
+LateRows read_late(const hdf5::File& file, const SimulationConfig& config, std::uint64_t last_step);
+BridgedRows read_bridged(const hdf5::File& file, const SimulationConfig& config,
+                         std::uint64_t last_step);
 
 }  // namespace irdm::trace

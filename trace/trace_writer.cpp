@@ -326,6 +326,7 @@ void TraceWriter::append_rows(const std::string& dataset, std::size_t width,
 
 // The count goes to the disk after what it counts.
 void TraceWriter::flush() {
+  file_.require_in_place();
   file_.flush();
   file_.write_slab<std::uint64_t>(trace::kCommitted, {0}, {1}, &rows_);
   file_.flush();
@@ -338,6 +339,7 @@ void TraceWriter::close() {
 
 void TraceWriter::append(std::span<const StepRecord> records) {
   if (records.empty()) return;
+  file_.require_in_place();
   append_rows<std::uint64_t>("/step/force_step", 1, records,
                              [](const StepRecord& r, std::uint64_t* row) { *row = r.force_step; });
   append_rows<std::uint8_t>("/step/reset", 1, records,

@@ -40,11 +40,12 @@ class TraceWriter {
   /// Makes the file; one that exists is not overwritten. Throws Error, and leaves no file then.
   TraceWriter(const std::filesystem::path& path, const TraceHeader& header);
 
-  /// Appends steps in their order. Throws Error when they cannot be written; then none of them
-  /// counts, and there is nothing more to append. close() keeps those before.
+  /// Appends steps in their order. Throws Error when they cannot be written, or when the file is no
+  /// longer the one that its path names (hdf5::File::require_in_place()); then none of them counts,
+  /// and there is nothing more to append. close() keeps those before.
   void append(std::span<const StepRecord> records);
   /// Makes what was appended safe against a kill of this process, and says in the file how many
-  /// steps are.
+  /// steps are. Throws Error as append() does.
   void flush();
   /// Completes the file. Throws Error when it cannot be written.
   void close();

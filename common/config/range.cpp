@@ -1,6 +1,7 @@
 #include "common/config/range.hpp"
 
 #include <cmath>
+#include <cstdio>
 
 namespace irdm {
 
@@ -21,6 +22,19 @@ std::string describe(const Range& range) {
     text += (range.highest_included ? " <= " : " < ") + number_text(range.highest);
   }
   return text;
+}
+
+std::string exact_text(const Range& range, double value) {
+  const std::string text = number_text(value);
+  if (text != number_text(range.lowest) && text != number_text(range.highest)) return text;
+  if (value == range.lowest || value == range.highest) return text;
+  char digits[32];
+  std::snprintf(digits, sizeof digits, "%.17g", value);
+  return digits;
+}
+
+std::string outside_text(const Range& range, double value) {
+  return "is " + exact_text(range, value) + ", not " + describe(range);
 }
 
 }  // namespace irdm

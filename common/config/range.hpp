@@ -32,6 +32,10 @@ constexpr Range within(double largest) {
 
 /// For messages: "a finite number >= 0 and <= 10".
 std::string describe(const Range& range);
+/// The value as text, with all digits where fewer would show a bound that it is not.
+std::string exact_text(const Range& range, double value);
+/// "is 2, not a finite number <= 1", of a value outside (exact_text()).
+std::string outside_text(const Range& range, double value);
 
 }  // namespace irdm
 

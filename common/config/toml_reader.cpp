@@ -55,6 +55,14 @@ struct TomlTable::Table {
     return *node;
   }
 
+  static int whole(const TomlTable& table, const std::string& key, const toml::node& node,
+                   int lowest, int highest, const std::string& wanted) {
+    if (!node.is_integer()) table.fail(key, "is not a whole number", wanted);
+    const std::int64_t value = node.value<std::int64_t>().value_or(0);
+    if (value < lowest || value > highest) table.fail(key, "is " + std::to_string(value), wanted);
+    return static_cast<int>(value);
+  }
+
   static double checked(const TomlTable& table, const std::string& key, const toml::node& node,
                         const Range& range) {
     const std::optional<double> value = node.value<double>();
@@ -62,14 +70,14 @@ struct TomlTable::Table {
       table.fail(key, "is not a number", "give " + describe(range));
     }
     if (!range.contains(*value)) {
-      table.fail(key, "is " + number_text(*value), "give " + describe(range));
+      table.fail(key, "is " + exact_text(range, *value), "give " + describe(range));
     }
     return *value;
   }
 };
 
 TomlTable TomlTable::parse_file(const std::filesystem::path& path) {
-  require_file(path);
+  require_file(path, kMostConfigBytes);
   try {
     return {Table::root(toml::parse_file(path.string()), path.string(),
                         std::filesystem::absolute(path).parent_path()),
@@ -125,10 +133,23 @@ int TomlTable::integer(const std::string& key, int lowest, int highest) {
   const toml::node& node = Table::need(*this, key);
   const std::string wanted =
       "give a whole number from " + std::to_string(lowest) + " to " + std::to_string(highest);
-  if (!node.is_integer()) fail(key, "is not a whole number", wanted);
-  const std::int64_t value = node.value<std::int64_t>().value_or(0);
-  if (value < lowest || value > highest) fail(key, "is " + std::to_string(value), wanted);
-  return static_cast<int>(value);
+  return Table::whole(*this, key, node, lowest, highest, wanted);
+}
+
+std::vector<int> TomlTable::integers(const std::string& key, std::size_t count, int lowest,
+                                     int highest) {
+  const toml::array* array = Table::need(*this, key).as_array();
+  const std::string wanted = "give a list of " + std::to_string(count) + " whole numbers from " +
+                             std::to_string(lowest) + " to " + std::to_string(highest);
+  if (array == nullptr) fail(key, "is not a list", wanted);
+  if (array->size() != count) {
+    fail(key, "has " + std::to_string(array->size()) + " entries", wanted);
+  }
+  std::vector<int> values;
+  for (const toml::node& node : *array) {
+    values.push_back(Table::whole(*this, key, node, lowest, highest, wanted));
+  }
+  return values;
 }
 
 int TomlTable::integer(const std::string& key, int lowest, int highest, int fallback) {

@@ -30,6 +30,7 @@ class TomlTable {
   double number(const std::string& key, const Range& range, double fallback);
   int integer(const std::string& key, int lowest, int highest);  ///< required
   int integer(const std::string& key, int lowest, int highest, int fallback);
+  std::vector<int> integers(const std::string& key, std::size_t count, int lowest, int highest);
   bool boolean(const std::string& key, bool fallback);
   std::string text(const std::string& key);  ///< required; at most lab::kLongestText bytes
   std::string text(const std::string& key, const std::string& fallback);

@@ -1,7 +1,11 @@
 #include "common/hdf5/file.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <fstream>
 #include <limits>
 #include <system_error>
@@ -95,22 +99,64 @@ hsize_t product(const Shape& shape) {
   return numbers;
 }
 
-std::string to_text(const Shape& shape) {
+std::string to_text(const Shape& shape, const char* zero = "0") {
   std::string text = "(";
   for (std::size_t i = 0; i < shape.size(); ++i) {
-    text += (i > 0 ? ", " : "") + (shape[i] == 0 ? std::string("any") : std::to_string(shape[i]));
+    text += (i > 0 ? ", " : "") + (shape[i] == 0 ? std::string(zero) : std::to_string(shape[i]));
   }
   return text + ")";
 }
 
+/// ": No space left on device", say, where the operating system refused something that a call of
+/// HDF5 needed.
+std::string cause_of(int error) {
+  constexpr std::array kCauses = {ENOSPC, EDQUOT, EFBIG,  EIO,    EROFS,
+                                  EMFILE, ENFILE, ENOMEM, EACCES, ESTALE};
+  if (std::ranges::find(kCauses, error) == kCauses.end()) return "";
+  return ": " + std::generic_category().message(error);
+}
+
+/// Whether this program has the file open, by whatever handle of HDF5.
+bool is_open_here(const std::filesystem::path& path) {
+  const ssize_t count = H5Fget_obj_count(H5F_OBJ_ALL, H5F_OBJ_FILE);
+  std::vector<hid_t> files(static_cast<std::size_t>(std::max<ssize_t>(0, count)));
+  if (files.empty()) return false;
+  H5Fget_obj_ids(H5F_OBJ_ALL, H5F_OBJ_FILE, files.size(), files.data());
+  return std::ranges::any_of(files, [&](hid_t file) {
+    std::string name(4096, '\0');
+    const ssize_t length = H5Fget_name(file, name.data(), name.size());
+    name.resize(static_cast<std::size_t>(std::clamp<ssize_t>(length, 0, 4095)));
+    std::error_code ignored;
+    return std::filesystem::equivalent(name, path, ignored);
+  });
+}
+
+[[noreturn]] void fail_open(const std::filesystem::path& path, int cause) {
+  const std::string name = path.string();
+  const int descriptor = ::open(name.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (descriptor < 0) cause = errno;
+  if (descriptor >= 0) ::close(descriptor);
+  const std::string because = cause_of(cause);
+  if (!because.empty()) {
+    throw Error(name, "cannot be opened" + because,
+                "check its permissions and the limits of this process (ulimit -a)");
+  }
+  if (is_open_here(path)) {
+    throw Error(name, "is open elsewhere in this program", "close it there");
+  }
+  throw Error(name, "is not a complete HDF5 file",
+              "it is truncated, of another kind or not readable; make it again");
+}
+
 }  // namespace
 
-// Files are closed by their owners; the library's own closing at exit would crash on a file whose
-// closing failed because the disk is full. It has to be told before anything else. And it prints
-// its own error stack to stderr by default; our errors are one line.
+// The library prints its own error stack to stderr by default; our errors are one line.
 void prepare_library() {
-  [[maybe_unused]] static const herr_t once = H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+
+void leave_files_at_exit() {
+  H5dont_atexit();
 }
 
 void File::fail_read(const std::string& what) const {
@@ -118,19 +164,30 @@ void File::fail_read(const std::string& what) const {
 }
 
 void File::fail_write(const std::string& what) const {
-  throw Error(name_, what, "check free space and permissions of the folder");
+  throw Error(name_, what + cause_of(errno), "check free space and permissions of the folder");
 }
 
 File File::create(const std::filesystem::path& path, const Handle& access) {
-  if (std::filesystem::exists(path)) {
+  constexpr const char* kRemedy = "check that the folder exists, is writable and has free space";
+  const int descriptor = ::open(path.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
+  if (descriptor < 0 && errno == EEXIST) {
     throw Error(path.string(), "exists already", "choose another name or remove it");
   }
-  Handle file(H5Fcreate(path.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, access.get()), H5Fclose);
+  if (descriptor < 0) {
+    throw Error(path.string(), "cannot be created: " + std::generic_category().message(errno),
+                kRemedy);
+  }
+  ::close(descriptor);
+  errno = 0;
+  Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), H5Fclose);
   if (file.get() < 0) {
-    throw Error(path.string(), "cannot be created", "check that the folder exists and is writable");
+    const std::string because = cause_of(errno);
+    ::unlink(path.c_str());
+    throw Error(path.string(), "cannot be created" + because, kRemedy);
   }
   File made(std::move(file), path.string());
   made.reserved_.emplace();
+  made.place_.emplace();
   return made;
 }
 
@@ -153,11 +210,15 @@ File File::open(const std::filesystem::path& path) {
   require_file(path);
   const Handle properties = make_access_properties();
   const unsigned access = H5F_ACC_RDONLY | (has_swmr_writer(path) ? H5F_ACC_SWMR_READ : 0u);
+  errno = 0;
   Handle file(H5Fopen(path.c_str(), access, properties.get()), H5Fclose);
+  const int cause = errno;
   if (file.get() < 0) {
-    throw Error(path.string(), "is not a complete HDF5 file",
-                "it is truncated, of another kind or not readable; make it again");
+    // A file that h5py has open in this program is opened with the same close degree only.
+    H5Pset_fclose_degree(properties.get(), H5F_CLOSE_STRONG);
+    file = Handle(H5Fopen(path.c_str(), access, properties.get()), H5Fclose);
   }
+  if (file.get() < 0) fail_open(path, cause);
   return {std::move(file), path.string()};
 }
 
@@ -205,7 +266,15 @@ void File::create_group(const std::string& path) {
 }
 
 void File::flush() {
+  errno = 0;
   if (H5Fflush(file_.get(), H5F_SCOPE_GLOBAL) < 0) fail_write("cannot be written");
+  if (place_) place_->keep_length(file_.get());
+}
+
+void File::require_in_place() const {
+  if (!place_) return;
+  const std::string fault = place_->fault(file_.get(), name_);
+  if (!fault.empty()) throw Error(name_, fault, "leave it alone until it is complete");
 }
 
 void File::close() {
@@ -312,6 +381,7 @@ void File::create_dataset(const std::string& dataset, const Shape& shape, const 
 
 template <typename T>
 void File::write(const std::string& dataset, const Shape& shape, const T* values) {
+  errno = 0;
   const Handle set =
       make_dataset(dataset, native_type<T>(), make_space(shape).get(), dataset_properties({}));
   if (H5Dwrite(set.get(), native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0) {
@@ -334,6 +404,15 @@ bool File::stores_integers(const std::string& dataset) const {
   return H5Tget_class(type.get()) == H5T_INTEGER;
 }
 
+void File::check_kind(const std::string& dataset, hid_t wanted) const {
+  const Handle set = open_dataset(dataset);
+  const Handle type(H5Dget_type(set.get()), H5Tclose);
+  const H5T_class_t kind = H5Tget_class(wanted);
+  if (H5Tget_class(type.get()) == kind) return;
+  fail_read("dataset " + dataset + " does not hold " +
+            (kind == H5T_INTEGER ? "integers" : "floating-point numbers"));
+}
+
 template <typename T>
 std::vector<T> File::read(const std::string& dataset, const Shape& expected) const {
   const Shape found = stored_shape(dataset);
@@ -343,8 +422,9 @@ std::vector<T> File::read(const std::string& dataset, const Shape& expected) con
                  [](hsize_t have, hsize_t want) { return want == 0 || have == want; });
   if (!fits) {
     fail_read("dataset " + dataset + " has shape " + to_text(found) + ", expected " +
-              to_text(expected));
+              to_text(expected, "any"));
   }
+  check_kind(dataset, native_type<T>());
   std::vector<T> values(product(found));
   const Handle set = open_dataset(dataset);
   if (H5Dread(set.get(), native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) {
@@ -365,6 +445,7 @@ void File::transfer_slab(const std::string& dataset, const Shape& start, const S
     fail_read("dataset " + dataset + " has not " + std::to_string(start.size()) + " axes");
   }
   if (source != nullptr) {
+    errno = 0;
     if (H5Dwrite(set.get(), type, memory.get(), space.get(), H5P_DEFAULT, source) < 0) {
       fail_write("cannot write into " + dataset);
     }
@@ -382,6 +463,7 @@ void File::write_slab(const std::string& dataset, const Shape& start, const Shap
 template <typename T>
 void File::read_slab(const std::string& dataset, const Shape& start, const Shape& count,
                      T* values) const {
+  check_kind(dataset, native_type<T>());
   transfer_slab(dataset, start, count, native_type<T>(), nullptr, values);
 }
 
@@ -406,7 +488,8 @@ void File::reserve_for(const Handle& dataset, hsize_t rows, hsize_t more) {
   const hsize_t bytes = growth(dataset, rows, more);
   if (bytes == 0) return;
   const int error = reserved_->reserve(file_.get(), bytes);
-  if (error != 0) fail_write("cannot grow: " + std::generic_category().message(error));
+  errno = error;
+  if (error != 0) fail_write("cannot grow");
 }
 
 template <typename T>

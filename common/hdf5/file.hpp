@@ -39,14 +39,14 @@ hid_t native_type();
 /// write.
 class File {
  public:
-  /// Creates a file that must not exist yet. Throws Error.
+  /// Creates a file that must not exist yet. Throws Error, and leaves no file then.
   static File create(const std::filesystem::path& path);
   /// The same for a file that can be read while it is written, and after its writer was killed at
   /// any moment (HDF5's "single writer, multiple readers", of its format 1.10): once there are all
   /// datasets and attributes, and begin_swmr() was called.
   static File create_for_swmr(const std::filesystem::path& path);
   /// Opens a file for reading, also one whose writer is at work or was killed after begin_swmr().
-  /// Throws Error when it is missing, unreadable or not HDF5.
+  /// Throws Error when it is missing, no regular file, unreadable or not HDF5, and names the cause.
   static File open(const std::filesystem::path& path);
   /// A new file in memory, which image() turns into bytes; `name` is for messages.
   static File in_memory(const std::string& name);
@@ -64,6 +64,9 @@ class File {
   /// that, so that the file on the disk is whole at any moment.
   void begin_swmr();
   void flush();
+  /// Throws Error where a new file is no longer the one that its path names: it was removed,
+  /// replaced or cut off since the last flush().
+  void require_in_place() const;
   /// The bytes of the file as it would be on the disk.
   std::string image();
   /// Closes the file now and throws Error if what was buffered cannot be written.
@@ -77,7 +80,11 @@ class File {
                        const double* values);
 
   std::string read_string_attribute(const std::string& object, const std::string& name) const;
+  /// Throws Error where an attribute that exists is not this text.
+  void require_text(const std::string& object, const std::string& name,
+                    const std::string& expected) const;
   double read_double_attribute(const std::string& object, const std::string& name) const;
+  /// Throws Error, too, where the file has a number that is no integer.
   std::int64_t read_integer_attribute(const std::string& object, const std::string& name) const;
   /// Reads `count` doubles, whatever the attribute's shape.
   std::vector<double> read_doubles_attribute(const std::string& object, const std::string& name,
@@ -97,14 +104,16 @@ class File {
 
   template <typename T>
   void write(const std::string& dataset, const Shape& shape, const T* values);
-  /// Reads a whole dataset and checks its shape; 0 in `expected` stands for any extent.
+  /// Reads a whole dataset. Throws Error where its shape is not the expected one (0 stands for any
+  /// extent), or where it holds integers and T is none, or the other way round.
   template <typename T>
   std::vector<T> read(const std::string& dataset, const Shape& expected) const;
 
   /// Makes a dataset of fixed shape without data, to be filled by write_slab.
   template <typename T>
   void create_dataset(const std::string& dataset, const Shape& shape, const Layout& layout = {});
-  /// Writes or reads the box [start, start + count) of a dataset.
+  /// Writes or reads the box [start, start + count) of a dataset. Reading checks the kind of its
+  /// numbers as read() does.
   template <typename T>
   void write_slab(const std::string& dataset, const Shape& start, const Shape& count,
                   const T* values);
@@ -134,6 +143,7 @@ class File {
   void check_links(const std::string& path) const;
   Handle open_object(const std::string& path) const;
   Handle open_dataset(const std::string& path) const;
+  void check_kind(const std::string& dataset, hid_t wanted) const;
   Handle make_dataset(const std::string& path, hid_t type, hid_t space, const Handle& creation);
   void read_numbers(const std::string& object, const std::string& name, hid_t type,
                     std::size_t count, void* values) const;
@@ -145,6 +155,7 @@ class File {
   Handle file_;
   std::string name_;
   std::optional<ReservedSpace> reserved_ = {};  ///< of a new file on the disk
+  std::optional<WatchedPlace> place_ = {};      ///< of the same
 };
 
 }  // namespace irdm::hdf5

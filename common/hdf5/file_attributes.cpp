@@ -1,6 +1,7 @@
 // Attributes of a file's groups and datasets.
 #include <algorithm>
 
+#include "common/error.hpp"
 #include "common/hdf5/file.hpp"
 
 namespace irdm::hdf5 {
@@ -75,6 +76,15 @@ std::string File::read_string_attribute(const std::string& object, const std::st
   return value;
 }
 
+void File::require_text(const std::string& object, const std::string& name,
+                        const std::string& expected) const {
+  if (!has_attribute(object, name)) return;
+  const std::string found = read_string_attribute(object, name);
+  if (found == expected) return;
+  fail_read("attribute " + name + " of " + object + " is " + in_quotes(found) + ", not " +
+            in_quotes(expected));
+}
+
 void File::read_numbers(const std::string& object, const std::string& name, hid_t type,
                         std::size_t count, void* values) const {
   const Handle owner = open_object(object);
@@ -83,6 +93,9 @@ void File::read_numbers(const std::string& object, const std::string& name, hid_
   const Handle stored(H5Aget_type(attribute.get()), H5Tclose);
   const H5T_class_t kind = H5Tget_class(stored.get());
   const Handle space(H5Aget_space(attribute.get()), H5Sclose);
+  if (kind == H5T_FLOAT && H5Tget_class(type) == H5T_INTEGER) {
+    fail_read("attribute " + name + " at " + object + " is not an integer");
+  }
   if ((kind != H5T_FLOAT && kind != H5T_INTEGER) ||
       H5Sget_simple_extent_npoints(space.get()) != static_cast<hssize_t>(count)) {
     fail_read("attribute " + name + " at " + object + " is not " + std::to_string(count) +

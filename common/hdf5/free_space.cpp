@@ -74,4 +74,28 @@ void ReservedSpace::release(hid_t file) noexcept {
   [[maybe_unused]] const int ignored = ::ftruncate(disk, static_cast<off_t>(end));
 }
 
+std::string WatchedPlace::fault(hid_t file, const std::filesystem::path& path) const {
+  const int disk = descriptor(file);
+  struct stat opened {};
+  struct stat named {};
+  if (disk < 0 || ::fstat(disk, &opened) != 0) return "";
+  if (static_cast<std::uintmax_t>(opened.st_size) < length_) {
+    return "was cut off while it was written";
+  }
+  if (::stat(path.c_str(), &named) != 0) {
+    return errno == ENOENT || errno == ENOTDIR ? "was removed while it was written" : "";
+  }
+  const bool same = opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
+  return same ? "" : "was replaced by another file while it was written";
+}
+
+void WatchedPlace::keep_length(hid_t file) noexcept {
+  struct stat now {};
+  const int disk = descriptor(file);
+  // The end that HDF5 counts with: what is reserved behind it comes and goes.
+  if (disk >= 0 && ::fstat(disk, &now) == 0) {
+    length_ = std::min<std::uintmax_t>(static_cast<std::uintmax_t>(now.st_size), end_of(file));
+  }
+}
+
 }  // namespace irdm::hdf5

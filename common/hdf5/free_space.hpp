@@ -1,6 +1,8 @@
 #pragma once
 
 #include <hdf5.h>
+#include <filesystem>
+#include <string>
 
 #include "common/hdf5/handle.hpp"
 
@@ -24,6 +26,18 @@ class ReservedSpace {
 
  private:
   haddr_t sure_ = 0;  ///< below it all is on the disk
+};
+
+/// Tells whether an open file that is being written is still the one that its path names.
+class WatchedPlace {
+ public:
+  /// Why it is not: "was removed while it was written", say; empty while it is.
+  std::string fault(hid_t file, const std::filesystem::path& path) const;
+  /// Keeps the length of the file as it is now. After a flush.
+  void keep_length(hid_t file) noexcept;
+
+ private:
+  std::uintmax_t length_ = 0;  ///< [byte]
 };
 
 }  // namespace irdm::hdf5

@@ -13,10 +13,14 @@ inline std::mutex& library_mutex() {
   return mutex;
 }
 
-/// Keeps HDF5 from printing errors of its own, in the calling thread only, and from closing files
-/// at the end of the program. File::create() and File::open() do it for theirs; another thread that
-/// uses a file calls it first.
+/// Keeps HDF5 from printing errors of its own, in the calling thread only. File::create() and
+/// File::open() do it for theirs; another thread that uses a file calls it first.
 void prepare_library();
+
+/// Keeps HDF5 from closing files at the end of the program: its own closing would crash on a file
+/// whose closing failed because the disk is full. First call of a program's main, never of a
+/// library: the files that a host program left open would be lost.
+void leave_files_at_exit();
 
 /// Owns one HDF5 identifier and closes it with the function that its kind asks for.
 class Handle {

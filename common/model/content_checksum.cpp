@@ -1,27 +1,43 @@
 #include "common/model/content_checksum.hpp"
 
-#include <cstdint>
+#include <algorithm>
+#include <cstring>
+#include <functional>
+#include <numeric>
 
 #include "common/checksum.hpp"
 #include "common/model/compressed_file.hpp"
+#include "common/model/model_check.hpp"
 #include "common/model/model_writer.hpp"
 
 namespace irdm {
 namespace {
 
 constexpr const char* kName = "content_sha256";
+constexpr hsize_t kBlockBytes = 4 << 20;  // read at a time
 
 template <typename T>
 void add_dataset(Sha256& sha, const hdf5::File& file, const std::string& path) {
   if (!file.exists(path)) return;
-  const hdf5::Shape shape = file.shape(path);
-  const std::vector<T> values = file.read<T>(path, hdf5::Shape(shape.size(), 0));
+  const hdf5::Shape shape = file.stored_shape(path);
+  if (shape.empty()) refuse_model(file.name(), path + " has no axes");
   sha.update(path.c_str(), path.size() + 1);
   for (const hsize_t extent : shape) {
     const auto wide = static_cast<std::uint64_t>(extent);
     sha.update(&wide, sizeof wide);
   }
-  sha.update(values.data(), values.size() * sizeof(T));
+  const hsize_t row =
+      std::accumulate(shape.begin() + 1, shape.end(), hsize_t{1}, std::multiplies<>());
+  if (row == 0) return;
+  const hsize_t block = std::clamp<hsize_t>(kBlockBytes / (row * sizeof(T)), 1, shape[0] + 1);
+  std::vector<T> values(block * row);
+  hdf5::Shape start(shape.size(), 0);
+  hdf5::Shape count = shape;
+  for (start[0] = 0; start[0] < shape[0]; start[0] += count[0]) {
+    count[0] = std::min(block, shape[0] - start[0]);
+    file.read_slab<T>(path, start, count, values.data());
+    sha.update(values.data(), count[0] * row * sizeof(T));
+  }
 }
 
 // Of single or double precision.
@@ -108,6 +124,7 @@ std::string content_checksum(const hdf5::File& file) {
   add_dataset<float>(sha, file, kDisplayWeights);
   add_dataset<float>(sha, file, kDisplayTextureCoordinates);
   add_dataset<std::uint8_t>(sha, file, kDisplayTexture);
+  add_dataset<std::uint64_t>(sha, file, kDenseColumnChecksum);
   return sha.hexadecimal();
 }
 
@@ -119,5 +136,44 @@ std::optional<std::string> stored_content_checksum(const hdf5::File& file) {
 void store_content_checksum(hdf5::File& file) {
   file.write_attribute("/", kName, content_checksum(file));
 }
+
+void require_content_checksum(const hdf5::File& file) {
+  const auto stored = stored_content_checksum(file);
+  if (!stored || content_checksum(file) == *stored) return;
+  refuse_model(file.name(), "was changed after it was written: its content_sha256 does not match");
+}
+
+template <typename Scalar>
+std::uint64_t number_checksum(const Scalar* numbers, std::size_t count) {
+  constexpr std::uint64_t kPrime = 0x100000001B3;
+  std::uint64_t hash = 0xCBF29CE484222325;
+  const auto* bytes = reinterpret_cast<const std::byte*>(numbers);
+  for (std::size_t left = count * sizeof(Scalar); left > 0;) {
+    std::uint64_t word = 0;
+    const std::size_t size = std::min(left, sizeof word);
+    std::memcpy(&word, bytes, size);
+    hash = (hash ^ word) * kPrime;
+    bytes += size;
+    left -= size;
+  }
+  return hash;
+}
+
+ColumnChecksums::ColumnChecksums(const hdf5::File& file, std::size_t columns) : name_(file.name()) {
+  if (!file.exists(kDenseColumnChecksum)) return;
+  checksums_ = file.read<std::uint64_t>(kDenseColumnChecksum, {columns});
+}
+
+template <typename Scalar>
+void ColumnChecksums::compare(std::size_t b, const Scalar* column, std::size_t count) const {
+  if (empty() || number_checksum(column, count) == checksums_.at(b)) return;
+  refuse_model(name_, std::string(kDenseR) + " was changed after it was written: column " +
+                          std::to_string(b) + " has another checksum");
+}
+
+template std::uint64_t number_checksum(const float*, std::size_t);
+template std::uint64_t number_checksum(const double*, std::size_t);
+template void ColumnChecksums::compare(std::size_t, const float*, std::size_t) const;
+template void ColumnChecksums::compare(std::size_t, const double*, std::size_t) const;
 
 }  // namespace irdm

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <functional>
 #include <mutex>
 
 #include "common/config/range.hpp"
 #include "common/hdf5/handle.hpp"
+#include "common/model/content_checksum.hpp"
 #include "common/model/model_check.hpp"
 #include "common/model/model_writer.hpp"
 #include "common/response/modal_response.hpp"
@@ -72,23 +72,6 @@ void read_column(const hdf5::File& file, const std::string& dataset, hsize_t b, 
                             }),
                 dataset + " has numbers that are not finite or beyond " +
                     number_text(lab::kCompliance.highest));
-}
-
-// Tells, at the speed of memory, whether a column is what it was (FNV-1a, by words).
-template <typename Scalar>
-std::uint64_t fingerprint(const Scalar* column, std::size_t count) {
-  constexpr std::uint64_t kPrime = 0x100000001B3;
-  std::uint64_t hash = 0xCBF29CE484222325;
-  const auto* bytes = reinterpret_cast<const std::byte*>(column);
-  for (std::size_t left = count * sizeof(Scalar); left > 0;) {
-    std::uint64_t word = 0;
-    const std::size_t size = std::min(left, sizeof word);
-    std::memcpy(&word, bytes, size);
-    hash = (hash ^ word) * kPrime;
-    bytes += size;
-    left -= size;
-  }
-  return hash;
 }
 
 // [s][a] to [a][s], in squares that stay in the cache.
@@ -219,11 +202,14 @@ DenseResponse read_dense(const hdf5::File& file, const Model& model) {
   read_frame(file, model, response);
   const auto dof = static_cast<hsize_t>(response.degrees_of_freedom);
   const auto steps = static_cast<hsize_t>(response.steps);
-  DenseSamples samples(response.degrees_of_freedom, response.steps);
+  DenseSamples samples(model);
+  const ColumnChecksums checksums(file, dof);
   with_number(file.element_size(kDenseR), [&]<typename Scalar>(Scalar) {
-    response.values = read_columns<Scalar>(
-        file, kDenseR, dof, steps, dof,
-        [&](hsize_t b, const Scalar* column) { samples.add(static_cast<int>(b), column); });
+    response.values =
+        read_columns<Scalar>(file, kDenseR, dof, steps, dof, [&](hsize_t b, const Scalar* column) {
+          checksums.compare(b, column, steps * dof);
+          samples.add(static_cast<int>(b), column);
+        });
   });
   require_sound(file, samples);
   return response;
@@ -235,15 +221,17 @@ StreamedResponse read_streamed(const hdf5::File& file, const Model& model) {
   const auto dof = static_cast<std::size_t>(response.degrees_of_freedom);
   const auto steps = static_cast<std::size_t>(response.steps);
   response.rest.resize(dof * dof);
-  DenseSamples samples(response.degrees_of_freedom, response.steps);
+  DenseSamples samples(model);
+  const ColumnChecksums checksums(file, dof);
   with_number(file.element_size(kDenseR), [&]<typename Scalar>(Scalar) {
     std::vector<Scalar> first(dof * dof);
     std::vector<Scalar> column(steps * dof);
     for (std::size_t b = 0; b < dof; ++b) {
       read_column(file, kDenseR, b, steps, dof, column.data());
+      checksums.compare(b, column.data(), column.size());
       samples.add(static_cast<int>(b), column.data());
       keep(column, b, response, first);
-      response.fingerprints.push_back(fingerprint(column.data(), column.size()));
+      response.fingerprints.push_back(number_checksum(column.data(), column.size()));
     }
     require_sound(file, samples);
     const auto size = static_cast<Eigen::Index>(dof);
@@ -301,10 +289,10 @@ void DenseColumnFile::read_as(int node, Scalar* to) {
       hdf5::prepare_library();
       read_column(file_, kDenseR, 3 * static_cast<hsize_t>(node) + axis, steps_, dof_, column);
     }
-    require_dense(
-        file_,
-        fingerprint(column, dof_ * steps_) == fingerprints_[3 * static_cast<hsize_t>(node) + axis],
-        std::string(kDenseR) + " has changed since it was opened");
+    require_dense(file_,
+                  number_checksum(column, dof_ * steps_) ==
+                      fingerprints_[3 * static_cast<hsize_t>(node) + axis],
+                  std::string(kDenseR) + " has changed since it was opened");
     turn(column, steps_, dof_, to + axis * dof_ * steps_);
   }
 }

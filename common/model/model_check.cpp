@@ -21,7 +21,7 @@ constexpr double kMassError = 1e-6;  // of the nodes' sum, as a share
 
 FaultText out_of(const Range& range, const char* name, double value) {
   if (range.contains(value)) return {};
-  return std::string(name) + " is " + number_text(value) + ", not " + describe(range);
+  return std::string(name) + " " + outside_text(range, value);
 }
 
 bool within(const int* begin, const int* end, Eigen::Index limit) {
@@ -214,6 +214,9 @@ constexpr int kSteps = 32;
 /// Of R(a, b) less R(b, a), as a share of the largest R(b, b): what stepping in time leaves is
 /// far below.
 constexpr double kDenseAsymmetry = 0.02;
+/// Of R[0](b, b), as a multiple of dt^2 / (2 m): rightly at most 1, more where the static
+/// compliance of modes that are left out is a part of R[0].
+constexpr double kMostOfFree = 1000.0;
 
 // Evenly spread over [0, count).
 std::vector<int> spread(int count, int most) {
@@ -227,16 +230,21 @@ std::vector<int> spread(int count, int most) {
 
 }  // namespace
 
-DenseSamples::DenseSamples(int degrees_of_freedom, int steps)
-    : degrees_of_freedom_(degrees_of_freedom),
-      steps_(steps),
-      sample_(spread(degrees_of_freedom, kDegreesOfFreedom)),
-      step_sample_(spread(steps, kSteps)),
-      peak_(static_cast<std::size_t>(degrees_of_freedom), 0.0),
-      sum_(static_cast<std::size_t>(degrees_of_freedom), 0.0) {
+DenseSamples::DenseSamples(const Model& model)
+    : degrees_of_freedom_(model.degrees_of_freedom()),
+      steps_(model.steps),
+      sample_(spread(degrees_of_freedom_, kDegreesOfFreedom)),
+      step_sample_(spread(steps_, kSteps)),
+      peak_(static_cast<std::size_t>(degrees_of_freedom_), 0.0),
+      sum_(peak_),
+      first_(peak_) {
   const auto count = static_cast<Eigen::Index>(sample_.size() * step_sample_.size());
-  columns_.setZero(degrees_of_freedom, count);
-  rows_.setZero(degrees_of_freedom, count);
+  columns_.setZero(degrees_of_freedom_, count);
+  rows_.setZero(degrees_of_freedom_, count);
+  for (int b = 0; b < degrees_of_freedom_; ++b) {
+    const int node = model.mesh.surface_nodes[static_cast<std::size_t>(b / 3)];
+    free_.push_back(0.5 * model.dt * model.dt / model.mesh.node_mass(node));
+  }
 }
 
 template <typename Scalar>
@@ -246,6 +254,7 @@ void DenseSamples::add(int b, const Scalar* column) {
   };
   auto& peak = peak_[static_cast<std::size_t>(b)];
   auto& sum = sum_[static_cast<std::size_t>(b)];
+  first_[static_cast<std::size_t>(b)] = at(0, b);
   for (int s = 0; s < steps_; ++s) {
     peak = std::max(peak, std::abs(at(s, b)));
     sum += at(s, b);
@@ -265,8 +274,15 @@ void DenseSamples::add(int b, const Scalar* column) {
 std::optional<std::string> DenseSamples::fault() const {
   const double largest = *std::ranges::max_element(peak_);
   for (std::size_t b = 0; b < peak_.size(); ++b) {
-    if (sum_[b] > 0.0 || peak_[b] <= 0.0) continue;
-    return "gives way against the force on degree of freedom " + std::to_string(b);
+    if (peak_[b] <= 0.0) continue;  // clamped
+    if (!(sum_[b] > 0.0 && first_[b] > 0.0)) {
+      return "gives way against the force on degree of freedom " + std::to_string(b);
+    }
+    if (!(first_[b] <= kMostOfFree * free_[b])) {
+      return "gives way in the first step more than the mass of a node and dt allow, at degree of "
+             "freedom " +
+             std::to_string(b);
+    }
   }
   if (!((columns_ - rows_).cwiseAbs().maxCoeff() <= kDenseAsymmetry * largest)) {
     return "is not symmetric: a on b is not what b is on a";
@@ -299,6 +315,21 @@ FaultText rate_fault(const ModalResponse& response) {
     return "/response/modal/decay_rate has a number that is not " + describe(lab::kDecayRate);
   }
   return {};
+}
+
+// A floating body has a response to its own spin, a fixed one a response to gravity and nodes that
+// no mode moves.
+template <typename Scalar>
+FaultText support_fault(const Model& model, const ModalResponse& response,
+                        const RowMatrix<Scalar>& shapes) {
+  const bool spins = response.centrifugal.rows() > 0;
+  const bool sags = response.gravity.rows() > 0;
+  if (spins == sags || spins == (model.body.support == Support::kFloating)) return {};
+  if (sags) return "/body support is floating, but the modes are those of a fixed body";
+  for (Eigen::Index a = 0; a < shapes.rows(); a += 3) {
+    if (shapes.middleRows(a, 3).isZero(Scalar{0})) return {};  // of a version without gravity
+  }
+  return "/body support is fixed, but the modes are those of a floating body";
 }
 
 template <typename Scalar>
@@ -343,7 +374,10 @@ std::optional<std::string> modal_fault(const Model& model, const ModalResponse& 
   FaultText fault = rate_fault(response);
   if (!fault) {
     fault = std::visit(
-        [&](const auto& shapes) { return shape_fault(model, response.angular_frequency, shapes); },
+        [&](const auto& shapes) {
+          const FaultText found = shape_fault(model, response.angular_frequency, shapes);
+          return found ? found : support_fault(model, response, shapes);
+        },
         response.shapes);
   }
   if (!fault) fault = load_fault(model, response);

@@ -7,6 +7,7 @@
 #include "common/config/range.hpp"
 #include "common/error.hpp"
 #include "common/model/compressed_file.hpp"
+#include "common/model/content_checksum.hpp"
 #include "common/model/dense_file.hpp"
 #include "common/model/model_check.hpp"
 #include "common/model/model_writer.hpp"
@@ -49,6 +50,12 @@ constexpr const char* kRigidMaterialUnits = "density: kg/m^3";
 constexpr const char* kMaterialUnits =
     "youngs_modulus: Pa, poisson_ratio: 1, density: kg/m^3, rayleigh_alpha: 1/s, rayleigh_beta: s";
 
+/// What a body's own spin does, of modes and of dense R.
+constexpr Unit kSpinUnits[] = {
+    {kModalCentrifugal, "kg^1/2 m"},
+    {kDenseCentrifugal, "m s^2"},
+};
+
 constexpr Unit kGroupUnits[] = {
     {"/mesh", "com_offset: m"},
     {"/body", "mass: kg, inertia: kg m^2"},
@@ -57,16 +64,22 @@ constexpr Unit kGroupUnits[] = {
      "cut_off: rad/s, contact_radius: m, residual_radius: m, press_time: s, added_compliance: m/N"},
 };
 
+/// Calls with object, attribute and unit of all that a model file may have.
+template <typename Visit>
+void for_each_unit(const hdf5::File& file, const Visit& visit) {
+  for (const auto& [object, unit] : kDatasetUnits) visit(object, "unit", unit);
+  for (const auto& [object, unit] : kSpinUnits) visit(object, "unit", unit);
+  for (const auto& [object, unit] : kGroupUnits) visit(object, "units", unit);
+  visit("/material", "units", holds_rigid_body(file) ? kRigidMaterialUnits : kMaterialUnits);
+  visit(kCompressedFir, "unit", file.exists(kCompressedFirScale) ? "1" : "m/N");
+}
+
 }  // namespace
 
 void write_model_units(hdf5::File& file) {
-  const auto write = [&](const char* object, const char* name, const char* unit) {
+  for_each_unit(file, [&](const char* object, const char* name, const char* unit) {
     if (file.exists(object)) file.write_attribute(object, name, std::string(unit));
-  };
-  for (const auto& [object, unit] : kDatasetUnits) write(object, "unit", unit);
-  for (const auto& [object, unit] : kGroupUnits) write(object, "units", unit);
-  write("/material", "units", holds_rigid_body(file) ? kRigidMaterialUnits : kMaterialUnits);
-  write(kCompressedFir, "unit", file.exists(kCompressedFirScale) ? "1" : "m/N");
+  });
 }
 
 void check_model_format(const hdf5::File& file) {
@@ -89,7 +102,14 @@ class ModelReader {
     return std::move(model_);
   }
 
-  Model read(ResponseKind kind) {
+  Model read(ResponseKind kind, Checksum checksum) {
+    Model model = read_unchecked(kind);
+    if (checksum == Checksum::kCompare) require_content_checksum(file_);
+    return model;
+  }
+
+ private:
+  Model read_unchecked(ResponseKind kind) {
     read_description();
     if (is_rigid(model_)) return std::move(model_);
     if (kind == ResponseKind::kModal) {
@@ -102,7 +122,6 @@ class ModelReader {
     return std::move(model_);
   }
 
- private:
   [[noreturn]] void damaged(const std::string& what) const { refuse_model(file_.name(), what); }
   void require(bool holds, const std::string& what) const {
     if (!holds) damaged(what);
@@ -132,6 +151,13 @@ class ModelReader {
               std::to_string(kModelVersion));
     }
     check_dense_form(file_);
+    // Files of older versions have fewer of them.
+    for_each_unit(file_, [&](const char* object, const char* name, const char* unit) {
+      if (file_.exists(object)) file_.require_text(object, name, unit);
+    });
+    for (const auto& [object, unit] : kSpinUnits) {
+      if (file_.exists(object)) file_.require_text(object, "order", kSpinOrder);
+    }
   }
 
   void read_mesh() {
@@ -251,14 +277,15 @@ class ModelReader {
 
 }  // namespace
 
-Model read_model(const std::filesystem::path& path, ResponseKind kind) {
-  return ModelReader(hdf5::File::open(path)).read(kind);
+Model read_model(const std::filesystem::path& path, ResponseKind kind, Checksum checksum) {
+  return ModelReader(hdf5::File::open(path)).read(kind, checksum);
 }
 
 Model read_streamed_model(const std::filesystem::path& path) {
+  const hdf5::File file = hdf5::File::open(path);
   Model model = read_description(hdf5::File::open(path));
-  if (is_rigid(model)) return model;
-  model.response = read_streamed(hdf5::File::open(path), model);
+  if (!is_rigid(model)) model.response = read_streamed(file, model);
+  require_content_checksum(file);
   return model;
 }
 

@@ -4,6 +4,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <system_error>
 #include <utility>
 
 #include "common/error.hpp"
@@ -27,16 +29,17 @@ hsize_t chunk_steps(hsize_t steps, hsize_t step_bytes) {
 
 void wait_for_disk(const std::filesystem::path& path) {
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  const bool written = descriptor >= 0 && ::fsync(descriptor) == 0;
+  const int cause = descriptor >= 0 && ::fsync(descriptor) == 0 ? 0 : errno;
   if (descriptor >= 0) ::close(descriptor);
-  if (!written) {
-    throw Error(path.string(), "cannot be written to the disk", "check its free space");
+  if (cause != 0) {
+    throw Error(path.string(),
+                "cannot be written to the disk: " + std::generic_category().message(cause),
+                "check its free space");
   }
 }
 
-void describe_centrifugal(hdf5::File& file, const char* dataset, const std::string& unit) {
-  file.write_attribute(dataset, "order", std::string("xx yy zz yz xz xy"));
-  file.write_attribute(dataset, "unit", unit);
+void describe_centrifugal(hdf5::File& file, const char* dataset) {
+  file.write_attribute(dataset, "order", std::string(kSpinOrder));
 }
 
 void write_elasticity(hdf5::File& file, const Material& material) {
@@ -144,7 +147,7 @@ void ModelFileWriter::write_modal(const ModalResponse& response) {
   if (!response.residual.empty()) write_residual(*file_, response.residual);
   if (response.centrifugal.rows() > 0) {
     file_->write<double>(kModalCentrifugal, {modes, kSpinProducts}, response.centrifugal.data());
-    describe_centrifugal(*file_, kModalCentrifugal, "kg^1/2 m");
+    describe_centrifugal(*file_, kModalCentrifugal);
   }
   if (response.gravity.rows() == 0) return;
   file_->write<double>(kModalGravity, {modes, 3}, response.gravity.data());
@@ -161,6 +164,7 @@ void ModelFileWriter::write_compressed(const CompressedResponse& response,
 void ModelFileWriter::begin_dense(int degrees_of_freedom, int steps, Precision precision) {
   dense_dof_ = static_cast<hsize_t>(degrees_of_freedom);
   dense_steps_ = static_cast<hsize_t>(steps);
+  column_checksums_.assign(dense_dof_, 0);
   const hdf5::Shape shape{dense_dof_, dense_steps_, dense_dof_};
   const bool single = precision == Precision::kSingle;
   const hdf5::Layout layout{
@@ -177,6 +181,8 @@ template <typename Scalar>
 void ModelFileWriter::write_column(int b, const Scalar* values) {
   file_->write_slab<Scalar>(kDenseR, {static_cast<hsize_t>(b), 0, 0}, {1, dense_steps_, dense_dof_},
                             values);
+  column_checksums_.at(static_cast<std::size_t>(b)) =
+      number_checksum(values, dense_steps_ * dense_dof_);
 }
 
 void ModelFileWriter::write_dense_column(int b, const float* values) {
@@ -189,7 +195,7 @@ void ModelFileWriter::write_dense_column(int b, const double* values) {
 template <typename Scalar>
 void ModelFileWriter::write_centrifugal(const Scalar* values) {
   file_->write<Scalar>(kDenseCentrifugal, {kSpinProducts, dense_steps_, dense_dof_}, values);
-  describe_centrifugal(*file_, kDenseCentrifugal, "m s^2");
+  describe_centrifugal(*file_, kDenseCentrifugal);
 }
 
 void ModelFileWriter::write_dense_centrifugal(const float* values) {
@@ -212,8 +218,13 @@ void ModelFileWriter::write_dense_gravity(const double* values) {
 }
 
 void ModelFileWriter::commit() {
+  if (!column_checksums_.empty()) {
+    file_->write<std::uint64_t>(kDenseColumnChecksum, {column_checksums_.size()},
+                                column_checksums_.data());
+  }
   write_model_units(*file_);
   store_content_checksum(*file_);
+  file_->require_in_place();
   file_->close();
   wait_for_disk(temporary_);
   std::error_code error;

@@ -14,8 +14,11 @@ namespace irdm {
 inline constexpr const char* kModelFormat = "irdm-model";
 inline constexpr std::int64_t kModelVersion = 1;
 inline constexpr const char* kDenseR = "/response/dense/R";
+/// Of each column of R (number_checksum()). Files of older versions do not have it.
+inline constexpr const char* kDenseColumnChecksum = "/response/dense/column_checksum";
 /// What the body's own spin does, one part a product of SpinProducts. Optional.
 inline constexpr const char* kDenseCentrifugal = "/response/dense/centrifugal";
+inline constexpr const char* kSpinOrder = "xx yy zz yz xz xy";  ///< attribute `order` of both
 inline constexpr const char* kModalCentrifugal = "/response/modal/centrifugal";
 
 /// What gravity does to a fixed body, one part an axis of B. Optional.
@@ -91,6 +94,7 @@ class ModelFileWriter {
   std::optional<hdf5::File> file_;
   hsize_t dense_dof_ = 0;
   hsize_t dense_steps_ = 0;
+  std::vector<std::uint64_t> column_checksums_;  ///< of dense R
 };
 
 }  // namespace irdm

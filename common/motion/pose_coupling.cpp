@@ -6,6 +6,7 @@
 
 #include "common/dense_algebra.hpp"
 #include "common/error.hpp"
+#include "common/number_text.hpp"
 
 namespace irdm {
 namespace {
@@ -83,7 +84,7 @@ void check_constants(const CouplingConstants& constants, const std::string& wher
 [[noreturn]] void refuse(const std::string& where, const char* what, double most,
                          const char* unit) {
   throw Error(where, std::string("has ") + what + " that is too strong for its object and dt",
-              "use at most " + std::to_string(most) + " " + unit);
+              "use at most " + number_text(most) + " " + unit);
 }
 
 void check_least(double damping, double normal, const char* what, const char* unit,

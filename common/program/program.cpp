@@ -11,6 +11,7 @@
 #include <map>
 #include <new>
 #include <optional>
+#include <system_error>
 #include <vector>
 
 #include "common/config/near_word.hpp"
@@ -117,6 +118,13 @@ int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>
     return error.status();
   } catch (const std::bad_alloc&) {
     return complain(app.get_name(), "not enough memory; use a smaller model or free memory");
+  } catch (const std::system_error& error) {
+    if (error.code() != std::errc::resource_unavailable_try_again) {
+      return complain(app.get_name(), error.what());
+    }
+    return complain(app.get_name(),
+                    "no thread can be started: too little memory or too many processes; raise the "
+                    "limits (ulimit -v, ulimit -u)");
   } catch (const std::exception& error) {
     return complain(app.get_name(), error.what());
   }

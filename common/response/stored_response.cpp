@@ -5,6 +5,7 @@
 
 #include "common/error.hpp"
 #include "common/hdf5/file.hpp"
+#include "common/model/content_checksum.hpp"
 #include "common/model/model_writer.hpp"
 #include "common/response/compressed_response.hpp"
 #include "common/response/modal_response.hpp"
@@ -270,7 +271,11 @@ class ZeroStored final : public StoredResponse {
 class DenseInFile final : public StoredResponse {
  public:
   DenseInFile(const std::filesystem::path& path, int degrees_of_freedom, int steps)
-      : file_(hdf5::File::open(path)), dof_(degrees_of_freedom), steps_(steps) {
+      : file_(hdf5::File::open(path)),
+        checksums_(file_, static_cast<std::size_t>(degrees_of_freedom)),
+        single_(file_.element_size(kDenseR) == sizeof(float)),
+        dof_(degrees_of_freedom),
+        steps_(steps) {
     const auto dof = static_cast<hsize_t>(degrees_of_freedom);
     if (file_.stored_shape(kDenseR) != hdf5::Shape({dof, static_cast<hsize_t>(steps), dof})) {
       throw Error(path.string(), "/response/dense/R must have the shape (3n, steps, 3n)",
@@ -283,6 +288,7 @@ class DenseInFile final : public StoredResponse {
     file_.read_slab<double>(kDenseR, {static_cast<hsize_t>(b), 0, 0},
                             {1, static_cast<hsize_t>(steps), static_cast<hsize_t>(dof_)},
                             values.data());
+    if (steps == steps_) compare(static_cast<std::size_t>(b), values);
     return values;
   }
   Eigen::VectorXd static_column(int b) const override {
@@ -295,7 +301,20 @@ class DenseInFile final : public StoredResponse {
   }
 
  private:
+  // As the numbers stand in the file.
+  void compare(std::size_t b, const RowMatrix<double>& column) const {
+    const auto count = static_cast<std::size_t>(column.size());
+    if (single_) {
+      const RowMatrix<float> stored = column.cast<float>();
+      checksums_.compare(b, stored.data(), count);
+    } else {
+      checksums_.compare(b, column.data(), count);
+    }
+  }
+
   hdf5::File file_;
+  ColumnChecksums checksums_;
+  bool single_;  ///< the file's numbers are in single precision
   int dof_;
   int steps_;
 };

@@ -21,7 +21,7 @@ constexpr int kPoleBisections = 12;
 // Beyond it, a record that was scaled by the powers of the radius overflows when squared and cubed.
 constexpr double kLargest = 1e60;
 
-int zeros_inside(const DrivingPoint& record, const Matrix3& rigid, double radius) {
+ZeroCount zeros_inside(const DrivingPoint& record, const Matrix3& rigid, double radius) {
   const bool floating = !rigid.isZero(0.0);
   const MatrixHalfCircle response = transform(record, radius, resolving_half_circle(record.cols()));
   return count_zeros(response, radius,
@@ -35,7 +35,8 @@ int zeros_inside(const DrivingPoint& record, const Matrix3& rigid, double radius
 }  // namespace
 
 InverseStability analyse_inverse(const DrivingPoint& record, const Matrix3& rigid, double radius) {
-  const int growing = zeros_inside(record, rigid, radius);
+  const auto [growing, resolved] = zeros_inside(record, rigid, radius);
+  if (!resolved) return {0, 0.0, false};
   // Bisection for the circle that just reaches the first zero, in the logarithm of its distance:
   // most lie near the unit circle.
   const double sign = growing > 0 ? -1.0 : 1.0;
@@ -44,7 +45,9 @@ InverseStability analyse_inverse(const DrivingPoint& record, const Matrix3& rigi
   double far = growing > 0 ? kInward : std::min(kOutward, widest);
   for (int i = 0; i < kPoleBisections; ++i) {
     const double middle = std::sqrt(near * far);
-    const bool reached = zeros_inside(record, rigid, radius * std::exp(sign * middle)) > 0;
+    const ZeroCount found = zeros_inside(record, rigid, radius * std::exp(sign * middle));
+    if (!found.resolved) return {growing, 0.0, false};
+    const bool reached = found.zeros > 0;
     (reached == (growing > 0) ? near : far) = middle;
   }
   return {growing, std::exp(-sign * std::sqrt(near * far)) / radius};
@@ -76,7 +79,7 @@ class ClosedLoop {
     }
   }
 
-  bool grows(double coupling) const {
+  ZeroCount growing(double coupling) const {
     const bool floating = !rigid_.isZero(0.0);
     return count_zeros(response_, radius_,
                        [&](const Eigen::Matrix3cd& r, const std::complex<double>& w) {
@@ -84,7 +87,7 @@ class ClosedLoop {
                          Eigen::Matrix3cd c = g * r + (1.0 + w) * rigid_;
                          c.diagonal().array() += g / coupling;
                          return c.determinant();
-                       }) > 0;
+                       });
   }
 
  private:
@@ -114,19 +117,27 @@ double largest_coupling(const DrivingPoint& record, const Matrix3& rigid, const 
                         double radius) {
   const ClosedLoop closed(record, rigid, loop, radius);
   const double factor = std::pow(10.0, 1.0 / kPerDecade);
+  bool resolved = true;
+  const auto grows = [&](double coupling) {
+    const ZeroCount found = closed.growing(coupling);
+    resolved = resolved && found.resolved;
+    return found.zeros > 0;
+  };
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   double stable = kSoftestCoupling;
-  if (closed.grows(stable)) return 0.0;
+  if (grows(stable)) return resolved ? 0.0 : kUnknown;
   double grown = stable * factor;
-  while (!closed.grows(grown)) {
+  while (resolved && !grows(grown)) {
     stable = grown;
     grown *= factor;
+    if (!resolved) break;
     if (stable > kStiffestCoupling) return std::numeric_limits<double>::infinity();
   }
-  for (int i = 0; i < kCouplingBisections; ++i) {
+  for (int i = 0; resolved && i < kCouplingBisections; ++i) {
     const double middle = std::sqrt(stable * grown);
-    (closed.grows(middle) ? grown : stable) = middle;
+    (grows(middle) ? grown : stable) = middle;
   }
-  return stable;
+  return resolved ? stable : kUnknown;
 }
 
 namespace {

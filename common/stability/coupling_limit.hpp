@@ -7,6 +7,7 @@ namespace irdm {
 struct InverseStability {
   int growing = 0;               ///< modes of the force that grow
   double largest_modulus = 0.0;  ///< by which the slowest (or fastest growing) mode changes a step
+  bool resolved = true;          ///< false: not known (ZeroCount)
 };
 
 /// Whether the force on a held node is bounded when the tip is prescribed. The force loop solves
@@ -47,7 +48,7 @@ std::complex<double> hand_transfer(const Hand& hand, double dt, std::complex<dou
 
 /// Largest virtual coupling [N/m] such that the loop with it and with every smaller one is stable,
 /// from kSoftestCoupling to kStiffestCoupling; 0 when already the smallest is not, infinity when
-/// the largest is. The force f on the object solves
+/// the largest is, NaN when it is not known (ZeroCount). The force f on the object solves
 ///
 ///     (C(w) + 1/k_vc) f = x,    x = -w^delay H(w) f
 ///
@@ -67,7 +68,8 @@ inline constexpr double kStiffestCoupling = 1e7;
 
 /// Largest virtual coupling [N/m] that is stable at each of `count` surface nodes, evenly numbered,
 /// for the loop that `irdm-precompute check` looks at by default: its hand, held forces, one step
-/// of delay each way (largest_coupling()). Infinity: stable without one, rigid, or not known.
+/// of delay each way (largest_coupling()). Infinity: stable without one, rigid, or not known. Nodes
+/// at which it is not known do not count.
 double sampled_coupling(const Model& model, int count);
 
 }  // namespace irdm

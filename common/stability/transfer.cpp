@@ -38,8 +38,10 @@ struct Sample {
 // Change of the argument [rad] from one point to another. The value in the middle decides whether
 // they are close enough: the ends alone would not show two zeros between them, which turn it once
 // round.
+/// @param left values that may still be looked at
 template <typename Function>
-double turn(const Function& at, const Sample& from, const Sample& to, int halvings) {
+double turn(const Function& at, const Sample& from, const Sample& to, int halvings, int& left) {
+  if (--left < 0) return 0.0;
   const double j = 0.5 * (from.j + to.j);
   const Sample middle{j, at(j)};
   const double size = std::min({std::abs(from.value), std::abs(middle.value), std::abs(to.value)});
@@ -48,7 +50,7 @@ double turn(const Function& at, const Sample& from, const Sample& to, int halvin
   if (!(change >= kSmallChange * size) || halvings == 0) {  // or not a number
     return std::arg(to.value * std::conj(from.value));
   }
-  return turn(at, from, middle, halvings - 1) + turn(at, middle, to, halvings - 1);
+  return turn(at, from, middle, halvings - 1, left) + turn(at, middle, to, halvings - 1, left);
 }
 
 }  // namespace
@@ -84,22 +86,23 @@ int resolving_half_circle(Eigen::Index length) {
   return half;
 }
 
-int count_zeros(const MatrixHalfCircle& response, double radius,
-                const std::function<std::complex<double>(const Eigen::Matrix3cd&,
-                                                         std::complex<double>)>& value) {
+ZeroCount count_zeros(const MatrixHalfCircle& response, double radius,
+                      const std::function<std::complex<double>(const Eigen::Matrix3cd&,
+                                                               std::complex<double>)>& value) {
   const int half = static_cast<int>(response.size()) - 1;
   const auto at = [&](double j) {
     return value(interpolated(response, j), circle_point(radius, half, j));
   };
   double sum = 0.0;
+  int left = 2 * half + kMostTurns;
   std::complex<double> before = at(0.0);
-  for (int j = 1; j <= half; ++j) {
+  for (int j = 1; j <= half && left >= 0; ++j) {
     const std::complex<double> after = at(j);
-    sum += turn(at, {j - 1.0, before}, {static_cast<double>(j), after}, kMostHalvings);
+    sum += turn(at, {j - 1.0, before}, {static_cast<double>(j), after}, kMostHalvings, left);
     before = after;
   }
   // The points go round clockwise; the other half turns by as much.
-  return static_cast<int>(std::lround(-sum / std::numbers::pi));
+  return {static_cast<int>(std::lround(-sum / std::numbers::pi)), left >= 0};
 }
 
 namespace {

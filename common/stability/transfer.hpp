@@ -27,14 +27,24 @@ MatrixHalfCircle transform(const DrivingPoint& record, double radius, int half);
 /// Points of a half circle that resolve a record of `length` steps: one a step, a power of two.
 int resolving_half_circle(Eigen::Index length);
 
+struct ZeroCount {
+  int zeros = 0;
+  /// Whether the function was followed round the circle. It is not where it is noise in too many
+  /// places, which kMostTurns bounds the time for.
+  bool resolved = true;
+};
+
+/// Values that are looked at between the points of a half circle, at most.
+inline constexpr int kMostTurns = 1 << 16;
+
 /// Number of zeros inside the circle of a function with real coefficients that is analytic there,
 /// by the argument principle: how often its value goes round the origin. A zero near the circle
 /// turns the value quickly: there the points are brought closer together.
 /// @param response on a half circle of this radius; between its points it is interpolated (cubic)
 /// @param value of the function where the response is this and w is that
-int count_zeros(const MatrixHalfCircle& response, double radius,
-                const std::function<std::complex<double>(const Eigen::Matrix3cd&,
-                                                         std::complex<double>)>& value);
+ZeroCount count_zeros(const MatrixHalfCircle& response, double radius,
+                      const std::function<std::complex<double>(const Eigen::Matrix3cd&,
+                                                               std::complex<double>)>& value);
 
 /// A record that is long enough to stand for one without end.
 struct RecordLength {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/error.hpp"
+#include "common/number_text.hpp"
 #include "device_bridge/bridge.hpp"
 #include "device_bridge/device_registry.hpp"
 #include "device_bridge/doctor/judgements.hpp"
@@ -100,7 +101,7 @@ Findings examine_services(const std::vector<DeviceConfig>& configs) {
 
 Finding examine_server(const BridgeConfig& config) {
   const ServerAddress& server = *config.server;
-  const std::string address = server.host + ":" + std::to_string(server.port);
+  const std::string address = address_text(server.host, server.port);
   try {
     return judge_server(ask_server(client_settings(config), config.devices.size()), address);
   } catch (const Error& error) {

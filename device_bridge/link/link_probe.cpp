@@ -8,6 +8,7 @@
 
 #include "common/contact/contact_model.hpp"
 #include "common/error.hpp"
+#include "common/number_text.hpp"
 #include "common/realtime/clock.hpp"
 #include "device_bridge/bridge.hpp"
 #include "device_bridge/network_client.hpp"
@@ -131,7 +132,7 @@ LinkMeasurement probe_link(const BridgeConfig& config, double duration, StopSign
   measured.client = client.report();
   if (!measured.client.failure.empty()) throw std::runtime_error(measured.client.failure);
   if (measured.ticks == 0) {
-    throw Error(config.server->host + ":" + std::to_string(config.server->port),
+    throw Error(address_text(config.server->host, config.server->port),
                 "no session, and so nothing was measured",
                 "start irdm-server there, with a stylus that no other bridge has");
   }

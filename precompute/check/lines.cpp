@@ -47,19 +47,32 @@ Line passivity_line(const std::vector<NodeFindings>& nodes, double dt) {
                active, passivity.lowest, worst, passivity.angle / (2.0 * std::numbers::pi * dt))};
 }
 
+// Where the search for zeros is bounded.
+std::string unresolved_text(int nodes) {
+  return nodes == 0
+             ? ""
+             : text("; not known at %d nodes: not resolved with %d values", nodes, kMostTurns);
+}
+
 Line inverse_line(const std::vector<NodeFindings>& nodes, double dt) {
   std::size_t worst = 0;
   int unstable = 0;
+  int unresolved = 0;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
+    if (!nodes[i].inverse.resolved) ++unresolved;
     if (!(nodes[i].inverse.largest_modulus <= nodes[worst].inverse.largest_modulus)) worst = i;
     if (nodes[i].inverse.growing > 0) ++unstable;
   }
   const double modulus = nodes[worst].inverse.largest_modulus;
   return {
-      "stable force", unstable > 0 ? Verdict::kFail : Verdict::kOk,
+      "stable force",
+      unstable > 0     ? Verdict::kFail
+      : unresolved > 0 ? Verdict::kWarn
+                       : Verdict::kOk,
       text("%d nodes unstable when held; largest modulus of the inverse %.6f (node %zu, grows by "
            "%.2g 1/s)",
-           unstable, modulus, worst, std::log(modulus) / dt)};
+           unstable, modulus, worst, std::log(modulus) / dt) +
+          unresolved_text(unresolved)};
 }
 
 Line stiffness_line(const std::vector<NodeFindings>& nodes) {
@@ -75,17 +88,22 @@ Line stiffness_line(const std::vector<NodeFindings>& nodes) {
 
 Line coupling_line(const std::vector<NodeFindings>& nodes, const HandLoop& loop, double wanted) {
   const Spread limit = spread(nodes, &NodeFindings::coupling);
+  const auto unknown = static_cast<int>(std::ranges::count_if(
+      nodes, [](const NodeFindings& node) { return std::isnan(node.coupling); }));
   Verdict verdict = std::isinf(limit.lowest) ? Verdict::kOk : Verdict::kWarn;
   if (wanted > 0.0) verdict = Verdict::kOk;
-  if (!(limit.lowest > wanted)) verdict = Verdict::kFail;
-  const std::string found = std::isinf(limit.lowest)
+  if (unknown > 0) verdict = Verdict::kWarn;
+  if (limit.lowest <= wanted) verdict = Verdict::kFail;
+  const std::string found = std::isnan(limit.lowest) ? "not known"
+                            : std::isinf(limit.lowest)
                                 ? "stable without one"
                                 : text("largest stable %.4g N/m at the worst node, median %.4g",
                                        limit.lowest, limit.median);
   return {"virtual coupling", verdict,
-          found + text("; hand %.3g kg, %.3g N s/m, %.3g N/m, %d steps from position to force%s",
-                       loop.hand.mass, loop.hand.damping, loop.hand.stiffness, loop.delay,
-                       wanted > 0.0 ? text("; wanted %.4g N/m", wanted).c_str() : "")};
+          found + unresolved_text(unknown) +
+              text("; hand %.3g kg, %.3g N s/m, %.3g N/m, %d steps from position to force%s",
+                   loop.hand.mass, loop.hand.damping, loop.hand.stiffness, loop.delay,
+                   wanted > 0.0 ? text("; wanted %.4g N/m", wanted).c_str() : "")};
 }
 
 }  // namespace
@@ -117,16 +135,21 @@ Line checksum_line(const hdf5::File& file) {
     return {"checksum", Verdict::kWarn, "the file has none (made by an older irdm-precompute)"};
   }
   if (content_checksum(file) != *stored) {
-    return {"checksum", Verdict::kFail, "SHA-256 of mesh, body, material and modes does not match"};
+    return {"checksum", Verdict::kFail, "SHA-256 of the content does not match"};
   }
-  return {"checksum", Verdict::kOk, "SHA-256 of mesh, body, material and modes matches"};
+  return {"checksum", Verdict::kOk, "SHA-256 of the content matches"};
 }
 
 Line chunk_checksum_line(const hdf5::File& file) {
   if (!file.has_filter(kDenseR, H5Z_FILTER_FLETCHER32)) {
     return {"dense checksums", Verdict::kWarn, "/response/dense/R carries none"};
   }
-  return {"dense checksums", Verdict::kOk, "Fletcher32 of every column matches"};
+  if (!file.exists(kDenseColumnChecksum)) {
+    return {"dense checksums", Verdict::kWarn,
+            "Fletcher32 of every chunk matches; the columns have none (made by an older "
+            "irdm-precompute)"};
+  }
+  return {"dense checksums", Verdict::kOk, "Fletcher32 of every chunk and those of columns match"};
 }
 
 Line modes_line(const ModalResponse& response, const Material& material) {

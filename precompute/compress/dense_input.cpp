@@ -2,6 +2,7 @@
 
 #include "common/config/range.hpp"
 #include "common/error.hpp"
+#include "common/model/content_checksum.hpp"
 #include "common/model/model_file.hpp"
 
 namespace irdm::precompute {
@@ -16,6 +17,7 @@ DenseInput::DenseInput(const std::filesystem::path& path)
     throw Error(name(), "has no dense response to compress",
                 "precompute with storage = \"dense\" or \"both\"");
   }
+  require_content_checksum(file_);
   R_ = stored_response(path, degrees_of_freedom(), steps());
 }
 

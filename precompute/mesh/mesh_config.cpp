@@ -15,13 +15,10 @@ constexpr int kMaxCapsuleRows = 1000;
 BoxConfig read_box(TomlTable table) {
   BoxConfig box;
   const std::vector<double> size = table.numbers("size", 3, lab::kLength);
-  const std::vector<double> cells = table.numbers("cells", 3, between(1, kMaxCells));
+  const std::vector<int> cells = table.integers("cells", 3, 1, kMaxCells);
   for (std::size_t k = 0; k < 3; ++k) {
     box.size(static_cast<Eigen::Index>(k)) = size[k];
-    if (cells[k] != std::floor(cells[k])) {
-      table.fail("cells", "has a number that is not whole", "give three whole numbers");
-    }
-    box.cells[k] = static_cast<int>(cells[k]);
+    box.cells[k] = cells[k];
   }
   table.finish();
   return box;

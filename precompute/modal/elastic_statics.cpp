@@ -1,5 +1,6 @@
 #include "precompute/modal/elastic_statics.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/error.hpp"
@@ -39,16 +40,19 @@ RowMatrix<double> driving_points(const ModalResponse& response, double dt, int s
   return squares * held_responses(response, dt, steps).transpose();
 }
 
+// The peak is looked for in these steps, so that memory is bounded. [steps]
+constexpr int kPeakSteps = 4096;
+
 // Bound of |q| of one mode at and after the end of step T-1.
 double later_bound(const HeldForceOscillator& o, double omega, int steps) {
-  double q = o.b1;
-  double v = o.b2;
-  for (int s = 1; s < steps; ++s) {
-    const double next = o.a11 * q + o.a12 * v;
-    v = o.a21 * q + o.a22 * v;
-    q = next;
+  Eigen::Matrix2d power;  // of the step's transition, squared again and again
+  power << o.a11, o.a12, o.a21, o.a22;
+  Eigen::Vector2d state(o.b1, o.b2);
+  for (int left = steps - 1; left > 0; left /= 2) {
+    if (left % 2 == 1) state = (power * state).eval();
+    power = (power * power).eval();
   }
-  return std::hypot(q, v / omega);
+  return std::hypot(state.x(), state.y() / omega);
 }
 
 }  // namespace
@@ -61,7 +65,9 @@ double decay_left(const ModalResponse& response, double dt, int steps) {
     const double omega = response.angular_frequency(i);
     bound(i) = later_bound(held_force_oscillator(omega, response.decay_rate(i), dt), omega, steps);
   }
-  const Eigen::VectorXd peak = driving_points(response, dt, steps).cwiseAbs().rowwise().maxCoeff();
+  const int watched = std::min(steps, kPeakSteps);
+  const Eigen::VectorXd peak =
+      driving_points(response, dt, watched).cwiseAbs().rowwise().maxCoeff();
   const Eigen::VectorXd left = squares * bound;
   return (peak.array() > 0.0).select(left.cwiseQuotient(peak), 0.0).maxCoeff();  // 0: clamped
 }

@@ -13,7 +13,8 @@
 namespace irdm::precompute {
 
 /// How much of R is left where it is cut off: over all surface degrees of freedom a, the largest
-/// ratio of a bound of |R[s](a, a)| for all s >= T-1 to the peak of |R[s](a, a)| over s < T. The
+/// ratio of a bound of |R[s](a, a)| for all s >= T-1 to the peak of |R[s](a, a)| over s < T and
+/// s < 4096. The
 /// bound sums sqrt(q^2 + v^2 / omega^2) at step T-1 over the modes: the energy of a mode never
 /// grows, so that its displacement never exceeds that later, whatever its phase is at T-1.
 /// @param response with shapes in double precision

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "common/error.hpp"
+#include "common/number_text.hpp"
 #include "common/realtime/clock.hpp"
 #include "common/wire/open_endpoints.hpp"
 #include "common/wire/tls.hpp"
@@ -143,7 +144,7 @@ const NetworkSettings& NetworkServer::Impl::checked(const NetworkSettings& setti
 }
 
 void NetworkServer::Impl::listen() {
-  const std::string wanted = settings_.address + ":" + std::to_string(settings_.port);
+  const std::string wanted = address_text(settings_.address, settings_.port);
   error_code error;
   const auto address = boost::asio::ip::make_address(settings_.address, error);
   if (error) {

@@ -1,6 +1,7 @@
 #include "server/threads/recorder_thread.hpp"
 
 #include <exception>
+#include <iostream>
 #include <mutex>
 #include <span>
 
@@ -46,6 +47,8 @@ void RecorderThread::run() {
     writer_->close();
   } catch (const std::exception& error) {
     error_ = error.what();
+    failed_.store(true, std::memory_order_release);
+    std::cerr << "irdm-server: error: recording ended early: " + error_ + "\n" << std::flush;
     keep_what_counts();
     // Keep taking, so that the queue does not report what the disk did.
     while (!stopped) {

@@ -14,8 +14,9 @@
 
 namespace irdm {
 
-/// Writes the steps of a run to its trace file. A write that fails ends the recording, is kept as
-/// an error for the end of the run, and disturbs nobody.
+/// Writes the steps of a run to its trace file. A write that fails, or a file that is removed,
+/// replaced or cut off, ends the recording. That is logged at once, is kept as an error for the
+/// end of the run, and disturbs nobody.
 class RecorderThread {
  public:
   /// The first step that is written.
@@ -35,7 +36,9 @@ class RecorderThread {
   /// Steps that are missing because the disk was too slow.
   std::uint64_t lost() const noexcept { return sink_.lost() - lost_before_; }
   std::uint64_t rows() const noexcept { return rows_.load(std::memory_order_relaxed); }
-  /// Why the recording ended early; empty when it did not. After finish().
+  /// Whether the recording has ended early.
+  bool failed() const noexcept { return failed_.load(std::memory_order_acquire); }
+  /// Why the recording ended early; empty when it did not. After finish(), or once failed().
   const std::string& error() const noexcept { return error_; }
 
  private:
@@ -52,6 +55,7 @@ class RecorderThread {
   EventFd stop_;
   std::atomic<std::uint64_t> rows_{0};
   std::string error_;
+  std::atomic<bool> failed_{false};
   std::thread thread_;
 };
 

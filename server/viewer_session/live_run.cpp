@@ -84,6 +84,7 @@ viewer::State LiveRun::state() {
   const bool was_on = playback_.on();
   playback_.report(state, notice_);
   if (was_on && !playback_.on()) show_live();
+  notice_failed_recordings();
   state.paused = parts_.control.paused();
   state.recording = parts_.recordings.recording();
   state.can_record = parts_.recordings.possible();
@@ -97,6 +98,19 @@ viewer::State LiveRun::state() {
   state.settings = settings_;
   state.choices = settings_choices(config_);
   return state;
+}
+
+void LiveRun::notice_failed_recordings() {
+  if (parts_.run_recorder != nullptr && parts_.run_recorder->failed() && !failure_noticed_) {
+    failure_noticed_ = true;
+    notice_ = "recording ended early: " + parts_.run_recorder->error();
+  }
+  if (!parts_.recordings.failed()) return;
+  try {
+    parts_.recordings.end();
+  } catch (const Error& error) {
+    notice_ = error.what();
+  }
 }
 
 void LiveRun::handle(const viewer::Command& command) {

@@ -6,6 +6,7 @@
 #include "server/network/network_server.hpp"
 #include "server/threads/deformation_thread.hpp"
 #include "server/threads/force_thread.hpp"
+#include "server/threads/recorder_thread.hpp"
 #include "server/viewer_session/playback.hpp"
 #include "server/viewer_session/recordings.hpp"
 #include "server/viewer_session/scene_choice.hpp"
@@ -25,6 +26,7 @@ class LiveRun final : public viewer::ViewerSession {
     Recordings& recordings;
     Player& player;
     SceneChoice& scenes;
+    const RecorderThread* run_recorder = nullptr;  ///< of the whole run; nullptr: there is none
   };
   /// @param notice that viewers are shown at first; empty: none
   LiveRun(viewer::Scene scene, SimulationConfig config, const Parts& parts, std::string notice);
@@ -45,6 +47,8 @@ class LiveRun final : public viewer::ViewerSession {
   void save_scene();
   void show_recording(std::size_t number);
   void show_live();
+  /// Shows viewers at once that a recording has ended early, and ends it.
+  void notice_failed_recordings();
   viewer::LinkHealth link_health(int stylus);
   float surface_rate();
 
@@ -53,6 +57,7 @@ class LiveRun final : public viewer::ViewerSession {
   Parts parts_;
   Playback playback_;
   bool paused_before_playback_ = false;
+  bool failure_noticed_ = false;  ///< of the recording of the whole run
   Settings settings_;
   std::uint32_t settings_changes_ = 0;
   std::uint64_t stylus_sequence_ = 0;

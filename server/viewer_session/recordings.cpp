@@ -56,7 +56,7 @@ void Recordings::end() {
   const std::uint64_t lost = recorder_->lost();
   const std::uint64_t rows = recorder_->rows();
   recorder_.reset();
-  if (!error.empty()) throw Error(path_.string(), "ended early: " + error, "make room on the disk");
+  if (!error.empty()) throw Error(path_.string(), "ended early: " + error, "record again");
   if (rows == 0) {
     std::error_code ignored;
     std::filesystem::remove(path_, ignored);

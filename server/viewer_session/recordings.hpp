@@ -20,6 +20,8 @@ class Recordings {
 
   bool possible() const noexcept { return folder_.has_value(); }
   bool recording() const noexcept { return recorder_ != nullptr; }
+  /// Whether the one that is being made has ended early; end() says why.
+  bool failed() const noexcept { return recorder_ != nullptr && recorder_->failed(); }
   /// Where the force thread puts its steps; closed while nothing is recorded.
   StepSink& sink() noexcept { return sink_; }
 

@@ -11,7 +11,7 @@ Viewers::Viewers(const PreparedRun& run, int deformation_threads, const std::str
       scenes_(parts.loader, run, refusal),
       run_(*run.seen, run.config,
            {parts.deformation, parts.force, parts.control, parts.network, parts.recordings, player_,
-            scenes_},
+            scenes_, parts.run_recorder},
            run.greeting),
       server_(viewer_settings(run.scene.viewer), run_) {}
 

@@ -17,6 +17,7 @@ class Viewers {
     NetworkServer& network;
     Recordings& recordings;
     SceneLoader& loader;
+    const RecorderThread* run_recorder;  ///< of the whole run; nullptr: there is none
   };
   /// Listens. Throws Error. @param deformation_threads OpenMP threads for surfaces of recorded runs
   /// @param run must outlive this object

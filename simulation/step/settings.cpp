@@ -5,6 +5,7 @@
 
 #include "common/dense_algebra.hpp"
 #include "common/error.hpp"
+#include "common/number_text.hpp"
 #include "simulation/step/simulation_config.hpp"
 
 namespace irdm {
@@ -42,9 +43,9 @@ void check_restraints(const Model& model, const ObjectSettings& settings, const 
   if (model.body.support == Support::kFixed) return;  // it does not move at all
   const double dt = model.dt;
   if (std::max(settings.damping.linear, settings.damping.angular) * dt > 0.5) {
-    throw Error(
-        name, "has a damping that is too strong for its model's dt of " + std::to_string(dt) + " s",
-        "use at most " + std::to_string(0.5 / dt) + " 1/s");
+    throw Error(name,
+                "has a damping that is too strong for its model's dt of " + number_text(dt) + " s",
+                "use at most " + number_text(0.5 / dt) + " 1/s");
   }
   const double inertia = symmetric_eigenvalues(model.body.inertia)(0);
   const double stiffest = model.body.mass / (dt * dt);
@@ -52,8 +53,8 @@ void check_restraints(const Model& model, const ObjectSettings& settings, const 
   if (settings.tether.stiffness > stiffest ||
       settings.tether.angular_stiffness > stiffest_angular) {
     throw Error(name, "has a tether that is too stiff for its mass and its model's dt",
-                "use at most " + std::to_string(stiffest) + " N/m and " +
-                    std::to_string(stiffest_angular) + " N m/rad");
+                "use at most " + number_text(stiffest) + " N/m and " +
+                    number_text(stiffest_angular) + " N m/rad");
   }
 }
 

@@ -100,7 +100,7 @@ TEST_CASE("check fails dense R with a changed byte by the checksum of its chunk"
   write_modal(path, model);
   constexpr double kValue = 1.2345e-6;
   add_dense_with_checksums(path, model, kValue);
-  CHECK_THAT(run({path.string()}).out, ContainsSubstring("Fletcher32 of every column matches"));
+  CHECK_THAT(run({path.string()}).out, ContainsSubstring("Fletcher32 of every chunk matches"));
   flip(path, kValue);
   const CheckRun result = run({path.string()});
   CHECK(result.status == 1);

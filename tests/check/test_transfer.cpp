@@ -29,13 +29,15 @@ DrivingPoint with_zeros(const std::vector<std::complex<double>>& pairs) {
 
 int zeros_of_entry(const DrivingPoint& record, double radius) {
   return count_zeros(transform(record, radius, 1024), radius,
-                     [](const Eigen::Matrix3cd& r, std::complex<double>) { return r(0, 0); });
+                     [](const Eigen::Matrix3cd& r, std::complex<double>) { return r(0, 0); })
+      .zeros;
 }
 
 int zeros_of_determinant(const DrivingPoint& record, double radius) {
   return count_zeros(
-      transform(record, radius, 1024), radius,
-      [](const Eigen::Matrix3cd& r, std::complex<double>) { return r.determinant(); });
+             transform(record, radius, 1024), radius,
+             [](const Eigen::Matrix3cd& r, std::complex<double>) { return r.determinant(); })
+      .zeros;
 }
 
 }  // namespace
@@ -70,4 +72,17 @@ TEST_CASE("zeros are counted on the right side of a circle that they nearly touc
   // Three times the same zero, as a body has that answers alike in all directions.
   CHECK(zeros_of_determinant(with_zeros({std::polar(1.0 - gap, angle)}), 1.0) == 6);
   CHECK(zeros_of_determinant(with_zeros({std::polar(1.0 + gap, angle)}), 1.0) == 0);
+}
+
+TEST_CASE("zeros of noise are not counted for ever, and are said to be unknown") {
+  const MatrixHalfCircle response(1025, Eigen::Matrix3cd::Identity());
+  long calls = 0;
+  // Another argument at every point, however near.
+  const ZeroCount found =
+      count_zeros(response, 1.0, [&](const Eigen::Matrix3cd&, std::complex<double>) {
+        ++calls;
+        return std::polar(1.0, 2.4 * static_cast<double>(calls % 97));
+      });
+  CHECK_FALSE(found.resolved);
+  CHECK(calls <= 2 * 1024 + kMostTurns + 1024 + 1);
 }

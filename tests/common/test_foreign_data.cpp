@@ -1,4 +1,6 @@
 #include <hdf5.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -6,11 +8,13 @@
 #include <string>
 #include <vector>
 
+#include "common/config/toml_reader.hpp"
 #include "common/error.hpp"
 #include "common/hdf5/file.hpp"
 #include "common/model/model_file.hpp"
 #include "tests/common/one_tet_model.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/file_size_limit.hpp"
 
 using Catch::Matchers::ContainsSubstring;
 namespace hdf5 = irdm::hdf5;
@@ -160,4 +164,95 @@ TEST_CASE("links to other files are refused, on every part of a path") {
                     ContainsSubstring("/body is a link to another file"));
   CHECK_THROWS_WITH(file.read<double>("/body/mass", {0}),
                     ContainsSubstring("another file") || ContainsSubstring("has no dataset"));
+}
+
+TEST_CASE("a file that is open elsewhere in this program is read, or is said to be open") {
+  const ForeignFiles files;
+  write_texts(files.create("open.h5").get(), "support", 1, true);
+  const auto opened = [&](H5F_close_degree_t degree) {
+    const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+    H5Pset_fclose_degree(access.get(), degree);
+    return Handle(H5Fopen(files.path("open.h5").c_str(), H5F_ACC_RDONLY, access.get()), H5Fclose);
+  };
+  {
+    const Handle as_h5py = opened(H5F_CLOSE_STRONG);
+    CHECK(hdf5::File::open(files.path("open.h5")).read_string_attribute("/", "support") ==
+          "floating");
+    CHECK(H5Aexists(as_h5py.get(), "support") > 0);  // ours was closed, not theirs
+  }
+  const Handle other = opened(H5F_CLOSE_SEMI);
+  CHECK_THROWS_WITH(hdf5::File::open(files.path("open.h5")),
+                    ContainsSubstring("open.h5: is open elsewhere in this program"));
+}
+
+TEST_CASE("a file that cannot be opened for want of descriptors is not called damaged") {
+  const ForeignFiles files;
+  files.create("sound.h5");
+  rlimit before{};
+  REQUIRE(::getrlimit(RLIMIT_NOFILE, &before) == 0);
+  const rlimit none{3, before.rlim_max};
+  REQUIRE(::setrlimit(RLIMIT_NOFILE, &none) == 0);
+  std::string message;
+  try {
+    hdf5::File::open(files.path("sound.h5"));
+  } catch (const irdm::Error& error) {
+    message = error.what();
+  }
+  ::setrlimit(RLIMIT_NOFILE, &before);
+  CHECK_THAT(message, ContainsSubstring("sound.h5: cannot be opened: Too many open files"));
+  CHECK_NOTHROW(hdf5::File::open(files.path("sound.h5")));
+}
+
+TEST_CASE("a pipe in the place of a file is refused at once") {
+  const ForeignFiles files;
+  REQUIRE(::mkfifo(files.path("pipe").c_str(), 0600) == 0);
+  CHECK_THROWS_WITH(hdf5::File::open(files.path("pipe")),
+                    ContainsSubstring("pipe: is not a regular file"));
+  CHECK_THROWS_WITH(irdm::TomlTable::parse_file(files.path("pipe")),
+                    ContainsSubstring("pipe: is not a regular file"));
+}
+
+TEST_CASE("a text file of absurd size is refused before it is read") {
+  const ForeignFiles files;
+  std::ofstream(files.path("big.toml")) << "[[object]]";
+  std::filesystem::resize_file(files.path("big.toml"), 3'000'000'000);
+  CHECK_THROWS_WITH(irdm::TomlTable::parse_file(files.path("big.toml")),
+                    ContainsSubstring("big.toml: has 3000000000 bytes; give a text file of at most "
+                                      "1048576 bytes"));
+}
+
+TEST_CASE("a file that cannot be created leaves none, and names the cause") {
+  const ForeignFiles files;
+  CHECK_THROWS_WITH(hdf5::File::create(files.path("no/where.h5")),
+                    ContainsSubstring("cannot be created: No such file or directory"));
+  files.create("there.h5");
+  CHECK_THROWS_WITH(hdf5::File::create(files.path("there.h5")),
+                    ContainsSubstring("exists already"));
+  const irdm::test::FileSizeLimit full(10);
+  const auto path = std::filesystem::path(files.path("full.h5"));
+  CHECK_THROWS_WITH(
+      [&] {
+        irdm::ModelFileWriter writer(path);
+        writer.write_description(irdm::test::one_tet_model(3));
+        writer.commit();
+      }(),
+      ContainsSubstring("File too large"));
+  for (const auto& entry : std::filesystem::directory_iterator(path.parent_path())) {
+    CAPTURE(entry.path());
+    CHECK_FALSE(entry.path().filename().string().starts_with("full.h5"));
+  }
+}
+
+TEST_CASE("an empty extent of a shape is a zero in messages") {
+  const ForeignFiles files;
+  {
+    const Handle file = files.create("empty.h5");
+    const hsize_t none = 0;
+    const Handle space(H5Screate_simple(1, &none, nullptr), H5Sclose);
+    const Handle set(H5Dcreate2(file.get(), "numbers", H5T_NATIVE_DOUBLE, space.get(), H5P_DEFAULT,
+                                H5P_DEFAULT, H5P_DEFAULT),
+                     H5Dclose);
+  }
+  CHECK_THROWS_WITH(hdf5::File::open(files.path("empty.h5")).read<double>("/numbers", {0, 3}),
+                    ContainsSubstring("has shape (0), expected (any, 3)"));
 }

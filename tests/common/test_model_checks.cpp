@@ -5,6 +5,7 @@
 #include "common/error.hpp"
 #include "common/model/dense_file.hpp"
 #include "common/model/model_file.hpp"
+#include "common/response/stored_response.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/edited_numbers.hpp"
 #include "tests/support/synthetic_model.hpp"
@@ -182,6 +183,7 @@ TEST_CASE("a dense response that is none is refused, however it is read") {
                            const std::string& message) {
     cube.write_dense<double>();
     edit_numbers(cube.file, kDenseR, change);
+    sign_model(cube.file);
     CAPTURE(message);
     CHECK_THROWS_WITH(read_model(cube.file, ResponseKind::kDense), ContainsSubstring(message));
     CHECK_THROWS_WITH(read_streamed_model(cube.file), ContainsSubstring(message));
@@ -228,4 +230,138 @@ TEST_CASE("a compressed response that is none is refused") {
   cube.refuses_compressed("early_scale", 0, 1e30, "early_scale that is negative");
   cube.refuses_compressed("early", 0, -30000, "gives way against a force");
   cube.refuses_compressed("early", 2, 30000, "not symmetric");
+}
+
+TEST_CASE("a model that was changed after it was written is refused when it is read") {
+  const CubeFile cube;
+  for (const char* set : {"/response/modal/decay_rate", "/response/modal/gravity_rest",
+                          "/response/compressed/amplitude"}) {
+    CAPTURE(set);
+    cube.write(CubeFile::cube());
+    edit_numbers(cube.file, set, [](std::vector<double>& values) { values.back() *= 1.0001; });
+    for (const ResponseKind kind : {ResponseKind::kModal, ResponseKind::kCompressed}) {
+      CHECK_THROWS_WITH(read_model(cube.file, kind),
+                        ContainsSubstring("was changed after it was written"));
+      CHECK_NOTHROW(read_model(cube.file, kind, Checksum::kIgnore));
+    }
+    sign_model(cube.file);
+    CHECK_NOTHROW(read_model(cube.file, ResponseKind::kModal));
+  }
+}
+
+TEST_CASE("dense R that was changed after it was written is refused, however it is read") {
+  const CubeFile cube;
+  const auto change = [&] {
+    const auto dof = static_cast<std::size_t>(CubeFile::cube().degrees_of_freedom());
+    edit_numbers(cube.file, kDenseR, [&](auto& R) { R[(7 * 6 + 2) * dof + 1] *= 1.001; });
+  };
+  const auto refuses = [&](const std::string& message) {
+    CHECK_THROWS_WITH(read_model(cube.file, ResponseKind::kDense), ContainsSubstring(message));
+    CHECK_THROWS_WITH(read_streamed_model(cube.file), ContainsSubstring(message));
+  };
+  const std::string message = "/response/dense/R was changed after it was written: column 7 has";
+  cube.write_dense<float>();
+  change();
+  refuses(message);
+  cube.write_dense<double>();
+  change();
+  refuses(message);
+  const auto R = stored_response(cube.file, CubeFile::cube().degrees_of_freedom(), 6);
+  CHECK_NOTHROW(R->column(6, 6));
+  CHECK_THROWS_WITH(R->column(7, 6), ContainsSubstring(message));
+  // The checksums of the columns are themselves part of the content.
+  take_away(cube.file, kDenseColumnChecksum);
+  refuses("was changed after it was written: its content_sha256");
+}
+
+TEST_CASE("a model of before there were checksums is read") {
+  const CubeFile cube;
+  cube.write_dense<double>();
+  take_away(cube.file, kDenseColumnChecksum);
+  sign_model(cube.file);  // as it was before columns had some
+  CHECK_NOTHROW(read_model(cube.file, ResponseKind::kDense));
+  CHECK_NOTHROW(read_streamed_model(cube.file));
+  take_away(cube.file, "content_sha256");
+  CHECK_NOTHROW(read_model(cube.file, ResponseKind::kDense));
+  cube.write(CubeFile::cube());
+  take_away(cube.file, "content_sha256");
+  CHECK_NOTHROW(read_model(cube.file, ResponseKind::kModal));
+}
+
+TEST_CASE("dense R whose first step is not that of the body's mass and dt is refused") {
+  const CubeFile cube;
+  const auto dof = static_cast<std::size_t>(CubeFile::cube().degrees_of_freedom());
+  cube.write_dense<double>();
+  edit_numbers(cube.file, kDenseR, [&](auto& R) { R[5 * 6 * dof + 5] *= -0.01; });
+  sign_model(cube.file);
+  CHECK_THROWS_WITH(read_model(cube.file, ResponseKind::kDense),
+                    ContainsSubstring("gives way against the force on degree of freedom 5"));
+  cube.write_dense<double>();
+  set_attribute(cube.file, "/response", "dt", 1e-5);
+  sign_model(cube.file);
+  const std::string message = "gives way in the first step more than the mass of a node and dt";
+  CHECK_THROWS_WITH(read_model(cube.file, ResponseKind::kDense), ContainsSubstring(message));
+  CHECK_THROWS_WITH(read_streamed_model(cube.file), ContainsSubstring(message));
+}
+
+TEST_CASE("modes of a body with another support are refused") {
+  const CubeFile cube;
+  Model model = synthetic_cube(1, 4, 6);
+  add_centrifugal(model);
+  const auto write_and_read = [&] {
+    cube.write(model);
+    return read_model(cube.file, ResponseKind::kModal);
+  };
+  CHECK_NOTHROW(write_and_read());
+  model.body.support = Support::kFixed;
+  CHECK_THROWS_WITH(write_and_read(), ContainsSubstring("support is fixed, but the modes are those "
+                                                        "of a floating body"));
+  auto& response = std::get<ModalResponse>(model.response);
+  std::get<RowMatrix<double>>(response.shapes).topRows(3).setZero();
+  CHECK_NOTHROW(write_and_read());  // a clamped node: of a version without gravity
+  response.centrifugal.resize(0, 0);
+  add_gravity(model);
+  CHECK_NOTHROW(write_and_read());
+  model.body.support = Support::kFloating;
+  CHECK_THROWS_WITH(write_and_read(), ContainsSubstring("support is floating, but the modes are "
+                                                        "those of a fixed body"));
+}
+
+TEST_CASE("types are part of what a model must be") {
+  const CubeFile cube;
+  const auto refused = [&](const std::string& message) {
+    CAPTURE(message);
+    CHECK_THROWS_WITH(read_description(hdf5::File::open(cube.file)), ContainsSubstring(message));
+    cube.write(CubeFile::cube());
+  };
+  retype(cube.file, "/mesh/triangles", H5T_NATIVE_DOUBLE, 0.7);
+  refused("dataset /mesh/triangles does not hold integers");
+  retype(cube.file, "/mesh/nodes", H5T_NATIVE_INT32);
+  refused("dataset /mesh/nodes does not hold floating-point numbers");
+  replace_attribute(cube.file, "/response", "steps", 50.5);
+  refused("attribute steps at /response is not an integer");
+  replace_attribute(cube.file, "/", "version", 1.9);
+  refused("attribute version at / is not an integer");
+  cube.write_dense<double>();
+  retype(cube.file, kDenseR, H5T_NATIVE_INT32);
+  CHECK_THROWS_WITH(read_model(cube.file, ResponseKind::kDense),
+                    ContainsSubstring("does not hold floating-point numbers"));
+  CHECK_THROWS_WITH(
+      stored_response(cube.file, CubeFile::cube().degrees_of_freedom(), 6)->column(0, 6),
+      ContainsSubstring("does not hold floating-point numbers"));
+}
+
+TEST_CASE("units are part of what a model must be") {
+  const CubeFile cube;
+  const auto refused = [&](const char* object, const char* name, const char* unit,
+                           const std::string& message) {
+    cube.write(CubeFile::cube());
+    replace_attribute(cube.file, object, name, std::string(unit));
+    CAPTURE(message);
+    CHECK_THROWS_WITH(read_description(hdf5::File::open(cube.file)), ContainsSubstring(message));
+  };
+  refused("/mesh/nodes", "unit", "mm", "attribute unit of /mesh/nodes is 'mm', not 'm'");
+  refused("/response", "units", "dt: ms", "attribute units of /response is 'dt: ms', not 'dt: s'");
+  refused("/response/modal/centrifugal", "unit", "g", "attribute unit of /response/modal/centri");
+  refused("/response/modal/centrifugal", "order", "zz yy xx yz xz xy", "attribute order of ");
 }

@@ -1,5 +1,8 @@
+#include <cmath>
+
 #include "common/config/toml_reader.hpp"
 #include "common/error.hpp"
+#include "common/number_text.hpp"
 #include "tests/support/catch.hpp"
 
 using Catch::Matchers::ContainsSubstring;
@@ -98,4 +101,25 @@ TEST_CASE("what a message quotes of a file has no control characters") {
 
 TEST_CASE("configuration reader says when the file is missing") {
   CHECK_THROWS_AS(TomlTable::parse_file("no-such-file.toml"), Error);
+}
+
+TEST_CASE("a number that is barely outside is not printed as the bound that it is not") {
+  const irdm::Range range = irdm::between(1e-15, 1.0);
+  CHECK(irdm::outside_text(range, std::nextafter(1e-15, 0.0)) ==
+        "is 9.9999999999999998e-16, not a finite number >= 1e-15 and <= 1");
+  CHECK(irdm::outside_text(range, 2.0) == "is 2, not a finite number >= 1e-15 and <= 1");
+}
+
+TEST_CASE("an address of IPv6 has brackets before its port") {
+  CHECK(irdm::address_text("::1", 48121) == "[::1]:48121");
+  CHECK(irdm::address_text("127.0.0.1", 7) == "127.0.0.1:7");
+}
+
+TEST_CASE("a list of whole numbers takes no other numbers") {
+  CHECK(parse("a = [1, 2, 3]").integers("a", 3, 1, 9) == std::vector<int>{1, 2, 3});
+  CHECK_THROWS_WITH(parse("a = [2.0, 2, 2]").integers("a", 3, 1, 9),
+                    ContainsSubstring("a is not a whole number"));
+  CHECK_THROWS_WITH(parse("a = [0, 2, 2]").integers("a", 3, 1, 9), ContainsSubstring("a is 0"));
+  CHECK_THROWS_WITH(parse("a = [2, 2]").integers("a", 3, 1, 9),
+                    ContainsSubstring("a has 2 entries"));
 }

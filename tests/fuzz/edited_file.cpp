@@ -87,8 +87,8 @@ void make_dataset(hid_t file, const std::string& name, hid_t type, hid_t space) 
 
 void edit_dataset(hid_t file, const std::string& name, Choices& choices) {
   constexpr hssize_t kMostElements = 1 << 16;
-  enum { kRemove, kNumber, kReshape, kRetype, kGroup };
-  const int what = choices.byte() % 5;
+  enum { kRemove, kNumber, kReshape, kRetype, kGroup, kExternal, kVirtual };
+  const int what = choices.byte() % 7;
   Handle set(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose);
   const Handle space(H5Dget_space(set.get()), H5Sclose);
   const Handle type(H5Dget_type(set.get()), H5Tclose);
@@ -113,17 +113,47 @@ void edit_dataset(hid_t file, const std::string& name, Choices& choices) {
     if (numbers)
       H5Dwrite(again.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
   }
+  if (what == kExternal || what == kVirtual) {
+    const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+    if (what == kExternal) {
+      H5Pset_external(creation.get(), "/etc/hostname", 0, H5F_UNLIMITED);
+    } else {
+      H5Pset_virtual(creation.get(), space.get(), "gone.h5", "/gone", space.get());
+    }
+    Handle(H5Dcreate2(file, name.c_str(), type.get(), space.get(), H5P_DEFAULT, creation.get(),
+                      H5P_DEFAULT),
+           H5Dclose);
+  }
   if (what == kGroup)
     Handle(H5Gcreate2(file, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
 }
 
+/// A list of texts, of fixed or of variable length.
+void make_texts(hid_t owner, const std::string& name, Choices& choices) {
+  const std::string text = choices.text();
+  const bool variable = choices.byte() % 2 == 0;
+  const hsize_t count = 1 + 17 * (choices.byte() % 200);
+  const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+  H5Tset_size(type.get(), variable ? H5T_VARIABLE : text.size() + 1);
+  const Handle space(H5Screate_simple(1, &count, nullptr), H5Sclose);
+  const Handle attribute(
+      H5Acreate2(owner, name.c_str(), type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  const std::vector<const char*> pointers(count, text.c_str());
+  std::string all;
+  for (hsize_t i = 0; i < count; ++i) all.append(text.c_str(), text.size() + 1);
+  const void* values = all.data();
+  if (variable) values = pointers.data();
+  H5Awrite(attribute.get(), type.get(), values);
+}
+
 void edit_attribute(hid_t file, const std::string& object, const std::string& name,
                     Choices& choices) {
-  enum { kRemove, kNumber, kText, kShape, kVariableText };
-  const int what = choices.byte() % 5;
+  enum { kRemove, kNumber, kText, kShape, kVariableText, kTexts };
+  const int what = choices.byte() % 6;
   const Handle owner(H5Oopen(file, object.c_str(), H5P_DEFAULT), H5Oclose);
   H5Adelete(owner.get(), name.c_str());
   if (what == kRemove) return;
+  if (what == kTexts) return make_texts(owner.get(), name, choices);
   const Handle scalar(H5Screate(H5S_SCALAR), H5Sclose);
   Handle type(H5Tcopy(what == kNumber || what == kShape ? H5T_NATIVE_DOUBLE : H5T_C_S1), H5Tclose);
   const std::string text = what == kText || what == kVariableText ? choices.text() : std::string();

@@ -153,7 +153,9 @@ TEST_CASE("configuration refuses each bad mesh entry") {
   check_refused("[mesh]\nbox = { size = [1, 1, 1], cells = [1, 0, 3] }\n" + kMaterialTable,
                 "cells is 0");
   check_refused("[mesh]\nbox = { size = [1, 1, 1], cells = [1, 1.5, 3] }\n" + kMaterialTable,
-                "not whole");
+                "cells is not a whole number");
+  check_refused("[mesh]\nbox = { size = [1, 1, 1], cells = [2.0, 1, 3] }\n" + kMaterialTable,
+                "cells is not a whole number");
   check_refused("[mesh]\nbox = { size = [1, 1, 1], cells = [1, 1, 3], x = 1 }\n" + kMaterialTable,
                 "mesh.box.x is not a known key");
   check_refused(kMesh + "unit = \"mm\"\n" + kMaterialTable, "unit belongs to a mesh file");

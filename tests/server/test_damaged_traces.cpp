@@ -166,3 +166,40 @@ TEST_CASE("a trace whose dt is none is refused") {
     CHECK_THROWS_WITH(read_trace_header(trace.whole), ContainsSubstring("has a dt of "));
   }
 }
+
+TEST_CASE("a trace with flags and states that do not exist is refused with set and step") {
+  const DamagedTrace trace;
+  trace.refuses("/step/reset", 30, 9, "/step/reset of step 30 is 9, not from 0 to 1");
+  trace.refuses("/stylus/1/present", 30, 3, "/stylus/1/present of step 30 is 3, not from 0 to 1");
+  trace.refuses("/object/one/stylus/0/contact", 30, 7,
+                "/object/one/stylus/0/contact of step 30 is 7, not from 0 to 2");
+  trace.refuses("/object/two/stylus/0/slipping", 30, 2, "slipping of step 30 is 2");
+  trace.refuses("/settings/object/0/inertial_loading", 0, 2, "inertial_loading of step 0 is 2");
+  trace.refuses_absurd("/step/time", 40, 40);
+}
+
+TEST_CASE("a trace that says it has more steps than rows, or lacks a group, is refused") {
+  const DamagedTrace trace;
+  trace.refuses("/committed", 0, DamagedTrace::kSteps + 1,
+                "says that it has 121 steps and has 120 rows");
+  for (const std::string group : {"/late", "/bridged", "/settings"}) {
+    std::filesystem::copy_file(trace.whole, trace.damaged,
+                               std::filesystem::copy_options::overwrite_existing);
+    take_away(trace.damaged, group);
+    CHECK_THROWS_WITH(trace.read(trace.damaged), ContainsSubstring("has no dataset " + group));
+  }
+  std::filesystem::copy_file(trace.whole, trace.damaged,
+                             std::filesystem::copy_options::overwrite_existing);
+  replace_attribute(trace.damaged, "/stylus/0/tip", "unit", std::string("mm"));
+  CHECK_THROWS_WITH(trace.read(trace.damaged),
+                    ContainsSubstring("attribute unit of /stylus/0/tip is 'mm', not 'm'"));
+}
+
+TEST_CASE("what is wrong after the last step that is read does not matter") {
+  const DamagedTrace trace;
+  set_number(trace.whole, "/object/two/body_position", 3 * 100, kNan);
+  set_number(trace.whole, "/late/force", 3 * (trace.numbers("/late/force_step").size() - 1), kNan);
+  CHECK_THROWS_WITH(trace.read(trace.whole), ContainsSubstring(" is nan"));
+  const Recording begin(trace.whole, trace.config, {"one", "two"}, 90);
+  CHECK(begin.steps() == 90);
+}

@@ -69,3 +69,48 @@ TEST_CASE("a full disk ends the recording with an error, and disturbs nobody") {
              ContainsSubstring("trace.h5") && ContainsSubstring("check free space"));
   CHECK(recorder.lost() == 0);
 }
+
+TEST_CASE("a trace that is removed, cut off or replaced while it is written is noticed at once") {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "in" / "trace.h5";
+  std::filesystem::create_directory(folder.path() / "in");
+  StepSink sink(RecorderThread::kQueueCapacity, {1, 2});
+  RecorderThread recorder(path, header(1), sink);
+  recorder.start();
+  for (std::size_t k = 0; k < 600; ++k) {
+    REQUIRE(eventually([&] { return sink.has_room(); }));
+    sink.put(record(k));
+  }
+  REQUIRE(eventually([&] { return recorder.rows() == 600; }));
+  CHECK_FALSE(recorder.failed());
+  std::string message;
+  SECTION("removed") {
+    std::filesystem::remove(path);
+    message = "trace.h5: was removed while it was written";
+  }
+  SECTION("its folder moved away") {
+    std::filesystem::rename(folder.path() / "in", folder.path() / "out");
+    message = "trace.h5: was removed while it was written";
+  }
+  SECTION("cut off") {
+    std::filesystem::resize_file(path, 1000);
+    message = "trace.h5: was cut off while it was written";
+  }
+  SECTION("replaced") {
+    std::filesystem::copy_file(path, folder.path() / "copy.h5");
+    std::filesystem::rename(folder.path() / "copy.h5", path);
+    message = "trace.h5: was replaced by another file while it was written";
+  }
+  CHECK(eventually([&] { return recorder.failed(); }));  // without another step
+  CHECK_THAT(recorder.error(), ContainsSubstring(message));
+  recorder.finish();
+}
+
+TEST_CASE("a trace that cannot be begun leaves no file, and names the cause") {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "trace.h5";
+  const rlim_t room = GENERATE(0, 10, 3000, 50'000);
+  const FileSizeLimit full(room);
+  CHECK_THROWS_WITH(TraceWriter(path, header(1)), ContainsSubstring("File too large"));
+  CHECK_FALSE(std::filesystem::exists(path));
+}

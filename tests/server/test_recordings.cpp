@@ -5,6 +5,7 @@
 #include "server/viewer_session/recordings.hpp"
 #include "tests/server/records.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/eventually.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using Catch::Matchers::ContainsSubstring;
@@ -63,4 +64,17 @@ TEST_CASE("what cannot be recorded is refused with the reason") {
   Recordings twice(folder.path(), header(2));
   twice.begin();
   CHECK_THROWS_WITH(twice.begin(), ContainsSubstring("already"));
+}
+
+TEST_CASE("a recording that fails is known to have failed before it is ended") {
+  const TemporaryFolder folder;
+  Recordings recordings(folder.path(), header(2));
+  recordings.begin();
+  CHECK_FALSE(recordings.failed());
+  for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
+    std::filesystem::remove(entry.path());
+  }
+  CHECK(eventually([&] { return recordings.failed(); }));
+  CHECK_THROWS_WITH(recordings.end(), ContainsSubstring("was removed while it was written"));
+  CHECK_FALSE(recordings.recording());
 }

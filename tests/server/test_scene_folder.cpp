@@ -101,3 +101,14 @@ TEST_CASE("a rigid body and a file that is no model, as scenes") {
   write_text(folder.path() / "text.h5", "no model");
   CHECK_THROWS_WITH(model_scene(folder.path() / "text.h5"), ContainsSubstring("text.h5"));
 }
+
+TEST_CASE("a scene of absurd size is listed without being read, and refused by its size") {
+  const TemporaryFolder folder;
+  write_text(folder.path() / "big.toml");
+  std::filesystem::resize_file(folder.path() / "big.toml", 3'000'000'000);
+  write_text(folder.path() / "zeros.toml", "");
+  std::filesystem::resize_file(folder.path() / "zeros.toml", 3'000'000'000);
+  CHECK(scenes_in(folder.path()) == SceneNames{"big.toml"});
+  CHECK_THROWS_WITH(scene_in(folder.path(), "big.toml"),
+                    ContainsSubstring("big.toml: has 3000000000 bytes"));
+}

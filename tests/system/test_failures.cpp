@@ -246,6 +246,19 @@ TEST_CASE("a disk that gets full while a server records: it says so, and ends in
   CHECK(committed_so_far(path) > 0);
 }
 
+TEST_CASE("a trace whose folder is removed while it is recorded: said at once, status 1") {
+  const Stage stage;
+  std::filesystem::create_directory(stage.path("in"));
+  const std::filesystem::path path = stage.path("in") / "trace.h5";
+  Server server = stage.start_server({"--record", path.string()});
+  std::filesystem::remove_all(stage.path("in"));
+  CHECK_THAT(server.process.line_with("recording ended early", true),
+             ContainsSubstring("trace.h5: was removed while it was written"));
+  CHECK(server.process.running());
+  server.process.signal(SIGTERM);
+  CHECK(server.process.wait() == 1);
+}
+
 #ifndef IRDM_THREAD_SANITIZED  // ThreadSanitizer has a file of its own, which has no room either
 TEST_CASE("a disk without room for a trace: one error, and no trace") {
   const Stage stage;

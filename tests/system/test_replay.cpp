@@ -366,3 +366,17 @@ TEST_CASE("irdm-replay refuses what it cannot make again, in one line") {
             ": is not a run file; make one with irdm-replay TRACE.h5 --output RUN.h5\n");
   CHECK(run_to_end({IRDM_REPLAY}).status == 2);
 }
+
+TEST_CASE("irdm-replay --end: what is wrong with a later step does not refuse those before it") {
+  const Stage stage;
+  record(stage, true);
+  const std::filesystem::path trace = stage.path("trace.h5");
+  const hsize_t rows = hdf5::File::open(trace).shape("/step/time")[0];
+  REQUIRE(rows > 100);
+  set_number(trace, "/step/body_position", 3 * (rows - 1), std::nan(""));
+  CHECK(run_replay(trace, {}).status == 1);
+  const FinishedProgram part = run_replay(trace, {"--end", "0.1"});
+  CHECK(part.status == 0);
+  CHECK_THAT(part.err, StartsWith("irdm-replay: warning: only the steps up to --end are read: "));
+  CHECK_THAT(part.out, ContainsSubstring(": 50 steps of 0.002 s"));
+}

@@ -181,7 +181,9 @@ Report check_model(const std::filesystem::path& path, const CheckOptions& option
     const Model model = read_description(hdf5::File::open(path));
     loop.dt = model.dt;
     rigid = is_rigid(model);
-    return region_lines(model);
+    Report lines = surface_lines(model);
+    append(lines, region_lines(model));
+    return lines;
   });
   if (failed_lines(report).find("description") != std::string::npos) return report;
   if (rigid) {

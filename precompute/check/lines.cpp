@@ -1,7 +1,9 @@
 #include "precompute/check/lines.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 
 #include "common/model/content_checksum.hpp"
@@ -9,6 +11,7 @@
 #include "precompute/check/static_reference.hpp"
 #include "precompute/check/wave_speed.hpp"
 #include "precompute/mesh/material_regions.hpp"
+#include "precompute/mesh/surface.hpp"
 #include "precompute/modal/residual_compliance.hpp"
 
 namespace irdm::precompute {
@@ -174,6 +177,35 @@ Report region_lines(const Model& model) {
         {name_of(region), coarse ? Verdict::kWarn : Verdict::kOk, format_region(region)});
   }
   return lines;
+}
+
+namespace {
+
+// Each with its smallest node first, the same way round; sorted.
+std::vector<std::array<int, 3>> sorted_triangles(const Triangles& triangles) {
+  std::vector<std::array<int, 3>> sorted;
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
+    std::array<int, 3> nodes{triangles(t, 0), triangles(t, 1), triangles(t, 2)};
+    std::ranges::rotate(nodes, std::ranges::min_element(nodes));
+    sorted.push_back(nodes);
+  }
+  std::ranges::sort(sorted);
+  return sorted;
+}
+
+}  // namespace
+
+Report surface_lines(const Model& model) {
+  const Surface surface =
+      extract_surface({model.mesh.nodes, model.mesh.tets, {}}, "the model's mesh");
+  const auto expected = sorted_triangles(surface.triangles);
+  const auto found = sorted_triangles(model.mesh.triangles);
+  if (surface.nodes == model.mesh.surface_nodes && expected == found) return {};
+  std::vector<std::array<int, 3>> wrong;
+  std::ranges::set_difference(found, expected, std::back_inserter(wrong));
+  return {
+      {"surface", Verdict::kFail,
+       text("%zu of %zu triangles are no outer faces of elements", wrong.size(), found.size())}};
 }
 
 Line residual_line(const ModalResponse& response) {

@@ -21,6 +21,8 @@ Line modes_line(const ModalResponse& response, const Material& material);
 Line residual_line(const ModalResponse& response);
 /// What each region is made of, and whether it has elements enough; none of a body of one material.
 Report region_lines(const Model& model);
+/// Whether the triangles are the outer faces of the elements; nothing where they are.
+Report surface_lines(const Model& model);
 Line reciprocity_line(const Reciprocity& reciprocity);
 /// Static compliance and momentum of some columns against finite elements assembled again.
 Report static_lines(const Model& model, const StoredResponse& R);

@@ -1,7 +1,9 @@
 #include <fstream>
+#include <span>
 
 #include "common/hdf5/file.hpp"
 #include "common/model/model_file.hpp"
+#include "precompute/check/lines.hpp"
 #include "tests/check/dense_file.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/child_process.hpp"
@@ -129,4 +131,20 @@ TEST_CASE("check refuses what is no model file and what is wrong usage") {
   CHECK(run({"a.h5", "--hand-mass", "0"}).status == 2);
   CHECK(run({"a.h5", "--delay", "-1"}).status == 2);
   CHECK(run({"--help"}).status == 0);
+}
+
+TEST_CASE("check fails a surface that is not that of the elements") {
+  const test::TemporaryFolder folder;
+  const auto path = folder.path() / "cube.h5";
+  Model model = DenseCube(10).model;
+  CHECK(precompute::surface_lines(model).empty());
+  // Two nodes change their places in all triangles: still closed and outward.
+  for (int& node : std::span(model.mesh.triangles.data(),
+                             static_cast<std::size_t>(model.mesh.triangles.size()))) {
+    if (node < 2) node = 1 - node;
+  }
+  const precompute::Report lines = precompute::surface_lines(model);
+  REQUIRE(lines.size() == 1);
+  CHECK(lines[0].verdict == precompute::Verdict::kFail);
+  CHECK_THAT(lines[0].found, ContainsSubstring("triangles are no outer faces of elements"));
 }

@@ -116,7 +116,7 @@ void edit_dataset(hid_t file, const std::string& name, Choices& choices) {
   if (what == kExternal || what == kVirtual) {
     const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
     if (what == kExternal) {
-      H5Pset_external(creation.get(), "/etc/hostname", 0, H5F_UNLIMITED);
+      H5Pset_external(creation.get(), "gone.raw", 0, H5F_UNLIMITED);
     } else {
       H5Pset_virtual(creation.get(), space.get(), "gone.h5", "/gone", space.get());
     }

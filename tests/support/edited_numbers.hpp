@@ -50,7 +50,7 @@ inline void set_attribute(const std::filesystem::path& path, const std::string& 
   }
 }
 
-/// Gives a set or an attribute of one number, with the same value, another type.
+/// Gives a set another type; `offset` is added to its numbers.
 inline void retype(const std::filesystem::path& path, const std::string& set, hid_t type,
                    double offset = 0.0) {
   using hdf5::Handle;

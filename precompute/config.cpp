@@ -73,6 +73,8 @@ double default_force(const SoftBody& body, double youngs_modulus) {
 namespace {
 
 constexpr int kMostModes = 20'000;
+constexpr double kSmallestModesError = 1e-4;
+constexpr double kLargestModesError = 0.5;
 
 ModeSolver solver_from_word(const std::string& word) {
   static const std::map<std::string, ModeSolver> words{
@@ -82,23 +84,30 @@ ModeSolver solver_from_word(const std::string& word) {
   return words.at(word);
 }
 
+double read_error(TomlTable& table) {
+  const double error = table.number("error", between(0.0, kLargestModesError));
+  if (error > 0.0 && error < kSmallestModesError) {
+    table.fail("error", "is below 1e-4", "make it 1e-4 or more, or 0 for all modes");
+  }
+  return error;
+}
+
 }  // namespace
 
 ModesConfig read_modes(TomlTable table) {
   ModesConfig modes;
   if (table.has("count") + table.has("highest_frequency") + table.has("error") > 1) {
-    table.fail("", "has more than one of count, highest_frequency and error",
-               "choose one, or none for all modes");
+    table.fail("", "has more than one of count, highest_frequency and error", "choose one");
   }
   if (table.has("count")) modes.count = table.integer("count", 1, kMostModes, 1);
   if (table.has("highest_frequency")) {
     modes.highest_frequency = table.number("highest_frequency", lab::kFrequency);
   }
-  if (table.has("error")) modes.error = table.number("error", between(1e-4, 0.5));
+  if (table.has("error")) modes.error = read_error(table);
   for (const char* key : {"contact_radius", "solver"}) {
     if (table.has(key) && modes.all()) {
       table.fail(key, "is there but all modes are asked for",
-                 "give one of count, highest_frequency and error, or leave it out");
+                 "give one of count, highest_frequency and an error above 0, or leave it out");
     }
   }
   modes.contact_radius = table.number("contact_radius", lab::kLength, modes.contact_radius);
@@ -297,8 +306,10 @@ Method method_from_word(const std::string& word) {
 PrecomputeConfig read_config(TomlTable root, const std::string& name) {
   PrecomputeConfig config;
   config.name = name;
-  config.mesh = read_mesh_config(root.table("mesh", true));
-  if (root.table("material", true).boolean("rigid", false)) {
+  const bool rigid = root.table("material", true).boolean("rigid", false);
+  // A rigid body gains nothing from more nodes, and contacts between objects cost more with them.
+  config.mesh = read_mesh_config(root.table("mesh", true), rigid ? 1 : config.mesh.order);
+  if (rigid) {
     read_rigid_body(root, config);
   } else {
     read_soft_body(root, config);

@@ -51,18 +51,25 @@ enum class ModeSolver {
 };
 
 /// [modes]: which of the elastic modes are computed. At most one of `count`, `highest_frequency`
-/// and `error`; none: all of them.
+/// and `error`; none: all of them, or fewer where all would take over a minute (see
+/// default_modes()).
 struct ModesConfig {
   std::optional<int> count;                 ///< the lowest so many, 1..20 000
   std::optional<double> highest_frequency;  ///< all up to this [Hz], > 0
-  /// As few as keep the force under a fingertip within this share of that of all modes, 1e-4..0.5.
+  /// As few as keep the force under a fingertip within this share of that of all modes, 1e-4..0.5;
+  /// 0: all of them.
   std::optional<double> error;
+  /// Largest number of modes with which `error` is tried; the response keeps that many where they
+  /// do not reach it. None: half of all modes, which are refused where they do not reach it.
+  std::optional<int> most;
   /// Of that fingertip [m], > 0. What the missing modes would add is kept for nodes up to twice as
   /// far apart.
   double contact_radius = 0.015;
   ModeSolver solver = ModeSolver::kSpectra;
 
-  bool all() const { return !count && !highest_frequency && !error; }
+  /// Whether the configuration says which modes.
+  bool given() const { return count || highest_frequency || error; }
+  bool all() const { return !count && !highest_frequency && error.value_or(0.0) == 0.0; }
 };
 
 /// Throws Error with file and line.

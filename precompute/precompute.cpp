@@ -26,6 +26,7 @@
 #include "precompute/mesh/surface.hpp"
 #include "precompute/mesh/tet_mesh.hpp"
 #include "precompute/modal/elastic_statics.hpp"
+#include "precompute/modal/element_error.hpp"
 #include "precompute/modal/lowest_modes.hpp"
 #include "precompute/modal/modal_method.hpp"
 #include "precompute/modal/reduced_modes.hpp"
@@ -34,11 +35,8 @@
 namespace irdm::precompute {
 namespace {
 
-// Above this, linear tetrahedra are far too stiff: they lock (docs/results.md).
-constexpr double kLockingPoissonRatio = 0.45;
 constexpr double kMaxDecayLeft = 0.01;
 constexpr double kMaxForceError = 0.05;
-constexpr std::size_t kManyNodes = 2500;  // whose modes take minutes
 
 void warn(const std::string& text) {
   std::cerr << "irdm-precompute: warning: " << text << std::endl;
@@ -172,19 +170,10 @@ bool shares_modes(const PrecomputeConfig& config) {
 }
 
 // All modes, or some; nothing on another rank than the first, which only helps.
-ModalResponse chosen_modes(const PrecomputeConfig& config, const TetMesh& mesh,
-                           const std::vector<int>& clamped, const Model& model, int threads,
-                           const Ranks& ranks, const Console& console) {
-  if (config.modes.all()) {
-    const std::size_t moving = static_cast<std::size_t>(mesh.node_count()) - clamped.size();
-    if (config.response.storage == Storage::kModal && moving >= kManyNodes) {
-      console.line(
-          "modes: some of them, within 1 %, save minutes: add the two lines `[modes]` and "
-          "`error = 0.01` to " +
-          config.name);
-    }
-    return compute_modes(mesh, clamped, model, console);
-  }
+ModalResponse modes_of(const PrecomputeConfig& config, const TetMesh& mesh,
+                       const std::vector<int>& clamped, const Model& model, int threads,
+                       const Ranks& ranks, const Console& console) {
+  if (config.modes.all()) return compute_modes(mesh, clamped, model, console);
   if (!shares_modes(config)) {
     return compute_reduced_modes(mesh, clamped, model, config.modes, threads, console);
   }
@@ -277,21 +266,19 @@ std::string display_text(const Model& model) {
          number_text(away) + " mm off the surface";
 }
 
-double largest_poisson_ratio(const Material& material) {
-  const std::vector<double>& own = material.elements.poisson_ratio;
-  return own.empty() ? material.poisson_ratio : std::ranges::max(own);
+void warn_of_elements(const TetMesh& mesh, const Material& material, const Console& console) {
+  if (const auto hint = locking_hint(mesh.order(), material)) warn(*hint);
+  const ElementReport report = report_elements(mesh, material);
+  console.line("elements: " + report.found);
+  if (report.warning) warn(*report.warning);
 }
 
 // Before anything is computed.
 void warn_of_input(const PrecomputeConfig& config, const TetMesh& mesh, const Model& model,
-                   const Summary& summary) {
+                   const Summary& summary, const Console& console) {
   if (const auto hint = unit_hint(summary.mesh.extent)) warn(*hint);
-  if (config.mesh.order == 1 && largest_poisson_ratio(model.material) > kLockingPoissonRatio) {
-    warn(
-        "poisson_ratio above 0.45: linear tetrahedra lock, the body comes out too stiff; use "
-        "mesh.order = 2 with half the cells an edge");
-  }
   if (config.rigid) return;
+  warn_of_elements(mesh, model.material, console);
   int number = 0;
   for (const MaterialRegion& region : config.regions) {
     if (const auto hint = step_hint(mesh, region, ++number)) warn(*hint);
@@ -312,10 +299,11 @@ void warn_of_result(const Summary& summary) {
 
 }  // namespace
 
-Summary precompute_model(const PrecomputeConfig& config, const std::filesystem::path& output,
+Summary precompute_model(const PrecomputeConfig& given, const std::filesystem::path& output,
                          const Console& console, const std::optional<ColumnRange>& slice,
                          const Ranks& ranks) {
   const auto start = std::chrono::steady_clock::now();
+  PrecomputeConfig config = given;
   const bool stepping = config.response.method == Method::kTimeStepping;
   check_modes(config);
   check_rigid(config, slice, ranks);
@@ -326,6 +314,9 @@ Summary precompute_model(const PrecomputeConfig& config, const std::filesystem::
   }
   const std::vector<int> clamped = clamped_nodes(config, mesh, model);
   const ColumnRange columns = wanted_columns(config, model, slice, ranks);
+  const int unknowns = 3 * (mesh.node_count() - static_cast<int>(clamped.size()));
+  const bool fewer = takes_fewer_modes(config, unknowns);
+  if (fewer) config.modes = fewer_modes();
   check_resources(config, mesh, model, columns.count(), output);
   console.line("mesh: " + std::to_string(mesh.node_count()) + " nodes, " +
                std::to_string(mesh.tet_count()) + " tetrahedra, " +
@@ -333,7 +324,8 @@ Summary precompute_model(const PrecomputeConfig& config, const std::filesystem::
   if (!model.display.empty()) console.line(display_text(model));
 
   Summary summary = describe_work(mesh, model, clamped.size());
-  if (ranks.rank() == 0) warn_of_input(config, mesh, model, summary);
+  if (fewer) console.line(fewer_modes_text(unknowns));
+  if (ranks.rank() == 0) warn_of_input(config, mesh, model, summary, console);
   const int threads = config.threads > 0 ? config.threads : omp_get_num_procs();
   const auto by_columns = [&](const ColumnSource& source) {
     const ColumnsDone done =

@@ -176,20 +176,20 @@ Report check_model(const std::filesystem::path& path, const CheckOptions& option
   Report report;
   run_part(report, "checksum", "", [&] { return Report{checksum_line(file)}; });
   HandLoop loop{options.hand, 0.0, 1};
-  bool rigid = false;
+  Model model;
   run_part(report, "description", "", [&] {
-    const Model model = read_description(hdf5::File::open(path));
+    model = read_description(hdf5::File::open(path));
     loop.dt = model.dt;
-    rigid = is_rigid(model);
     Report lines = surface_lines(model);
     append(lines, region_lines(model));
     return lines;
   });
   if (failed_lines(report).find("description") != std::string::npos) return report;
-  if (rigid) {
+  if (is_rigid(model)) {
     report.push_back({"response", Verdict::kNone, "the body is rigid"});
     return report;
   }
+  run_part(report, "elements", "", [&] { return Report{elements_line(model)}; });
   loop.delay = loop_delay(options.delay < 0.0 ? loop.dt : options.delay, loop.dt);
   const bool modal = file.exists("/response/modal");
   const bool dense = file.exists("/response/dense");

@@ -12,6 +12,7 @@
 #include "precompute/check/wave_speed.hpp"
 #include "precompute/mesh/material_regions.hpp"
 #include "precompute/mesh/surface.hpp"
+#include "precompute/modal/element_error.hpp"
 #include "precompute/modal/residual_compliance.hpp"
 
 namespace irdm::precompute {
@@ -206,6 +207,17 @@ Report surface_lines(const Model& model) {
   return {
       {"surface", Verdict::kFail,
        text("%zu of %zu triangles are no outer faces of elements", wrong.size(), found.size())}};
+}
+
+Line elements_line(const Model& model) {
+  const TetMesh mesh{model.mesh.nodes, model.mesh.tets, {}};
+  const ElementReport elements = report_elements(mesh, model.material);
+  const std::string found = elements.warning.value_or(elements.found);
+  if (const auto locking = locking_hint(mesh.order(), model.material)) {
+    return {"elements", Verdict::kWarn, found + "; " + *locking};
+  }
+  if (elements.warning) return {"elements", Verdict::kWarn, found};
+  return {"elements", elements.compared ? Verdict::kOk : Verdict::kNone, found};
 }
 
 Line residual_line(const ModalResponse& response) {

@@ -23,6 +23,9 @@ Line residual_line(const ModalResponse& response);
 Report region_lines(const Model& model);
 /// Whether the triangles are the outer faces of the elements; nothing where they are.
 Report surface_lines(const Model& model);
+/// How far the elements are from finer ones, and whether they lock; the mesh and material of the
+/// file.
+Line elements_line(const Model& model);
 Line reciprocity_line(const Reciprocity& reciprocity);
 /// Static compliance and momentum of some columns against finite elements assembled again.
 Report static_lines(const Model& model, const StoredResponse& R);

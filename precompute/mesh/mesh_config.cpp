@@ -75,7 +75,7 @@ double read_unit(TomlTable& table, double fallback) {
   return words.at(table.choice("unit", {"m", "cm", "mm"}, "m"));
 }
 
-MeshConfig read_mesh_config(TomlTable table) {
+MeshConfig read_mesh_config(TomlTable table, int default_order) {
   MeshConfig mesh;
   if (table.has("box") + table.has("sphere") + table.has("capsule") + table.has("file") != 1) {
     table.fail("", "has not exactly one of box, sphere, capsule and file",
@@ -86,7 +86,7 @@ MeshConfig read_mesh_config(TomlTable table) {
   if (table.has("sphere")) mesh.source = read_sphere(table.table("sphere"));
   if (table.has("capsule")) mesh.source = read_capsule(table.table("capsule"));
   if (table.has("file")) read_file(table, mesh);
-  mesh.order = table.integer("order", 1, 2, mesh.order);
+  mesh.order = table.integer("order", 1, 2, default_order);
   table.finish();
   return mesh;
 }

@@ -39,9 +39,9 @@ struct MeshConfig {
   double unit = 1.0;
   /// Target edge length of the tetrahedra of a surface [m], > 0; none: its triangles are kept.
   std::optional<double> edge_length;
-  /// 1: linear, 2: quadratic tetrahedra, whose mid-side nodes are made here; cells are those of the
-  /// tetrahedra, so that 6 cells an edge have the surface nodes of 12 linear ones
-  int order = 1;
+  /// 1: linear, 2: quadratic tetrahedra, whose mid-side nodes are made here. Cells are those of the
+  /// tetrahedra: 6 cells an edge of order 2 have the surface nodes of 12 cells of order 1.
+  int order = 2;
 };
 
 /// The length of the unit of a file that table key `unit` names [m]: "m" | "cm" | "mm".
@@ -49,6 +49,7 @@ struct MeshConfig {
 double read_unit(TomlTable& table, double fallback);
 
 /// Throws Error with file and line.
-MeshConfig read_mesh_config(TomlTable table);
+/// @param default_order of the tetrahedra, where the table has no key `order`
+MeshConfig read_mesh_config(TomlTable table, int default_order);
 
 }  // namespace irdm::precompute

@@ -1,6 +1,7 @@
 #include "precompute/mesh/tet_mesh.hpp"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <utility>
 #include <vector>
@@ -59,6 +60,45 @@ TetMesh quadratic_mesh(const TetMesh& linear) {
   }
   mesh.groups = linear.groups;
   for (auto& [name, group] : mesh.groups) add_middles(group, middles);
+  return mesh;
+}
+
+namespace {
+
+// The octahedron in the middle of a split tetrahedron: two opposite nodes, and the four others in
+// the order in which they surround them, so that the four tetrahedra have positive volumes.
+struct Octahedron {
+  std::array<int, 2> diagonal;
+  std::array<int, 4> ring;
+};
+constexpr std::array<Octahedron, 3> kOctahedra{
+    {{{4, 9}, {5, 6, 7, 8}}, {{5, 7}, {6, 4, 8, 9}}, {{6, 8}, {4, 5, 9, 7}}}};
+constexpr std::array<std::array<int, 4>, 4> kCornerChildren{
+    {{0, 4, 6, 7}, {4, 1, 5, 8}, {6, 5, 2, 9}, {7, 8, 9, 3}}};
+
+}  // namespace
+
+TetMesh split_mesh(const TetMesh& quadratic) {
+  TetMesh mesh;
+  mesh.nodes = quadratic.nodes;
+  mesh.tets.resize(8 * quadratic.tets.rows(), 4);
+  Eigen::Index child = 0;
+  for (int e = 0; e < quadratic.tet_count(); ++e) {
+    const auto node = [&](int local) { return quadratic.tets(e, local); };
+    const auto add = [&](int a, int b, int c, int d) {
+      mesh.tets.row(child++) << node(a), node(b), node(c), node(d);
+    };
+    for (const auto& [a, b, c, d] : kCornerChildren) add(a, b, c, d);
+    const auto length = [&](const Octahedron& o) {
+      return (mesh.position(node(o.diagonal[0])) - mesh.position(node(o.diagonal[1]))).norm();
+    };
+    const Octahedron& shortest = *std::min_element(
+        kOctahedra.begin(), kOctahedra.end(),
+        [&](const Octahedron& a, const Octahedron& b) { return length(a) < length(b); });
+    for (std::size_t k = 0; k < 4; ++k) {
+      add(shortest.diagonal[0], shortest.diagonal[1], shortest.ring[k], shortest.ring[(k + 1) % 4]);
+    }
+  }
   return mesh;
 }
 

@@ -103,4 +103,9 @@ int drop_unused_nodes(TetMesh& mesh);
 /// elements meet their edges. Groups get the middles of their edges as well.
 TetMesh quadratic_mesh(const TetMesh& linear);
 
+/// Eight linear tetrahedra for each quadratic one, at its ten nodes: half the edges, the same
+/// nodes. Curved edges become two straight ones. Child k of element e is element 8 e + k. No
+/// groups.
+TetMesh split_mesh(const TetMesh& quadratic);
+
 }  // namespace irdm::precompute

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "common/model/model_writer.hpp"
@@ -14,6 +15,18 @@ namespace irdm::precompute {
 
 /// How long all modes will take on this machine, with what else it does now [s].
 double all_modes_seconds(int unknowns);
+
+/// Whether modes are left out by default: the configuration says nothing about them, they are all
+/// that R is made of, and all of them would take over a minute.
+/// @param unknowns degrees of freedom that are not clamped
+bool takes_fewer_modes(const PrecomputeConfig& config, int unknowns);
+
+/// The modes by default where takes_fewer_modes(): as few as keep the force under a fingertip
+/// within 1 % of that of all, and not so many that finding them takes minutes.
+ModesConfig fewer_modes();
+
+/// One line that says so, why, and how long both would take.
+std::string fewer_modes_text(int unknowns);
 
 /// All modes of the model, at its surface, in double precision, and what loads on the whole body
 /// do to them; says on the console how long it may take and takes. Throws Error.

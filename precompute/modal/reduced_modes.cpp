@@ -57,7 +57,7 @@ class Choice {
   ModalResponse of(const ModesConfig& config) const {
     if (config.count) return by_count(*config.count);
     if (config.highest_frequency) return by_frequency(*config.highest_frequency);
-    return by_error(*config.error);
+    return by_error(*config.error, config.most);
   }
 
  private:
@@ -78,9 +78,10 @@ class Choice {
     }
   }
 
-  ModalResponse by_error(double error) const {
+  ModalResponse by_error(double error, std::optional<int> bound) const {
+    const int most = std::min(bound.value_or(most_), most_);
     int below = 0;  // so many are too few
-    for (int count = std::min(kFirstTry, most_);; count = std::min(2 * count, most_)) {
+    for (int count = std::min(kFirstTry, most);; count = std::min(2 * count, most)) {
       const ModalResponse modes = lowest(count);
       const auto good = [&](int tried) {
         return dies_away(modes.angular_frequency(tried)) &&
@@ -94,7 +95,8 @@ class Choice {
         }
         return smoothly_cut(modes, enough);
       }
-      if (count == most_) too_many("more than " + std::to_string(most_));
+      if (count == most && bound) return smoothly_cut(modes, most);
+      if (count == most) too_many("more than " + std::to_string(most));
       below = count;
     }
   }

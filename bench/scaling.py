@@ -23,6 +23,7 @@ import matplotlib.pyplot as plt  # noqa: E402
 CONFIG = """
 [mesh]
 box = {{ size = [0.12, 0.12, 0.12], cells = [{cells}, {cells}, {cells}] }}
+order = 1
 [material]
 youngs_modulus = 2000.0
 poisson_ratio = 0.49

@@ -57,6 +57,7 @@ class CScene {
     precompute::PrecomputeConfig config;
     config.name = name;
     config.mesh.source = precompute::BoxConfig{Vector3::Constant(size), {cells_, cells_, cells_}};
+    config.mesh.order = 1;
     config.rigid = rigid;
     config.material = {5000.0, 0.4, 110.0, 8.0, 2e-4};
     config.response.dt = 0.002;

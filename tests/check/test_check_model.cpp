@@ -49,6 +49,7 @@ TEST_CASE("a model of which modes are left out passes, unless what they add coul
   PrecomputeConfig config;
   config.name = "cube";
   config.mesh.source = BoxConfig{Vector3::Constant(0.12), {4, 4, 4}};
+  config.mesh.order = 1;
   config.material = {2000.0, 0.4, 110.0, 8.0, 2e-4};
   config.modes.count = 60;
   precompute_model(config, path, console);

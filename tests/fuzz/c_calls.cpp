@@ -25,6 +25,7 @@ const std::string& scene_text() {
     precompute::PrecomputeConfig config;
     config.name = "cube";
     config.mesh.source = precompute::BoxConfig{Vector3::Constant(0.12), {1, 1, 1}};
+    config.mesh.order = 1;
     config.material = {5000.0, 0.4, 110.0, 8.0, 2e-4};
     config.response.dt = 0.002;
     config.response.steps = 50;

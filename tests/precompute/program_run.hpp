@@ -13,7 +13,8 @@
 
 namespace irdm::test {
 
-inline const std::string kBox = "[mesh]\nbox = { size = [0.12, 0.1, 0.08], cells = [3, 2, 2] }\n";
+inline const std::string kBox =
+    "[mesh]\nbox = { size = [0.12, 0.1, 0.08], cells = [3, 2, 2] }\norder = 1\n";
 inline const std::string kProgramMaterial =
     "[material]\nyoungs_modulus = 2000\npoisson_ratio = 0.3\ndensity = 110\n";
 inline const std::string kMsh =

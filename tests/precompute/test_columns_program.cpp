@@ -20,7 +20,7 @@ using irdm::test::file_content;
 namespace {
 
 const std::string kStepping =
-    "[mesh]\nbox = { size = [0.12, 0.1, 0.08], cells = [2, 2, 1] }\n"
+    "[mesh]\nbox = { size = [0.12, 0.1, 0.08], cells = [2, 2, 1] }\norder = 1\n"
     "[material]\nyoungs_modulus = 2000\npoisson_ratio = 0.3\ndensity = 110\n"
     "[response]\nsteps = 40\nstorage = \"dense\"\nmethod = \"time-stepping\"\n";
 constexpr int kDof = 54;

@@ -104,7 +104,9 @@ TEST_CASE("the tissue with an inclusion has a ball of tetrahedra under its top")
 
 TEST_CASE("configuration has defaults for damping and response") {
   const PrecomputeConfig config = read(kMesh + kMaterialTable);
-  CHECK(config.mesh.order == 1);
+  CHECK(config.mesh.order == 2);
+  CHECK(read(kMesh + "order = 1\n" + kMaterialTable).mesh.order == 1);
+  CHECK(read(kMesh + "[material]\nrigid = true\ndensity = 110\n").mesh.order == 1);
   CHECK(config.material.rayleigh_alpha == 8.0);
   CHECK(config.material.rayleigh_beta == 2e-4);
   CHECK(config.response.dt == 0.002);
@@ -328,6 +330,9 @@ TEST_CASE("configuration takes all modes, or some by one of three measures") {
   };
   CHECK(read(kMesh + kMaterialTable).modes.all());
   CHECK(modes("").all());
+  CHECK(!modes("").given());
+  CHECK(modes("error = 0\n").all());
+  CHECK(modes("error = 0\n").given());
   CHECK(modes("count = 300\n").count == 300);
   CHECK(modes("highest_frequency = 400.0\n").highest_frequency == 400.0);
   CHECK(modes("error = 0.01\ncontact_radius = 0.01\n").error == 0.01);
@@ -345,6 +350,7 @@ TEST_CASE("configuration takes all modes, or some by one of three measures") {
   refused("count = 1.5\n", "modes.count is not a whole number");
   refused("highest_frequency = 0\n", "modes.highest_frequency is 0");
   refused("error = 0.6\n", "modes.error is 0.6");
+  refused("error = 1e-5\n", "modes.error is below 1e-4");
   refused("count = 3\nerror = 0.1\n", "more than one of count, highest_frequency and error");
   refused("contact_radius = 0.01\n", "modes.contact_radius is there but all modes are asked for");
   refused("error = 0.1\ncontact_radius = 0\n", "modes.contact_radius is 0");

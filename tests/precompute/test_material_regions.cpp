@@ -188,7 +188,8 @@ namespace {
 
 std::string box_config(const std::string& more, const std::string& mesh = "cells = [6, 6, 4] }") {
   return "[mesh]\nbox = { size = [0.09, 0.09, 0.06], " + mesh +
-         "\n[material]\nyoungs_modulus = 3000\npoisson_ratio = 0.3\ndensity = 1000\n" + more;
+         "\norder = 1\n[material]\nyoungs_modulus = 3000\npoisson_ratio = 0.3\ndensity = 1000\n" +
+         more;
 }
 
 struct Made : irdm::test::TemporaryFolder {

@@ -170,6 +170,10 @@ TEST_CASE("modes are chosen by frequency and by error", "[slow]") {
   ModesConfig fewer;
   fewer.count = 10;
   CHECK(cube.reduced(fewer).residual.reduction.force_error > enough.residual.reduction.force_error);
+  ModesConfig bounded;
+  bounded.error = 1e-4;
+  bounded.most = 10;
+  CHECK(cube.reduced(bounded).mode_count() == 10);
 }
 
 TEST_CASE("some of the modes and their residual are the same for any number of threads") {

@@ -165,7 +165,7 @@ TEST_CASE("two ranks make the model file of one process with Spectra", "[program
   const irdm::test::TemporaryFolder folder;
   const auto run = [&](std::vector<std::string> command, const std::string& solver) {
     std::ofstream(folder.path() / (solver + ".toml"))
-        << "[mesh]\nbox = { size = [0.12, 0.1, 0.08], cells = [6, 5, 4] }\n"
+        << "[mesh]\nbox = { size = [0.12, 0.1, 0.08], cells = [6, 5, 4] }\norder = 1\n"
            "[material]\nyoungs_modulus = 2000\npoisson_ratio = 0.3\ndensity = 110\n"
            "[response]\nsteps = 40\nprecision = \"double\"\n[modes]\ncount = 20\nsolver = \""
         << solver << "\"\n";

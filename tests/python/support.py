@@ -14,7 +14,7 @@ folder = tempfile.TemporaryDirectory(prefix="irdm-test-")
 
 def cube_config(**more):
     config = {
-        "mesh": {"box": {"size": [0.12, 0.12, 0.12], "cells": [3, 3, 3]}},
+        "mesh": {"box": {"size": [0.12, 0.12, 0.12], "cells": [3, 3, 3]}, "order": 1},
         "material": {"youngs_modulus": 5000.0, "poisson_ratio": 0.4, "density": 110.0},
         "response": {"dt": 0.002, "steps": 100},
     }

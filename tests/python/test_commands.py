@@ -33,7 +33,7 @@ def running(pid):
 class PrecomputeTest(unittest.TestCase):
     def test_progress(self):
         seen = []
-        config = cube_config(mesh={"box": {"size": [0.1, 0.1, 0.1], "cells": [4, 4, 4]}})
+        config = cube_config(mesh={"box": {"size": [0.1, 0.1, 0.1], "cells": [4, 4, 4]}, "order": 1})
         config["response"]["storage"] = "dense"
         model = irdm.precompute(config, progress=lambda text, fraction: seen.append((text, fraction)), threads=1)
         self.assertIn(1.0, [fraction for _, fraction in seen])
@@ -77,7 +77,7 @@ class PrecomputeTest(unittest.TestCase):
         """Ctrl-C: KeyboardInterrupt, no program and no file left."""
         program = textwrap.dedent("""
             import sys, irdm
-            config = {"mesh": {"box": {"size": [0.1, 0.1, 0.1], "cells": [11, 11, 11]}},
+            config = {"mesh": {"box": {"size": [0.1, 0.1, 0.1], "cells": [11, 11, 11]}, "order": 1},
                       "material": {"youngs_modulus": 5000.0, "poisson_ratio": 0.4, "density": 110.0}}
             try:
                 irdm.precompute(config, sys.argv[1], progress=lambda text, fraction: print(text, flush=True))

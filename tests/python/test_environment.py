@@ -11,7 +11,7 @@ from irdm.environment import Lift, Palpate
 def tissue():
     """A block with a stiff ball in it, fixed by its underside; the centre of mass is all but in the middle."""
     config = cube_config(
-        mesh={"box": {"size": [0.09, 0.09, 0.036], "cells": [10, 10, 4]}},
+        mesh={"box": {"size": [0.09, 0.09, 0.036], "cells": [5, 5, 2]}},
         material={"youngs_modulus": 4000.0, "poisson_ratio": 0.45, "density": 1000.0, "rayleigh_alpha": 10.0},
         region=[{"ball": {"centre": [0.063, 0.054, 0.024], "radius": 0.012}, "youngs_modulus": 60000.0}],
         support={"half_space": {"point": [0, 0, 0], "normal": [0, 0, 1]}},

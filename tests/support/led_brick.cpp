@@ -22,6 +22,7 @@ Model computed_brick() {
   precompute::PrecomputeConfig config;
   config.name = "brick";
   config.mesh.source = precompute::BoxConfig{kSize, {5, 4, 3}};
+  config.mesh.order = 1;
   config.material = {kOf, 0.45, 300.0, 8.0, 2e-4};
   config.response.steps = 50;
   const TemporaryFolder folder;

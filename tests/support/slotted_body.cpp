@@ -85,6 +85,7 @@ std::shared_ptr<const Model> slotted_body(const SlottedBody& body, ResponseKind 
   precompute::PrecomputeConfig config;
   config.name = "slotted body";
   config.mesh.source = folder.path() / "body.msh";
+  config.mesh.order = 1;
   config.material = {body.youngs_modulus, 0.3, 300.0, body.rayleigh_alpha, body.rayleigh_beta};
   config.response.dt = body.dt;
   config.response.steps = 400;

@@ -170,9 +170,9 @@ bool shares_modes(const PrecomputeConfig& config) {
 }
 
 // All modes, or some; nothing on another rank than the first, which only helps.
-ModalResponse modes_of(const PrecomputeConfig& config, const TetMesh& mesh,
-                       const std::vector<int>& clamped, const Model& model, int threads,
-                       const Ranks& ranks, const Console& console) {
+ModalResponse chosen_modes(const PrecomputeConfig& config, const TetMesh& mesh,
+                           const std::vector<int>& clamped, const Model& model, int threads,
+                           const Ranks& ranks, const Console& console) {
   if (config.modes.all()) return compute_modes(mesh, clamped, model, console);
   if (!shares_modes(config)) {
     return compute_reduced_modes(mesh, clamped, model, config.modes, threads, console);

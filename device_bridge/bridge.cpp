@@ -41,7 +41,7 @@ std::string percentiles_text(const Histogram& histogram) {
 
 std::string to_text(const BridgeReport& report) {
   const auto& [servo, client, scheduling, styluses, peak_force, impulse, peak_torque, filter,
-               device_fault] = report;
+               device_fault, withheld] = report;
   const std::uint64_t reconnects = client.sessions > 0 ? client.sessions - 1 : 0;
   std::ostringstream text;
   text << std::fixed << std::setprecision(3);
@@ -74,6 +74,7 @@ std::string to_text(const BridgeReport& report) {
   text << "; safety filter: " << filter.demands << " forces and " << filter.readings
        << " readings not used, force dropped " << filter.trips << " times, faults " << filter.faults
        << '\n';
+  if (withheld > 0) text << "force withheld in " << withheld << " steps: server late\n";
   return text.str();
 }
 
@@ -301,6 +302,7 @@ BridgeReport run_bridge(const BridgeConfig& config, StopSignal& stop_signal, dou
     report.peak_force = std::max(report.peak_force, loop.peak_force());
     report.impulse += loop.impulse();
     report.peak_torque = std::max(report.peak_torque, loop.peak_torque());
+    report.withheld += loop.withheld();
     const FilterCounts counts = loop.counts();
     report.filter.readings += counts.readings;
     report.filter.demands += counts.demands;

@@ -23,6 +23,9 @@ struct BridgeReport {
   FilterCounts filter = {};  ///< of all styluses
   /// A device or its driver ended the run; then client.failure says how.
   bool device_fault = false;
+  /// Steps in contact whose force faded as the server's contact models did not reach them, of all
+  /// styluses.
+  std::uint64_t withheld = 0;
 };
 
 /// A few lines for a person, each `name: values`.

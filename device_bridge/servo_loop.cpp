@@ -30,7 +30,7 @@ void ServoLoop::restart(bool link_matters) noexcept {
   filter_ = SafetyFilter(limits);
   arm();
   clutch_ = Clutch{};
-  contact_.reset();
+  hold();
   reading_.reset();
   applied_ns_.reset();
   demanded_ = ForceDemand{};

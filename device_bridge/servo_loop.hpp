@@ -37,9 +37,15 @@ class ServoLoop {
 
   /// From here on the contact is solved here, from the server's models; until restart() or hold().
   /// @param dt of the server's step [s]  @param tick_ns between two ticks
-  void predict(double dt, std::int64_t tick_ns) noexcept { contact_.emplace(dt, tick_ns); }
+  void predict(double dt, std::int64_t tick_ns) noexcept {
+    hold();
+    contact_.emplace(dt, tick_ns);
+  }
   /// From here on the server's forces are shown as they come.
-  void hold() noexcept { contact_.reset(); }
+  void hold() noexcept {
+    withheld_ = withheld();
+    contact_.reset();
+  }
 
   /// Reads the device.
   /// @param device_time as for HapticDevice::read() [s]
@@ -84,6 +90,10 @@ class ServoLoop {
   double peak_torque() const noexcept { return peak_torque_; }  ///< shown so far [N m], D
   /// Of all sessions.
   FilterCounts counts() const noexcept;
+  /// BridgeContact::withheld(), of all sessions.
+  std::uint64_t withheld() const noexcept {
+    return withheld_ + (contact_ ? contact_->withheld() : 0);
+  }
   HapticDevice& device() noexcept { return device_; }
   /// Tip as it was read last, not a number if of no use [m], D.
   Vector3 reading() const noexcept { return reading_.value_or(pose_.tip); }
@@ -131,7 +141,8 @@ class ServoLoop {
   double impulse_ = 0.0;
   double peak_torque_ = 0.0;
   std::optional<std::int64_t> applied_ns_;  ///< time of the last apply() since restart()
-  FilterCounts counts_;                     ///< of the sessions before
+  FilterCounts counts_;                     ///< of the sessions before; and the next
+  std::uint64_t withheld_ = 0;
 };
 
 }  // namespace irdm

@@ -111,6 +111,7 @@ ViewerConfig read_viewer(TomlTable table, std::optional<double> radius) {
 WorldConfig read_world(TomlTable table) {
   WorldConfig config;
   config.gravity = read_vector(table, "gravity", lab::kGravity);
+  config.bound = table.number("bound", between(0.1, 1000.0), config.bound);
   table.finish();
   return config;
 }

@@ -56,6 +56,8 @@ struct ViewerConfig {
 /// [world]
 struct WorldConfig {
   Vector3 gravity = Vector3::Zero();  ///< [m/s^2], W
+  /// Positions of styluses with a component beyond it are not used, 0.1..1000 [m], W.
+  double bound = 10.0;
 };
 
 /// [contact]

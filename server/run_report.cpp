@@ -2,6 +2,9 @@
 
 #include <cstdio>
 #include <iostream>
+#include <string>
+
+#include "server/threads/status_thread.hpp"
 
 namespace irdm {
 namespace {
@@ -64,6 +67,10 @@ int print_report(const FinishedRun& run) {
   faults("forces of bridges that came late, entered at their own step", force.late);
   faults("forces of bridges that were lost", force.lost);
   faults("forces of bridges above their stylus' max_force, lowered to it", force.bounded);
+  if (force.withheld > 0) std::cout << withheld_line(force.withheld) << '\n';
+  for (std::size_t s = 0; s < force.faults.size(); ++s) {
+    for (const std::string& line : fault_lines(s, {}, force.faults[s])) std::cout << line << '\n';
+  }
   faults("forces of bridges reduced, since they would put in more energy than hands gave",
          force.limited);
   if (run.columns.any()) {

@@ -87,6 +87,7 @@ std::unique_ptr<StepClock> ServerRun::make_clock() {
 
 std::unique_ptr<Viewers> ServerRun::make_viewers() {
   const ViewerConfig& viewer = run_.scene.viewer;
+  force_.set_position_bound(run_.scene.world.bound);
   if (run_.viewer_stylus) {
     force_.add_viewer_stylus(
         {run_.simulation.dt(), viewer.stylus.coupling_stiffness, viewer.max_force});

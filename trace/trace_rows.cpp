@@ -72,8 +72,9 @@ ContactRows::ContactRows(const hdf5::File& file, const RowReader& reader, const 
   check.flags(path + "/slipping", slipping);
   check.numbers(path + "/force", force, 3);
   check.numbers(path + "/proxy", proxy, 3);
-  check.numbers(path + "/offset", offset, 3, lab::kPlace);
-  check.numbers(path + "/arm_shift", arm_shift, 3, lab::kPlace);
+  check.numbers(path + "/offset", offset, 3);
+  check.numbers(path + "/arm_shift", arm_shift, 3);
+  leave_out_implausible();
   for (std::size_t k = 0; k < state.size(); ++k) {
     if (state[k] == 0) continue;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -82,6 +83,15 @@ ContactRows::ContactRows(const hdf5::File& file, const RowReader& reader, const 
                   "use the model that it was recorded with");
     }
     check.weights(path + "/contact_weights", weights, k);
+  }
+}
+
+// A stylus that was where no hand is drew its contact just as far; there is none in such a step.
+void ContactRows::leave_out_implausible() {
+  for (std::size_t i = 0; i < offset.size(); ++i) {
+    if (lab::kPlace.contains(offset[i]) && lab::kPlace.contains(arm_shift[i])) continue;
+    state[i / 3] = 0;
+    offset[i] = arm_shift[i] = 0.0;
   }
 }
 

@@ -50,7 +50,8 @@ class AppliedHistory {
       const std::uint64_t step = applied.step - static_cast<std::uint64_t>(i);
       Entry& entry = entries_[step % kKept];
       if (entry.step != kNoStep && entry.step > step) continue;
-      entry = {step, applied.past[static_cast<std::size_t>(i)]};
+      const std::uint64_t base = entry.step == step ? entry.base : applied.base;
+      entry = {step, base, applied.past[static_cast<std::size_t>(i)]};
     }
     if (applied.count == 0) return;
     if (newest_ == kNoStep || applied.step > newest_) newest_ = applied.step;
@@ -61,6 +62,8 @@ class AppliedHistory {
   std::uint64_t newest() const noexcept { return newest_; }
   /// The newest contact model that anything of it rests on, by its step.
   std::uint64_t base() const noexcept { return base_; }
+  /// The contact model that a step rests on which find() knows, by its step.
+  std::uint64_t base_of(std::uint64_t step) const noexcept { return entries_[step % kKept].base; }
   /// What was done in a step; null when it is not known, or not any more.
   const AppliedForce* find(std::uint64_t step) const noexcept {
     const Entry& entry = entries_[step % kKept];
@@ -70,6 +73,7 @@ class AppliedHistory {
  private:
   struct Entry {
     std::uint64_t step = kNoStep;
+    std::uint64_t base = 0;
     AppliedForce applied;
   };
   std::array<Entry, kKept> entries_;

@@ -47,7 +47,7 @@ PartText probe_text() noexcept {
 }
 
 bool is_probe(std::span<const std::uint8_t> text) noexcept {
-  return text.size() >= kPartHeaderSize && text[1] == 0;
+  return text.size() == kLargestText && without_zeros(text).empty();
 }
 
 FrameAssembly::Incomplete* FrameAssembly::find(std::uint64_t first, std::size_t parts) {

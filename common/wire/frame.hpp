@@ -109,6 +109,7 @@ PartText part_text(std::span<const std::uint8_t> frame, std::size_t part) noexce
 /// Asks the other end for one of these: no part of a frame, and as large as a datagram can be, so
 /// that a path which lets through only smaller ones is found out.
 PartText probe_text() noexcept;
+/// Whether it is one: zeros only, and as many.
 bool is_probe(std::span<const std::uint8_t> text) noexcept;
 
 /// Puts frames together from texts that come in any order, and perhaps not all. So many frames may

@@ -33,6 +33,10 @@ void BridgeContact::receive(const ContactModel& model, std::int64_t now_ns) noex
   pacer_.hear(model.step, model.newest == kNoStep ? std::nullopt : std::optional(model.newest),
               in_contact_, now_ns);
   predictor_.receive(model);
+  // A pacer that waits for a slow server solves nothing meanwhile, and its force is as good as it
+  // was.
+  if (wanted_.any)
+    wanted_.content_ns = std::max(wanted_.content_ns, pacer_.end_of(model.step, now_ns));
 }
 
 // A tip that several steps share has come to where it is evenly. In steps that ended before the
@@ -72,7 +76,10 @@ void BridgeContact::shown(const Vector3& force) noexcept {
 void BridgeContact::solve(std::uint64_t k, std::int64_t now_ns, const Vector3& tip) noexcept {
   const ContactPredictor::Answer answer = predictor_.solve(k, tip);
   remember(k, tip);
-  if (!answer.known) return;  // what was wanted last grows old
+  if (!answer.known) {  // what was wanted last grows old
+    withheld_ += in_contact_ ? 1 : 0;
+    return;
+  }
   in_contact_ = answer.state != ContactState::kFree;
   wanted_ = {.any = true,
              .content_ns = std::max(wanted_.content_ns, pacer_.end_of(newest_model_, now_ns)),

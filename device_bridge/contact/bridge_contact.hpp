@@ -46,6 +46,8 @@ class BridgeContact {
   const AppliedForces& applied() const noexcept { return applied_; }
   /// By how many steps it is ahead of the newest model; 0 without one.
   std::uint64_t lookahead() const noexcept;
+  /// Steps in contact that no model reached: their force faded.
+  std::uint64_t withheld() const noexcept { return withheld_; }
 
  private:
   void solve(std::uint64_t k, std::int64_t now_ns, const Vector3& tip) noexcept;
@@ -63,6 +65,7 @@ class BridgeContact {
   int steps_a_tick_;         ///< at least 1
   int ended_ = 0;            ///< steps that were solved in the last tick
   bool in_contact_ = false;  ///< in the last step that anything is known of
+  std::uint64_t withheld_ = 0;
   AppliedForces applied_;
   AppliedHistory history_;           ///< of what was in applied_
   std::optional<Vector3> last_tip_;  ///< at the end of the last step; none: it begins anew

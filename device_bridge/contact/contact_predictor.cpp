@@ -150,7 +150,10 @@ ContactPredictor::Answer ContactPredictor::solve(std::uint64_t k, const Vector3&
   last_step_ = k;
   const Vector3 tip_before = std::exchange(last_tip_, tip).value_or(tip);
   silent_ = silent_ || !reaches(k);
-  if (!reaches(k)) return answer;
+  if (!reaches(k)) {  // what the device still shows acts where it did
+    hold(k);
+    return answer;
+  }
   answer.known = true;
   const double share_of_it = share(k);
   if (!model_.valid) return answer;

@@ -27,7 +27,8 @@ class ContactPredictor {
   static constexpr double kReturn = 0.5;  ///< [s]
 
   struct Answer {
-    bool known = false;               ///< false: there is no model that reaches this step
+    /// False: there is no model that reaches this step; a contact goes on as after hold().
+    bool known = false;
     Vector3 force = Vector3::Zero();  ///< on the object [N], W; of step k
     ContactState state = ContactState::kFree;
     Vector3 normal = Vector3::Zero();  ///< outward, of the surface; W

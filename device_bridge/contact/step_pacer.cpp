@@ -13,6 +13,9 @@ constexpr std::int64_t kLeast = 0;
 constexpr std::int64_t kReserve = 1;
 // What is borne of either while in contact.
 constexpr std::int64_t kTolerance = 8;
+// Ahead of a server that is slower than real time; beyond it, its contact models would not reach
+// the bridge's steps much longer [s].
+constexpr double kLongestLead = 0.02;
 // Ahead of the server, beyond which nothing fits together any more [steps].
 constexpr std::uint64_t kFarthest = 200;
 // For how many steps all forces have to be early before some of that is given up.
@@ -21,7 +24,10 @@ constexpr std::uint64_t kPatience = 100;
 }  // namespace
 
 StepPacer::StepPacer(double dt, std::int64_t tick_ns) noexcept
-    : dt_ns_(std::max<std::int64_t>(1, std::llround(1e9 * dt))), tick_ns_(tick_ns) {}
+    : dt_ns_(std::max<std::int64_t>(1, std::llround(1e9 * dt))),
+      tick_ns_(tick_ns),
+      longest_lead_(std::max(kLeast + kReserve + kTolerance + 1,
+                             static_cast<std::int64_t>(std::llround(kLongestLead / dt)))) {}
 
 void StepPacer::hear(std::uint64_t step, std::optional<std::uint64_t> newest, bool in_contact,
                      std::int64_t now_ns) noexcept {
@@ -49,6 +55,8 @@ void StepPacer::keep_pace(std::uint64_t step, std::int64_t lead, bool in_contact
   std::int64_t change = 0;
   if (lead < kLeast - tolerance) {
     change = std::min<std::int64_t>(kLeast - lead, kMost);
+  } else if (lead > longest_lead_) {
+    change = kLeast + kReserve + tolerance - lead;
   } else if (step >= *first_heard_ + kPatience) {
     const std::int64_t wanted = kLeast + kReserve;
     if (least_lead_ > wanted + tolerance) change = wanted - least_lead_;

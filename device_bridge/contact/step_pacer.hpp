@@ -9,8 +9,9 @@ namespace irdm {
 /// its forces need on their way, so that each is there for its own step: when one comes late, it
 /// hurries on, and when all of them come early for a while, it waits for a step. A hand in contact
 /// would feel that as a blow, so there it is put off: what comes a little late is entered at its
-/// own step afterwards. Clocks are never compared: what the server had when it made a step says it
-/// all. Pure, real-time safe.
+/// own step afterwards. A server whose steps take longer than real time is waited for at once.
+/// Clocks are never compared: what the server had when it made a step says it all. Pure, real-time
+/// safe.
 class StepPacer {
  public:
   /// @param dt of a step [s], > 0  @param tick_ns between two calls of due()
@@ -42,6 +43,7 @@ class StepPacer {
 
   std::int64_t dt_ns_;
   std::int64_t tick_ns_;
+  std::int64_t longest_lead_;  ///< [steps]
   bool running_ = false;
   std::uint64_t step_ = 0;
   std::int64_t next_end_ns_ = 0;    ///< of step_ + 1

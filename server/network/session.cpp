@@ -3,6 +3,9 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <string>
 #include <utility>
 
 #include "common/number_text.hpp"
@@ -96,8 +99,8 @@ void Session::greet(const wire::Hello& hello) {
                   "the server has " + styluses_text(static_cast<std::size_t>(settings.styluses)));
   }
   std::uint32_t capabilities = wire::kCapabilityReport | wire::kCapabilityTorque;
-  const bool simulated_link = (hello.capabilities & wire::kCapabilitySimulatedLink) != 0;
-  if (settings.contact_models && (!settings.lockstep || simulated_link)) {
+  simulated_link_ = (hello.capabilities & wire::kCapabilitySimulatedLink) != 0;
+  if (settings.contact_models && (!settings.lockstep || simulated_link_)) {
     capabilities |= wire::kCapabilityContactModel;
   }
   if (settings.lockstep) capabilities |= wire::kCapabilitySimulatedLink;
@@ -168,11 +171,31 @@ void Session::take(const wire::SampleMessage& message) {
   if (message.stylus < first_ || message.stylus >= first_ + count_) {
     unexpected("a sample of a stylus that is not its own");
   }
+  if (shared_.settings.lockstep) check_lockstep(message);
   if (!shared_.slots.put(message.stylus, message.sample, monotonic_ns())) {
     shared_.stats.samples_old.fetch_add(1);
     throw ProtocolError(ProtocolFault::kBackward, "a sample that is not newer than the last");
   }
   shared_.stats.samples.fetch_add(1);
+}
+
+// Sample k is that of time (k + 1) dt. Behind a simulated link it is of when it was sent.
+void Session::check_lockstep(const wire::SampleMessage& message) const {
+  constexpr std::int64_t kRoundingNs = 1000;
+  const std::uint64_t next = shared_.slots.next_sequence(message.stylus);
+  const std::uint64_t sequence = message.sample.sequence;
+  if (sequence > next) {
+    unexpected("sample " + std::to_string(sequence) + " where sample " + std::to_string(next) +
+               " is due; in lockstep send one for each step");
+  }
+  const double time_ns = static_cast<double>(sequence + 1) * shared_.settings.dt * 1e9;
+  if (simulated_link_ || std::abs(message.sample.time_ns - std::llround(time_ns)) <= kRoundingNs) {
+    return;
+  }
+  throw ProtocolError(ProtocolFault::kBadValue,
+                      "sample " + std::to_string(sequence) + " has the time " +
+                          std::to_string(message.sample.time_ns) + " ns; in lockstep it is " +
+                          std::to_string(std::llround(time_ns)) + " ns, (sequence + 1) dt");
 }
 
 void Session::take(const wire::Report& report) {

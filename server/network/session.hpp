@@ -65,6 +65,7 @@ class Session {
   void greet(const wire::Hello& hello);
   void offer_datagrams();
   void take(const wire::SampleMessage& message);
+  void check_lockstep(const wire::SampleMessage& message) const;
   void take(const wire::Report& report);
   void take(const wire::AppliedForcesMessage& message);
   void send_model(int slot);
@@ -85,6 +86,7 @@ class Session {
   bool left_ = false;  ///< its bridge said goodbye
   bool wants_status_ = false;
   bool wants_torque_ = false;
+  bool simulated_link_ = false;
   int first_ = 0;  ///< its slots
   int count_ = 0;
 };

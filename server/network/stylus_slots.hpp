@@ -55,6 +55,11 @@ class StylusSlots {
 
   /// Hands a sample over; false when it is not newer than the last one of this session.
   bool put(int slot, const StylusSample& sample, std::int64_t now_ns);
+  /// The number of the sample after the last one of this session, from 0 on.
+  std::uint64_t next_sequence(int slot) const noexcept {
+    const Owner& owner = owners_[static_cast<std::size_t>(slot)];
+    return owner.any_sample ? owner.newest_sequence + 1 : 0;
+  }
   /// Makes those styluses absent whose last sample is older than `limit_ns`.
   void expire(std::int64_t now_ns, std::int64_t limit_ns);
 

@@ -32,9 +32,11 @@ ForceThread::ForceThread(Simulation& simulation, NetworkServer& network, RunCont
       clock_(clock),
       sinks_(std::move(sinks)),
       steps_(steps),
+      outside_(static_cast<std::size_t>(network.styluses())),
       turns_(simulation.dt()),
       commands_(static_cast<std::size_t>(network.styluses())) {
   for (std::size_t s = 0; s < commands_.size(); ++s) bridged_.emplace_back(simulation, s);
+  report_.faults.resize(commands_.size());
 }
 
 void ForceThread::add_viewer_stylus(const ViewerStylus& stylus) {
@@ -78,7 +80,9 @@ void ForceThread::run() noexcept {
     report_.late += stylus.late();
     report_.lost += stylus.lost();
     report_.bounded += stylus.bounded();
+    report_.withheld += stylus.withheld();
   }
+  for (std::size_t s = 0; s < bridged_.size(); ++s) report_.faults[s] = faults(s);
   report_.limited = simulation_.limited();
   report_.cache_misses = simulation_.cache_misses();
   finished_.signal();
@@ -137,6 +141,10 @@ void ForceThread::watch_health(std::int64_t begin_ns, std::int64_t end_ns) noexc
   window_.unsolved = report_.unsolved;
   window_.missed = clock_.missed();
   window_.cache_misses = simulation_.cache_misses();
+  for (std::size_t s = 0; s < bridged_.size(); ++s) {
+    window_.withheld += bridged_[s].withheld();
+    window_.faults[s] = faults(s);
+  }
   throttle_.update(report_.steps - std::exchange(steps_before_, report_.steps),
                    std::exchange(overlong_, 0));
   window_.prediction_period = throttle_.period();
@@ -146,12 +154,48 @@ void ForceThread::watch_health(std::int64_t begin_ns, std::int64_t end_ns) noexc
   window_begin_ns_ = end_ns;
 }
 
+StylusFaults ForceThread::faults(std::size_t s) const noexcept {
+  return {outside_[s].steps_in_all, bridged_[s].disagreed()};
+}
+
+StylusRecord ForceThread::faded(const StylusRecord& last, std::uint64_t steps,
+                                const Vector3& tip) const noexcept {
+  const double left = std::max(0.0, 1.0 - static_cast<double>(steps) * simulation_.dt() / kFade);
+  StylusRecord fading = last;
+  fading.force *= left;
+  fading.torque *= left;
+  if (left == 0.0 || !fading.present) {
+    fading = StylusRecord{};
+    fading.proxy = tip;
+  }
+  return fading;
+}
+
+// A bridge that solves the contact lets its force fade.
+void ForceThread::fade_model(StylusPort& port) noexcept {
+  if (!port.in.front().predicts) return;
+  port.model.back().session = port.in.front().session;
+  port.model.back().value.valid = false;
+  port.model.back().value.paused = true;
+  port.model.publish();
+}
+
+// What is commanded to any stylus is bounded here, whatever objects and other hands did.
+void ForceThread::answer(std::size_t s, StylusRecord stylus) noexcept {
+  StylusPort& port = network_.port(static_cast<int>(s));
+  const double most = simulation_.max_force(s);
+  const double force = stylus.force.norm();
+  if (force > most) {
+    stylus.force *= most / force;
+    stylus.torque *= most / force;
+  }
+  port.out.put(to_answer(record_, stylus, port.in.front().sample));
+}
+
 // A hand feels nothing meanwhile: what it felt fades.
 void ForceThread::fade_while_paused() noexcept {
   paused_steps_ = was_paused_ ? paused_steps_ + 1 : 1;
   was_paused_ = true;
-  const double left =
-      std::max(0.0, 1.0 - static_cast<double>(paused_steps_) * simulation_.dt() / kPauseFade);
   clock_.rest();
   if (clock_.lockstep()) return;  // the bridges wait
   const std::size_t bridges = static_cast<std::size_t>(network_.styluses());
@@ -159,21 +203,24 @@ void ForceThread::fade_while_paused() noexcept {
     StylusPort& port = network_.port(static_cast<int>(s));
     port.in.receive();
     if (!port.in.front().present) continue;
-    StylusRecord fading = record_.stylus[s];
-    fading.force *= left;
-    fading.torque *= left;
-    if (left == 0.0 || !fading.present) {
-      fading = StylusRecord{};
-      fading.proxy = port.in.front().sample.tip;
-    }
-    port.out.put(to_answer(record_, fading, port.in.front().sample));
-    if (!port.in.front().predicts) continue;
-    port.model.back().session = port.in.front().session;
-    port.model.back().value.valid = false;
-    port.model.back().value.paused = true;
-    port.model.publish();
+    answer(s, faded(record_.stylus[s], paused_steps_, port.in.front().sample.tip));
+    fade_model(port);
   }
   network_.forces_ready().signal();
+}
+
+// A sample from beyond the bound is not used: its stylus takes no part where it was last.
+void ForceThread::check_position(std::size_t s) noexcept {
+  StylusCommand& command = commands_[s];
+  Outside& outside = outside_[s];
+  if (!command.present || command.tip.cwiseAbs().maxCoeff() <= position_bound_) {
+    outside.steps = 0;
+    return;
+  }
+  if (outside.steps++ == 0) outside.last = record_.stylus[s];
+  ++outside.steps_in_all;
+  command.present = false;
+  command.tip = outside.last.tip;
 }
 
 void ForceThread::take_commands() noexcept {
@@ -182,6 +229,7 @@ void ForceThread::take_commands() noexcept {
     StylusPort& port = network_.port(static_cast<int>(s));
     port.in.receive();
     commands_[s] = to_command(port.in.front());
+    check_position(s);
     // Who feels nothing has to come from outside again; a step without it makes it so.
     if (was_paused_ && !clock_.lockstep()) commands_[s].present = false;
     port.applied.receive();
@@ -208,7 +256,13 @@ void ForceThread::step() noexcept {
     // A sample is answered, also where its stylus takes no part in this step.
     StylusPort& port = network_.port(static_cast<int>(s));
     if (!port.in.front().present) continue;
-    port.out.put(to_answer(record_, record_.stylus[s], port.in.front().sample));
+    const Outside& outside = outside_[s];
+    if (outside.steps == 0) {
+      answer(s, record_.stylus[s]);
+    } else {
+      answer(s, faded(outside.last, outside.steps, outside.last.tip));
+      fade_model(port);
+    }
   }
   network_.forces_ready().signal();
   for (int i = 0; i < record_.object_count; ++i) {
@@ -220,7 +274,7 @@ void ForceThread::step() noexcept {
 
 // After all else: who waits for a force has it by now.
 void ForceThread::predict_horizon() noexcept {
-  if (clock_.behind() || !throttle_.due(report_.steps)) return;
+  if (!throttle_.due(clock_.behind())) return;
   const std::int64_t begin = monotonic_ns();
   bool tried = false;
   bool any = false;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -23,6 +24,12 @@
 
 namespace irdm {
 
+/// What a stylus' bridge sent that no hand does; none of it acts.
+struct StylusFaults {
+  std::uint64_t outside = 0;    ///< steps whose newest sample was beyond the world's bound
+  std::uint64_t disagreed = 0;  ///< BridgedStylus::disagreed()
+};
+
 /// What the force thread counted; read after finish().
 struct ForceThreadReport {
   std::uint64_t steps = 0;
@@ -31,20 +38,25 @@ struct ForceThreadReport {
   std::uint64_t late = 0;          ///< forces of bridges that came after their step, and entered it
   std::uint64_t lost = 0;          ///< forces of bridges that came too late for that, or never
   std::uint64_t bounded = 0;       ///< forces of bridges above their stylus' max_force
+  std::uint64_t withheld = 0;      ///< steps in contact that bridges had no model for
   std::uint64_t limited = 0;       ///< Simulation::limited()
   std::uint64_t cache_misses = 0;  ///< Simulation::cache_misses()
   double peak_force = 0.0;         ///< largest |force| on a stylus [N]
-  Histogram step_time;             ///< from the clock's go to all that is handed over [ns]
-  Histogram prediction_time;       ///< of which for contacts that bridges solve [ns]
+  /// StylusFaults of each stylus of the network.
+  std::vector<StylusFaults> faults;
+  Histogram step_time;        ///< from the clock's go to all that is handed over [ns]
+  Histogram prediction_time;  ///< of which for contacts that bridges solve [ns]
 };
 
 /// How the force thread fares while it runs.
 struct ForceHealth {
-  std::uint64_t steps = 0;  ///< this count and the next three: since the start
+  std::uint64_t steps = 0;  ///< this count and the next six: since the start
   std::uint64_t resets = 0;
   std::uint64_t unsolved = 0;
   std::uint64_t missed = 0;  ///< deadlines
   std::uint64_t cache_misses = 0;
+  std::uint64_t withheld = 0;  ///< as in the report, and the next
+  std::array<StylusFaults, kMaxStyluses> faults = {};
   int prediction_period = 1;  ///< PredictionThrottle's
   Histogram step_time;        ///< of the last kHealthPeriodNs [ns]
   Histogram wakeup_delay;     ///< of the last kHealthPeriodNs [ns]; empty in lockstep
@@ -67,6 +79,8 @@ class ForceThread {
   /// The simulation's last stylus, beyond those of the network, is that of the viewers. Before
   /// start().
   void add_viewer_stylus(const ViewerStylus& stylus);
+  /// Positions with a component beyond this are no hand's [m], W. Before start().
+  void set_position_bound(double bound) noexcept { position_bound_ = bound; }
   /// Tells it of every step. Before start(); outlives the thread.
   void write_down_in(StepLog& log) noexcept { log_ = &log; }
   /// Becomes readable when the thread has made its last step.
@@ -76,7 +90,9 @@ class ForceThread {
   TripleBuffer<ForceHealth>& health() noexcept { return health_; }
   /// The same for another one.
   TripleBuffer<ForceHealth>& status() noexcept { return status_; }
-  static constexpr double kPauseFade = 0.03;  ///< in which a force fades when the run is paused [s]
+  /// In which a force fades when the run is paused, or its stylus' samples are not used [s].
+  static constexpr double kFade = 0.03;
+  static constexpr double kPositionBound = 10.0;  ///< default of set_position_bound() [m]
   static constexpr std::int64_t kHealthPeriodNs = 1'000'000'000;
   /// How the thread is scheduled, for a report.
   const std::string& scheduling() const noexcept { return scheduling_; }
@@ -85,6 +101,12 @@ class ForceThread {
   void run() noexcept;
   void step() noexcept;
   void fade_while_paused() noexcept;
+  void answer(std::size_t s, StylusRecord stylus) noexcept;
+  StylusRecord faded(const StylusRecord& last, std::uint64_t steps,
+                     const Vector3& tip) const noexcept;
+  void fade_model(StylusPort& port) noexcept;
+  void check_position(std::size_t s) noexcept;
+  StylusFaults faults(std::size_t s) const noexcept;
   void predict_horizon() noexcept;
   void take_commands() noexcept;
   void write_down(std::int64_t begin_ns, std::int64_t end_ns) noexcept;
@@ -100,6 +122,14 @@ class ForceThread {
   bool was_paused_ = false;
   bool continued_ = false;          ///< it was paused before this step
   std::uint64_t paused_steps_ = 0;  ///< since the pause began
+  /// A stylus of the network whose newest sample may be beyond the bound.
+  struct Outside {
+    std::uint64_t steps = 0;  ///< since its samples are; 0: they are not
+    StylusRecord last;        ///< of the step before that
+    std::uint64_t steps_in_all = 0;
+  };
+  double position_bound_ = kPositionBound;
+  std::vector<Outside> outside_;
   std::optional<ViewerStylus> viewer_stylus_;
   std::vector<BridgedStylus> bridged_;  ///< of the network's styluses
   PredictionThrottle throttle_;

@@ -52,6 +52,8 @@ void StatusThread::run() {
     const wire::Status status = gather();
     parts_.network.status().put(status);
     log_prediction_period();
+    log_withheld();
+    log_faults();
     if (log_period_ns_ == 0 || gathered_ns_ - logged_ns < log_period_ns_) continue;
     logged_ns = gathered_ns_;
     spdlog::info("{}", status_line(status, parts_.network.stats(),
@@ -80,7 +82,25 @@ void StatusThread::log_prediction_period() {
   if (period == 1) {
     spdlog::info("a contact model in each step again");
   } else {
-    spdlog::warn("steps take longer than dt: a contact model only every {} steps", period);
+    spdlog::warn(
+        "steps take longer than dt: a contact model only every {} steps; use fewer modes "
+        "(modes.error), a coarser mesh or a larger response.dt",
+        period);
+  }
+}
+
+void StatusThread::log_withheld() {
+  const std::uint64_t withheld = parts_.force.status().front().withheld;
+  if (withheld == std::exchange(withheld_, withheld)) return;
+  spdlog::warn("{}", withheld_line(withheld));
+}
+
+void StatusThread::log_faults() {
+  const ForceHealth& health = parts_.force.status().front();
+  for (std::size_t s = 0; s < faults_.size(); ++s) {
+    const StylusFaults now = health.faults[s];
+    const StylusFaults before = std::exchange(faults_[s], now);
+    for (const std::string& line : fault_lines(s, before, now)) spdlog::warn("{}", line);
   }
 }
 
@@ -93,6 +113,27 @@ float StatusThread::surface_rate() {
   frames_ = frames;
   gathered_ns_ = now_ns;
   return static_cast<float>(rate);
+}
+
+std::string withheld_line(std::uint64_t steps) {
+  return "force withheld in " + std::to_string(steps) +
+         " steps: server late; use fewer modes (modes.error), a coarser mesh or a larger "
+         "response.dt";
+}
+
+std::vector<std::string> fault_lines(std::size_t s, const StylusFaults& before,
+                                     const StylusFaults& now) {
+  std::vector<std::string> lines;
+  const std::string stylus = "stylus " + std::to_string(s) + ": ";
+  if (now.outside > before.outside) {
+    lines.push_back(stylus + "positions beyond world.bound in " + std::to_string(now.outside) +
+                    " steps so far: not used, its force fades");
+  }
+  if (now.disagreed > before.disagreed) {
+    lines.push_back(stylus + std::to_string(now.disagreed) +
+                    " forces so far are not where its own samples are: it exerts nothing");
+  }
+  return lines;
 }
 
 std::string status_line(const wire::Status& status, const NetworkStats& network,

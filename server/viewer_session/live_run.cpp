@@ -1,7 +1,10 @@
 #include "server/viewer_session/live_run.hpp"
 
+#include <utility>
+
 #include "common/error.hpp"
 #include "common/realtime/clock.hpp"
+#include "server/threads/status_thread.hpp"
 #include "viewer/scene_message.hpp"
 
 namespace irdm {
@@ -38,6 +41,9 @@ viewer::Health LiveRun::health() {
   const ForceHealth& force = parts_.force.health().front();
   const NetworkStats& network = parts_.network.stats();
   viewer::Health health;
+  if (force.withheld != std::exchange(withheld_, force.withheld)) {
+    notice_ = withheld_line(force.withheld);
+  }
   health.steps = force.steps;
   health.step_time = percentiles(force.step_time);
   health.wakeup_delay = percentiles(force.wakeup_delay);

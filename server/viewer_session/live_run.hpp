@@ -62,6 +62,7 @@ class LiveRun final : public viewer::ViewerSession {
   std::uint32_t settings_changes_ = 0;
   std::uint64_t stylus_sequence_ = 0;
   std::string notice_;
+  std::uint64_t withheld_ = 0;  ///< that the page was told last
 
   std::int64_t since_ns_;  ///< and the next two: of the surface rate
   std::uint64_t frames_ = 0;

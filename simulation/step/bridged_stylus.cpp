@@ -1,6 +1,7 @@
 #include "simulation/step/bridged_stylus.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace irdm {
@@ -17,12 +18,15 @@ StylusCommand BridgedStylus::next(const StylusCommand& command, std::uint64_t se
   if (session != session_) {  // a new hand: what the last one touched is nothing to it
     session_ = session;
     forget(AppliedHistory{});
+    path_.begin(command.tip);
     next.present = false;
   }
+  path_.add(command.tip);
   const bool ours = session != 0 && history.session() == session;
   if (!next.present || !ours) {
     if (ours) forget(history);
     tip_ = command.tip;
+    path_.begin(command.tip);
     return next;
   }
   if (reset_ != simulation_.reset_step() && history.base() < simulation_.reset_step()) {
@@ -45,20 +49,46 @@ StylusCommand BridgedStylus::next(const StylusCommand& command, std::uint64_t se
   insert_delayed_force(history, k);
   const AppliedForce* const applied = find(history, k);
   known_ = known_ << 1 | (applied != nullptr || k < first_ ? 1 : 0);
-  if (applied != nullptr) tip_ = applied->tip;
+  ++untold_;
+  if (applied != nullptr) follow(*applied);
   next.tip = tip_;
   next.bridged = BridgedForce{.object = simulation_.local_model_object(s_)};
   if (applied != nullptr) {
-    next.bridged->force = bounded(applied->force);
-    next.bridged->arm = applied->arm;
+    const AppliedForce here = accepted(*applied, tip_);
+    exerted_ = !here.force.isZero(0.0);
+    next.bridged->force = here.force;
+    next.bridged->arm = here.arm;
+    const std::uint64_t reached = history.base_of(k) + static_cast<std::uint64_t>(horizon_.steps());
+    withheld_ += k > reached && in_contact() ? 1 : 0;
   }
   return next;
 }
 
-Vector3 BridgedStylus::bounded(const Vector3& force) noexcept {
+// A hand that feels no force may be as fast as it likes.
+void BridgedStylus::follow(const AppliedForce& applied) noexcept {
+  const double time = simulation_.dt() * std::exchange(untold_, 0);
+  const double longest = exerted_ ? kFastestHand * time : std::numeric_limits<double>::infinity();
+  tip_ = path_.follow(applied.tip, longest);
+}
+
+bool BridgedStylus::in_contact() const noexcept {
+  const int object = simulation_.local_model_object(s_);
+  return object >= 0 && simulation_.object(object).contact_state(s_) != ContactState::kFree;
+}
+
+// What the bridge told, with the tip where the samples are.
+AppliedForce BridgedStylus::accepted(const AppliedForce& applied, const Vector3& tip) noexcept {
   const double most = simulation_.max_force(s_);
-  if (force.norm() > most) ++bounded_;
-  return bounded_force(force, most);
+  AppliedForce accepted{applied.force, tip, applied.arm};
+  if (accepted.force.isZero(0.0)) return accepted;
+  if ((applied.tip - tip).norm() > kAgrees) {
+    ++disagreed_;
+    accepted.force.setZero();
+  } else if (accepted.force.norm() > most) {
+    ++bounded_;
+    accepted.force = bounded_force(accepted.force, most);
+  }
+  return accepted;
 }
 
 // There is nothing from before that may yet come.
@@ -84,7 +114,8 @@ void BridgedStylus::insert_delayed_force(const AppliedHistory& history, std::uin
     }
     known_ |= std::uint64_t{1} << i;
     if (applied->force.isZero(0.0)) continue;
-    const AppliedForce late{bounded(applied->force), applied->tip, applied->arm};
+    const AppliedForce late = accepted(*applied, path_.ahead(applied->tip));
+    if (late.force.isZero(0.0)) continue;
     ++(simulation_.insert_delayed_force(s_, late, static_cast<int>(i)) ? late_ : lost_);
   }
 }

@@ -7,17 +7,24 @@
 
 #include "common/contact/applied_forces.hpp"
 #include "simulation/step/horizon_length.hpp"
+#include "simulation/step/sample_path.hpp"
 #include "simulation/step/simulation.hpp"
 
 namespace irdm {
 
 /// One stylus whose bridge may solve its contact: the forces that come from there go into the steps
 /// that they belong to, late ones as well, and what the bridge has to know to go on comes out. From
-/// its first force on the stylus is the bridge's. Pure, real-time safe.
+/// its first force on the stylus is the bridge's; its tip in a step is where the bridge tells, on
+/// the way of the stylus' own samples. Pure, real-time safe.
 class BridgedStylus {
  public:
   /// From one contact model to the next while the tip can touch nothing soon [steps].
   static constexpr std::uint64_t kFarModelPeriod = 4;
+  /// A tip that is told farther than this from the way of the samples is no hand's, and its force
+  /// does not act [m]: the way of a fast hand while samples are delayed.
+  static constexpr double kAgrees = 0.05;
+  /// No hand that feels a force is faster [m/s]: twice what a bridge lets it be.
+  static constexpr double kFastestHand = 2.0;
 
   /// @param s its number in the simulation
   BridgedStylus(Simulation& simulation, std::size_t s)
@@ -45,9 +52,15 @@ class BridgedStylus {
   std::uint64_t lost() const noexcept { return lost_; }
   /// Forces that were above SimulationStylus::max_force, and entered with that.
   std::uint64_t bounded() const noexcept { return bounded_; }
+  /// Forces that did not act, as their tips were not where the stylus' samples are.
+  std::uint64_t disagreed() const noexcept { return disagreed_; }
+  /// Steps in contact that the bridge had no model for, so that its force had faded.
+  std::uint64_t withheld() const noexcept { return withheld_; }
 
  private:
-  Vector3 bounded(const Vector3& force) noexcept;
+  AppliedForce accepted(const AppliedForce& applied, const Vector3& tip) noexcept;
+  void follow(const AppliedForce& applied) noexcept;
+  bool in_contact() const noexcept;
   bool touches_soon(const ContactModel& model) noexcept;
   void begin(const StylusCommand& command, const AppliedHistory& history) noexcept;
   void insert_delayed_force(const AppliedHistory& history, std::uint64_t k) noexcept;
@@ -63,11 +76,16 @@ class BridgedStylus {
   HorizonLength horizon_;
   bool bridged_ = false;
   Vector3 tip_ = Vector3::Zero();  ///< in the last step
-  std::uint64_t next_model_ = 0;   ///< no model before this step
-  std::optional<Vector3> gap_;     ///< from the surface to the tip, at the last model [m], W
+  SamplePath path_;
+  int untold_ = 0;                ///< steps since the last one that the bridge told of
+  bool exerted_ = false;          ///< a force, in that one
+  std::uint64_t next_model_ = 0;  ///< no model before this step
+  std::optional<Vector3> gap_;    ///< from the surface to the tip, at the last model [m], W
   std::uint64_t late_ = 0;
   std::uint64_t lost_ = 0;
   std::uint64_t bounded_ = 0;
+  std::uint64_t disagreed_ = 0;
+  std::uint64_t withheld_ = 0;
 };
 
 }  // namespace irdm

@@ -40,15 +40,12 @@ class EnergyAccount {
   /// @param own by the motion that it makes itself [J], >= 0
   /// @param work of its hand that is not settled yet [J]
   double enter(double along, double own, double work) noexcept {
-    const double left = std::max(0.0, balance_ + kAllowance + std::max(0.0, work) - entered_);
-    double share = along > 0.0 ? driving_share() : 1.0;
-    if (share * (along + share * own) > left) {
-      const double root = std::sqrt(along * along + 4.0 * own * left);
-      share =
-          std::min(share, along > 0.0 ? 2.0 * left / (along + root) : (root - along) / (2.0 * own));
-    }
-    entered_ += share * (along + share * own);
-    return share;
+    return take(along, own, balance_ + kAllowance + std::max(0.0, work));
+  }
+  /// The same for a force of the coming step.
+  /// @param work of all hands in it as far as it is known, not settled yet [J]
+  double drive(double along, double own, double work) noexcept {
+    return take(along, own, balance_ + 2.0 * kAllowance + work);
   }
 
   /// After settle(). @param dt of the step [s]  @param touched by a hand in it
@@ -65,9 +62,21 @@ class EnergyAccount {
   }
 
  private:
+  double take(double along, double own, double most) noexcept {
+    const double left = std::max(0.0, most - entered_);
+    double share = along > 0.0 ? driving_share() : 1.0;
+    if (share * (along + share * own) > left) {
+      const double root = std::sqrt(along * along + 4.0 * own * left);
+      share =
+          std::min(share, along > 0.0 ? 2.0 * left / (along + root) : (root - along) / (2.0 * own));
+    }
+    entered_ += share * (along + share * own);
+    return share;
+  }
+
   double balance_ = 0.0;
   double energy_ = 0.0;
-  double entered_ = 0.0;  ///< by late forces, since the last step [J]
+  double entered_ = 0.0;  ///< by forces of bridges, since the last step [J]
 };
 
 }  // namespace irdm

@@ -187,8 +187,7 @@ void SoftObject::pose(std::span<const StylusCommand> commands, int floor_count,
   problem_.rigid = body_.rigid().mobility();
   contacts_.predict(body_.engine());
   if (floor_count > 0) pose_floor();
-  contacts_.pose(commands, body_.motion(), friction_, account_.driving_share(), floor_count,
-                 problem_);
+  contacts_.pose(commands, body_.motion(), friction_, account_, floor_count, problem_);
 }
 
 // Step 4: the forces that take them there.
@@ -367,7 +366,7 @@ bool SoftObject::insert_delayed_force(std::size_t s, const AppliedForce& applied
     const Matrix3 mobility = body_.rigid().mobility().between(entry.arm, entry.arm);
     const double share =
         account_.enter(force.dot(motion.way(entry.arm)), entry.force.dot(mobility * entry.force),
-                       contacts_.unsettled_work(s, applied.tip));
+                       contacts_.unsettled_work(s, force, applied.tip));
     entry.force *= share;
     limited_late_ += share < 1.0 ? 1 : 0;
   }
@@ -380,6 +379,8 @@ bool SoftObject::insert_delayed_force(const LateForce& entry) noexcept {
   nodal_.clear();
   contacts_.spread(static_cast<std::size_t>(entry.stylus), entry.point, entry.force, nodal_);
   body_.insert_delayed_force(nodal_.view(), entry.force, entry.arm, entry.age);
+  contacts_.add_delayed(static_cast<std::size_t>(entry.stylus),
+                        body_.past().halfway(entry.age) * entry.force);
   change_ = Change::kUnknown;
   return true;
 }

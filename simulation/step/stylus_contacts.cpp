@@ -69,6 +69,7 @@ void StylusContacts::reset() noexcept {
     stylus.last.average.setZero();
     stylus.position.reset();
     stylus.shown.setZero();
+    stylus.begin_telling();
     stylus.prediction = {};
   }
 }
@@ -85,7 +86,10 @@ void StylusContacts::find(std::span<const StylusCommand> commands,
       stylus.proxy.forget();
       continue;
     }
-    if (!find_contact(stylus, command, motion.to_body(command.tip))) continue;
+    if (!find_contact(stylus, command, motion.to_body(command.tip))) {
+      if (command.bridged && !command.bridged->force.isZero(0.0)) stylus.shown.setZero();
+      continue;
+    }
     const auto a = static_cast<std::size_t>(count_++);
     Contact& contact = contacts_[a];
     contact = {.stylus = static_cast<int>(s),
@@ -101,25 +105,33 @@ void StylusContacts::find(std::span<const StylusCommand> commands,
   }
 }
 
-// The way of its tip, and the work of a bridge's force on it. A step that nothing is told of leaves
-// tip and force as they were; the next one has the way of both.
+// The way of its tip, and the work of a bridge's force on it, as far as that force acted. A step
+// that nothing is told of leaves tip and force as they were; the next one has the way of both, in
+// which the forces share that were entered for such steps since.
 void StylusContacts::follow(Stylus& stylus, const StylusCommand& command) noexcept {
   if (!command.present || !command.tip.allFinite()) {
     stylus.position.reset();
     stylus.velocity.setZero();
     stylus.shown.setZero();
+    stylus.begin_telling();
     return;
   }
   stylus.way = command.tip - std::exchange(stylus.position, command.tip).value_or(command.tip);
   stylus.velocity += std::min(1.0, dt_ / kVelocityTime) * (stylus.way / dt_ - stylus.velocity);
   if (!command.bridged) {
     stylus.shown.setZero();
+    stylus.begin_telling();
     return;
   }
-  work_ += stylus.shown.dot(stylus.way);
   const bool ours = command.bridged->object == object_;
-  if (command.bridged->force.isZero(0.0) && stylus.way.isZero(0.0)) return;
+  if (command.bridged->force.isZero(0.0) && stylus.way.isZero(0.0)) {
+    ++stylus.untold;
+    return;
+  }
+  const int steps = 1 + std::max(stylus.untold, stylus.delayed_count);
+  work_ += (stylus.shown + stylus.delayed).dot(stylus.way) / steps;
   stylus.shown = ours ? command.bridged->force : Vector3::Zero();
+  stylus.begin_telling();
 }
 
 // Of one stylus that is there. False: none.
@@ -195,7 +207,7 @@ void StylusContacts::predict(ResponseEngine& engine) noexcept {
 }
 
 void StylusContacts::pose(std::span<const StylusCommand> commands, const FreeMotion& motion,
-                          const Friction& friction, double driving_share, int first,
+                          const Friction& friction, EnergyAccount& account, int first,
                           ContactProblem& problem) noexcept {
   first_ = first;
   for (int a = 0; a < count_; ++a) {
@@ -204,13 +216,14 @@ void StylusContacts::pose(std::span<const StylusCommand> commands, const FreeMot
     }
     Contact& contact = contacts_[static_cast<std::size_t>(a)];
     pose_contact(contact, commands[static_cast<std::size_t>(contact.stylus)], motion, friction,
-                 driving_share, first + a, problem);
+                 first + a, problem);
+    if (contact.bridged) bound_remote_force(motion, account, first + a, problem);
   }
 }
 
 void StylusContacts::pose_contact(Contact& contact, const StylusCommand& command,
-                                  const FreeMotion& motion, const Friction& friction,
-                                  double driving_share, int row, ContactProblem& problem) noexcept {
+                                  const FreeMotion& motion, const Friction& friction, int row,
+                                  ContactProblem& problem) noexcept {
   const Stylus& stylus = stylus_of(contact);
   const PersistentContact& state = stylus.proxy.contact();
   ContactConstraint& posed = problem.contact(row);
@@ -239,9 +252,25 @@ void StylusContacts::pose_contact(Contact& contact, const StylusCommand& command
   posed.force = motion.halfway.conjugate() * command.bridged->force;
   if (posed.force.isZero(0.0)) return;
   posed.arm = accepted_arm(command.bridged->arm, posed.arm);
-  if (driving_share == 1.0 || command.bridged->force.dot(motion.way(posed.arm)) <= 0.0) return;
-  posed.force *= driving_share;
-  ++limited_;
+}
+
+// What a force adds to the energy of the rigid motion depends on the forces of other bridges, too:
+// those of the rows before it are bounded by then.
+void StylusContacts::bound_remote_force(const FreeMotion& motion, EnergyAccount& account, int row,
+                                        ContactProblem& problem) noexcept {
+  ContactConstraint& posed = problem.contact(row);
+  if (posed.force.isZero(0.0)) return;
+  Vector3 way = motion.halfway.conjugate() * motion.way(posed.arm);
+  for (int b = first_; b < row; ++b) {
+    if (!contacts_[static_cast<std::size_t>(b - first_)].bridged) continue;
+    const ContactConstraint& other = problem.contact(b);
+    way += 2.0 * problem.rigid.between(posed.arm, other.arm) * other.force;
+  }
+  const Vector3 own = problem.rigid.between(posed.arm, posed.arm) * posed.force;
+  const double share = account.drive(posed.force.dot(way), posed.force.dot(own), work_);
+  posed.force *= share;
+  stylus_of(contacts_[static_cast<std::size_t>(row - first_)]).shown *= share;
+  limited_ += share < 1.0 ? 1 : 0;
 }
 
 // The bridge knows best where it pushed: the surface here may lack forces that are still under way.
@@ -485,6 +514,18 @@ bool StylusContacts::locate_delayed(std::size_t s, const Vector3& tip, const Vec
   }
   entry.arm = accepted_arm(arm, own);
   return true;
+}
+
+double StylusContacts::unsettled_work(std::size_t s, const Vector3& force,
+                                      const Vector3& tip) const noexcept {
+  const Stylus& stylus = styluses_[s];
+  if (!stylus.position) return 0.0;
+  return force.dot(tip - *stylus.position) / std::max(1, stylus.untold);
+}
+
+void StylusContacts::add_delayed(std::size_t s, const Vector3& force) noexcept {
+  styluses_[s].delayed += force;
+  ++styluses_[s].delayed_count;
 }
 
 void StylusContacts::spread(std::size_t s, const SurfacePoint& point, const Vector3& force,

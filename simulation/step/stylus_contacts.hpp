@@ -15,6 +15,7 @@
 #include "simulation/engine/response_engine.hpp"
 #include "simulation/state/state_archive.hpp"
 #include "simulation/step/assembly_horizon.hpp"
+#include "simulation/step/energy_account.hpp"
 #include "simulation/step/god_object.hpp"
 #include "simulation/step/nodal_forces.hpp"
 #include "simulation/step/simulation_config.hpp"
@@ -41,7 +42,11 @@ class StylusContacts {
       state.value(stylus.displacement);
       state.value(stylus.last);
       state.value(stylus.position);
-      for (Vector3* vector : {&stylus.way, &stylus.velocity, &stylus.shown}) state.value(*vector);
+      for (Vector3* vector : {&stylus.way, &stylus.velocity, &stylus.shown, &stylus.delayed}) {
+        state.value(*vector);
+      }
+      state.value(stylus.untold);
+      state.value(stylus.delayed_count);
       stylus.prediction = {};
     }
     state.value(steps_);
@@ -55,9 +60,9 @@ class StylusContacts {
   /// Where their places would be without force, and the elastic compliance between them.
   void predict(ResponseEngine& engine) noexcept;
   /// Writes them into the problem, from row `first` on; those of the floor come before.
-  /// @param driving_share EnergyAccount::driving_share(), for forces of bridges
+  /// @param account of the object, which bounds what forces of bridges put in
   void pose(std::span<const StylusCommand> commands, const FreeMotion& motion,
-            const Friction& friction, double driving_share, int first,
+            const Friction& friction, EnergyAccount& account, int first,
             ContactProblem& problem) noexcept;
   /// What the contacts of bridges would do by themselves among the others' forces: that is how they
   /// slip and end.
@@ -74,12 +79,13 @@ class StylusContacts {
   /// Of all tips against the object in the step that has ended [J]: for a bridge's force, which the
   /// device shows after its step, that of the step before.
   double work() const noexcept { return work_; }
-  /// Of what the device of a bridge has shown since, with its tip there by now [J], W.
-  double unsettled_work(std::size_t s, const Vector3& tip) const noexcept {
-    const Stylus& stylus = styluses_[s];
-    return stylus.position ? stylus.shown.dot(tip - *stylus.position) : 0.0;
-  }
-  /// Forces of bridges that acted in part, or not at all, by their driving share, so far.
+  /// Of a force that a bridge showed in a step that was not told in time, with its tip there by then
+  /// [J].
+  /// @param force on the object [N], W  @param tip [m], W
+  double unsettled_work(std::size_t s, const Vector3& force, const Vector3& tip) const noexcept;
+  /// Such a force was entered [N], W.
+  void add_delayed(std::size_t s, const Vector3& force) noexcept;
+  /// Forces of bridges that acted in part, or not at all, by the object's account, so far.
   std::uint64_t limited() const noexcept { return limited_; }
 
   int count() const noexcept { return count_; }
@@ -148,8 +154,16 @@ class StylusContacts {
     std::optional<Vector3> position = {};  ///< of its tip in the last step [m], W; none: not there
     Vector3 way = Vector3::Zero();         ///< of its tip in that step [m], W
     Vector3 velocity = Vector3::Zero();    ///< of its tip, smoothed [m/s], W
-    Vector3 shown = Vector3::Zero();       ///< by its bridge: the last force on the object [N], W
+    Vector3 shown = Vector3::Zero();       ///< by its bridge: the last force that acted [N], W
+    int untold = 0;                     ///< steps that nothing was told of, since
+    Vector3 delayed = Vector3::Zero();  ///< sum of the forces that were entered since [N], W ...
+    int delayed_count = 0;              ///< ... and how many
     Prediction prediction = {};
+
+    void begin_telling() noexcept {
+      untold = delayed_count = 0;
+      delayed.setZero();
+    }
   };
   /// A contact of this step.
   struct Contact {
@@ -180,8 +194,9 @@ class StylusContacts {
                             const Vector3& tip) noexcept;
   bool project_initial_contact(Stylus& stylus, const Vector3& tip) noexcept;
   void pose_contact(Contact& contact, const StylusCommand& command, const FreeMotion& motion,
-                    const Friction& friction, double driving_share, int row,
-                    ContactProblem& problem) noexcept;
+                    const Friction& friction, int row, ContactProblem& problem) noexcept;
+  void bound_remote_force(const FreeMotion& motion, EnergyAccount& account, int row,
+                          ContactProblem& problem) noexcept;
   Vector3 accepted_arm(const Vector3& arm, const Vector3& own) const noexcept;
 
   const RestSurface& rest_;

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <memory>
 
+#include "common/realtime/clock.hpp"
 #include "device_bridge/contact/bridge_contact.hpp"
 #include "device_bridge/safety/safety_filter.hpp"
+#include "server/threads/prediction_throttle.hpp"
 #include "simulation/step/bridged_stylus.hpp"
 #include "simulation/step/prediction_turns.hpp"
 
@@ -56,11 +58,37 @@ struct Stylus {
   Vector3 shown = Vector3::Zero();
   int newest_down = -1;
   double energy = 0.0;
+  AppliedHistory lies;
+  std::optional<Vector3> acted;  ///< of the lies, in the last step of the server [N], W
+  Vector3 server_tip = Vector3::Zero();
   // At the server:
   AppliedHistory history{kSession};
   std::uint64_t newest_up = 0;
   double sample_time = 0.0;
   StylusCommand command;
+};
+
+/// The server's steps when each takes longer than nothing, by the schedule of RealTimeClock.
+class TimedSteps {
+ public:
+  TimedSteps(double dt, double length)
+      : length_ns_(std::llround(1e9 * length * dt)),
+        schedule_(0, std::llround(1e9 * dt), std::llround(kCatchUp / dt)) {}
+
+  /// Makes the steps that begin by now. @param step double(double end, bool behind)
+  template <typename Step>
+  void run(std::int64_t now_ns, const Step& step) {
+    while (begin_ns_ <= now_ns) {
+      const std::int64_t end_ns = begin_ns_ + length_ns_;
+      step(1e-9 * static_cast<double>(end_ns), schedule_.behind());
+      begin_ns_ = std::max(schedule_.next(end_ns), end_ns);
+    }
+  }
+
+ private:
+  std::int64_t length_ns_;
+  PeriodicSchedule schedule_;
+  std::int64_t begin_ns_ = 0;
 };
 
 class Loop {
@@ -71,6 +99,7 @@ class Loop {
         simulation_(setup.config),
         dt_(simulation_.dt()),
         turns_(dt_),
+        timed_(dt_, setup.server_step),
         server_(setup.server_overruns, dt_, 400 + 1000 * setup.seed) {
     if (setup.needed_success > 0.0) lead_ = static_cast<int>(std::lround(kLinkTime / dt_));
     const std::size_t count = setup.hands.size();
@@ -80,7 +109,10 @@ class Loop {
     }
     commands_.resize(count);
     run_.force.resize(count);
+    run_.on_object.resize(count);
+    run_.touching.resize(count);
     run_.tip.resize(count);
+    run_.peak_asked.assign(count, 0.0);
     run_.lowest_energy.assign(count, 0.0);
     run_.lowest_gain.assign(count, 1.0);
   }
@@ -89,7 +121,11 @@ class Loop {
     for (int t = 0; t < lead_ + setup_.steps; ++t) {
       const double now = (t + 1) * dt_;
       for (std::size_t s = 0; s < styluses_.size(); ++s) bridge(s, t, now);
-      for (int due = server_.due(now); due > 0; --due) serve(t, now, due > 1);
+      if (setup_.server_step > 0.0) {
+        timed_.run(to_ns(now), [&](double end, bool behind) { serve(t, now, end, behind); });
+      } else {
+        for (int due = server_.due(now); due > 0; --due) serve(t, now, now, due > 1);
+      }
       for (std::size_t s = 0; s < styluses_.size(); ++s) {
         styluses_[s]->down.deliver(now, [&](const Down& message) { take(s, message, now); });
         if (setup_.filtered && mode_ != LoopMode::kPredict) filter(s, now);
@@ -99,6 +135,10 @@ class Loop {
     for (const BridgedStylus& stylus : bridged_) {
       run_.late += static_cast<int>(stylus.late());
       run_.lost += static_cast<int>(stylus.lost());
+      run_.withheld += static_cast<int>(stylus.withheld());
+    }
+    for (const auto& stylus : styluses_) {
+      run_.withheld_at_bridge += static_cast<int>(stylus->contact.withheld());
     }
     for (auto* course : {&run_.force, &run_.tip}) {
       for (auto& of_hand : *course) of_hand.erase(of_hand.begin(), of_hand.begin() + lead_);
@@ -113,14 +153,16 @@ class Loop {
     Stylus& stylus = *styluses_[s];
     const Vector3 before = stylus.hand.position();
     const double script_time = now - lead_ * dt_;
-    stylus.hand.advance(dt_, setup_.hands[s].target(std::max(0.0, script_time)), stylus.shown);
+    const LoopHand& hand = setup_.hands[s];
+    stylus.hand.advance(dt_, hand.target(std::max(0.0, script_time)),
+                        hand.lie ? Vector3::Zero() : stylus.shown);
     const Vector3 tip = stylus.hand.position();
-    stylus.energy -= stylus.shown.dot(tip - before);
+    if (!hand.lie) stylus.energy -= stylus.shown.dot(tip - before);
     run_.lowest_energy[s] = std::min(run_.lowest_energy[s], stylus.energy);
     run_.tip[s].push_back(tip);
     run_.fastest_hand = std::max(run_.fastest_hand, (tip - before).norm() / dt_);
-    if (stylus.busy.at(now, dt_)) return;
-    const bool grab = setup_.hands[s].grab && script_time > kGrabTime;
+    if (!hand.lie && stylus.busy.at(now, dt_)) return;
+    const bool grab = hand.grab && script_time > kGrabTime;
     Up message{static_cast<std::uint64_t>(t), now, grab ? kGrabButton : 0, tip, {}};
     if (mode_ == LoopMode::kPredict) {
       const bool news = stylus.contact.tick(to_ns(now), tip);
@@ -128,8 +170,25 @@ class Loop {
       if (setup_.filtered) filter(s, now);
       stylus.contact.shown(stylus.shown);
       if (news) message.applied = stylus.contact.applied();
+      if (news && hand.lie) lie(stylus, hand, message.applied);
     }
     stylus.up.send(now, message);
+  }
+
+  // Of each step once.
+  void lie(Stylus& stylus, const LoopHand& hand, AppliedForces& applied) {
+    AppliedForces lies = applied;
+    for (int i = lies.count - 1; i >= 0; --i) {
+      const std::uint64_t step = lies.step - static_cast<std::uint64_t>(i);
+      AppliedForce& one = lies.past[static_cast<std::size_t>(i)];
+      if (const AppliedForce* before = stylus.lies.find(step)) {
+        one = *before;
+      } else {
+        one = hand.lie(one, record_.object[0]);
+      }
+    }
+    stylus.lies.take(lies);
+    applied = lies;
   }
 
   // Without a filter, what is too old is shown no more.
@@ -147,6 +206,7 @@ class Loop {
                     .contact = wanted.contact,
                     .force = wanted.force,
                     .normal = wanted.normal};
+    run_.peak_asked[s] = std::max(run_.peak_asked[s], wanted.force.norm());
     stylus.shown = old ? Vector3::Zero() : wanted.force;
   }
 
@@ -188,8 +248,8 @@ class Loop {
     });
   }
 
-  // While it is behind, no models.
-  void serve(int t, double now, bool behind) {
+  // Messages that have come by `now` count, and its own leave at `end`.
+  void serve(int t, double now, double end, bool behind) {
     for (std::size_t s = 0; s < styluses_.size(); ++s) {
       Stylus& stylus = *styluses_[s];
       receive(stylus, now);
@@ -202,14 +262,24 @@ class Loop {
       for (std::size_t s = 0; s < styluses_.size(); ++s) answer(s, t, now);
       return;
     }
-    if (behind) return;
+    follow_throttle(end);
+    if (!throttle_.due(behind)) return;
     turns_.step(styluses_.size(), [&](std::size_t s, int& budget) {
       Down message;
       if (!styluses_[s]->command.present) return false;
       if (!bridged_[s].predict_horizon(message.model, budget)) return false;
-      styluses_[s]->down.send(now, message);
+      styluses_[s]->down.send(end, message);
       return true;
     });
+  }
+
+  // As ForceThread: once a second it is judged how many steps took longer than dt.
+  void follow_throttle(double end) {
+    ++steps_;
+    if (end < second_) return;
+    throttle_.update(steps_, setup_.server_step > 1.0 ? steps_ : 0);
+    steps_ = 0;
+    second_ = end + 1.0;
   }
 
   void judge() {
@@ -220,15 +290,37 @@ class Loop {
     double excess = 0.5 * body.mass * now.velocity.squaredNorm() +
                     0.5 * spin.dot(body.inertia * spin) -
                     body.mass * setup_.config.gravity.dot(now.position - object.position);
-    for (const auto& stylus : styluses_) excess -= stylus->energy;
+    for (std::size_t s = 0; s < styluses_.size(); ++s) {
+      Stylus& stylus = *styluses_[s];
+      if (setup_.hands[s].lie) work_of_lies(stylus, record_.stylus[s]);
+      excess -= stylus.energy;
+    }
     run_.energy_from_nowhere = std::max(run_.energy_from_nowhere, excess);
     run_.fastest_object = std::max(run_.fastest_object, now.velocity.norm());
     for (std::size_t s = 0; s < styluses_.size(); ++s) {
       run_.peak_on_object = std::max(run_.peak_on_object, record_.stylus[s].force.norm());
     }
+    for (std::size_t s = 0; s < styluses_.size(); ++s) {
+      run_.on_object[s].push_back(-record_.stylus[s].force);
+      run_.touching[s].push_back(record_.stylus[s].contact != ContactState::kFree);
+    }
     for (const LateForce& late : record_.late.view()) {
+      const auto s = static_cast<std::size_t>(late.stylus);
+      const std::size_t steps = run_.on_object[s].size();
+      const auto ago = static_cast<std::size_t>(late.age) + 2;  // the list has this step, too
+      if (ago <= steps)
+        run_.on_object[s][steps - ago] += record_.object[0].orientation * late.force;
       run_.peak_on_object = std::max(run_.peak_on_object, late.force.norm());
     }
+  }
+
+  // What acted, along the way that the server takes for the hand's.
+  void work_of_lies(Stylus& stylus, const StylusRecord& record) {
+    if (stylus.acted) stylus.energy += stylus.acted->dot(record.tip - stylus.server_tip);
+    run_.way_of_lies += stylus.acted ? (record.tip - stylus.server_tip).norm() : 0.0;
+    stylus.acted.reset();
+    if (record.present) stylus.acted = -record.force;
+    stylus.server_tip = record.tip;
   }
 
   void answer(std::size_t s, int t, double now) {
@@ -252,8 +344,12 @@ class Loop {
   Simulation simulation_;
   double dt_;
   PredictionTurns turns_;
+  TimedSteps timed_;
   SimulatedSteps server_;
-  int lead_ = 0;  ///< steps before all begins
+  PredictionThrottle throttle_;
+  std::uint64_t steps_ = 0;  ///< since the throttle was told
+  double second_ = 1.0;      ///< when it is told next [s]
+  int lead_ = 0;             ///< steps before all begins
   std::vector<std::unique_ptr<Stylus>> styluses_;
   std::vector<BridgedStylus> bridged_;
   std::vector<StylusCommand> commands_;

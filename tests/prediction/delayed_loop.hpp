@@ -25,6 +25,9 @@ struct LoopHand {
   HandParameters hand = {};
   std::function<Vector3(double)> target;  ///< over time [m], W
   bool grab = false;
+  /// What its bridge tells of a step in place of the truth; none: the truth. Its hand does not feel
+  /// that force; its work is that of what acts, along the way on which the server has it.
+  std::function<AppliedForce(const AppliedForce& truth, const ObjectRecord& object)> lie = {};
 };
 
 inline constexpr double kLinkTime = 0.25;  ///< [s]
@@ -38,6 +41,8 @@ struct LoopSetup {
   std::int64_t hold_horizon_ns = ForceDemand::kHoldHorizonNs;  ///< of a held force, for it
   /// Of the link, for it to arm [share]; if any, all begins kLinkTime later, when it may have.
   double needed_success = 0.0;
+  /// Of each server step [dt]; 0: none, and steps come as server_overruns has them.
+  double server_step = 0.0;
   Overruns server_overruns;
   Overruns bridge_overruns;  ///< of each bridge; the device goes on showing its force
   std::uint64_t seed = 0;    ///< of overruns and link
@@ -53,6 +58,13 @@ struct LoopRun {
   int unknown = 0;                          ///< steps whose newest model was too old
   int late = 0;                             ///< forces that the server entered afterwards
   int lost = 0;                             ///< forces that came too late for that, or never
+  int withheld = 0;                         ///< BridgedStylus::withheld(), of all hands
+  int withheld_at_bridge = 0;               ///< BridgeContact::withheld(), the same
+  /// Force on the object in each step of the server, delayed ones included [N], W, per hand.
+  std::vector<std::vector<Vector3>> on_object;
+  std::vector<std::vector<bool>> touching;  ///< the same steps
+  double way_of_lies = 0.0;                 ///< of all lying hands, as the server has it [m]
+  std::vector<double> peak_asked;           ///< largest force that a bridge asked for, per hand [N]
   double peak_on_object = 0.0;              ///< largest force that is recorded or entered late [N]
   double fastest_object = 0.0;              ///< [m/s]
   double fastest_hand = 0.0;                ///< [m/s]

@@ -298,3 +298,17 @@ TEST_CASE("bridged stylus: late forces that press an object on the floor do not 
   CHECK(served.bridged.late() == 8);
   CHECK(fastest < 0.02);
 }
+
+TEST_CASE("bridged stylus: a force whose tip is not where its samples are exerts nothing") {
+  Served served(1);
+  for (int k = 0; k < 5; ++k) served.step(kAbove, Vector3::Zero());
+  served.applied.step = served.simulation.next_step();
+  served.applied.past[0] = {kPush, kAbove + Vector3(0, 1.0, 0), kAbove};
+  served.history.take(served.applied);
+  served.step(kAbove, kPush, false);
+  CHECK(served.bridged.disagreed() == 1);
+  CHECK(served.moved(0).isZero(0.0));
+  served.step(kAbove, kPush);
+  CHECK(served.bridged.disagreed() == 1);
+  CHECK(served.moved(0).y() < -1e-5);
+}

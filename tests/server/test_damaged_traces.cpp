@@ -203,3 +203,17 @@ TEST_CASE("what is wrong after the last step that is read does not matter") {
   const Recording begin(trace.whole, trace.config, {"one", "two"}, 90);
   CHECK(begin.steps() == 90);
 }
+
+// Traces of servers from before world.bound have such rows.
+TEST_CASE("a trace of a stylus that was where no hand is can be read: there it has no contact") {
+  const DamagedTrace trace;
+  const std::string path = "/object/one/stylus/0";
+  const std::size_t row = trace.row(path + "/contact", is_contact);
+  set_number(trace.whole, path + "/arm_shift", 3 * row + 1, 5.6e6);
+  StepRecord record;
+  trace.read(trace.whole).step(row, record);
+  CHECK(record.object[0].contact[0].state == ContactState::kFree);
+  CHECK(record.object[0].contact[0].arm_shift.isZero(0.0));
+  trace.read(trace.whole).step(row + 1, record);
+  CHECK(record.object[0].contact[0].state != ContactState::kFree);
+}

@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <functional>
+
 #include "common/realtime/clock.hpp"
 #include "server/threads/force_thread.hpp"
 #include "tests/support/catch.hpp"
@@ -220,4 +223,92 @@ TEST_CASE("the viewers' stylus and their settings reach the step") {
   fall.control->stylus().put({});
   CHECK(fall.comes([](const StepRecord& record) { return !record.stylus[1].present; }));
   fall.force->finish();
+}
+
+namespace {
+
+/// A cube that is pressed from above by a stylus of the network, in as many steps as are asked for.
+struct Press {
+  explicit Press(double max_force) {
+    config.objects.resize(1);
+    config.objects[0].model = std::make_shared<const Model>(synthetic_cube(2, 5, 10));
+    config.styluses[0].max_force = max_force;
+    simulation = std::make_unique<Simulation>(config);
+    control = std::make_unique<RunControl>(simulation->settings());
+  }
+  class Clock final : public StepClock {
+   public:
+    bool wait(std::uint64_t) noexcept override {
+      if (before) before();
+      return !stopped();
+    }
+    std::function<void()> before;
+  };
+  /// The answer to each of `tips`, one step each.
+  std::vector<StylusForce> answers(const std::vector<Vector3>& tips) {
+    std::vector<StylusForce> answers;
+    StylusPort& port = network.port(0);
+    Clock clock;
+    std::size_t next = 0;
+    const auto take = [&] {
+      if (port.out.receive()) answers.push_back(port.out.front());
+    };
+    clock.before = [&] {
+      take();
+      StylusInput input{.present = true};
+      input.sample.sequence = next;
+      input.sample.tip = tips[std::min(next++, tips.size() - 1)];
+      port.in.put(input);
+    };
+    ForceThread force(*simulation, network, *control, clock, {}, tips.size());
+    force.start(RealTimeScheduling::kIgnore);
+    REQUIRE(force.finished().wait(kDeadlineMs));
+    force.finish();
+    take();
+    outside = force.report().faults[0].outside;
+    return answers;
+  }
+
+  SimulationConfig config;
+  std::unique_ptr<Simulation> simulation;
+  std::unique_ptr<RunControl> control;
+  NetworkServer network{{.styluses = 1}};
+  std::uint64_t outside = 0;
+};
+
+constexpr double kPressTop = 0.06;
+
+}  // namespace
+
+TEST_CASE("a force that is commanded to a stylus is at most its max_force") {
+  constexpr double kMost = 0.5;
+  Press press(kMost);
+  std::vector<Vector3> tips{Vector3(0, kPressTop + 0.001, 0)};
+  for (int k = 1; k < 20; ++k) tips.emplace_back(0, kPressTop - 0.002 * k, 0);
+  double largest = 0.0;
+  for (const StylusForce& answer : press.answers(tips)) {
+    largest = std::max(largest, answer.force.norm());
+  }
+  CHECK(largest == Approx(kMost));
+}
+
+TEST_CASE("a position beyond the world's bound is not used: the force fades, and it is counted") {
+  Press press(40.0);
+  std::vector<Vector3> tips{Vector3(0, kPressTop + 0.001, 0)};
+  for (int k = 1; k < 10; ++k) tips.emplace_back(0, kPressTop - 0.0005 * k, 0);
+  for (int k = 0; k < 30; ++k) tips.emplace_back(0, 1000.0, 0);
+  tips.emplace_back(0, kPressTop + 0.001, 0);
+  const std::vector<StylusForce> answers = press.answers(tips);
+  REQUIRE(answers.size() == tips.size());
+  const double before = answers[9].force.norm();
+  REQUIRE(before > 0.0);
+  const double step = before * press.simulation->dt() / ForceThread::kFade;
+  for (std::size_t k = 10; k < 40; ++k) {
+    const double fall = answers[k - 1].force.norm() - answers[k].force.norm();
+    CHECK(fall >= 0.0);
+    CHECK(fall <= step * (1 + 1e-9));
+  }
+  CHECK(answers[39].force == Vector3::Zero());
+  CHECK(answers[40].force == Vector3::Zero());
+  CHECK(press.outside == 30);
 }

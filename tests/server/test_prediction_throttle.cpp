@@ -17,7 +17,7 @@ TEST_CASE(
     CHECK(throttle.period() == expected);
   }
   int due = 0;
-  for (std::uint64_t step = 0; step < 80; ++step) due += throttle.due(step) ? 1 : 0;
+  for (int step = 0; step < 80; ++step) due += throttle.due(false) ? 1 : 0;
   CHECK(due == 10);
   for (const int expected : {4, 2, 1, 1}) {
     for (int second = 0; second < PredictionThrottle::kGood; ++second) {
@@ -38,4 +38,13 @@ TEST_CASE("prediction throttle: neither good nor bad changes nothing") {
   CHECK(throttle.period() == 2);
   throttle.update(1000, 0);
   CHECK(throttle.period() == 1);
+}
+
+TEST_CASE("prediction throttle: a server that is always behind makes a model in each fourth step") {
+  PredictionThrottle throttle;
+  int due = 0;
+  for (int step = 0; step < 80; ++step) due += throttle.due(true) ? 1 : 0;
+  CHECK(due == 20);
+  CHECK_FALSE(throttle.due(true));
+  CHECK(throttle.due(false));
 }

@@ -310,6 +310,7 @@ TEST_CASE("each limit of styluses, floor and objects: the last good value, the f
        "is 1e+300"},
       {"[[object]]", "object[0].angular_velocity", "angular_velocity = [1e3, 0, 0]",
        "angular_velocity = [-1e300, 0, 0]", "is -1e+300"},
+      {"[world]", "world.bound", "bound = 1000", "bound = 0", "is 0"},
       {"[world]", "world.gravity", "gravity = [0, -100, 100]", "gravity = [0, -1e300, 0]",
        "is -1e+300"},
       {"[[object]]", "object[0].tether.x", "", "tether = { x = 1 }", "is not a known key"},

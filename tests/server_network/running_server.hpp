@@ -29,6 +29,11 @@ inline std::size_t resident() {
   return pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
 }
 
+/// Sample k as lockstep has it, with the dt of the settings' default.
+inline StylusSample lockstep_sample(std::uint64_t k) {
+  return {.sequence = k, .time_ns = static_cast<std::int64_t>(k + 1) * 2'000'000};
+}
+
 /// A server on a free port, and what the tests of it do again and again.
 class RunningServer {
  public:

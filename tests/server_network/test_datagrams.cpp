@@ -315,3 +315,14 @@ TEST_CASE("a port that another program has for UDP is said so") {
                     Catch::Matchers::ContainsSubstring("cannot listen for datagrams") &&
                         Catch::Matchers::ContainsSubstring("server.udp = false"));
 }
+
+TEST_CASE("a datagram of no parts that is no probe ends the session") {
+  RunningServer running(kPatient);
+  DatagramBridge bridge(running);
+  bridge.say(1);
+  Bytes text(wire::kPartHeaderSize + 20, 0);
+  text.back() = 1;
+  bridge.udp.send(bridge.channel->seal(std::span<const std::uint8_t>(text)), bridge.port);
+  CHECK(bridge.tcp.ends());
+  CHECK(eventually([&] { return running.server.stats().protocol_errors == 1; }));
+}

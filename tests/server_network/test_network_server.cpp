@@ -67,7 +67,7 @@ TEST_CASE(
   REQUIRE(peer.receive_as<Welcome>());
   StylusPort& port = server.port(0);
   const auto answer = [&](std::uint64_t step) {
-    peer.send(SampleMessage{.sample = {.sequence = step}});
+    peer.send(SampleMessage{.sample = lockstep_sample(step)});
     REQUIRE(
         served_until([&] { return port.in.receive() && port.in.front().sample.sequence == step; }));
     port.out.put({.force_step = step, .sample_sequence = step});
@@ -108,7 +108,7 @@ TEST_CASE("a torque goes to those bridges that want it, a finite one") {
       REQUIRE(welcome);
       CHECK(welcome->capabilities == wanted);
       const auto answer = [&](std::uint64_t step, const Vector3& given) {
-        peer.send(SampleMessage{.sample = {.sequence = step}});
+        peer.send(SampleMessage{.sample = lockstep_sample(step)});
         running.next_input();
         running.give({.force_step = step,
                       .sample_sequence = step,
@@ -292,7 +292,7 @@ TEST_CASE("in lockstep a silent stylus stays") {
                          .absent_after_ms = 5,
                          .silence_timeout_ms = 5});
   RawPeer peer = running.join();
-  peer.send(SampleMessage{});
+  peer.send(SampleMessage{.sample = lockstep_sample(0)});
   CHECK(running.next_input().present);
   // The server has looked at its clock for long when two that say nothing, not even Hello, are sent
   // away one after the other.

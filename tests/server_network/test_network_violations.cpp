@@ -187,3 +187,22 @@ TEST_CASE("server sends a peer away that does not say hello in time") {
   CHECK(peer.ends());
   CHECK(running.server.stats().timeouts == 1);
 }
+
+TEST_CASE("server in lockstep sends a sample away that skips a number, or has a wrong time") {
+  NetworkSettings settings = kPatient;
+  settings.lockstep = true;
+  const auto check = [&](const StylusSample& wrong) {
+    RunningServer running(settings);
+    RawPeer peer = running.join();
+    peer.send(SampleMessage{.sample = lockstep_sample(0)});
+    CHECK(running.next_input().sample.sequence == 0);
+    peer.send(SampleMessage{.sample = lockstep_sample(1)});
+    CHECK(running.next_input().sample.sequence == 1);
+    peer.send(SampleMessage{.sample = wrong});
+    CHECK_FALSE(running.next_input().present);
+    check_sent_away(running, peer);
+  };
+  check(lockstep_sample(3));
+  check({.sequence = 2, .time_ns = 6'100'000});
+  check({.sequence = 2, .time_ns = 0});
+}

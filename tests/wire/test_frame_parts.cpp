@@ -132,6 +132,7 @@ TEST_CASE("texts that are no part of a message are errors, one by one") {
   refused(text_of(model, 1), 0);                      // before the first datagram
   refused(Bytes(good.begin(), good.end() - 1), 200);  // cut, and not the last
   refused({0, 1, 0, 0, 'X'}, 200);                    // no frame
+  refused(changed(good, 1, 0), 200);                  // of no parts
   Bytes two = {0, 1, 0, 0};
   const Bytes goodbye = frame_of(Goodbye{});
   two.insert(two.end(), goodbye.begin(), goodbye.end());
@@ -144,4 +145,8 @@ TEST_CASE("a probe is as large as a datagram can be and no part of a message") {
   CHECK(is_probe(probe_text().view()));
   CHECK_FALSE(is_probe(text_of(frame_of(Goodbye{}), 0)));
   CHECK_FALSE(is_probe({}));
+  Bytes of_no_parts = text_of(frame_of(Goodbye{}), 0);
+  of_no_parts[1] = 0;
+  CHECK_FALSE(is_probe(of_no_parts));
+  CHECK_FALSE(is_probe(Bytes(kPartHeaderSize, 0)));
 }

@@ -24,8 +24,8 @@ struct ContactRows {
   std::vector<double> offset;
   std::vector<double> arm_shift;
 
-  /// A row with arms longer than lab::kPlace counts as one without a contact. Throws Error, also for
-  /// a node that the model does not have.
+  /// A row with arms longer than lab::kPlace counts as one without a contact. Throws Error, also
+  /// for a node that the model does not have.
   ContactRows(const hdf5::File& file, const RowReader& reader, const TraceCheck& check,
               const std::string& path, int node_count);
 

@@ -14,7 +14,7 @@ class EnergyAccount {
  public:
   static constexpr double kMost = 1.0;               ///< that is remembered [J]
   static constexpr double kLeast = -0.05;            ///< the same, below zero
-  static constexpr double kForgiven = 0.02;          ///< below zero, while no hand touches [W] ...
+  static constexpr double kForgiven = 0.005;         ///< below zero, while no hand touches [W] ...
   static constexpr double kForgivenInTouch = 0.002;  ///< ... and while one does
   /// By this much it may be below zero [J]: what rounding, steps and late news make of a passive
   /// object's. As much again below that, no bridge's force puts in any more.

@@ -79,8 +79,8 @@ class StylusContacts {
   /// Of all tips against the object in the step that has ended [J]: for a bridge's force, which the
   /// device shows after its step, that of the step before.
   double work() const noexcept { return work_; }
-  /// Of a force that a bridge showed in a step that was not told in time, with its tip there by then
-  /// [J].
+  /// Of a force that a bridge showed in a step that was not told in time, with its tip there by
+  /// then [J].
   /// @param force on the object [N], W  @param tip [m], W
   double unsettled_work(std::size_t s, const Vector3& force, const Vector3& tip) const noexcept;
   /// Such a force was entered [N], W.
@@ -155,9 +155,9 @@ class StylusContacts {
     Vector3 way = Vector3::Zero();         ///< of its tip in that step [m], W
     Vector3 velocity = Vector3::Zero();    ///< of its tip, smoothed [m/s], W
     Vector3 shown = Vector3::Zero();       ///< by its bridge: the last force that acted [N], W
-    int untold = 0;                     ///< steps that nothing was told of, since
-    Vector3 delayed = Vector3::Zero();  ///< sum of the forces that were entered since [N], W ...
-    int delayed_count = 0;              ///< ... and how many
+    int untold = 0;                        ///< steps that nothing was told of, since
+    Vector3 delayed = Vector3::Zero();     ///< sum of the forces that were entered since [N], W ...
+    int delayed_count = 0;                 ///< ... and how many
     Prediction prediction = {};
 
     void begin_telling() noexcept {

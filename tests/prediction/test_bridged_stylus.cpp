@@ -210,11 +210,14 @@ TEST_CASE("bridged stylus: of the first message after a reset the newest force a
 }
 
 TEST_CASE("bridged stylus: a force is bounded, and one that is never told of is lost") {
-  Served served(1);
+  constexpr double kMost = 5.0;
+  SimulationConfig config = cubes(1);
+  config.styluses[0].max_force = kMost;
+  Served served(config);
   for (int k = 0; k < 5; ++k) served.step(kAbove, Vector3::Zero());
   served.step(kAbove, 500.0 * kPush.normalized());
   CHECK(served.bridged.bounded() == 1);
-  CHECK(served.record.stylus[0].force.norm() == Approx(kMostAppliedForce));
+  CHECK(served.record.stylus[0].force.norm() == Approx(kMost));
   Served silent(1);
   for (int k = 0; k < 5; ++k) silent.step(kAbove, Vector3::Zero());
   silent.step(kAbove, Vector3::Zero(), false);
@@ -311,4 +314,20 @@ TEST_CASE("bridged stylus: a force whose tip is not where its samples are exerts
   served.step(kAbove, kPush);
   CHECK(served.bridged.disagreed() == 1);
   CHECK(served.moved(0).y() < -1e-5);
+}
+
+// At rest, a push of 40 N for a step gives the cube 17 mJ; its hand has done nothing.
+TEST_CASE("bridged stylus: a force puts in no more than 10 mJ beyond what hands did") {
+  Served served(1);
+  for (int k = 0; k < 5; ++k) served.step(kAbove, Vector3::Zero());
+  for (int k = 0; k < 5; ++k) {
+    served.step(kAbove, kMostAppliedForce * kPush.normalized());
+    const ObjectRecord& object = served.record.object[0];
+    const BodyProperties& body = served.simulation.object(0).model().body;
+    const Vector3 spin = object.orientation.conjugate() * object.angular_velocity;
+    const double energy =
+        0.5 * (body.mass * object.velocity.squaredNorm() + spin.dot(body.inertia * spin));
+    CHECK(energy > 0.009);
+    CHECK(energy < 0.0105);
+  }
 }

@@ -78,7 +78,7 @@ TEST_CASE("slow server: object and hand get the same force though it is always b
 
 TEST_CASE(
     "slow server: a force that its models do not reach fades, and both sides count the steps") {
-  const LoopRun run = run_loop(two_hands(30.0), LoopMode::kPredict, {0.001});
+  const LoopRun run = run_loop(two_hands(3.0), LoopMode::kPredict, {0.001});
   double most = 0.0;
   for (std::size_t hand = 0; hand < 2; ++hand) {
     CHECK(zeros(run, hand).drops == 0);

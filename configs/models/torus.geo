@@ -5,10 +5,6 @@ SetFactory("OpenCASCADE");
 Torus(1) = {0, 0, 0, 0.04, 0.02};
 Rotate {{1, 0, 0}, {0, 0, 0}, Pi / 2} { Volume{1}; }
 
-// Quadratic tetrahedra with curved edges: the nodes in their middles lie on the torus, too. Those inside are moved where
-// an element would fold over.
-Mesh.ElementOrder = 2;
-Mesh.HighOrderOptimize = 2;
-Mesh.MeshSizeMin = 0.022;
-Mesh.MeshSizeMax = 0.022;
+Mesh.MeshSizeMin = 0.012;
+Mesh.MeshSizeMax = 0.012;
 Physical Volume("torus") = {1};

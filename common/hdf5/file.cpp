@@ -213,10 +213,13 @@ File File::open(const std::filesystem::path& path) {
   errno = 0;
   Handle file(H5Fopen(path.c_str(), access, properties.get()), H5Fclose);
   const int cause = errno;
-  if (file.get() < 0) {
-    // A file that h5py has open in this program is opened with the same close degree only.
-    H5Pset_fclose_degree(properties.get(), H5F_CLOSE_STRONG);
-    file = Handle(H5Fopen(path.c_str(), access, properties.get()), H5Fclose);
+  // One that is open elsewhere in this program is opened with the same close degree and locking
+  // only; h5py's degree is the strong one.
+  for (const H5F_close_degree_t degree : {H5F_CLOSE_STRONG, H5F_CLOSE_DEFAULT}) {
+    if (file.get() >= 0) break;
+    const Handle others(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+    H5Pset_fclose_degree(others.get(), degree);
+    file = Handle(H5Fopen(path.c_str(), access, others.get()), H5Fclose);
   }
   if (file.get() < 0) fail_open(path, cause);
   return {std::move(file), path.string()};

@@ -202,7 +202,7 @@ DenseResponse read_dense(const hdf5::File& file, const Model& model) {
   read_frame(file, model, response);
   const auto dof = static_cast<hsize_t>(response.degrees_of_freedom);
   const auto steps = static_cast<hsize_t>(response.steps);
-  DenseSamples samples(model);
+  DenseSamples samples(response.degrees_of_freedom, response.steps);
   const ColumnChecksums checksums(file, dof);
   with_number(file.element_size(kDenseR), [&]<typename Scalar>(Scalar) {
     response.values =
@@ -221,7 +221,7 @@ StreamedResponse read_streamed(const hdf5::File& file, const Model& model) {
   const auto dof = static_cast<std::size_t>(response.degrees_of_freedom);
   const auto steps = static_cast<std::size_t>(response.steps);
   response.rest.resize(dof * dof);
-  DenseSamples samples(model);
+  DenseSamples samples(response.degrees_of_freedom, response.steps);
   const ColumnChecksums checksums(file, dof);
   with_number(file.element_size(kDenseR), [&]<typename Scalar>(Scalar) {
     std::vector<Scalar> first(dof * dof);

@@ -20,16 +20,14 @@ std::optional<std::string> description_fault(const Model& model);
 /// more.
 class DenseSamples {
  public:
-  /// @param model its description
-  explicit DenseSamples(const Model& model);
+  DenseSamples(int degrees_of_freedom, int steps);
 
   /// @param column [s][a] of column b, as in the file
   template <typename Scalar>
   void add(int b, const Scalar* column);
 
-  /// After all columns: R(a, b) is R(b, a) in the samples; what a force does to the place where it
-  /// acts is along the force, in the first step and when it lasts; and in the first step it is not
-  /// far beyond dt^2 / (2 m), which a free node of that mass would do. Nothing when that holds.
+  /// After all columns: R(a, b) is R(b, a) in the samples, and what a force does to the place where
+  /// it acts is along the force, in the first step and when it lasts. Nothing when that holds.
   std::optional<std::string> fault() const;
 
  private:
@@ -40,7 +38,6 @@ class DenseSamples {
   std::vector<double> peak_;      ///< largest |R(b, b)| (3n) [m/N]
   std::vector<double> sum_;       ///< of R(b, b) over all steps (3n) [m/N]
   std::vector<double> first_;     ///< R(b, b) of the first step (3n) [m/N]
-  std::vector<double> free_;      ///< dt^2 / (2 m) of the node of b (3n) [m/N]
   Eigen::MatrixXd columns_;       ///< R(a, b) of samples b: (3n, samples * step samples)
   Eigen::MatrixXd rows_;          ///< R(b, a) of samples b, of all columns a, in the same order
 };

@@ -115,7 +115,6 @@ inline void take_away(const std::filesystem::path& path, const std::string& name
 /// Gives a model file whose numbers were edited the checksums of what it now holds.
 inline void sign_model(const std::filesystem::path& path) {
   std::vector<std::uint64_t> columns;
-  std::string content;
   {
     const auto file = hdf5::File::open(path);
     if (file.exists(kDenseColumnChecksum)) {
@@ -136,7 +135,8 @@ inline void sign_model(const std::filesystem::path& path) {
     const hdf5::Handle set(H5Dopen2(file.get(), kDenseColumnChecksum, H5P_DEFAULT), H5Dclose);
     H5Dwrite(set.get(), H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, columns.data());
   }
-  replace_attribute(path, "/", "content_sha256", content_checksum(hdf5::File::open(path)));
+  const auto checksum = [&] { return content_checksum(hdf5::File::open(path)); }();
+  replace_attribute(path, "/", "content_sha256", checksum);
 }
 
 }  // namespace irdm::test

@@ -72,7 +72,8 @@ TEST_CASE("frames of a recorded run show the object, from frame to frame another
   CHECK_THAT(again.err, ContainsSubstring("is not empty"));
 }
 
-TEST_CASE("a signal that ends irdm-replay ends its browser, too, and removes the profile", "[slow]") {
+TEST_CASE("a signal that ends irdm-replay ends its browser, too, and removes the profile",
+          "[slow]") {
   if (!can_draw()) return;
   const Stage stage;
   record(stage, true);

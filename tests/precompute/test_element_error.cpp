@@ -13,7 +13,6 @@
 namespace irdm::precompute {
 namespace {
 
-using Catch::Approx;
 using Catch::Matchers::ContainsSubstring;
 using irdm::test::kProgramMaterial;
 using irdm::test::ProgramRun;

@@ -107,7 +107,7 @@ void StylusContacts::find(std::span<const StylusCommand> commands,
 
 // The way of its tip, and the work of a bridge's force on it, as far as that force acted. A step
 // that nothing is told of leaves tip and force as they were; the next one has the way of both, in
-// which the forces share that were entered for such steps since.
+// which the forces share that were entered for such steps since, if that is less.
 void StylusContacts::follow(Stylus& stylus, const StylusCommand& command) noexcept {
   if (!command.present || !command.tip.allFinite()) {
     stylus.position.reset();
@@ -129,7 +129,8 @@ void StylusContacts::follow(Stylus& stylus, const StylusCommand& command) noexce
     return;
   }
   const int steps = 1 + std::max(stylus.untold, stylus.delayed_count);
-  work_ += (stylus.shown + stylus.delayed).dot(stylus.way) / steps;
+  const Vector3 mean = (stylus.shown + stylus.delayed) / steps;
+  work_ += std::min(stylus.shown.dot(stylus.way), mean.dot(stylus.way));
   stylus.shown = ours ? command.bridged->force : Vector3::Zero();
   stylus.begin_telling();
 }

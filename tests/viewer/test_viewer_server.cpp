@@ -470,9 +470,13 @@ TEST_CASE("notices name files, not the server's folders, and are UTF-8") {
   for (const char* kept : {"", "coupling 300 N/m, 5 /s", "saved: a-1.toml", "/", "a / b"}) {
     CHECK(file_names_only(kept) == kept);
   }
-  Show show;
-  show.run.notice = "/secret/folder/caf\xE9.toml: is missing";
-  WebPeer peer = show.watch();
+  ExampleRun run;
+  run.notice = "/secret/folder/caf\xE9.toml: is missing";
+  ViewerServer server({.idle_timeout_ms = 600'000}, run);
+  server.start();
+  WebPeer peer(server.port());
+  peer.open();
+  peer.send_message(encode(ClientMessage(Hello{})));
   CHECK(next_state(peer).notice == "caf?.toml: is missing");
 }
 

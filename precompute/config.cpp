@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "common/config/range.hpp"
 #include "common/error.hpp"
@@ -306,9 +307,10 @@ Method method_from_word(const std::string& word) {
 PrecomputeConfig read_config(TomlTable root, const std::string& name) {
   PrecomputeConfig config;
   config.name = name;
+  TomlTable mesh = root.table("mesh", true);
   const bool rigid = root.table("material", true).boolean("rigid", false);
   // A rigid body gains nothing from more nodes, and contacts between objects cost more with them.
-  config.mesh = read_mesh_config(root.table("mesh", true), rigid ? 1 : config.mesh.order);
+  config.mesh = read_mesh_config(std::move(mesh), rigid ? 1 : config.mesh.order);
   if (rigid) {
     read_rigid_body(root, config);
   } else {

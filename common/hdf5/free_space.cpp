@@ -79,7 +79,9 @@ std::string WatchedPlace::fault(hid_t file, const std::filesystem::path& path) c
   struct stat opened {};
   struct stat named {};
   if (disk < 0 || ::fstat(disk, &opened) != 0) return "";
-  if (static_cast<std::uintmax_t>(opened.st_size) < length_) {
+  // HDF5 itself shortens a file whose last blocks have become free.
+  if (static_cast<std::uintmax_t>(opened.st_size) <
+      std::min<std::uintmax_t>(length_, end_of(file))) {
     return "was cut off while it was written";
   }
   if (::stat(path.c_str(), &named) != 0) {

@@ -107,7 +107,7 @@ std::string content_checksum(const hdf5::File& file) {
   add_dataset<std::int32_t>(sha, file, kResidualRowStart);
   add_dataset<std::int32_t>(sha, file, kResidualNodes);
   add_dataset<float>(sha, file, kResidualBlocks);
-  if (file.exists(kCompressedFirScale)) {
+  if (file.exists(kCompressedFir) && file.stores_integers(kCompressedFir)) {
     add_dataset<float>(sha, file, kCompressedFirScale);
     add_dataset<std::int16_t>(sha, file, kCompressedFir);
   } else {

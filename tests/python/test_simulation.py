@@ -236,7 +236,7 @@ class SimulationTest(unittest.TestCase):
             with self.subTest(text), self.assertRaisesRegex(TypeError, text):
                 simulation.step(odd)
             with self.subTest(text), self.assertRaisesRegex(TypeError, text):
-                simulation.step_many(numpy.ma.stack([odd]))
+                simulation.step_many(odd[None])
             with self.subTest(text), self.assertRaisesRegex(TypeError, text):
                 simulation.gravity = odd[0]
         for odd in ("tips", [["a", "b", "c"]], object()):

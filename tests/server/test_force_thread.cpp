@@ -295,7 +295,7 @@ TEST_CASE("a force that is commanded to a stylus is at most its max_force") {
 TEST_CASE("a position beyond the world's bound is not used: the force fades, and it is counted") {
   Press press(40.0);
   std::vector<Vector3> tips{Vector3(0, kPressTop + 0.001, 0)};
-  for (int k = 1; k < 10; ++k) tips.emplace_back(0, kPressTop - 0.0005 * k, 0);
+  for (int k = 1; k < 10; ++k) tips.emplace_back(0, kPressTop - 0.002 * k, 0);
   for (int k = 0; k < 30; ++k) tips.emplace_back(0, 1000.0, 0);
   tips.emplace_back(0, kPressTop + 0.001, 0);
   const std::vector<StylusForce> answers = press.answers(tips);

@@ -112,6 +112,7 @@ TEST_CASE("a torque goes to those bridges that want it, a finite one") {
         running.next_input();
         running.give({.force_step = step,
                       .sample_sequence = step,
+                      .sample_time_ns = lockstep_sample(step).time_ns,
                       .force = Vector3(0, 1, 0),
                       .torque = given});
         const auto force = peer.receive_as<wire::ForceMessage>();

@@ -299,7 +299,7 @@ SceneConfig read_scene(TomlTable file) {
 }
 
 std::string read_text(const std::filesystem::path& path) {
-  if (std::filesystem::exists(path)) require_file(path, kMostConfigBytes);
+  require_file(path, kMostConfigBytes);
   std::ifstream stream(path, std::ios::binary);
   if (!stream) throw Error(path.string(), "cannot be read", "check the path and its permissions");
   std::ostringstream text;

@@ -180,16 +180,20 @@ void ForceThread::fade_model(StylusPort& port) noexcept {
   port.model.publish();
 }
 
-// What is commanded to any stylus is bounded here, whatever objects and other hands did.
-void ForceThread::answer(std::size_t s, StylusRecord stylus) noexcept {
-  StylusPort& port = network_.port(static_cast<int>(s));
+StylusRecord ForceThread::bounded(std::size_t s, const StylusRecord& stylus) const noexcept {
   const double most = simulation_.max_force(s);
   const double force = stylus.force.norm();
-  if (force > most) {
-    stylus.force *= most / force;
-    stylus.torque *= most / force;
-  }
-  port.out.put(to_answer(record_, stylus, port.in.front().sample));
+  if (!(force > most)) return stylus;
+  StylusRecord bounded = stylus;
+  bounded.force *= most / force;
+  bounded.torque *= most / force;
+  return bounded;
+}
+
+// What is commanded to any stylus is bounded here, whatever objects and other hands did.
+void ForceThread::answer(std::size_t s, const StylusRecord& stylus) noexcept {
+  StylusPort& port = network_.port(static_cast<int>(s));
+  port.out.put(to_answer(record_, bounded(s, stylus), port.in.front().sample));
 }
 
 // A hand feels nothing meanwhile: what it felt fades.
@@ -203,7 +207,7 @@ void ForceThread::fade_while_paused() noexcept {
     StylusPort& port = network_.port(static_cast<int>(s));
     port.in.receive();
     if (!port.in.front().present) continue;
-    answer(s, faded(record_.stylus[s], paused_steps_, port.in.front().sample.tip));
+    answer(s, faded(bounded(s, record_.stylus[s]), paused_steps_, port.in.front().sample.tip));
     fade_model(port);
   }
   network_.forces_ready().signal();
@@ -217,7 +221,7 @@ void ForceThread::check_position(std::size_t s) noexcept {
     outside.steps = 0;
     return;
   }
-  if (outside.steps++ == 0) outside.last = record_.stylus[s];
+  if (outside.steps++ == 0) outside.last = bounded(s, record_.stylus[s]);
   ++outside.steps_in_all;
   command.present = false;
   command.tip = outside.last.tip;

@@ -101,7 +101,8 @@ class ForceThread {
   void run() noexcept;
   void step() noexcept;
   void fade_while_paused() noexcept;
-  void answer(std::size_t s, StylusRecord stylus) noexcept;
+  StylusRecord bounded(std::size_t s, const StylusRecord& stylus) const noexcept;
+  void answer(std::size_t s, const StylusRecord& stylus) noexcept;
   StylusRecord faded(const StylusRecord& last, std::uint64_t steps,
                      const Vector3& tip) const noexcept;
   void fade_model(StylusPort& port) noexcept;

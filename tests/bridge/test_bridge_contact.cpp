@@ -109,10 +109,10 @@ TEST_CASE("contact at the bridge: without newer models what it asks for ages by 
   // Beyond the horizon nothing is solved: what the device goes on to show acts on the object.
   bench.ticks(40, -0.001, false);
   CHECK(bench.contact.wanted().content_ns == last);
-  CHECK(bench.contact.applied().past[0].force == bench.contact.wanted().force);
+  CHECK(bench.contact.applied().past[0].force == -bench.contact.wanted().force);
   bench.share = 0.25;
   bench.ticks(4, -0.001, false);
-  CHECK(bench.contact.applied().past[0].force.isApprox(0.25 * bench.contact.wanted().force));
+  CHECK(bench.contact.applied().past[0].force.isApprox(-0.25 * bench.contact.wanted().force));
 }
 
 TEST_CASE("contact at the bridge: a run that stands still says so, and goes on at its own number") {

@@ -208,7 +208,9 @@ TEST_CASE("SIGINT keeps the work file and says how to go on, and the same comman
            std::filesystem::file_size(run.path() / "model.h5.columns") > 150'000;
   };
   REQUIRE(irdm::test::eventually(some, ChildProcess::kDeadlineMs));
+  process.signal(SIGSTOP);
   run.refused("c.toml -o model.h5", "model.h5.columns: is being written by another run");
+  process.signal(SIGCONT);
   process.signal(SIGINT);
   CHECK(process.wait() == -SIGINT);
   CHECK_THAT(process.err(), ContainsSubstring("the same command goes on from where it was"));

@@ -140,7 +140,7 @@ TEST_CASE("a mesh is not compared with a finer one that takes too long") {
   const ElementReport report = report_elements(fine, kThinMaterial);
   CHECK(!report.compared);
   CHECK(!report.warning);
-  CHECK_THAT(report.found, ContainsSubstring("more than 100000 unknowns"));
+  CHECK_THAT(report.found, ContainsSubstring("more than 50000 unknowns"));
 }
 
 TEST_CASE("how much is too stiff is said in per cent, or as a factor") {

@@ -391,7 +391,7 @@ TEST_CASE("SIGINT and SIGTERM leave neither the model nor its temporary file") {
   for (const int signal : {SIGINT, SIGTERM}) {
     ProgramRun run;
     // Long enough to be interrupted while dense R is written.
-    run.write("c.toml", "[mesh]\nbox = { size = [1, 1, 1], cells = [6, 6, 6] }\n" +
+    run.write("c.toml", "[mesh]\nbox = { size = [1, 1, 1], cells = [6, 6, 6] }\norder = 1\n" +
                             kProgramMaterial + "[response]\nsteps = 500\nstorage = \"dense\"\n");
     ChildProcess process = run.begin("c.toml -o made/model.h5");
     const auto writing = [&] {

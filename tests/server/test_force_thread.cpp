@@ -294,21 +294,20 @@ TEST_CASE("a force that is commanded to a stylus is at most its max_force") {
 
 TEST_CASE("a position beyond the world's bound is not used: the force fades, and it is counted") {
   Press press(40.0);
-  std::vector<Vector3> tips{Vector3(0, kPressTop + 0.001, 0)};
-  for (int k = 1; k < 10; ++k) tips.emplace_back(0, kPressTop - 0.002 * k, 0);
+  std::vector<Vector3> tips{Vector3(0, kPressTop + 0.001, 0), Vector3(0, kPressTop - 0.002, 0)};
   for (int k = 0; k < 30; ++k) tips.emplace_back(0, 1000.0, 0);
   tips.emplace_back(0, kPressTop + 0.001, 0);
   const std::vector<StylusForce> answers = press.answers(tips);
   REQUIRE(answers.size() == tips.size());
-  const double before = answers[9].force.norm();
+  const double before = answers[1].force.norm();
   REQUIRE(before > 0.0);
   const double step = before * press.simulation->dt() / ForceThread::kFade;
-  for (std::size_t k = 10; k < 40; ++k) {
+  for (std::size_t k = 2; k < 32; ++k) {
     const double fall = answers[k - 1].force.norm() - answers[k].force.norm();
     CHECK(fall >= 0.0);
     CHECK(fall <= step * (1 + 1e-9));
   }
-  CHECK(answers[39].force == Vector3::Zero());
-  CHECK(answers[40].force == Vector3::Zero());
+  CHECK(answers[31].force == Vector3::Zero());
+  CHECK(answers[32].force == Vector3::Zero());
   CHECK(press.outside == 30);
 }

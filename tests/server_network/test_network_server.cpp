@@ -70,7 +70,9 @@ TEST_CASE(
     peer.send(SampleMessage{.sample = lockstep_sample(step)});
     REQUIRE(
         served_until([&] { return port.in.receive() && port.in.front().sample.sequence == step; }));
-    port.out.put({.force_step = step, .sample_sequence = step});
+    port.out.put({.force_step = step,
+                  .sample_sequence = step,
+                  .sample_time_ns = lockstep_sample(step).time_ns});
   };
   answer(0);
   server.serve();

@@ -157,7 +157,7 @@ TEST_CASE("mistakes: a scene") {
   check(IRDM_SERVER,
         {{"", "", "", "secne.toml: no such file", "check the path", {"@secne.toml"}},
          {"", "", "", "folder: is a folder", "give the path of a file", {"@folder"}},
-         {"", "", "", "cube.h5:", "correct the TOML syntax", {"@cube.h5"}},
+         {"", "", "", "cube.h5: has ", "give a text file", {"@cube.h5"}},
          {"scene.toml", "model =", "modle =", "object[0].model is missing", "is it 'modle'?"},
          {"scene.toml", "radius", "raduis", "stylus[0].raduis is not a known key",
           "did you mean 'radius'?"},

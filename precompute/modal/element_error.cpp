@@ -4,10 +4,12 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "common/error.hpp"
+#include "precompute/dynamics/sparse_solver.hpp"
 #include "precompute/fem/assembly.hpp"
 #include "precompute/modal/elastic_statics.hpp"
 #include "precompute/modal/lowest_modes.hpp"
@@ -59,22 +61,26 @@ std::string number(double value) {
 
 }  // namespace
 
+int most_finer_unknowns() {
+  return std::string_view(sparse_solver_name()) == "CHOLMOD" ? 50'000 : 15'000;
+}
+
 bool ElementError::is_large() const {
   return std::abs(frequency / finer_frequency - 1.0) > kLargeError;
 }
 
 std::optional<ElementError> element_error(const TetMesh& mesh, const Material& material) {
   // The finer mesh has at least four times the nodes.
-  if (4 * 3 * mesh.node_count() > kMostFinerUnknowns) return std::nullopt;
+  if (4 * 3 * mesh.node_count() > most_finer_unknowns()) return std::nullopt;
   TetMesh finer = mesh;
   Material finer_material = material;
   refine(finer, finer_material.elements);
-  if (3 * finer.node_count() > kMostFinerUnknowns) return std::nullopt;
+  if (3 * finer.node_count() > most_finer_unknowns()) return std::nullopt;
   ElementError error{lowest_frequency(mesh, material), lowest_frequency(finer, finer_material)};
   for (double coarse = error.frequency;
        std::abs(coarse / error.finer_frequency - 1.0) > kAgreement;) {
     refine(finer, finer_material.elements);
-    if (3 * finer.node_count() > kMostFinerUnknowns) break;
+    if (3 * finer.node_count() > most_finer_unknowns()) break;
     coarse = error.finer_frequency;
     error.finer_frequency = lowest_frequency(finer, finer_material);
   }
@@ -113,7 +119,7 @@ ElementReport report_elements(const TetMesh& mesh, const Material& material) {
   if (!error) {
     return {false,
             "not compared with finer ones, which would have more than " +
-                std::to_string(kMostFinerUnknowns) + " unknowns",
+                std::to_string(most_finer_unknowns()) + " unknowns",
             std::nullopt};
   }
   char text[128];

@@ -22,14 +22,13 @@ struct ElementError {
   bool is_large() const;
 };
 
-/// Degrees of freedom up to which meshes are compared with finer ones. A cube of quadratic
-/// tetrahedra with 53 000 of them takes about 6 s on one core (CHOLMOD, AMD EPYC), and the time
-/// grows with the square.
-inline constexpr int kMostFinerUnknowns = 50'000;
+/// Degrees of freedom up to which meshes are compared with finer ones: some ten seconds on one
+/// core. 50 000 with CHOLMOD, 15 000 with Eigen's solver; the time grows with their square.
+int most_finer_unknowns();
 
 /// Compares the body's elements with quadratic ones that have half the distance between nodes, then
 /// half of that and so on, until two agree within 5 % or the next would have more than
-/// kMostFinerUnknowns degrees of freedom. None: already the first would have more. Clamped nodes
+/// most_finer_unknowns() degrees of freedom. None: already the first would have more. Clamped nodes
 /// are left free: the question is how well the elements bend. Throws Error when a lowest mode is
 /// not found.
 std::optional<ElementError> element_error(const TetMesh& mesh, const Material& material);

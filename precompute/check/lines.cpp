@@ -187,7 +187,7 @@ std::vector<std::array<int, 3>> sorted_triangles(const Triangles& triangles) {
   std::vector<std::array<int, 3>> sorted;
   for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
     std::array<int, 3> nodes{triangles(t, 0), triangles(t, 1), triangles(t, 2)};
-    std::ranges::rotate(nodes, std::ranges::min_element(nodes));
+    std::rotate(nodes.begin(), std::ranges::min_element(nodes), nodes.end());
     sorted.push_back(nodes);
   }
   std::ranges::sort(sorted);

@@ -62,7 +62,7 @@ std::string number(double value) {
 }  // namespace
 
 int most_finer_unknowns() {
-  return std::string_view(sparse_solver_name()) == "CHOLMOD" ? 50'000 : 15'000;
+  return std::string_view(sparse_solver_name()) == "CHOLMOD" ? 50'000 : 20'000;
 }
 
 bool ElementError::is_large() const {

@@ -23,7 +23,7 @@ struct ElementError {
 };
 
 /// Degrees of freedom up to which meshes are compared with finer ones: some ten seconds on one
-/// core. 50 000 with CHOLMOD, 15 000 with Eigen's solver; the time grows with their square.
+/// core. 50 000 with CHOLMOD, 20 000 with Eigen's solver; the time grows with their square.
 int most_finer_unknowns();
 
 /// Compares the body's elements with quadratic ones that have half the distance between nodes, then

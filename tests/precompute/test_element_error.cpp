@@ -169,7 +169,7 @@ TEST_CASE(
 
 TEST_CASE("precompute and check warn of a thin body of linear elements, and not by default") {
   ProgramRun run;
-  const std::string thin = "[mesh]\nbox = { size = [0.1, 0.1, 0.002], cells = [8, 8, 1] }\n";
+  const std::string thin = "[mesh]\nbox = { size = [0.05, 0.05, 0.002], cells = [6, 6, 1] }\n";
   run.write("c.toml", thin + "order = 1\n" + kProgramMaterial);
   run.start("c.toml -o made/model.h5");
   REQUIRE(run.status == 0);

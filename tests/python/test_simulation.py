@@ -5,7 +5,7 @@ import threading
 import unittest
 
 import numpy
-from support import block, cube, folder, scene
+from support import PRELOADED, block, cube, folder, scene
 
 import irdm
 
@@ -45,7 +45,8 @@ class SimulationTest(unittest.TestCase):
         path = os.path.join(folder.name, "ctrl_c.toml")
         with open(path, "w", encoding="utf-8") as file:
             file.write(irdm.to_toml(scene()))
-        run = subprocess.run([sys.executable, "-c", program, path], stdout=subprocess.PIPE, text=True, timeout=600)
+        run = subprocess.run([sys.executable, "-c", program, path], stdout=subprocess.PIPE, text=True, timeout=600,
+                             env={**os.environ, "LD_PRELOAD": PRELOADED})
         self.assertTrue(0 < int(run.stdout) < 3_000_000, run.stdout)
 
     def test_forces_change_momentum(self):

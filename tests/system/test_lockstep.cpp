@@ -149,7 +149,7 @@ TEST_CASE("lockstep: a disk that gets full changes no step and keeps what was co
   REQUIRE(bridge.wait() == 0);
   CHECK(server.process.wait() == 1);
   CHECK_THAT(bridge.out(), ContainsSubstring(" 0 gaps"));
-  CHECK(number_after(server.process.out(), "steps: ") == static_cast<double>(whole.rows()));
+  CHECK(number_after(server.process.out(), "\nsteps: ") == static_cast<double>(whole.rows()));
   CHECK_THAT(server.process.err(), ContainsSubstring("recording ended early: " + path.string()));
   const hdf5::File file = hdf5::File::open(path);
   const hsize_t rows = file.read<std::uint64_t>("/committed", {1})[0];
@@ -194,7 +194,7 @@ TEST_CASE("lockstep: a bridge that is killed ends the run, and the trace is whol
   CHECK(bridge.wait() == -SIGKILL);
   CHECK(server.process.wait() == 0);
   CHECK(static_cast<double>(read_trace(path).rows()) ==
-        number_after(server.process.out(), "steps: "));
+        number_after(server.process.out(), "\nsteps: "));
 }
 
 TEST_CASE("lockstep: a server that is killed ends its bridge with one line and status 1") {

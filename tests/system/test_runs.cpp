@@ -34,8 +34,8 @@ double peak_force(const Trace& trace) {
 
 // A trace that lacks nothing: as many rows as the server says, numbered from 0.
 void check_whole(const Trace& trace, const std::string& server_output) {
-  CHECK(static_cast<double>(trace.rows()) == number_after(server_output, "steps: "));
-  CHECK(static_cast<double>(trace.rows()) == number_after(server_output, "recorded: "));
+  CHECK(static_cast<double>(trace.rows()) == number_after(server_output, "\nsteps: "));
+  CHECK(static_cast<double>(trace.rows()) == number_after(server_output, "\nrecorded: "));
   for (std::size_t k = 0; k < trace.rows(); ++k) REQUIRE(trace.force_step[k] == k);
 }
 
@@ -202,7 +202,7 @@ TEST_CASE("a disk that gets full is told in one line at the end, with status 1")
   CHECK_THAT(server.err,
              Catch::Matchers::StartsWith("irdm-server: error: recording ended early: ") &&
                  ContainsSubstring("trace.h5") && ContainsSubstring("check free space"));
-  CHECK(number_after(server.out, "steps: ") == 1000);
+  CHECK(number_after(server.out, "\nsteps: ") == 1000);
   CHECK(hdf5::File::open(stage.path("trace.h5")).exists("/committed"));
 }
 #endif

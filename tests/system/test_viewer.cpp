@@ -376,7 +376,7 @@ TEST_CASE("viewer: scenes follow each other at the same ports, each with its rep
   }
   server.process.signal(SIGTERM);
   CHECK(server.process.wait() == 0);
-  CHECK(count_of(server.process.out(), "steps: ") == 4);
+  CHECK(count_of(server.process.out(), "\nsteps: ") == 4);
   CHECK(count_of(server.process.out(), bridges + "\n") == 4);
 }
 

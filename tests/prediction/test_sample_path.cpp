@@ -29,6 +29,16 @@ TEST_CASE("sample path: a told tip is where the samples are") {
   CHECK(path.follow(along_x(1.0), kNoBound) == along_x(0.01));
 }
 
+TEST_CASE("sample path: a slow tip is followed as it goes, there and back") {
+  SamplePath path;
+  path.begin(Vector3::Zero());
+  for (int k = 1; k <= 20; ++k) {
+    const Vector3 tip = along_x(1e-5 * (k <= 10 ? k : 20 - k));
+    path.add(tip);
+    CHECK(path.follow(tip, kNoBound) == tip);
+  }
+}
+
 TEST_CASE("sample path: who does not move has no way, whatever is told") {
   SamplePath path;
   path.begin(along_x(0.02));

@@ -300,6 +300,33 @@ void ModalEngine<Scalar>::add_delayed_force(std::span<const NodalForce> forces, 
   move_on();
 }
 
+// As energy(), without the residual's.
+template <typename Scalar>
+std::optional<EnergyChange> ModalEngine<Scalar>::energy_change(std::span<const NodalForce> forces,
+                                                               int age) noexcept {
+  if (age < -1 || age >= kMaxHorizon) return std::nullopt;
+  const auto& omega = std::get_if<ModalResponse>(&model_->response)->angular_frequency;
+  const double* const coordinate = age < 0 ? free_coordinate_.data() : coordinate_.data();
+  const double* const velocity = age < 0 ? free_velocity_.data() : velocity_.data();
+  const std::size_t answer = static_cast<std::size_t>(std::max(age, 0)) * modes_;
+  collect_modal_forces(forces, {0, modes_}, modal_force_.data());
+  EnergyChange change;
+  for (std::size_t i = 0; i < modes_; ++i) {
+    const double frequency = omega(static_cast<Eigen::Index>(i));
+    const double stiffness = frequency * frequency;
+    const double q = coordinate_after_[answer + i] * modal_force_[i];
+    const double v = velocity_after_[answer + i] * modal_force_[i];
+    change.along += velocity[i] * v + stiffness * coordinate[i] * q;
+    change.own += 0.5 * (v * v + stiffness * q * q);
+  }
+  if (gravity_.acts()) {
+    for (std::size_t i = 0; i < modes_; ++i) {
+      change.along -= gravity_.force()[i] * coordinate_after_[answer + i] * modal_force_[i];
+    }
+  }
+  return change;
+}
+
 template <typename Scalar>
 void ModalEngine<Scalar>::advance(std::span<const NodalForce> forces) noexcept {
   residual_.hold(forces);

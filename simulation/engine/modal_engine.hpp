@@ -55,6 +55,8 @@ class ModalEngine final : public ResponseEngine,
     return horizon_.keeps(patch, state_, steps);
   }
   void add_delayed_force(std::span<const NodalForce> forces, int age) noexcept override;
+  std::optional<EnergyChange> energy_change(std::span<const NodalForce> forces,
+                                            int age) noexcept override;
   void advance(std::span<const NodalForce> forces) noexcept override;
   using ResponseEngine::displacement;
   void displacement(Points& u, double tolerance) const override {

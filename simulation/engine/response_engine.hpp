@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "common/contact/contact_model.hpp"
@@ -11,6 +12,12 @@
 #include "simulation/contact/contact_patch.hpp"
 
 namespace irdm {
+
+/// What a share s of a force adds to an energy: s along + s^2 own [J].
+struct EnergyChange {
+  double along = 0.0;
+  double own = 0.0;
+};
 
 /// Force on one surface node during one step [N], B.
 struct NodalForce {
@@ -159,6 +166,13 @@ class ResponseEngine {
   /// (0: the last one itself). @param age below kMaxHorizon; what is older is left out
   virtual void add_delayed_force(std::span<const NodalForce> forces, int age) noexcept = 0;
 
+  /// By what a share of forces that are held in one step would change energy(), where the response
+  /// says so; otherwise nothing.
+  /// @param age of the step, as for add_delayed_force(); -1: the coming one, at its end
+  virtual std::optional<EnergyChange> energy_change(std::span<const NodalForce> /*forces*/,
+                                                    int /*age*/) noexcept {
+    return std::nullopt;
+  }
   /// Ends the coming step with these forces held during it.
   virtual void advance(std::span<const NodalForce> forces) noexcept = 0;
 

@@ -18,17 +18,20 @@ StylusCommand BridgedStylus::next(const StylusCommand& command, std::uint64_t se
   if (session != session_) {  // a new hand: what the last one touched is nothing to it
     session_ = session;
     forget(AppliedHistory{});
-    path_.begin(command.tip);
+    there_ = false;
     next.present = false;
   }
-  path_.add(command.tip);
   const bool ours = session != 0 && history.session() == session;
   if (!next.present || !ours) {
     if (ours) forget(history);
-    tip_ = command.tip;
-    path_.begin(command.tip);
+    there_ = false;
     return next;
   }
+  if (!std::exchange(there_, true)) {  // from where it was before no hand came
+    tip_ = command.tip;
+    path_.begin(command.tip);
+  }
+  path_.add(command.tip);
   if (reset_ != simulation_.reset_step() && history.base() < simulation_.reset_step()) {
     forget(history);  // all of it is for the object as it was before
     next.bridged = BridgedForce{};
@@ -101,22 +104,25 @@ void BridgedStylus::begin(const StylusCommand& command, const AppliedHistory& hi
   first_ = told;
 }
 
-// Bit i of known_ is step k - 1 - i. What finds no place is left out for good; what finds no room
-// waits for the next step.
+// The earliest first. Bit i of known_ is step k - 1 - i. What finds no place is left out for good;
+// what finds no room waits for the next step.
 void BridgedStylus::insert_delayed_force(const AppliedHistory& history, std::uint64_t k) noexcept {
-  constexpr std::uint64_t kOldest = kMaxHorizon - 1;
-  for (std::uint64_t i = 0; i <= kOldest && i < k; ++i) {
+  constexpr int kOldest = kMaxHorizon - 1;
+  for (int i = static_cast<int>(std::min<std::uint64_t>(kMaxHorizon, k)) - 1; i >= 0; --i) {
     if ((known_ >> i & 1) != 0) continue;
-    const AppliedForce* const applied = find(history, k - 1 - i);
+    const AppliedForce* const applied = find(history, k - 1 - static_cast<std::uint64_t>(i));
     if (applied == nullptr || (simulation_.late_room() == 0 && !applied->force.isZero(0.0))) {
       if (i == kOldest) ++lost_;
       continue;
     }
     known_ |= std::uint64_t{1} << i;
+    const Vector3 tip = path_.ahead(applied->tip);
+    simulation_.tell_late(s_, tip, i);
     if (applied->force.isZero(0.0)) continue;
-    const AppliedForce late = accepted(*applied, path_.ahead(applied->tip));
+    const AppliedForce late = accepted(*applied, tip);
     if (late.force.isZero(0.0)) continue;
-    ++(simulation_.insert_delayed_force(s_, late, static_cast<int>(i)) ? late_ : lost_);
+    exerted_ = true;
+    ++(simulation_.insert_delayed_force(s_, late, i) ? late_ : lost_);
   }
 }
 

@@ -75,6 +75,7 @@ class BridgedStylus {
   std::uint64_t newest_ = kNoStep;           ///< step of the newest force at the last step
   HorizonLength horizon_;
   bool bridged_ = false;
+  bool there_ = false;             ///< in the last step, with a bridge
   Vector3 tip_ = Vector3::Zero();  ///< in the last step
   SamplePath path_;
   int untold_ = 0;                ///< steps since the last one that the bridge told of

@@ -5,11 +5,11 @@
 
 namespace irdm {
 
-/// The energy that hands gave one object and have not had back, and that it may give back: their
-/// work at the tips less what the energy of its rigid motion grew by (docs/theory.md). A passive
-/// object keeps it at zero or above; below it, forces that bridges decided on have put in more than
-/// the hands did. Beyond kMost it is forgotten, as if lost to damping, and below zero it is
-/// forgiven, slowly while a hand touches. Pure.
+/// The energy that hands gave one object and that is not in it: their work at the tips less what
+/// its own energy grew by, that of the rigid motion and, where it is known, of the elastic one
+/// (docs/theory.md). A passive object keeps it at zero or above; below it, forces that bridges
+/// decided on have put in more than the hands did. Beyond kMost it is forgotten, as if lost to
+/// damping, and below zero it is forgiven, slowly while a hand touches. Pure.
 class EnergyAccount {
  public:
   static constexpr double kMost = 1.0;               ///< that is remembered [J]
@@ -54,6 +54,7 @@ class EnergyAccount {
     if (balance_ < 0.0) balance_ = std::min(0.0, balance_ + rate * dt);
   }
 
+  double energy() const noexcept { return energy_; }    ///< at the end of the last step [J]
   double balance() const noexcept { return balance_; }  ///< [J]
   /// What of a force that drives the object may act: all down to -kAllowance, nothing from twice
   /// that on.

@@ -253,6 +253,10 @@ bool Simulation::insert_delayed_force(const LateForce& late) noexcept {
   return true;
 }
 
+void Simulation::tell_late(std::size_t s, const Vector3& tip, int age) noexcept {
+  for (const auto& object : objects_) object->tell_late(s, tip, age);
+}
+
 // Step 6: -Q f, Q half-way through the step.
 void Simulation::write_stylus(std::size_t s, const StylusCommand& command,
                               StepRecord& record) const noexcept {

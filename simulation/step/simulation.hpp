@@ -63,6 +63,9 @@ class Simulation {
   /// step `age` steps before the last one. False: that is too long ago, it touched
   /// nothing, or there are more of them than LateForces::kMost.
   bool insert_delayed_force(std::size_t s, const AppliedForce& applied, int age) noexcept;
+  /// Between steps: the bridge of stylus s told late where its tip was in the step `age` steps
+  /// before the last one. @param tip [m], W
+  void tell_late(std::size_t s, const Vector3& tip, int age) noexcept;
   /// The same of a recorded one (StepRecord::late), when a run is rerun.
   bool insert_delayed_force(const LateForce& late) noexcept;
   /// How many more can be entered before the coming step.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "simulation/state/state_archive.hpp"
@@ -26,7 +27,7 @@ SoftObject::SoftObject(const SimulationObject& object, const SimulationConfig& c
       nodal_(kMaxContacts * kMaxPatchNodes + kMaxFloorContacts +
              static_cast<std::size_t>(rest_.node_count())),
       touched_(rest_.node_count()) {
-  account_.begin(body_.energy());
+  account_.begin(total_energy());
   check_inertial_loading(model(), object.inertial_loading, "object");
   if (config.floor && body_.rigid().moves()) {
     floor_ = std::make_unique<FloorContacts>(*config.floor, rest_, model());
@@ -37,7 +38,7 @@ void SoftObject::reset() noexcept {
   change_ = Change::kUnknown;
   body_.reset();
   body_.lead({});
-  account_.begin(body_.energy());
+  account_.begin(total_energy());
   contacts_.reset();
   if (floor_) floor_->reset();
   touched_.clear();
@@ -53,6 +54,8 @@ void SoftObject::archive(StateArchive& state) {
   contacts_.archive(state);
   if (floor_) floor_->archive(state);
   state.value(account_);
+  state.value(elastic_);
+  state.value(late_);
   state.value(asleep_);
   state.value(limited_late_);
   if (!state.reading()) return;
@@ -71,7 +74,7 @@ void SoftObject::set(const Vector3& gravity, const ObjectSettings& settings) noe
   change_ = Change::kUnknown;
   friction_ = settings.friction;
   body_.set(gravity, settings);
-  account_.set_energy(body_.energy());
+  account_.set_energy(total_energy());
 }
 
 void SoftObject::begin(std::span<const StylusCommand> commands, ObjectRecord& record) noexcept {
@@ -92,7 +95,7 @@ void SoftObject::fall_asleep(ObjectRecord& record) noexcept {
 
 void SoftObject::rest(std::span<const StylusCommand> commands, ObjectRecord& record) noexcept {
   body_.rest(record);
-  account_.set_energy(body_.energy());
+  account_.set_energy(total_energy());
   contacts_.find(commands, body_.motion());
 }
 
@@ -139,7 +142,12 @@ void SoftObject::finish(std::span<const StylusCommand> commands, ObjectRecord& r
   if (floor_) floor_->update_contacts(body_.motion(), problem_);
   const RigidState before = state();
   end_step(record);
-  account_.settle(contacts_.work() + work_of_touch(before) + body_.coupling_work(), body_.energy());
+  const double elastic = elastic_;
+  const double energy = total_energy();
+  // What other bodies' forces do in the elastic motion is not known.
+  if (!touched_as_.sum.isZero(0.0)) account_.set_energy(account_.energy() + elastic_ - elastic);
+  account_.settle(contacts_.work() + work_of_touch(before) + body_.coupling_work(), energy);
+  late_ = {};
   account_.forgive(model().dt, contacts_.count() > 0);
   for (ContactRecord& contact : record.contact) {
     if (contact.state != ContactState::kFree) {
@@ -187,7 +195,8 @@ void SoftObject::pose(std::span<const StylusCommand> commands, int floor_count,
   problem_.rigid = body_.rigid().mobility();
   contacts_.predict(body_.engine());
   if (floor_count > 0) pose_floor();
-  contacts_.pose(commands, body_.motion(), friction_, account_, floor_count, problem_);
+  contacts_.pose(commands, body_.motion(), friction_, account_, body_.engine(), floor_count,
+                 problem_);
 }
 
 // Step 4: the forces that take them there.
@@ -286,6 +295,13 @@ void SoftObject::collect_others(std::size_t s, ContactModel& model) noexcept {
   model.other_torque += halfway.conjugate() * body_.coupling_torque();
 }
 
+// Of the rigid motion, and of the elastic one where the engine knows it.
+double SoftObject::total_energy() noexcept {
+  const double elastic = body_.engine().energy();
+  elastic_ = std::isnan(elastic) ? 0.0 : elastic;
+  return body_.energy() + elastic_;
+}
+
 // The balance, and what the object may lose to hands within the horizon, as it comes or falls: one
 // part for each stylus that touches it. The motion's fades with the driving share.
 double SoftObject::available_energy(const ContactModel& model) const noexcept {
@@ -297,8 +313,8 @@ double SoftObject::available_energy(const ContactModel& model) const noexcept {
     motion = rigid_energy(body, FreeForces{}, model.motion) + falling;
   }
   const double balance = account_.balance();
-  const double left =
-      std::max(balance, 0.0) + EnergyAccount::kAllowance + account_.driving_share() * motion;
+  const double left = std::max(balance, 0.0) + elastic_ + EnergyAccount::kAllowance +
+                      account_.driving_share() * motion;
   return left / std::max(1, contacts_.count()) + std::min(balance, 0.0);
 }
 
@@ -362,15 +378,32 @@ bool SoftObject::insert_delayed_force(std::size_t s, const AppliedForce& applied
   if (!contacts_.locate_delayed(s, tip, applied.arm, entry)) return false;
   const Vector3 force = floor_ ? floor_->without_pressure(applied.force) : applied.force;
   entry.force = body_.past().halfway(entry.age).conjugate() * force;
-  if (body_.rigid().moves()) {
-    const Matrix3 mobility = body_.rigid().mobility().between(entry.arm, entry.arm);
-    const double share =
-        account_.enter(force.dot(motion.way(entry.arm)), entry.force.dot(mobility * entry.force),
-                       contacts_.unsettled_work(s, force, applied.tip));
-    entry.force *= share;
-    limited_late_ += share < 1.0 ? 1 : 0;
-  }
+  const double share = share_of_late(force, entry);
+  entry.force *= share;
+  limited_late_ += share < 1.0 ? 1 : 0;
   return insert_delayed_force(entry);
+}
+
+// By the object's account. The motion does not have the late forces before this one yet.
+// @param force [N], W
+double SoftObject::share_of_late(const Vector3& force, const LateForce& entry) noexcept {
+  const auto s = static_cast<std::size_t>(entry.stylus);
+  const FreeMotion motion = body_.next_motion();
+  const RigidMobility mobility = body_.rigid().mobility();
+  const Quaternion to_body = motion.halfway.conjugate();
+  const Vector3 turn = mobility.rotation * (to_body * late_.torque(motion.halfway));
+  const Vector3 before = mobility.translation * (to_body * late_.sum) + turn.cross(entry.arm);
+  const Vector3 way = motion.way(entry.arm) + motion.halfway * (2.0 * before);
+  nodal_.clear();
+  contacts_.spread(s, entry.point, entry.force, nodal_);
+  const EnergyChange elastic =
+      body_.engine().energy_change(nodal_.view(), entry.age).value_or(EnergyChange{});
+  const double along = force.dot(way) + elastic.along;
+  const double own =
+      entry.force.dot(mobility.between(entry.arm, entry.arm) * entry.force) + elastic.own;
+  const double share = account_.enter(along, own, contacts_.unsettled_work(s, force, entry.age));
+  late_.add(share * force, entry.arm);
+  return share;
 }
 
 // What acts is the entry: a run that is rerun has nothing else.
@@ -380,7 +413,7 @@ bool SoftObject::insert_delayed_force(const LateForce& entry) noexcept {
   contacts_.spread(static_cast<std::size_t>(entry.stylus), entry.point, entry.force, nodal_);
   body_.insert_delayed_force(nodal_.view(), entry.force, entry.arm, entry.age);
   contacts_.add_delayed(static_cast<std::size_t>(entry.stylus),
-                        body_.past().halfway(entry.age) * entry.force);
+                        body_.past().halfway(entry.age) * entry.force, entry.age);
   change_ = Change::kUnknown;
   return true;
 }

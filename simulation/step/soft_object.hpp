@@ -95,6 +95,10 @@ class SoftObject {
   bool insert_delayed_force(std::size_t s, const AppliedForce& applied, LateForce& entry) noexcept;
   /// The same of an entry that is whole. False: that is too long ago.
   bool insert_delayed_force(const LateForce& entry) noexcept;
+  /// As Simulation::tell_late().
+  void tell_late(std::size_t s, const Vector3& tip, int age) noexcept {
+    contacts_.tell_late(s, tip, age);
+  }
   /// From the surface to a point of W, positive outside [m]. Between steps.
   double distance(const Vector3& tip) noexcept;
   ContactState contact_state(std::size_t s) const noexcept { return contacts_.state(s); }
@@ -131,6 +135,8 @@ class SoftObject {
   void end_step(ObjectRecord& record) noexcept;
   void cache_nodes() noexcept;
   double work_of_touch(const RigidState& before) const noexcept;
+  double share_of_late(const Vector3& force, const LateForce& entry) noexcept;
+  double total_energy() noexcept;
   double available_energy(const ContactModel& model) const noexcept;
   bool prepare_horizon(const ContactPatch& patch, bool among_others, ContactModel& model,
                        int& budget) noexcept;
@@ -155,6 +161,8 @@ class SoftObject {
   RigidStateHistory::Forces touched_as_;  ///< the same on the body as a whole
   RigidStateHistory::Forces own_;         ///< of styluses and floor in the step
   EnergyAccount account_;
+  double elastic_ = 0.0;            ///< of the last total_energy() [J]
+  RigidStateHistory::Forces late_;  ///< that were entered since the last step
   bool asleep_ = false;
   std::uint64_t limited_late_ = 0;
   AssemblyHorizon assembly_;

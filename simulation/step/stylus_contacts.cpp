@@ -68,8 +68,7 @@ void StylusContacts::reset() noexcept {
     stylus.last.any = false;
     stylus.last.average.setZero();
     stylus.position.reset();
-    stylus.shown.setZero();
-    stylus.begin_telling();
+    stylus.ledger.clear();
     stylus.prediction = {};
   }
 }
@@ -77,7 +76,7 @@ void StylusContacts::reset() noexcept {
 void StylusContacts::find(std::span<const StylusCommand> commands,
                           const FreeMotion& motion) noexcept {
   count_ = 0;
-  work_ = 0.0;
+  work_ = std::exchange(late_work_, 0.0);
   for (std::size_t s = 0; s < styluses_.size(); ++s) {
     const StylusCommand& command = commands[s];
     Stylus& stylus = styluses_[s];
@@ -86,10 +85,7 @@ void StylusContacts::find(std::span<const StylusCommand> commands,
       stylus.proxy.forget();
       continue;
     }
-    if (!find_contact(stylus, command, motion.to_body(command.tip))) {
-      if (command.bridged && !command.bridged->force.isZero(0.0)) stylus.shown.setZero();
-      continue;
-    }
+    if (!find_contact(stylus, command, motion.to_body(command.tip))) continue;
     const auto a = static_cast<std::size_t>(count_++);
     Contact& contact = contacts_[a];
     contact = {.stylus = static_cast<int>(s),
@@ -105,34 +101,22 @@ void StylusContacts::find(std::span<const StylusCommand> commands,
   }
 }
 
-// The way of its tip, and the work of a bridge's force on it, as far as that force acted. A step
-// that nothing is told of leaves tip and force as they were; the next one has the way of both, in
-// which the forces share that were entered for such steps since, if that is less.
+// The way of its tip, and the work of its bridge's forces on it. Of a step with neither nothing was
+// told.
 void StylusContacts::follow(Stylus& stylus, const StylusCommand& command) noexcept {
   if (!command.present || !command.tip.allFinite()) {
     stylus.position.reset();
     stylus.velocity.setZero();
-    stylus.shown.setZero();
-    stylus.begin_telling();
+    stylus.ledger.clear();
     return;
   }
   stylus.way = command.tip - std::exchange(stylus.position, command.tip).value_or(command.tip);
   stylus.velocity += std::min(1.0, dt_ / kVelocityTime) * (stylus.way / dt_ - stylus.velocity);
   if (!command.bridged) {
-    stylus.shown.setZero();
-    stylus.begin_telling();
-    return;
+    stylus.ledger.clear();
+  } else if (!command.bridged->force.isZero(0.0) || !stylus.way.isZero(0.0)) {
+    work_ += stylus.ledger.tell(steps_ + 1, command.tip);
   }
-  const bool ours = command.bridged->object == object_;
-  if (command.bridged->force.isZero(0.0) && stylus.way.isZero(0.0)) {
-    ++stylus.untold;
-    return;
-  }
-  const int steps = 1 + std::max(stylus.untold, stylus.delayed_count);
-  const Vector3 mean = (stylus.shown + stylus.delayed) / steps;
-  work_ += std::min(stylus.shown.dot(stylus.way), mean.dot(stylus.way));
-  stylus.shown = ours ? command.bridged->force : Vector3::Zero();
-  stylus.begin_telling();
 }
 
 // Of one stylus that is there. False: none.
@@ -208,8 +192,8 @@ void StylusContacts::predict(ResponseEngine& engine) noexcept {
 }
 
 void StylusContacts::pose(std::span<const StylusCommand> commands, const FreeMotion& motion,
-                          const Friction& friction, EnergyAccount& account, int first,
-                          ContactProblem& problem) noexcept {
+                          const Friction& friction, EnergyAccount& account, ResponseEngine& engine,
+                          int first, ContactProblem& problem) noexcept {
   first_ = first;
   for (int a = 0; a < count_; ++a) {
     for (int b = 0; b < count_; ++b) {
@@ -218,7 +202,7 @@ void StylusContacts::pose(std::span<const StylusCommand> commands, const FreeMot
     Contact& contact = contacts_[static_cast<std::size_t>(a)];
     pose_contact(contact, commands[static_cast<std::size_t>(contact.stylus)], motion, friction,
                  first + a, problem);
-    if (contact.bridged) bound_remote_force(motion, account, first + a, problem);
+    if (contact.bridged) bound_remote_force(motion, account, engine, first + a, problem);
   }
 }
 
@@ -255,22 +239,53 @@ void StylusContacts::pose_contact(Contact& contact, const StylusCommand& command
   posed.arm = accepted_arm(command.bridged->arm, posed.arm);
 }
 
-// What a force adds to the energy of the rigid motion depends on the forces of other bridges, too:
+// What a force at contact a does in the elastic motion during the step. Where the place's
+// displacement at its start is not that of the end of the last step, the engine has to say.
+EnergyChange StylusContacts::elastic_change(int a, const Vector3& force,
+                                            ResponseEngine& engine) noexcept {
+  const Contact& contact = contacts_[static_cast<std::size_t>(a)];
+  const ContactDisplacement& displacement = stylus_of(contact).displacement;
+  const LastContact& last = stylus_of(contact).last;
+  const bool same = displacement.goes_on_in(steps_) && !delayed_ &&
+                    last.point.nodes == contact.point.nodes &&
+                    last.point.weights == contact.point.weights;
+  if (!same) {
+    const ContactPatch& patch = patches_[static_cast<std::size_t>(a)];
+    std::array<NodalForce, kMaxPatchNodes> nodal;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(patch.count); ++i) {
+      nodal[i] = {patch.nodes[i], patch.weights[i] * force};
+    }
+    const auto change =
+        engine.energy_change({nodal.data(), static_cast<std::size_t>(patch.count)}, -1);
+    if (change) return *change;
+  }
+  const Vector3 start = displacement.goes_on_in(steps_) ? displacement.last() : contact.free;
+  return {force.dot(contact.free - start), force.dot(elastic_between(a, a) * force)};
+}
+
+// What a force adds to the energy of the motion depends on the forces of other bridges, too:
 // those of the rows before it are bounded by then.
-void StylusContacts::bound_remote_force(const FreeMotion& motion, EnergyAccount& account, int row,
+void StylusContacts::bound_remote_force(const FreeMotion& motion, EnergyAccount& account,
+                                        ResponseEngine& engine, int row,
                                         ContactProblem& problem) noexcept {
   ContactConstraint& posed = problem.contact(row);
   if (posed.force.isZero(0.0)) return;
+  const int a = row - first_;
+  Contact& contact = contacts_[static_cast<std::size_t>(a)];
   Vector3 way = motion.halfway.conjugate() * motion.way(posed.arm);
-  for (int b = first_; b < row; ++b) {
-    if (!contacts_[static_cast<std::size_t>(b - first_)].bridged) continue;
-    const ContactConstraint& other = problem.contact(b);
-    way += 2.0 * problem.rigid.between(posed.arm, other.arm) * other.force;
+  for (int b = 0; b < a; ++b) {
+    if (!contacts_[static_cast<std::size_t>(b)].bridged) continue;
+    const ContactConstraint& other = problem.contact(first_ + b);
+    const Matrix3 between = problem.rigid.between(posed.arm, other.arm) + elastic_between(a, b);
+    way += 2.0 * between * other.force;
   }
-  const Vector3 own = problem.rigid.between(posed.arm, posed.arm) * posed.force;
-  const double share = account.drive(posed.force.dot(way), posed.force.dot(own), work_);
+  const EnergyChange elastic = elastic_change(a, posed.force, engine);
+  const double along = posed.force.dot(way) + elastic.along;
+  const double own =
+      posed.force.dot(problem.rigid.between(posed.arm, posed.arm) * posed.force) + elastic.own;
+  const double share = account.drive(along, own, work_);
   posed.force *= share;
-  stylus_of(contacts_[static_cast<std::size_t>(row - first_)]).shown *= share;
+  work_ += stylus_of(contact).ledger.show(steps_ + 1, motion.halfway * posed.force);
   limited_ += share < 1.0 ? 1 : 0;
 }
 
@@ -361,8 +376,8 @@ void StylusContacts::end_step(const ContactProblem& problem, const Quaternion& h
     nodal.add(patch(a), solved.force);
     Stylus& stylus = stylus_of(contact);
     if (!contact.bridged) work_ += (halfway * solved.force).dot(stylus.way);
-    stylus.displacement.remember(steps_, contact.moved);
     LastContact& last = stylus.last;
+    stylus.displacement.remember(steps_, contact.moved);
     if (!last.any || last.last_step + 1 != steps_) last.first_step = steps_;
     last.last_step = steps_;
     last.any = true;
@@ -371,6 +386,7 @@ void StylusContacts::end_step(const ContactProblem& problem, const Quaternion& h
     last.average += share * solved.force;
     forces.add(halfway * solved.force, solved.arm + contact.arm_shift);
   }
+  delayed_ = false;
   ++steps_;
 }
 
@@ -517,16 +533,17 @@ bool StylusContacts::locate_delayed(std::size_t s, const Vector3& tip, const Vec
   return true;
 }
 
-double StylusContacts::unsettled_work(std::size_t s, const Vector3& force,
-                                      const Vector3& tip) const noexcept {
-  const Stylus& stylus = styluses_[s];
-  if (!stylus.position) return 0.0;
-  return force.dot(tip - *stylus.position) / std::max(1, stylus.untold);
+void StylusContacts::tell_late(std::size_t s, const Vector3& tip, int age) noexcept {
+  late_work_ += styluses_[s].ledger.tell(told_step(age), tip);
 }
 
-void StylusContacts::add_delayed(std::size_t s, const Vector3& force) noexcept {
-  styluses_[s].delayed += force;
-  ++styluses_[s].delayed_count;
+double StylusContacts::unsettled_work(std::size_t s, const Vector3& force, int age) const noexcept {
+  return late_work_ + styluses_[s].ledger.of(told_step(age), force);
+}
+
+void StylusContacts::add_delayed(std::size_t s, const Vector3& force, int age) noexcept {
+  late_work_ += styluses_[s].ledger.show(told_step(age), force);
+  delayed_ = true;
 }
 
 void StylusContacts::spread(std::size_t s, const SurfacePoint& point, const Vector3& force,

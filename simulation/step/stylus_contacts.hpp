@@ -20,6 +20,7 @@
 #include "simulation/step/nodal_forces.hpp"
 #include "simulation/step/simulation_config.hpp"
 #include "simulation/step/step_record.hpp"
+#include "simulation/step/work_ledger.hpp"
 
 namespace irdm {
 
@@ -42,15 +43,14 @@ class StylusContacts {
       state.value(stylus.displacement);
       state.value(stylus.last);
       state.value(stylus.position);
-      for (Vector3* vector : {&stylus.way, &stylus.velocity, &stylus.shown, &stylus.delayed}) {
-        state.value(*vector);
-      }
-      state.value(stylus.untold);
-      state.value(stylus.delayed_count);
+      state.value(stylus.way);
+      state.value(stylus.velocity);
+      state.value(stylus.ledger);
       stylus.prediction = {};
     }
     state.value(steps_);
     state.value(work_);
+    state.value(late_work_);
     state.value(limited_);
     if (state.reading()) count_ = 0;
   }
@@ -60,9 +60,9 @@ class StylusContacts {
   /// Where their places would be without force, and the elastic compliance between them.
   void predict(ResponseEngine& engine) noexcept;
   /// Writes them into the problem, from row `first` on; those of the floor come before.
-  /// @param account of the object, which bounds what forces of bridges put in
+  /// @param account of the object, which bounds what forces of bridges put in  @param engine its
   void pose(std::span<const StylusCommand> commands, const FreeMotion& motion,
-            const Friction& friction, EnergyAccount& account, int first,
+            const Friction& friction, EnergyAccount& account, ResponseEngine& engine, int first,
             ContactProblem& problem) noexcept;
   /// What the contacts of bridges would do by themselves among the others' forces: that is how they
   /// slip and end.
@@ -79,12 +79,13 @@ class StylusContacts {
   /// Of all tips against the object in the step that has ended [J]: for a bridge's force, which the
   /// device shows after its step, that of the step before.
   double work() const noexcept { return work_; }
-  /// Of a force that a bridge showed in a step that was not told in time, with its tip there by
-  /// then [J].
-  /// @param force on the object [N], W  @param tip [m], W
-  double unsettled_work(std::size_t s, const Vector3& force, const Vector3& tip) const noexcept;
-  /// Such a force was entered [N], W.
-  void add_delayed(std::size_t s, const Vector3& force) noexcept;
+  /// As Simulation::tell_late().
+  void tell_late(std::size_t s, const Vector3& tip, int age) noexcept;
+  /// Of what was told late since the last step, with a force that would be entered now [J].
+  /// @param force on the object [N], W
+  double unsettled_work(std::size_t s, const Vector3& force, int age) const noexcept;
+  /// It was entered.
+  void add_delayed(std::size_t s, const Vector3& force, int age) noexcept;
   /// Forces of bridges that acted in part, or not at all, by the object's account, so far.
   std::uint64_t limited() const noexcept { return limited_; }
 
@@ -154,16 +155,8 @@ class StylusContacts {
     std::optional<Vector3> position = {};  ///< of its tip in the last step [m], W; none: not there
     Vector3 way = Vector3::Zero();         ///< of its tip in that step [m], W
     Vector3 velocity = Vector3::Zero();    ///< of its tip, smoothed [m/s], W
-    Vector3 shown = Vector3::Zero();       ///< by its bridge: the last force that acted [N], W
-    int untold = 0;                        ///< steps that nothing was told of, since
-    Vector3 delayed = Vector3::Zero();     ///< sum of the forces that were entered since [N], W ...
-    int delayed_count = 0;                 ///< ... and how many
+    WorkLedger ledger = {};                ///< of its bridge's forces
     Prediction prediction = {};
-
-    void begin_telling() noexcept {
-      untold = delayed_count = 0;
-      delayed.setZero();
-    }
   };
   /// A contact of this step.
   struct Contact {
@@ -180,6 +173,8 @@ class StylusContacts {
     Vector3 normal = Vector3::Zero();     ///< of a touching one
   };
 
+  /// Elastic compliance between contacts a and b of this step [m/N].
+  auto elastic_between(int a, int b) const noexcept { return elastic_.block<3, 3>(3 * a, 3 * b); }
   Stylus& stylus_of(const Contact& contact) noexcept {
     return styluses_[static_cast<std::size_t>(contact.stylus)];
   }
@@ -195,8 +190,12 @@ class StylusContacts {
   bool project_initial_contact(Stylus& stylus, const Vector3& tip) noexcept;
   void pose_contact(Contact& contact, const StylusCommand& command, const FreeMotion& motion,
                     const Friction& friction, int row, ContactProblem& problem) noexcept;
-  void bound_remote_force(const FreeMotion& motion, EnergyAccount& account, int row,
-                          ContactProblem& problem) noexcept;
+  std::uint64_t told_step(int age) const noexcept {
+    return steps_ - static_cast<std::uint64_t>(age);
+  }
+  EnergyChange elastic_change(int a, const Vector3& force, ResponseEngine& engine) noexcept;
+  void bound_remote_force(const FreeMotion& motion, EnergyAccount& account, ResponseEngine& engine,
+                          int row, ContactProblem& problem) noexcept;
   Vector3 accepted_arm(const Vector3& arm, const Vector3& own) const noexcept;
 
   const RestSurface& rest_;
@@ -208,7 +207,9 @@ class StylusContacts {
   std::vector<Stylus> styluses_;
   std::uint64_t steps_ = 0;  ///< made so far
   double work_ = 0.0;
+  double late_work_ = 0.0;  ///< of work_, what was settled late before the coming step
   std::uint64_t limited_ = 0;
+  bool delayed_ = false;  ///< forces were entered since the last step
 
   // Of the step under way.
   int count_ = 0;

@@ -59,8 +59,6 @@ struct Stylus {
   int newest_down = -1;
   double energy = 0.0;
   AppliedHistory lies;
-  std::optional<Vector3> acted;  ///< of the lies, in the last step of the server [N], W
-  Vector3 server_tip = Vector3::Zero();
   // At the server:
   AppliedHistory history{kSession};
   std::uint64_t newest_up = 0;
@@ -110,6 +108,7 @@ class Loop {
     commands_.resize(count);
     run_.force.resize(count);
     run_.on_object.resize(count);
+    told_tips_.resize(count);
     run_.touching.resize(count);
     run_.tip.resize(count);
     run_.peak_asked.assign(count, 0.0);
@@ -132,6 +131,7 @@ class Loop {
         run_.force[s].push_back(styluses_[s]->shown);
       }
     }
+    judge_lies();
     for (const BridgedStylus& stylus : bridged_) {
       run_.late += static_cast<int>(stylus.late());
       run_.lost += static_cast<int>(stylus.lost());
@@ -170,13 +170,15 @@ class Loop {
       if (setup_.filtered) filter(s, now);
       stylus.contact.shown(stylus.shown);
       if (news) message.applied = stylus.contact.applied();
-      if (news && hand.lie) lie(stylus, hand, message.applied);
+      if (news && hand.lie) lie(s, tip, message.applied);
     }
     stylus.up.send(now, message);
   }
 
   // Of each step once.
-  void lie(Stylus& stylus, const LoopHand& hand, AppliedForces& applied) {
+  void lie(std::size_t s, const Vector3& tip, AppliedForces& applied) {
+    Stylus& stylus = *styluses_[s];
+    const LoopHand& hand = setup_.hands[s];
     AppliedForces lies = applied;
     for (int i = lies.count - 1; i >= 0; --i) {
       const std::uint64_t step = lies.step - static_cast<std::uint64_t>(i);
@@ -186,6 +188,11 @@ class Loop {
       } else {
         one = hand.lie(one, record_.object[0]);
       }
+    }
+    std::vector<std::optional<Vector3>>& tips = told_tips_[s];
+    if (lies.count > 0) {
+      tips.resize(std::max<std::size_t>(tips.size(), lies.step + 1));
+      tips[lies.step] = tip;
     }
     stylus.lies.take(lies);
     applied = lies;
@@ -283,20 +290,6 @@ class Loop {
   }
 
   void judge() {
-    const SimulationObject& object = setup_.config.objects[0];
-    const ObjectRecord& now = record_.object[0];
-    const BodyProperties& body = object.model->body;
-    const Vector3 spin = now.orientation.conjugate() * now.angular_velocity;
-    double excess = 0.5 * body.mass * now.velocity.squaredNorm() +
-                    0.5 * spin.dot(body.inertia * spin) -
-                    body.mass * setup_.config.gravity.dot(now.position - object.position);
-    for (std::size_t s = 0; s < styluses_.size(); ++s) {
-      Stylus& stylus = *styluses_[s];
-      if (setup_.hands[s].lie) work_of_lies(stylus, record_.stylus[s]);
-      excess -= stylus.energy;
-    }
-    run_.energy_from_nowhere = std::max(run_.energy_from_nowhere, excess);
-    run_.fastest_object = std::max(run_.fastest_object, now.velocity.norm());
     for (std::size_t s = 0; s < styluses_.size(); ++s) {
       run_.peak_on_object = std::max(run_.peak_on_object, record_.stylus[s].force.norm());
     }
@@ -312,15 +305,31 @@ class Loop {
         run_.on_object[s][steps - ago] += record_.object[0].orientation * late.force;
       run_.peak_on_object = std::max(run_.peak_on_object, late.force.norm());
     }
+    run_.fastest_object = std::max(run_.fastest_object, record_.object[0].velocity.norm());
+    double excess = simulation_.object(0).energy();
+    for (std::size_t s = 0; s < styluses_.size(); ++s) {
+      if (!setup_.hands[s].lie) excess -= styluses_[s]->energy;
+    }
+    excess_.push_back(excess);
   }
 
-  // What acted, along the way that the server takes for the hand's.
-  void work_of_lies(Stylus& stylus, const StylusRecord& record) {
-    if (stylus.acted) stylus.energy += stylus.acted->dot(record.tip - stylus.server_tip);
-    run_.way_of_lies += stylus.acted ? (record.tip - stylus.server_tip).norm() : 0.0;
-    stylus.acted.reset();
-    if (record.present) stylus.acted = -record.force;
-    stylus.server_tip = record.tip;
+  // Work of what acted, late or not, on the way that the hand went while its device showed it.
+  void judge_lies() {
+    for (std::size_t s = 0; s < styluses_.size(); ++s) {
+      if (!setup_.hands[s].lie) continue;
+      const std::vector<std::optional<Vector3>>& tips = told_tips_[s];
+      double work = 0.0;
+      for (std::size_t k = 1; k < excess_.size(); ++k) {
+        if (k < tips.size() && tips[k] && tips[k - 1]) {
+          const Vector3 way = *tips[k] - *tips[k - 1];
+          work += run_.on_object[s][k - 1].dot(way);
+        }
+        excess_[k] -= work;
+      }
+    }
+    for (double excess : excess_) {
+      run_.energy_from_nowhere = std::max(run_.energy_from_nowhere, excess - excess_[0]);
+    }
   }
 
   void answer(std::size_t s, int t, double now) {
@@ -353,6 +362,9 @@ class Loop {
   std::vector<std::unique_ptr<Stylus>> styluses_;
   std::vector<BridgedStylus> bridged_;
   std::vector<StylusCommand> commands_;
+  /// Where lying hands are in the steps that their bridges tell of [m], W.
+  std::vector<std::vector<std::optional<Vector3>>> told_tips_;
+  std::vector<double> excess_;  ///< of the energy over what hands did [J]
   StepRecord record_;
   LoopRun run_;
 };

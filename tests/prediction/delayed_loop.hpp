@@ -63,12 +63,12 @@ struct LoopRun {
   /// Force on the object in each step of the server, delayed ones included [N], W, per hand.
   std::vector<std::vector<Vector3>> on_object;
   std::vector<std::vector<bool>> touching;  ///< the same steps
-  double way_of_lies = 0.0;                 ///< of all lying hands, as the server has it [m]
   std::vector<double> peak_asked;           ///< largest force that a bridge asked for, per hand [N]
   double peak_on_object = 0.0;              ///< largest force that is recorded or entered late [N]
   double fastest_object = 0.0;              ///< [m/s]
   double fastest_hand = 0.0;                ///< [m/s]
-  /// Largest excess of the rigid motion's energy, with that of its weight, over what hands did [J].
+  /// Largest excess of the object's energy, elastic and of its weight, too, over what hands did: a
+  /// lying one on the way that it went while what acted was shown [J].
   double energy_from_nowhere = 0.0;
 };
 

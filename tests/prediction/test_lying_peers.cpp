@@ -33,9 +33,8 @@ void check_lies(std::uint64_t count) {
     double& largest = most[loop.stalls ? 1 : 0];
     largest = std::max(largest, run.energy_from_nowhere);
   }
-  // Not none: what a pump leaves in the elastic motion of a soft body is not in the account, and
-  // an honest hand may get it.
-  CHECK(8 * above < calm);
+  // Not none: each of the account's allowances may be used, and what is lacking is forgiven.
+  CHECK(20 * above <= calm);
   std::cout << count << " loops with lying peers: without stalls above 20 mJ that no hand did "
             << above << " of " << calm << ", at most " << most[0] << " J, with stalls " << most[1]
             << " J\n";
@@ -45,4 +44,8 @@ void check_lies(std::uint64_t count) {
 
 TEST_CASE("lying peers: the world gets no more energy than hands give") {
   check_lies(50);
+}
+
+TEST_CASE("lying peers: the same two thousand times", "[exhaustive]") {
+  check_lies(2000);
 }

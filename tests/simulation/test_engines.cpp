@@ -357,3 +357,40 @@ TEST_CASE("surfaces of several engines at once are those of each, to the bit") {
   CHECK(dynamic_cast<const SharedSurface&>(*engines[0]).shared_surface() !=
         dynamic_cast<const SharedSurface&>(*engines[2]).shared_surface());
 }
+
+TEST_CASE("engines: what a share of a force changes the energy by is what it changes it by") {
+  const Model modal = synthetic_cube(2, 20, 60);
+  const auto engine = make_engine(share(modal));
+  const auto other = make_engine(share(modal));
+  RandomContacts contacts(modal.mesh.surface_node_count());
+  RandomContacts late(modal.mesh.surface_node_count() / 2);
+  int told = 0;
+  for (int k = 0; k < 200; ++k) {
+    std::vector<NodalForce> forces = late.next();
+    const double part = 0.25 * (k % 5);
+    const int age = k % 7 - 1;
+    const auto change = engine->energy_change(forces, age);
+    REQUIRE(change);
+    const double expected = part * (change->along + part * change->own);
+    for (NodalForce& force : forces) force.force *= part;
+    if (age >= 0) {
+      const double before = engine->energy();
+      engine->add_delayed_force(forces, age);
+      other->add_delayed_force(forces, age);
+      CHECK(engine->energy() - before == Approx(expected).epsilon(1e-9).margin(1e-15));
+      engine->advance({});
+      other->advance({});
+    } else {
+      engine->advance(forces);
+      other->advance({});
+      CHECK(engine->energy() - other->energy() == Approx(expected).epsilon(1e-9).margin(1e-15));
+      other->add_delayed_force(forces, 0);
+    }
+    told += expected != 0.0 ? 1 : 0;
+    const std::vector<NodalForce> held = contacts.next();
+    engine->advance(held);
+    other->advance(held);
+  }
+  CHECK(told > 50);
+  CHECK(!make_engine(share(with_dense_response<double>(modal)))->energy_change({}, 0));
+}

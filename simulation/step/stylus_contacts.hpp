@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -190,8 +191,9 @@ class StylusContacts {
   bool project_initial_contact(Stylus& stylus, const Vector3& tip) noexcept;
   void pose_contact(Contact& contact, const StylusCommand& command, const FreeMotion& motion,
                     const Friction& friction, int row, ContactProblem& problem) noexcept;
+  /// Counted from 1; 0: before the first step.
   std::uint64_t told_step(int age) const noexcept {
-    return steps_ - static_cast<std::uint64_t>(age);
+    return steps_ - std::min(steps_, static_cast<std::uint64_t>(age));
   }
   EnergyChange elastic_change(int a, const Vector3& force, ResponseEngine& engine) noexcept;
   void bound_remote_force(const FreeMotion& motion, EnergyAccount& account, ResponseEngine& engine,

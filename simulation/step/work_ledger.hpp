@@ -26,7 +26,7 @@ class WorkLedger {
   /// the work [J]. A step that is known, or from too long ago, stays as it is.
   /// @param k counted from 1  @param place [m], W
   double tell(std::uint64_t k, const Vector3& place) noexcept {
-    if (k + kKept <= newest_ || known(k)) return 0.0;
+    if (k == 0 || k + kKept <= newest_ || known(k)) return 0.0;
     newest_ = std::max(newest_, k);
     const Step* const before = previous(k);
     const Step* const after = next(k);

@@ -5,7 +5,7 @@
 #     --all: what continuous integration runs. First the quick tests under the address and undefined-behaviour sanitizers
 #            and under the thread sanitizer, and the fuzzers; then all tests, the slow ones, too, with warnings as errors,
 #            MPI and SLEPc (preset ci); checks the formatting
-#     --exhaustive: the tests that repeat others of the suite very often (label "exhaustive")
+#     --exhaustive: the tests that repeat others with more cases, finer meshes or longer runs (label "exhaustive")
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . scripts/progress.sh

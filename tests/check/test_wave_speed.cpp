@@ -68,7 +68,7 @@ TEST_CASE("a response whose waves are faster than any of its material fails") {
 }
 
 // Where the passages do not lie on a line, no speed is sound or wrong but by luck.
-TEST_CASE("a mesh that is too coarse for its waves, or damps them away, is not judged") {
+TEST_CASE("a mesh that is too coarse for its waves, or damps them away, is not judged", "[slow]") {
   for (const int cells : {4, 6}) {
     for (const double youngs_modulus : {2e4, 1e5, 1e6, 1e7}) {
       const Model model =

@@ -8,7 +8,6 @@ shift 3
 library=("${@/#/-D}")
 mapfile -t program < <(grep -rhoE 'EIGEN_[A-Z_]+(=[0-9]+)?' "$tree/lib/cmake/irdm" | sort -u | sed 's/^/-D/')
 grep -qw avx /proc/cpuinfo || { echo "test left out: this processor has no AVX"; exit 0; }
-newer=-march=native
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
@@ -47,17 +46,19 @@ int main() {
   }
 }
 EOF
-compile() { # NAME FLAG... to NAME.o
-  local name=$1
-  shift
-  "$cxx" -std=c++20 -O1 -I"$tree/include/irdm" -isystem "$eigen" "$@" -c "$work/$name.cpp" -o "$work/$name.o"
+compile() { # NAME PROCESSOR FLAG...: to NAME.PROCESSOR.o
+  local name=$1 processor=$2
+  shift 2
+  "$cxx" -std=c++20 -O1 -I"$tree/include/irdm" -isystem "$eigen" "$@" -c "$work/$name.cpp" -o "$work/$name.$processor.o"
 }
-for of_library in "" "$newer"; do
-  for of_program in "" "$newer"; do
-    echo "library: ${of_library:-any processor}; program: ${of_program:-any processor}"
-    compile library ${of_library:+"$of_library"} "${library[@]}"
-    compile program ${of_program:+"$of_program"} "${program[@]}"
-    "$cxx" "$work/program.o" "$work/library.o" -o "$work/program"
+compile library any "${library[@]}"
+compile library this -march=native "${library[@]}"
+compile program any "${program[@]}"
+compile program this -march=native "${program[@]}"
+for of_library in any this; do
+  for of_program in any this; do
+    echo "library for $of_library processor, program for $of_program"
+    "$cxx" "$work/program.$of_program.o" "$work/library.$of_library.o" -o "$work/program"
     "$work/program"
   done
 done

@@ -241,9 +241,10 @@ TEST_CASE("two ranks share the columns and one file comes out, that of a single 
 }
 #endif
 
+namespace {
+
 // Each moment of death: while columns are computed, while the model file is written, and between.
-TEST_CASE("killed at 20 random moments, the run ends with the file of an undisturbed one",
-          "[slow]") {
+void check_kills(int count) {
   const std::string config =
       std::string(kStepping).replace(kStepping.find("steps = 40"), 10, "steps = 1500");
   ColumnsRun undisturbed(config);
@@ -257,7 +258,7 @@ TEST_CASE("killed at 20 random moments, the run ends with the file of an undistu
   ColumnsRun run(config);
   int kills = 0;
   int had = 0;
-  while (kills < 20) {
+  while (kills < count) {
     std::filesystem::remove(run.path() / "model.h5");
     ChildProcess process = run.begin("c.toml -o model.h5 --threads 2");
     std::this_thread::sleep_for(std::chrono::duration<double>(moment(random)));
@@ -280,4 +281,14 @@ TEST_CASE("killed at 20 random moments, the run ends with the file of an undistu
   CHECK((run.content("model.h5") == expected));
   CHECK_FALSE(run.has("model.h5.columns"));
   CHECK_FALSE(run.has("model.h5.part"));
+}
+
+}  // namespace
+
+TEST_CASE("killed at random moments, the run ends with the file of an undisturbed one", "[slow]") {
+  check_kills(6);
+}
+
+TEST_CASE("killed at random moments, the same for twenty", "[exhaustive]") {
+  check_kills(20);
 }

@@ -287,7 +287,7 @@ TEST_CASE("display: what cannot be one is refused with what to do") {
   CHECK_THROWS_WITH(make_display_mesh(parts(8), fine), ContainsSubstring("set it to"));
 }
 
-TEST_CASE("display: the model file has it, compress keeps it, and damage is refused") {
+TEST_CASE("display: the model file has it, compress keeps it, and damage is refused", "[slow]") {
   ProgramRun run;
   run.write("c.toml", kBox + kProgramMaterial + "[response]\nstorage = \"both\"\nsteps = 300\n" +
                           "[display]\nsubdivision = 3\n");

@@ -107,7 +107,7 @@ TEST_CASE("a plate and a rod of quadratic elements bend as theory says") {
   CHECK(!thin->is_large());
 }
 
-TEST_CASE("too few quadratic elements are warned about as well") {
+TEST_CASE("too few quadratic elements are warned about as well", "[slow]") {
   const auto error = element_error(thin_plate(1, 2), kThinMaterial);
   REQUIRE(error);
   CAPTURE(error->frequency, error->finer_frequency);
@@ -167,7 +167,8 @@ TEST_CASE(
                                                     ContainsSubstring("set mesh.order = 2"));
 }
 
-TEST_CASE("precompute and check warn of a thin body of linear elements, and not by default") {
+TEST_CASE("precompute and check warn of a thin body of linear elements, and not by default",
+          "[slow]") {
   ProgramRun run;
   const std::string thin = "[mesh]\nbox = { size = [0.05, 0.05, 0.002], cells = [6, 6, 1] }\n";
   run.write("c.toml", thin + "order = 1\n" + kProgramMaterial);

@@ -321,7 +321,7 @@ TEST_CASE("bad mesh: one line on stderr, status 1, no output") {
   refused(with_words(eight_nodes, "2 3 4 5", "5 6 7 8"), "2 pieces");
 }
 
-TEST_CASE("a surface in millimetres is filled, its edge length is in metres") {
+TEST_CASE("a surface in millimetres is filled, its edge length is in metres", "[slow]") {
   ProgramRun run;
   // A cube of 120 mm, which has 8 nodes.
   const std::string cube =

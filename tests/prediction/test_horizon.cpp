@@ -132,7 +132,7 @@ TEST_CASE("foresight: a force that comes late does what it would have done in ti
 }
 
 // What is kept from step to step must be what somebody finds who looks for the first time.
-TEST_CASE("foresight: a prediction that goes on is the one that is computed anew") {
+TEST_CASE("foresight: a prediction that goes on is the one that is computed anew", "[slow]") {
   for (const bool fixed : {false, true}) {
     for (const ResponseKind kind : kKinds) {
       if (fixed && kind == ResponseKind::kCompressed) continue;  // there is none of it

@@ -42,7 +42,7 @@ void check_lies(std::uint64_t count) {
 
 }  // namespace
 
-TEST_CASE("lying peers: the world gets no more energy than hands give") {
+TEST_CASE("lying peers: the world gets no more energy than hands give", "[slow]") {
   check_lies(50);
 }
 

@@ -59,7 +59,7 @@ TEST_CASE("random loops: a held force that gives energy in any course is lowered
   }
 }
 
-TEST_CASE("random loops: near the server taps, presses and swings are shown in full") {
+TEST_CASE("random loops: near the server taps, presses and swings are shown in full", "[slow]") {
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
     const RandomLoop loop(seed, true);
     CAPTURE(loop.words);

@@ -46,12 +46,10 @@ pid_t start_writer(const std::filesystem::path& path) {
   return writer;
 }
 
-}  // namespace
-
-TEST_CASE("a trace whose writer is killed at any moment has every row that it says", "[slow]") {
+void check_killed_writers(int count) {
   const TemporaryFolder folder;
   std::minstd_rand random(1);
-  for (int i = 0; i < 50; ++i) {
+  for (int i = 0; i < count; ++i) {
     CAPTURE(i);
     const auto path = folder.path() / ("killed" + std::to_string(i) + ".h5");
     const pid_t writer = start_writer(path);
@@ -65,4 +63,14 @@ TEST_CASE("a trace whose writer is killed at any moment has every row that it sa
     CHECK(check_committed(path) >= begun);
     std::filesystem::remove(path);
   }
+}
+
+}  // namespace
+
+TEST_CASE("a trace whose writer is killed at any moment has every row that it says", "[slow]") {
+  check_killed_writers(10);
+}
+
+TEST_CASE("a trace whose writer is killed, the same for fifty moments", "[exhaustive]") {
+  check_killed_writers(50);
 }

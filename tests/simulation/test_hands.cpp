@@ -239,7 +239,7 @@ TEST_CASE("hands: a cube slips when all fingertips together press too little", "
   CHECK(pressed == Approx(threshold).epsilon(0.03));
 }
 
-TEST_CASE("hands: a cube turns by 90 degrees with the hand, and the fingertips stay") {
+TEST_CASE("hands: a cube turns by 90 degrees with the hand, and the fingertips stay", "[slow]") {
   const int fingers = GENERATE(3, 5);
   const Vector3 axis = GENERATE(Vector3(1, 0, 0), Vector3(0, 0, 1));
   CAPTURE(fingers, axis.transpose());
@@ -261,7 +261,8 @@ TEST_CASE("hands: a cube turns by 90 degrees with the hand, and the fingertips s
   CHECK((world.carried() - Vector3(0, world.weight(), 0)).norm() < 2e-3 * world.weight());
 }
 
-TEST_CASE("hands: handed over, a cube sinks by what the second grip gives under its weight") {
+TEST_CASE("hands: handed over, a cube sinks by what the second grip gives under its weight",
+          "[slow]") {
   const double youngs_modulus = GENERATE(5e3, 5e4);
   CAPTURE(youngs_modulus);
   const double depth = depth_for(youngs_modulus);
@@ -300,7 +301,7 @@ TEST_CASE("hands: handed over, a cube sinks by what the second grip gives under 
   CHECK(world.record().stylus[0].force.isZero(0.0));
 }
 
-TEST_CASE("hands: a cube is put onto another one, which carries it") {
+TEST_CASE("hands: a cube is put onto another one, which carries it", "[slow]") {
   Hand hand;  // two against two, which strain the cube alike
   for (const double side : {-1.0, 1.0}) {
     for (const double z : {-0.02, 0.02}) hand.push_back(on_side({side, 0, 0}, {0, 0, z}));
@@ -331,7 +332,7 @@ TEST_CASE("hands: a cube is put onto another one, which carries it") {
   CHECK((world.cube().position - before).norm() < 1e-5);
 }
 
-TEST_CASE("hands: ten fingertips hold a cube, their forces and moments balanced") {
+TEST_CASE("hands: ten fingertips hold a cube, their forces and moments balanced", "[slow]") {
   Hand hand;
   for (const double side : {-1.0, 1.0}) {
     for (const double z : {-0.03, 0.0, 0.03}) hand.push_back(on_side({side, 0, 0}, {0, 0, z}));

@@ -235,7 +235,7 @@ void check_scenes(int count) {
 }  // namespace
 
 TEST_CASE("random scenes: finite, in balance, and no energy from nowhere", "[slow]") {
-  check_scenes(40);
+  check_scenes(12);
 }
 
 TEST_CASE("random scenes: the same for sixty", "[exhaustive]") {
@@ -244,7 +244,7 @@ TEST_CASE("random scenes: the same for sixty", "[exhaustive]") {
 
 TEST_CASE("random scenes: a state that was saved goes on to the same bits", "[slow]") {
   Random random(12);
-  for (int i = 0; i < 20; ++i) {
+  for (int i = 0; i < 8; ++i) {
     const Scene scene = make_scene(random);
     const double dt = scene.config.objects[0].model->dt;
     INFO("scene " << i);

@@ -178,7 +178,7 @@ TEST_CASE(
 // At edges and corners, where little mass is under the finger, the force of *all* modes goes to and
 // fro from step to step: the step's inverse has a pole near -1 there, which the few modes do not.
 TEST_CASE("reduced modes: the same on a finer mesh, in the middle, at an edge and at a corner",
-          "[slow]") {
+          "[exhaustive]") {
   FemCube all;
   all.cells = 12;
   all.poisson_ratio = 0.4;

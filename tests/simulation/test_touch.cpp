@@ -77,7 +77,7 @@ TEST_CASE("touch: without friction the force stays normal to the surface", "[slo
   CHECK(edge);
 }
 
-TEST_CASE("touch: a tip at 2 m/s does not pass through, nor through a corner") {
+TEST_CASE("touch: a tip at 2 m/s does not pass through, nor through a corner", "[slow]") {
   for (const Vector3& from :
        {Vector3(0.1, 0.0, 0.0), Vector3(0.08, 0.08, 0.075), Vector3(-0.01, 0.1, 0.02)}) {
     SimulationConfig config = tethered({8}, 0.0, {0.5, 0.5});
@@ -170,7 +170,8 @@ TEST_CASE("touch: two objects are felt by the same stylus, each for itself") {
   CHECK(second);
 }
 
-TEST_CASE("touch: a given contact stays where it is given, after one that just began, too") {
+TEST_CASE("touch: a given contact stays where it is given, after one that just began, too",
+          "[slow]") {
   Simulation simulation(tethered({8}, 0.0, {0.5, 0.5}));
   StepRecord record;
   StylusCommand command = at_tip({0.05, kHalfEdge + 0.001, 0.003});

@@ -124,7 +124,7 @@ TEST_CASE("a server that is killed while it records loses no step that it has co
           "[slow]") {
   const Stage stage;
   std::minstd_rand random(1);
-  for (int i = 0; i < 50; ++i) {
+  for (int i = 0; i < 12; ++i) {
     const auto path = stage.path("killed" + std::to_string(i) + ".h5");
     Server server = stage.start_server({"--record", path.string()});
     REQUIRE(eventually([&] { return committed_so_far(path) > 0; }));

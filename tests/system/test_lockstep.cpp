@@ -110,7 +110,8 @@ TEST_CASE("a stylus that is armed by a button feels nothing before it is pressed
   CHECK(height(felt, felt.rows() - 1) > 0.0505);
 }
 
-TEST_CASE("lockstep: the same script leaves the same bits with 1 or 2 threads, idle or loaded") {
+TEST_CASE("lockstep: the same script leaves the same bits with 1 or 2 threads, idle or loaded",
+          "[slow]") {
   const std::string engine = GENERATE("modal", "dense");
   CAPTURE(engine);
   const Trace first = play(engine, 1);

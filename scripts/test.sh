@@ -73,7 +73,7 @@ if [ $all = yes ]; then
   build_ahead ci tsan
   run_tests asan --label-exclude 'slow|exhaustive' --parallel 2
   echo "test: fuzzers, after $SECONDS s"
-  IRDM_FUZZ_SEED=1 IRDM_FUZZ_AT_ONCE=$((2 * $(nproc))) scripts/fuzz.sh 10
+  IRDM_FUZZ_SEED=1 IRDM_FUZZ_AT_ONCE=$((2 * $(nproc))) scripts/fuzz.sh 5
   finish tsan
   run_tests tsan --label-exclude 'slow|exhaustive' --parallel 2
   finish ci

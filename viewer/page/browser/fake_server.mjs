@@ -133,7 +133,7 @@ export class FakeServer {
     const bridges = this.scene.radii.slice(1).map(() => ({ reports: true, roundTrip: times(310), forceAge: times(1900) }));
     this.#send(this.#messages.healthMessage(1, bridges));
     this.stop();
-    this.#timer = setInterval(() => this.#frame(), 16);
+    this.#timer = setInterval(() => this.#frame(), 80);
   }
 
   #command(view) {
@@ -199,7 +199,7 @@ export class FakeServer {
   }
 
   #frame() {
-    if ((this.state.flags & FLAG.paused) === 0 || (this.state.flags & FLAG.playing) !== 0) this.#step += 8;
+    if ((this.state.flags & FLAG.paused) === 0 || (this.state.flags & FLAG.playing) !== 0) this.#step += 40;
     const { state, dent } = this.#touch();
     const { ABSENT, frameMessage } = this.#messages;
     const objects = this.scene.objects.map(({ rest }, object) => {

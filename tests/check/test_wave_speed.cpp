@@ -1,3 +1,5 @@
+#include <vector>
+
 #include "precompute/check/lines.hpp"
 #include "precompute/check/wave_speed.hpp"
 #include "tests/support/catch.hpp"
@@ -70,7 +72,8 @@ TEST_CASE("a response whose waves are faster than any of its material fails") {
 // Where the passages do not lie on a line, no speed is sound or wrong but by luck.
 TEST_CASE("a mesh that is too coarse for its waves, or damps them away, is not judged", "[slow]") {
   for (const int cells : {4, 6}) {
-    for (const double youngs_modulus : {2e4, 1e5, 1e6, 1e7}) {
+    const auto moduli = cells == 4 ? std::vector{2e4, 1e5, 1e6, 1e7} : std::vector{2e4, 1e7};
+    for (const double youngs_modulus : moduli) {
       const Model model =
           cube_in_double({.cells = cells, .youngs_modulus = youngs_modulus, .poisson_ratio = 0.45});
       const double dt = wave_interval(model);

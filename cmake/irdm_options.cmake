@@ -27,7 +27,7 @@ if(IRDM_SANITIZE)
   # Reports name functions. Their lines would take a fifth more time to compile: scripts/build.sh asan
   # -DIRDM_SANITIZE_LINES=ON.
   target_compile_options(irdm_options INTERFACE
-    $<IF:$<BOOL:${IRDM_SANITIZE_LINES}>,-g1,-g0> -fsanitize=${IRDM_SANITIZE} -fno-omit-frame-pointer
+    -O1 $<IF:$<BOOL:${IRDM_SANITIZE_LINES}>,-g1,-g0> -fsanitize=${IRDM_SANITIZE} -fno-omit-frame-pointer
     -fno-sanitize-recover=all)
   target_link_options(irdm_options INTERFACE -fsanitize=${IRDM_SANITIZE})
   if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
@@ -52,8 +52,7 @@ endif()
 #   work   finite elements, files, references: seconds to minutes offline
 #   shell  configuration, messages, sockets, commands: they wait more than they compute, and compile in half the time
 #   test   the tests' own sources
-# With a sanitizer -O1; shells and tests not at all with the thread sanitizer, which takes half the time to compile them.
-# The address sanitizer's tests compute more: without optimising they take longer than they save.
+# With a sanitizer all have -O1: without optimising, tests take longer than their compiling saves.
 set(irdm_flags_step -O3)
 set(irdm_flags_work -O2)
 set(irdm_flags_shell -O1)
@@ -69,11 +68,7 @@ set(irdm_common_headers
 # irdm_set_level(TARGET LEVEL) compiles a target at a level, with that level's precompiled headers. Not in the preset
 # `debug`: there every file has to name the headers that it needs.
 function(irdm_set_level name level)
-  if(IRDM_SANITIZE MATCHES "thread" AND level MATCHES "shell|test")
-    target_compile_options(${name} PRIVATE -O0)
-  elseif(IRDM_SANITIZE)
-    target_compile_options(${name} PRIVATE -O1)
-  else()
+  if(NOT IRDM_SANITIZE)
     target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:${irdm_flags_${level}}>)
   endif()
   if(IRDM_FUZZ AND NOT level STREQUAL "test")

@@ -96,7 +96,7 @@ TEST_CASE("linear elements of a thin rod are found many times too stiff") {
   check_stiffness_estimate(*error, thin_rod_frequency());
 }
 
-TEST_CASE("a plate and a rod of quadratic elements bend as theory says") {
+TEST_CASE("a plate and a rod of quadratic elements bend as theory says", "[slow]") {
   const auto flat = element_error(thin_plate(8, 2), kThinMaterial);
   REQUIRE(flat);
   CHECK(flat->frequency == Approx(thin_plate_frequency()).epsilon(0.1));

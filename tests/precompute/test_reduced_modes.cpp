@@ -133,7 +133,7 @@ TEST_CASE("what is added to the diagonal is what is lacking to be positive semid
   CHECK(needed_for_definiteness(residual) == Approx(-lowest).epsilon(1e-3));
 }
 
-TEST_CASE("the stated errors are those against all modes") {
+TEST_CASE("the stated errors are those against all modes", "[slow]") {
   Cube cube;
   ModesConfig config;
   config.count = 80;
@@ -176,7 +176,7 @@ TEST_CASE("modes are chosen by frequency and by error", "[slow]") {
   CHECK(cube.reduced(bounded).mode_count() == 10);
 }
 
-TEST_CASE("some of the modes and their residual are the same for any number of threads") {
+TEST_CASE("some of the modes and their residual are the same for any number of threads", "[slow]") {
   Cube cube;
   ModesConfig config;
   config.count = 20;

@@ -148,7 +148,7 @@ TEST_CASE("a run on scenery that moves is rerun, to the bit from its tips") {
   check_from_forces(run);
 }
 
-TEST_CASE("a run of an object that touches itself is rerun, to the bit from its tips") {
+TEST_CASE("a run of an object that touches itself is rerun, to the bit from its tips", "[slow]") {
   const std::shared_ptr<const Model> model = slotted_body({});
   const RestSurface rest(model->mesh);
   SimulationConfig config;

@@ -69,7 +69,8 @@ Errors errors_of_rerun(Rerun& made, const KeptRun& run) {
 
 }  // namespace
 
-TEST_CASE("dense makes a run of modal again within the end of its responses and rounding") {
+TEST_CASE("dense makes a run of modal again within the end of its responses and rounding",
+          "[slow]") {
   const KeptRun run = swing();
   const SimulationConfig dense = scene(ResponseKind::kDense);
   InputRerun from_inputs(dense);

@@ -132,7 +132,7 @@ TEST_CASE("bodies: momentum and angular momentum of a world stay in each step to
   }
 }
 
-TEST_CASE("bodies: a collision makes no energy") {
+TEST_CASE("bodies: a collision makes no energy", "[slow]") {
   for (const double youngs_modulus : {1e3, 2e4, 1e6}) {
     for (const double dt : {0.002, 0.001}) {
       const SimulationConfig config =
@@ -234,7 +234,7 @@ TEST_CASE("bodies: one that fingers make bulge comes to touch what is beside it"
   CHECK(deepest < 0.0005);
 }
 
-TEST_CASE("bodies: the same commands give the same bits, after a reset as well") {
+TEST_CASE("bodies: the same commands give the same bits, after a reset as well", "[slow]") {
   const SimulationConfig config = stacked(2, {.cells = 3, .youngs_modulus = 2e4}, {0.5, 0.4});
   Simulation first(config);
   Simulation second(config);

@@ -89,7 +89,7 @@ Vector3 total_force(const StepRecord& record) {
 
 }  // namespace
 
-TEST_CASE("mesh scenery: a cube falls on a mesh as on the box that has its shape") {
+TEST_CASE("mesh scenery: a cube falls on a mesh as on the box that has its shape", "[slow]") {
   SimulationConfig config = stacked(1, {.cells = 3, .youngs_modulus = 2e4}, {0.4, 0.3});
   config.objects[0].position = Vector3(0.01, 0.13, -0.02);
   config.objects[0].orientation = Eigen::AngleAxisd(0.3, Vector3(1, 2, 3).normalized());

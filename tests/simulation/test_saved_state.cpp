@@ -99,7 +99,7 @@ TEST_CASE("saved state: a body that touches itself, with each kind of response",
   check_saved_state(config, before, 150, strike);
 }
 
-TEST_CASE("saved state: bodies that fall asleep, and are woken") {
+TEST_CASE("saved state: bodies that fall asleep, and are woken", "[slow]") {
   SimulationConfig config = stacked(2, {.cells = 3, .youngs_modulus = 1e6}, {0.6, 0.5});
   config.sleep_time = 0.2;
   const auto poke = [](int k) {

@@ -188,7 +188,7 @@ TEST_CASE("scenery: the normal is the gradient of the signed distance") {
   }
 }
 
-TEST_CASE("scenery: ways enter where a march along them does") {
+TEST_CASE("scenery: ways enter where a march along them does", "[slow]") {
   constexpr int kSteps = 2000;
   Random random(4);
   for (const SceneryShape& shape : kShapes) {

@@ -48,7 +48,8 @@ Place summed(double d) {
 
 }  // namespace
 
-TEST_CASE("rounded surface: round an edge it is the mean over the disc, with the normal of that") {
+TEST_CASE("rounded surface: round an edge it is the mean over the disc, with the normal of that",
+          "[slow]") {
   const auto model = fem_cube({8});
   const RestSurface surface(model->mesh);
   SmoothedSurface rounded(surface, kTip);

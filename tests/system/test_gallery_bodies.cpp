@@ -67,7 +67,8 @@ TEST_CASE("gallery, tray: led against all four walls, the cube stays inside", "[
   CHECK(played.body_force(played.rows() - 1, 0, -1).y() == Approx(weight).epsilon(0.02));
 }
 
-TEST_CASE("gallery, peg: both posts resist alike, until the cube has come between them", "[slow]") {
+TEST_CASE("gallery, peg: both posts resist alike, until the cube has come between them",
+          "[exhaustive]") {
   Played played("peg");
   check_penetration(played);
   const double weight = 9.81 * played.mass();
@@ -171,7 +172,7 @@ TEST_CASE("gallery, five fingers: they press alike, and friction carries the bal
 }
 
 TEST_CASE("gallery, spatula: it takes the slab's weight from the rails and gives it back",
-          "[slow]") {
+          "[exhaustive]") {
   Played played("spatula");
   check_penetration(played);
   const double weight = 9.81 * played.mass(0);
@@ -193,7 +194,7 @@ TEST_CASE("gallery, spatula: it takes the slab's weight from the rails and gives
   CHECK(played.vector(slab, lifted).y() - played.vector(slab, played.row(1.4)).y() > 0.03);
 }
 
-TEST_CASE("gallery, bowl: the rod stirs the cube, which stays inside", "[slow]") {
+TEST_CASE("gallery, bowl: the rod stirs the cube, which stays inside", "[exhaustive]") {
   Played played("bowl");
   check_penetration(played);
   const std::string cube = "/object/cube/body_position";
@@ -247,7 +248,8 @@ Pinch pinch_of_torus(Played& played, const Model& torus, std::size_t k, int firs
 
 }  // namespace
 
-TEST_CASE("gallery, torus: two hands pass it by friction alone, and it is never free", "[slow]") {
+TEST_CASE("gallery, torus: two hands pass it by friction alone, and it is never free",
+          "[exhaustive]") {
   Played played("torus");
   check_penetration(played);
   const double weight = 9.81 * played.mass();

@@ -218,6 +218,9 @@ BridgedRows read_bridged(const hdf5::File& file, const SimulationConfig& config,
   const TraceCheck check(file.name(), rows.force_step);
   check.numbers("/bridged/force", force, 3);
   check.numbers("/bridged/arm", arm, 3, lab::kPlace);
+  std::vector<double> share;  // older traces have none
+  if (file.exists("/bridged/share")) share = reader.read<double>("/share");
+  check.numbers("/bridged/share", share, 1, between(0.0, 1.0));
   for (std::size_t e = 0; e < count; ++e) {
     const std::int32_t stylus = rows.stylus[e];
     if (stylus < 0 || stylus >= static_cast<std::int32_t>(config.styluses.size()) ||
@@ -225,7 +228,8 @@ BridgedRows read_bridged(const hdf5::File& file, const SimulationConfig& config,
       throw Error(file.name(), "/bridged speaks of a stylus or an object that the scene lacks",
                   "use the scene that it was recorded with");
     }
-    rows.bridged.push_back({vector_of(force, e), vector_of(arm, e), object[e]});
+    rows.bridged.push_back({vector_of(force, e), vector_of(arm, e), object[e], {}});
+    if (!share.empty()) rows.bridged.back().share = share[e];
   }
   return rows;
 }

@@ -208,6 +208,7 @@ void TraceWriter::create_bridged() {
   create<std::int32_t>("/bridged/object", {});
   create<double>("/bridged/force", {3});
   create<double>("/bridged/arm", {3});
+  create<double>("/bridged/share", {});
 }
 
 void TraceWriter::append_bridged(std::span<const StepRecord> records) {
@@ -216,6 +217,7 @@ void TraceWriter::append_bridged(std::span<const StepRecord> records) {
   std::vector<std::int32_t> objects;
   std::vector<double> forces;
   std::vector<double> arms;
+  std::vector<double> shares;
   for (const StepRecord& r : records) {
     for (std::size_t s = 0; s < static_cast<std::size_t>(stylus_count_); ++s) {
       const std::optional<BridgedForce>& bridged = r.stylus[s].bridged;
@@ -225,6 +227,7 @@ void TraceWriter::append_bridged(std::span<const StepRecord> records) {
       objects.push_back(bridged->object);
       forces.insert(forces.end(), bridged->force.begin(), bridged->force.end());
       arms.insert(arms.end(), bridged->arm.begin(), bridged->arm.end());
+      shares.push_back(bridged->share.value_or(1.0));
     }
   }
   if (steps.empty()) return;
@@ -233,6 +236,7 @@ void TraceWriter::append_bridged(std::span<const StepRecord> records) {
   file_.append<std::int32_t>("/bridged/object", steps.size(), objects.data());
   file_.append<double>("/bridged/force", steps.size(), forces.data());
   file_.append<double>("/bridged/arm", steps.size(), arms.data());
+  file_.append<double>("/bridged/share", steps.size(), shares.data());
 }
 
 // One row for every contact of every step.

@@ -266,6 +266,9 @@ void Simulation::write_stylus(std::size_t s, const StylusCommand& command,
   stylus.buttons = command.buttons;
   stylus.tip = stylus.proxy = command.tip;
   stylus.bridged = command.bridged;
+  if (stylus.bridged && stylus.bridged->object >= 0) {
+    stylus.bridged->share = object(stylus.bridged->object).bridged_share(s);
+  }
   if (tools_[s]) {
     stylus.orientation = command.orientation;
     write_tool(*tools_[s], stylus);

@@ -107,6 +107,8 @@ class SoftObject {
 
   /// Forces of bridges that EnergyAccount has let act in part or not at all, so far.
   std::uint64_t limited() const noexcept { return contacts_.limited() + limited_late_; }
+  /// StylusContacts::share()
+  double bridged_share(std::size_t s) const noexcept { return contacts_.share(s); }
 
   /// Kinetic and elastic, with the potentials of gravity (0 at the origin; of a fixed body 0 where
   /// it is not bent) and tether, at the end of the last step [J]. NaN where the engine does not

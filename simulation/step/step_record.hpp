@@ -31,6 +31,9 @@ struct BridgedForce {
   Vector3 force = Vector3::Zero();  ///< on the object [N], W
   Vector3 arm = Vector3::Zero();    ///< from the centre of mass to where it acts [m], B
   int object = -1;                  ///< the only one that the stylus touches; -1: none
+  /// The part of the force that acts, 0 to 1, as the step decided by the object's energy account
+  /// when the run was recorded. Unset: this step decides.
+  std::optional<double> share = {};
 };
 
 /// What one stylus asks of one step.
@@ -138,11 +141,12 @@ struct StylusRecord {
   std::uint32_t buttons = 0;
   int object =
       -1;  ///< the one that it touches (the one with the largest force, if several); -1: none
-  ContactState contact = ContactState::kFree;       ///< with that object
-  Vector3 tip = Vector3::Zero();                    ///< [m], W
-  Vector3 proxy = Vector3::Zero();                  ///< of that contact; free: the tip [m], W
-  Vector3 force = Vector3::Zero();                  ///< on the stylus, of all objects [N], W
-  std::optional<BridgedForce> bridged = {};         ///< that the step was given, as it was given
+  ContactState contact = ContactState::kFree;  ///< with that object
+  Vector3 tip = Vector3::Zero();               ///< [m], W
+  Vector3 proxy = Vector3::Zero();             ///< of that contact; free: the tip [m], W
+  Vector3 force = Vector3::Zero();             ///< on the stylus, of all objects [N], W
+  /// As the step was given it, with the part of it that acted.
+  std::optional<BridgedForce> bridged = {};
   int tool = -1;                                    ///< the object that it leads; -1: none
   Quaternion orientation = Quaternion::Identity();  ///< as commanded, in W
   /// Of its tool on the stylus about the tip [N m], W; `force` is the tool's, too, and `proxy` the

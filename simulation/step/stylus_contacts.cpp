@@ -80,6 +80,7 @@ void StylusContacts::find(std::span<const StylusCommand> commands,
   for (std::size_t s = 0; s < styluses_.size(); ++s) {
     const StylusCommand& command = commands[s];
     Stylus& stylus = styluses_[s];
+    stylus.share = 1.0;
     follow(stylus, command);
     if (!command.present || !command.tip.allFinite()) {
       stylus.proxy.forget();
@@ -202,7 +203,9 @@ void StylusContacts::pose(std::span<const StylusCommand> commands, const FreeMot
     Contact& contact = contacts_[static_cast<std::size_t>(a)];
     pose_contact(contact, commands[static_cast<std::size_t>(contact.stylus)], motion, friction,
                  first + a, problem);
-    if (contact.bridged) bound_remote_force(motion, account, engine, first + a, problem);
+    if (!contact.bridged) continue;
+    const auto s = static_cast<std::size_t>(contact.stylus);
+    bound_remote_force(*commands[s].bridged, motion, account, engine, first + a, problem);
   }
 }
 
@@ -264,9 +267,10 @@ EnergyChange StylusContacts::elastic_change(int a, const Vector3& force,
 }
 
 // What a force adds to the energy of the motion depends on the forces of other bridges, too:
-// those of the rows before it are bounded by then.
-void StylusContacts::bound_remote_force(const FreeMotion& motion, EnergyAccount& account,
-                                        ResponseEngine& engine, int row,
+// those of the rows before it are bounded by then. The account also depends on when news came,
+// which a recorded run does not have: it has what was decided.
+void StylusContacts::bound_remote_force(const BridgedForce& bridged, const FreeMotion& motion,
+                                        EnergyAccount& account, ResponseEngine& engine, int row,
                                         ContactProblem& problem) noexcept {
   ContactConstraint& posed = problem.contact(row);
   if (posed.force.isZero(0.0)) return;
@@ -283,7 +287,9 @@ void StylusContacts::bound_remote_force(const FreeMotion& motion, EnergyAccount&
   const double along = posed.force.dot(way) + elastic.along;
   const double own =
       posed.force.dot(problem.rigid.between(posed.arm, posed.arm) * posed.force) + elastic.own;
-  const double share = account.drive(along, own, work_);
+  const double decided = account.drive(along, own, work_);
+  const double share = bridged.share.value_or(decided);
+  stylus_of(contact).share = share;
   posed.force *= share;
   work_ += stylus_of(contact).ledger.show(steps_ + 1, motion.halfway * posed.force);
   limited_ += share < 1.0 ? 1 : 0;

@@ -89,6 +89,8 @@ class StylusContacts {
   void add_delayed(std::size_t s, const Vector3& force, int age) noexcept;
   /// Forces of bridges that acted in part, or not at all, by the object's account, so far.
   std::uint64_t limited() const noexcept { return limited_; }
+  /// The part of the force of stylus s's bridge that acted in the last step, 0 to 1.
+  double share(std::size_t s) const noexcept { return styluses_[s].share; }
 
   int count() const noexcept { return count_; }
   const ContactPatch& patch(int a) const noexcept { return patches_[static_cast<std::size_t>(a)]; }
@@ -157,6 +159,7 @@ class StylusContacts {
     Vector3 way = Vector3::Zero();         ///< of its tip in that step [m], W
     Vector3 velocity = Vector3::Zero();    ///< of its tip, smoothed [m/s], W
     WorkLedger ledger = {};                ///< of its bridge's forces
+    double share = 1.0;                    ///< of its bridge's force in this step that acts
     Prediction prediction = {};
   };
   /// A contact of this step.
@@ -196,8 +199,9 @@ class StylusContacts {
     return steps_ - std::min(steps_, static_cast<std::uint64_t>(age));
   }
   EnergyChange elastic_change(int a, const Vector3& force, ResponseEngine& engine) noexcept;
-  void bound_remote_force(const FreeMotion& motion, EnergyAccount& account, ResponseEngine& engine,
-                          int row, ContactProblem& problem) noexcept;
+  void bound_remote_force(const BridgedForce& bridged, const FreeMotion& motion,
+                          EnergyAccount& account, ResponseEngine& engine, int row,
+                          ContactProblem& problem) noexcept;
   Vector3 accepted_arm(const Vector3& arm, const Vector3& own) const noexcept;
 
   const RestSurface& rest_;

@@ -51,6 +51,7 @@ class KeptRun {
   SimulationConfig config;
   std::vector<std::string> names;
   std::vector<StepRecord> records;
+  std::uint64_t limited = 0;  ///< Simulation::limited() at the end, where a test sets it
   std::vector<std::vector<Points>> displacements;  ///< of each step, of each object [m], B
 };
 

@@ -72,9 +72,16 @@ Vector3 told_force(int k) {
   return {0.05 * std::sin(0.3 * k), k % 40 < 30 ? -0.3 : 0.0, 0.03 * std::cos(0.2 * k)};
 }
 
-/// The first stylus has a bridge that solves its contact; what it tells arrives zero to four steps
+/// What the bridge tells, and when.
+struct Telling {
+  double strength = 1.0;   ///< factor on the forces
+  std::size_t latest = 4;  ///< that a force comes [steps]
+  std::uint32_t buttons = 0;
+};
+
+/// The first stylus has a bridge that solves its contact; what it tells arrives some steps
 /// late, and for a while there is another bridge.
-KeptRun bridged_run(const SimulationConfig& config) {
+KeptRun bridged_run(const SimulationConfig& config, const Telling& telling = {}) {
   KeptRun run(config);
   Simulation simulation(run.config);
   BridgedStylus bridged(simulation, 0);
@@ -87,17 +94,19 @@ KeptRun bridged_run(const SimulationConfig& config) {
     const auto step = static_cast<std::size_t>(k);
     const Vector3 tip(0.01 + 1e-4 * k, 0.064 - std::min(2e-4 * k, 0.009), 0.005);
     AppliedForces told{.step = step, .base = step, .count = 1, .past = {}};
-    told.past[0] = {told_force(k), tip, Vector3(0.012, 0.055, 0.004)};
-    arrivals[step + (7 * step) % 5].push_back(told);
+    told.past[0] = {telling.strength * told_force(k), tip, Vector3(0.012, 0.055, 0.004)};
+    arrivals[step + (7 * step) % (telling.latest + 1)].push_back(told);
     if (k == 130) history = AppliedHistory(++session);
     for (const AppliedForces& applied : arrivals[step]) history.take(applied);
     const StylusCommand other{
         true, k > 20 && k < 90 ? kGrabButton : 0, Vector3(0.30 + 1e-4 * k, 0.17, 0.0), {}};
-    const std::array commands{bridged.next({k > 3, 0, tip, {}}, session, history), other};
+    const std::array commands{bridged.next({k > 3, telling.buttons, tip, {}}, session, history),
+                              other};
     simulation.step(commands, record, k == 100);
     bridged.predict_horizon(model);
     run.keep(simulation, record);
   }
+  run.limited = simulation.limited();
   return run;
 }
 
@@ -185,6 +194,21 @@ TEST_CASE("a run in which a bridge solved contacts is rerun") {
   REQUIRE(late > 20);
   REQUIRE(bridged > 100);
   REQUIRE(peak > 0.1);
+  check_both(run);
+}
+
+TEST_CASE("a run in which a bridge's forces acted in part only is rerun") {
+  SimulationConfig config = two_cubes();
+  config.floor.reset();
+  const KeptRun run = bridged_run(config, {60.0, 1, kGrabButton});
+  REQUIRE(run.limited > 5);
+  int in_part = 0;
+  for (const StepRecord& record : run.records) {
+    if (!record.stylus[0].bridged) continue;
+    const double share = record.stylus[0].bridged->share.value_or(1.0);
+    in_part += share > 0.0 && share < 1.0 ? 1 : 0;
+  }
+  REQUIRE(in_part > 0);
   check_both(run);
 }
 

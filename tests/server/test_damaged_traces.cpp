@@ -133,6 +133,7 @@ TEST_CASE("a trace with events that no run has is refused with their set and ste
     trace.refuses_absurd(set, 3 * 2, late);
   }
   for (const char* set : {"/bridged/force", "/bridged/arm"}) trace.refuses_absurd(set, 3 * 2, 18);
+  trace.refuses("/bridged/share", 2, 1.5, "/bridged/share of step 18 is 1.5");
   const std::string floor = "/object/one/floor/";
   const std::size_t step = trace.row(floor + "count", [](double count) { return count > 0.0; });
   trace.refuses_absurd(floor + "force", 0, step);

@@ -55,7 +55,7 @@ std::vector<TraceObject> read_trace_objects(const std::filesystem::path& path,
 namespace irdm::trace {
 namespace {
 
-constexpr std::array<std::pair<const char*, const char*>, 27> kUnits{{
+constexpr std::array<std::pair<const char*, const char*>, 28> kUnits{{
     {"time", "s"},
     {"body_position", "m"},
     {"body_orientation", "1"},
@@ -71,6 +71,7 @@ constexpr std::array<std::pair<const char*, const char*>, 27> kUnits{{
     {"arm_shift", "m"},
     {"offset", "m"},
     {"arm", "m"},
+    {"share", "1"},
     {"gravity", "m/s^2"},
     {"friction", "1"},
     {"damping", "1/s"},

@@ -145,7 +145,7 @@ TEST_CASE("contact at the bridge: where nothing can be touched no force is asked
   CHECK(bench.contact.wanted().contact == ContactState::kFree);
 }
 
-TEST_CASE("contact at the bridge: a million ticks allocate nothing") {
+TEST_CASE("contact at the bridge: a million ticks allocate nothing", "[unsanitized]") {
   if (!test::AllocationGuard::active()) return test::leave_out(test::kNotCounted);
   Bench bench;
   const ContactModel model = wall(0);

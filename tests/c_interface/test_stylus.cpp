@@ -201,7 +201,7 @@ TEST_CASE("C interface: the force is gone 50 ms after the server, and comes back
   CHECK(hand.feedback.sessions == 2);
 }
 
-TEST_CASE("C interface: setting and getting neither allocates nor locks") {
+TEST_CASE("C interface: setting and getting neither allocates nor locks", "[unsanitized]") {
   const RealTimeServer server;
   const Connected stylus(server.address.c_str(), "tip = [0.2, 0.06, 0]");
   REQUIRE(stylus.status == IRDM_OK);

@@ -349,7 +349,7 @@ TEST_CASE("the safety filter hears of forces that the motors cut off") {
   CHECK(taken(15.0) == 0.0);
 }
 
-TEST_CASE("a tick with a device of Force Dimension allocates nothing") {
+TEST_CASE("a tick with a device of Force Dimension allocates nothing", "[unsanitized]") {
   if (!AllocationGuard::active()) return leave_out(kNotCounted);
   fakedhd_reset();
   ForceDimensionDevice device("", fake_api());

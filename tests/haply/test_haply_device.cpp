@@ -185,7 +185,8 @@ TEST_CASE("each state is read once, and then it is repeated") {
   }));
 }
 
-TEST_CASE("a servo tick with a Haply device touches neither heap, locks, exceptions nor files") {
+TEST_CASE("a servo tick with a Haply device touches neither heap, locks, exceptions nor files",
+          "[unsanitized]") {
   if (!AllocationGuard::active()) return leave_out(kNotCounted);
   FakeService service;
   HaplyDevice device(service.settings());

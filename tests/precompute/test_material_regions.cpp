@@ -211,7 +211,7 @@ const std::string kPrecise = "[response]\nprecision = \"double\"\n";
 
 }  // namespace
 
-TEST_CASE("regions of the body's own values leave every bit of R as it is") {
+TEST_CASE("regions of the body's own values leave every bit of R as it is", "[unsanitized]") {
   const Made made;
   const std::string cells = "cells = [3, 3, 2] }";
   made.make(box_config(kPrecise, cells), "one");

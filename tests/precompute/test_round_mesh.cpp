@@ -101,7 +101,8 @@ TEST_CASE("mass and inertia of a sphere converge to the closed form with the cel
   CHECK(coarse / fine < 4.5);
 }
 
-TEST_CASE("mass and inertia of a capsule converge to the closed form with the cells squared") {
+TEST_CASE("mass and inertia of a capsule converge to the closed form with the cells squared",
+          "[unsanitized]") {
   const int order = GENERATE(1, 2);
   const double coarse = error_of_capsule(4, order);
   const double fine = error_of_capsule(8, order);

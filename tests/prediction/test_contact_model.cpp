@@ -173,7 +173,7 @@ TEST_CASE("contact predictor: models that are not newer and steps out of reach")
   CHECK(out.state == ContactState::kFree);
 }
 
-TEST_CASE("contact predictor: a tick allocates nothing") {
+TEST_CASE("contact predictor: a tick allocates nothing", "[unsanitized]") {
   if (!test::AllocationGuard::active()) return test::leave_out(test::kNotCounted);
   ContactModel model = good_model();
   ContactPredictor predictor;

@@ -106,7 +106,8 @@ TEST_CASE("a run of objects that touch is rerun, to the bit from its tips") {
   check_from_forces(run);
 }
 
-TEST_CASE("a run of objects that fall asleep and wake is rerun, to the bit from its tips") {
+TEST_CASE("a run of objects that fall asleep and wake is rerun, to the bit from its tips",
+          "[unsanitized]") {
   SimulationConfig config;
   config.objects.resize(2);
   config.sleep_time = 0.1;

@@ -149,7 +149,7 @@ TEST_CASE("a stylus without contact has no section and is not judged", "[slow]")
   CHECK(json["styluses"][0]["perception"]["force"]["noticeable"].is_null());
 }
 
-TEST_CASE("what a run has too few frames for is not judged") {
+TEST_CASE("what a run has too few frames for is not judged", "[unsanitized]") {
   const TwoTaps taps({.interval = 0.02}, {.interval = 0.02});
   const auto json = nlohmann::json::parse(comparison_json(taps.comparison, taps.measures));
   const auto& perception = json["styluses"][0]["perception"];

@@ -150,7 +150,8 @@ KeptRun slide_over_an_edge() {
 
 }  // namespace
 
-TEST_CASE("forces act where they acted: off the surface's point, near an edge and held from afar") {
+TEST_CASE("forces act where they acted: off the surface's point, near an edge and held from afar",
+          "[unsanitized]") {
   const KeptRun run = slide_over_an_edge();
   std::array<double, 2> offset{};
   int slipping = 0;

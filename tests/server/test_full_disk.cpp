@@ -48,7 +48,8 @@ void check_limited(const std::filesystem::path& path, rlim_t limit) {
 
 }  // namespace
 
-TEST_CASE("a recording whose disk gets full can be read up to its last committed row") {
+TEST_CASE("a recording whose disk gets full can be read up to its last committed row",
+          "[unsanitized]") {
   const std::string size = GENERATE(as<std::string>(), "340k", "1m", "2m");
   CAPTURE(size);
   const auto disk = small_disk("tmpfs", "size=" + size);

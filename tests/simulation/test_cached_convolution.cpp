@@ -224,7 +224,8 @@ TEST_CASE("what a step sees has the same bits whether somebody predicts or not")
   CHECK(differs_from_plain > 100);  // else there were nothing to keep apart
 }
 
-TEST_CASE("more nodes than can be followed are answered, too, and nothing allocates") {
+TEST_CASE("more nodes than can be followed are answered, too, and nothing allocates",
+          "[unsanitized]") {
   if (!AllocationGuard::active()) return leave_out(kNotCounted);
   constexpr int kNodes = 400;
   PlainConvolution<double> plain(kNodes, 20);

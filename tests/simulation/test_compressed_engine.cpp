@@ -157,7 +157,8 @@ TEST_CASE("compressed engine predicts the coming step, and R[0] between the cont
 }
 
 // Some are told again and again of the steps since, as a bridge behind a bad link does.
-TEST_CASE("compressed engine: delayed forces are those of equation (10), on and on") {
+TEST_CASE("compressed engine: delayed forces are those of equation (10), on and on",
+          "[unsanitized]") {
   const auto model = made_up(GENERATE(false, true));
   const auto engine = make_engine(model);
   const int nodes = model->mesh.surface_node_count();

@@ -90,7 +90,8 @@ TEST_CASE("floor: dropped it rings and comes to rest on the floor, no node below
   CHECK(record.object[0].velocity.norm() < 1e-3);
 }
 
-TEST_CASE("floor: a block slides from the friction angle on, within half a degree") {
+TEST_CASE("floor: a block slides from the friction angle on, within half a degree",
+          "[unsanitized]") {
   const double mu = 0.4;
   const double angle = std::atan(mu);
   for (const double off : {-0.5, 0.5}) {
@@ -110,7 +111,7 @@ TEST_CASE("floor: a block slides from the friction angle on, within half a degre
   }
 }
 
-TEST_CASE("floor: a sliding block slows down by mu g within 1 %") {
+TEST_CASE("floor: a sliding block slows down by mu g within 1 %", "[unsanitized]") {
   const double mu = 0.3;
   SimulationConfig config = standing(2e5, {mu, mu});
   config.objects[0].velocity = Vector3(1.0, 0, 0);
@@ -125,7 +126,7 @@ TEST_CASE("floor: a sliding block slows down by mu g within 1 %") {
   CHECK(found == Approx(mu * kGravity).epsilon(0.01));
 }
 
-TEST_CASE("floor: pushed along, a block slides at mu M g within 1 %") {
+TEST_CASE("floor: pushed along, a block slides at mu M g within 1 %", "[unsanitized]") {
   const double mu = 0.3;
   SimulationConfig config = standing(2e5, {mu, mu});
   config.styluses = {{0.0, 500.0, 0.0}};
@@ -150,7 +151,8 @@ TEST_CASE("floor: pushed along, a block slides at mu M g within 1 %") {
 
 // On a slope between the two angles of friction what slides goes on sliding, by kinetic friction
 // alone, even where it turns round.
-TEST_CASE("floor: a block that was thrown up a slope comes down again by kinetic friction") {
+TEST_CASE("floor: a block that was thrown up a slope comes down again by kinetic friction",
+          "[unsanitized]") {
   const Friction friction{0.8, 0.2};
   const double tilt = std::atan(0.5);
   Simulation simulation(on_slope(tilt, friction, -0.6));
@@ -169,7 +171,8 @@ TEST_CASE("floor: a block that was thrown up a slope comes down again by kinetic
 }
 
 // At 2 cm/s static friction would hold the nodes if they were taken to be at rest.
-TEST_CASE("floor: a block that slides slowly goes on sliding, by kinetic friction") {
+TEST_CASE("floor: a block that slides slowly goes on sliding, by kinetic friction",
+          "[unsanitized]") {
   const Friction friction{0.8, 0.2};
   for (const double slope : {0.2, 0.15}) {
     CAPTURE(slope);
@@ -190,7 +193,8 @@ TEST_CASE("floor: a block that slides slowly goes on sliding, by kinetic frictio
 
 // Held by its top and shaken up and down above the floor, so that it hangs by up to 15 mm more than
 // at rest.
-TEST_CASE("floor: a node that hangs far below where it is at rest does not go through") {
+TEST_CASE("floor: a node that hangs far below where it is at rest does not go through",
+          "[unsanitized]") {
   SimulationConfig config = standing(1000.0, {0.5, 0.5});
   config.objects[0].position = Vector3(0, 0.05, 0);
   config.styluses = {{0.0, 0.0, 0.02}};
@@ -246,7 +250,7 @@ TEST_CASE("floor: the proxy is where the floor, too, presses the touched point")
   CHECK(touching > 50);
 }
 
-TEST_CASE("floor: reset puts everything back") {
+TEST_CASE("floor: reset puts everything back", "[unsanitized]") {
   Simulation simulation(standing(2000.0, {0.5, 0.5}));
   StepRecord first, second;
   for (int k = 0; k < 300; ++k) step(simulation, first);

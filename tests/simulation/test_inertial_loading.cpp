@@ -221,7 +221,8 @@ TEST_CASE("inertial loading: the predicted displacement has the spin of the comi
 }
 
 TEST_CASE(
-    "inertial loading: engines agree on a cube that is pushed, held and let go while it spins") {
+    "inertial loading: engines agree on a cube that is pushed, held and let go while it spins",
+    "[unsanitized]") {
   const FemCube cube{3, 2000.0, 60.0, 0.002, 300};
   SimulationConfig modal = spinning(fem_cube(cube), Vector3(2, 5, -3));
   SimulationConfig dense = modal;

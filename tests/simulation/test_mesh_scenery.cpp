@@ -114,7 +114,8 @@ TEST_CASE("mesh scenery: a cube falls on a mesh as on the box that has its shape
   CHECK(strongest > 1.0);
 }
 
-TEST_CASE("mesh scenery: a cube comes to rest in a bowl, which carries its weight") {
+TEST_CASE("mesh scenery: a cube comes to rest in a bowl, which carries its weight",
+          "[unsanitized]") {
   for (const double youngs_modulus : {2e4, 1e6}) {
     SimulationConfig config =
         stacked(1, {.cells = 3, .youngs_modulus = youngs_modulus}, {0.2, 0.15});

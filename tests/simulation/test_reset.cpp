@@ -46,7 +46,7 @@ StepRecord step(Simulation& simulation, const Commands& commands, bool reset = f
 
 }  // namespace
 
-TEST_CASE("reset: what follows is, to the bit, what follows a start") {
+TEST_CASE("reset: what follows is, to the bit, what follows a start", "[unsanitized]") {
   const ResponseKind kind = GENERATE(ResponseKind::kModal, ResponseKind::kDense);
   Simulation fresh(two_on_floor(kind));
   Simulation used(two_on_floor(kind));

@@ -439,7 +439,8 @@ TEST_CASE("self-contact: with all engines it is the same to the bit again, and n
   CHECK(impulse > 0.0);
 }
 
-TEST_CASE("self-contact: what does not touch itself moves as without, to the bit") {
+TEST_CASE("self-contact: what does not touch itself moves as without, to the bit",
+          "[unsanitized]") {
   const auto model = slotted_body({true, 2e5});
   const Strike strike{{5 * kVoxel, 0.05}, 5, Vector3(0.3, -0.2, 0.5)};
   Simulation with(struck(model, strike, true));

@@ -285,7 +285,7 @@ TEST_CASE("sleep: a world that sleeps and wakes again makes no energy", "[slow]"
   CHECK(most < 1e-6 * begun);
 }
 
-TEST_CASE("sleep: what is shown is what the step has, asleep and awake again") {
+TEST_CASE("sleep: what is shown is what the step has, asleep and awake again", "[unsanitized]") {
   const SimulationConfig config = sleepers(2);
   Twins twins(config);
   Deformation deformation(config);
@@ -304,7 +304,7 @@ TEST_CASE("sleep: what is shown is what the step has, asleep and awake again") {
   }
 }
 
-TEST_CASE("sleep: nothing allocates, and the same commands give the same bits") {
+TEST_CASE("sleep: nothing allocates, and the same commands give the same bits", "[unsanitized]") {
   const SimulationConfig config = sleepers(2);
   Simulation first(config);
   Simulation second(config);

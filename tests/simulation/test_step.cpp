@@ -74,7 +74,7 @@ double largest_force(const std::vector<StepRecord>& records) {
 
 }  // namespace
 
-TEST_CASE("step: an untouched object falls with gravity and spins on") {
+TEST_CASE("step: an untouched object falls with gravity and spins on", "[unsanitized]") {
   const auto model = fem_cube({});
   SimulationConfig config = one(model);
   config.gravity = Vector3(0, -9.81, 0);
@@ -128,7 +128,8 @@ TEST_CASE("step: a held node follows a swung stylus within 0.5 mm, with a smooth
   }
 }
 
-TEST_CASE("step: momentum and angular momentum change exactly by the impulses of the contacts") {
+TEST_CASE("step: momentum and angular momentum change exactly by the impulses of the contacts",
+          "[unsanitized]") {
   const auto model = fem_cube({});
   for (const Path& path : {Path(swing), Path(tap)}) {
     Simulation simulation(one(model));
@@ -211,7 +212,8 @@ TEST_CASE("step: the lever arm of a held point is that of its mean place over th
   CHECK(largest > 1e-5);
 }
 
-TEST_CASE("step: a tap touches, pushes only, lets go, and leaves the cube moving and ringing") {
+TEST_CASE("step: a tap touches, pushes only, lets go, and leaves the cube moving and ringing",
+          "[unsanitized]") {
   const auto model = fem_cube({});
   Simulation simulation(one(model));
   // A micrometre further off, so that the surface is not reached at the very end of a step.
@@ -352,7 +354,7 @@ TEST_CASE("step: a force given by the bridge does what the same force found by t
   }
 }
 
-TEST_CASE("step: the same commands give the same bits") {
+TEST_CASE("step: the same commands give the same bits", "[unsanitized]") {
   for (const ResponseKind kind : {ResponseKind::kModal, ResponseKind::kDense}) {
     const auto model = fem_cube({3, 2000.0, 8.0, 0.002, 100}, kind);
     Simulation a(one(model));

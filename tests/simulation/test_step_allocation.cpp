@@ -12,7 +12,8 @@ using namespace irdm::test;
 
 TEST_CASE(
     "step: nothing allocates, free, touching, held or reset, with two styluses and all "
-    "engines, with and without inertial loading") {
+    "engines, with and without inertial loading",
+    "[unsanitized]") {
   if (!AllocationGuard::active()) return leave_out(kNotCounted);
   const bool rigid = GENERATE(false, true);
   const ResponseKind kind =

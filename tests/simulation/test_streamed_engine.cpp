@@ -371,7 +371,8 @@ Felt feel_cycle(const std::shared_ptr<const Model>& model, const PressCycle& cyc
 
 TEST_CASE(
     "pressing and sliding while columns are late, come and go, or never come: as strong as "
-    "with all of them, without jumps, and no energy comes out") {
+    "with all of them, without jumps, and no energy comes out",
+    "[unsanitized]") {
   const StreamedModel model(*fem_cube({2, 2000.0, 8.0, kLateDt, 500}, ResponseKind::kDense));
   for (unsigned seed = 1; seed <= 12; ++seed) {
     const PressCycle cycle(*model.dense, seed);

@@ -398,7 +398,7 @@ TEST_CASE("tool: while nobody is there the last pose leads it") {
   CHECK((tip_of(record.object[0]) - tip).norm() < 1e-6);
 }
 
-TEST_CASE("tool: the same commands give the same bits, again and after a reset") {
+TEST_CASE("tool: the same commands give the same bits, again and after a reset", "[unsanitized]") {
   const SimulationConfig config = rod_over_cube(1e4);
   Simulation simulation(config);
   Simulation other(config);
@@ -447,7 +447,7 @@ TEST_CASE("tool: a force that is told of late acts as it would have in time") {
   CHECK(replayed.angular_momentum == in_time.angular_momentum);
 }
 
-TEST_CASE("tool: its step allocates nothing, there or not, touching or reset") {
+TEST_CASE("tool: its step allocates nothing, there or not, touching or reset", "[unsanitized]") {
   if (!AllocationGuard::active()) return leave_out(kNotCounted);
   Simulation simulation(rod_over_cube(1e4));
   const auto record = std::make_unique<StepRecord>();

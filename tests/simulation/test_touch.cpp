@@ -12,8 +12,8 @@
 using namespace irdm;
 using namespace irdm::test;
 
-TEST_CASE(
-    "touch: dragged sideways a tip sticks, then slips with kinetic friction, against its way") {
+TEST_CASE("touch: dragged sideways a tip sticks, then slips with kinetic friction, against its way",
+          "[unsanitized]") {
   const Friction friction{0.6, 0.4};
   Simulation simulation(tethered({}, 0.0, friction));
   StepRecord record;

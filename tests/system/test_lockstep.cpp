@@ -168,7 +168,7 @@ TEST_CASE("lockstep: a disk that gets full changes no step and keeps what was co
 }
 #endif
 
-TEST_CASE("lockstep: another script leaves other bits") {
+TEST_CASE("lockstep: another script leaves other bits", "[unsanitized]") {
   // What the comparison above is worth: the least change of the input shows.
   const Trace first = play("modal", 1);
   const Stage stage;

@@ -233,7 +233,7 @@ TEST_CASE("forces are recomputed from a trace and its model alone") {
   check_forces(play(stage), 50, 250);
 }
 
-TEST_CASE("forces are recomputed from a trace in which everything was reset") {
+TEST_CASE("forces are recomputed from a trace in which everything was reset", "[unsanitized]") {
   const Stage stage;
   stage.write("scene.toml", moving_scene());
   stage.write("script.csv", twice_with_a_reset());

@@ -232,7 +232,7 @@ TEST_CASE("irdm-replay writes surfaces that another reader finds whole and in th
   CHECK(largest > 1e-3);
 }
 
-TEST_CASE("irdm-replay compare says how far engines are apart") {
+TEST_CASE("irdm-replay compare says how far engines are apart", "[unsanitized]") {
   const Stage stage;
   const std::filesystem::path trace = record(stage, true);
   for (const std::string engine : {"modal", "dense"}) {
@@ -260,7 +260,8 @@ TEST_CASE("irdm-replay compare says how far engines are apart") {
   CHECK(read.out == "cube 105 105 105 True\n");
 }
 
-TEST_CASE("irdm-replay makes a run again by finite elements, and leaves no half of an output") {
+TEST_CASE("irdm-replay makes a run again by finite elements, and leaves no half of an output",
+          "[unsanitized]") {
   const Stage stage;
   const std::filesystem::path trace = record(stage, true);
   const std::string fem = stage.path("fem.h5").string();

@@ -75,7 +75,7 @@ TEST_CASE("simulated link: a run over a bad link is the same to the bit, and rep
   CHECK(first.trace.numbers != other.trace.numbers);
 }
 
-TEST_CASE("simulated link: press, grab and swing feel over it as without it") {
+TEST_CASE("simulated link: press, grab and swing feel over it as without it", "[unsanitized]") {
   const Stage stage;
   const Run near = play(stage, "");
   const Run far = play(stage, kBusy);
@@ -89,7 +89,8 @@ TEST_CASE("simulated link: press, grab and swing feel over it as without it") {
   CHECK(held.peak_shown != Approx(near.peak_shown).epsilon(0.1));
 }
 
-TEST_CASE("simulated link: a process that was stopped gives the object no blow when it goes on") {
+TEST_CASE("simulated link: a process that was stopped gives the object no blow when it goes on",
+          "[unsanitized]") {
   const Stage stage;
   const Run near = play(stage, "");
   for (const std::string side : {"bridge", "server"}) {

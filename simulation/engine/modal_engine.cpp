@@ -418,11 +418,10 @@ void ModalEngine<Scalar>::archive(StateArchive& state) {
 template <typename Scalar>
 double ModalEngine<Scalar>::energy() const noexcept {
   const auto& omega = std::get_if<ModalResponse>(&model_->response)->angular_frequency;
-  double sum = 0.0;
-  for (std::size_t i = 0; i < modes_; ++i) {
-    const double stretch = omega(static_cast<Eigen::Index>(i)) * coordinate_[i];
-    sum += 0.5 * (velocity_[i] * velocity_[i] + stretch * stretch);
-  }
+  const auto count = static_cast<Eigen::Index>(modes_);
+  const Eigen::Map<const Eigen::ArrayXd> q(coordinate_.data(), count);
+  const Eigen::Map<const Eigen::ArrayXd> v(velocity_.data(), count);
+  double sum = 0.5 * (v.square() + (omega.head(count).array() * q).square()).sum();
   if (gravity_.acts()) {
     for (std::size_t i = 0; i < modes_; ++i) sum -= gravity_.force()[i] * coordinate_[i];
   }

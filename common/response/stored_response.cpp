@@ -82,11 +82,19 @@ class ModalStored final : public StoredResponse {
   }
 
   Eigen::MatrixXd zero_lag() const override {
-    const Eigen::VectorXd weights = held_responses(response_, dt_, 1).row(0);
-    const Eigen::MatrixXd weighted =
-        shapes_.template cast<double>() * weights.cwiseMax(0.0).cwiseSqrt().asDiagonal();
-    Eigen::MatrixXd R = Eigen::MatrixXd::Zero(weighted.rows(), weighted.rows());
-    R.selfadjointView<Eigen::Lower>().rankUpdate(weighted);
+    return weighted(held_responses(response_, dt_, 1).row(0).transpose().cwiseMax(0.0));
+  }
+
+  Eigen::MatrixXd static_limit() const override {
+    return weighted(response_.angular_frequency.cwiseAbs2().cwiseInverse());
+  }
+
+ private:
+  // Returns Phi diag(weights) Phi^T plus the residual. @param weights >= 0
+  Eigen::MatrixXd weighted(const Eigen::VectorXd& weights) const {
+    const Eigen::MatrixXd root = shapes_.template cast<double>() * weights.cwiseSqrt().asDiagonal();
+    Eigen::MatrixXd R = Eigen::MatrixXd::Zero(root.rows(), root.rows());
+    R.selfadjointView<Eigen::Lower>().rankUpdate(root);
     R = Eigen::MatrixXd(R.selfadjointView<Eigen::Lower>());
     const ResidualCompliance& g = response_.residual;
     for (int i = 0; i + 1 < static_cast<int>(g.row_start.size()); ++i) {
@@ -98,7 +106,6 @@ class ModalStored final : public StoredResponse {
     return R;
   }
 
- private:
   Eigen::VectorXd row(int b) const { return shapes_.row(b).transpose().template cast<double>(); }
 
   // What modes that are left out do at once, (3n): the blocks of b's node, transposed.
@@ -324,6 +331,16 @@ class DenseInFile final : public StoredResponse {
 void transposed_product(const RowMatrix<double>& a, const RowMatrix<double>& b,
                         RowMatrix<double>& c) {
   c.noalias() = a * b.transpose();
+}
+
+Eigen::MatrixXd StoredResponse::static_limit() const {
+  Eigen::MatrixXd limit;
+  for (int b = 0; b == 0 || b < static_cast<int>(limit.cols()); ++b) {
+    const Eigen::VectorXd column = static_column(b);
+    if (b == 0) limit.resize(column.size(), column.size());
+    limit.col(b) = column;
+  }
+  return limit;
 }
 
 // Each column is summed up once, whatever loads it belongs to.

@@ -33,6 +33,8 @@ class StoredResponse {
   /// The static limit of a column: displacement under a force of 1 N on b that stays, sum_s R[s](:,
   /// b), (3n) [m/N]. For all time; of a dense response as far as it was recorded.
   virtual Eigen::VectorXd static_column(int b) const = 0;
+  /// Returns the static limits of all columns, (3n, 3n) [m/N].
+  virtual Eigen::MatrixXd static_limit() const;
   /// How far each load yields to itself when it stays, l^T (sum_s R[s]) l [m/N].
   /// @param loads (3n, loads): column by column what each degree of freedom takes of 1 N
   virtual Eigen::VectorXd static_compliance(const Eigen::SparseMatrix<double>& loads) const;

@@ -45,6 +45,7 @@ void check_consistent(const StoredResponse& R, int nodes, int steps, bool limit)
   const std::vector<DrivingPoint> own = R.driving_points(1, nodes - 2, steps);
   REQUIRE(static_cast<int>(own.size()) == nodes - 2);
   check_compliance(R, nodes);
+  const Eigen::MatrixXd static_limit = R.static_limit();
   for (const int b : {3, 3 * nodes - 4}) {
     CAPTURE(b);
     const RowMatrix<double> column = R.column(b, steps);
@@ -55,6 +56,7 @@ void check_consistent(const StoredResponse& R, int nodes, int steps, bool limit)
     const Eigen::MatrixXd rows = own[static_cast<std::size_t>(node - 1)].middleRows<3>(3 * (b % 3));
     CHECK(difference(rows.transpose(), column.middleCols<3>(3 * node)) < 1e-10);
     const Eigen::VectorXd settled = R.static_column(b);
+    CHECK(difference(static_limit.col(b), settled) < 1e-10);
     if (limit) CHECK(difference(column.colwise().sum().transpose(), settled) < 1e-6);
   }
 }

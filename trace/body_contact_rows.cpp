@@ -6,7 +6,7 @@
 
 #include "common/error.hpp"
 #include "simulation/collision/rest_surface.hpp"
-#include "simulation/contact/contact_sampling.hpp"
+#include "simulation/step/object_sampling.hpp"
 #include "trace/recording.hpp"
 #include "trace/trace_layout.hpp"
 
@@ -25,8 +25,7 @@ class SampleCounts {
     const auto [found, fresh] = counts_.try_emplace(model, 0);
     if (fresh) {
       const RestSurface surface(model->mesh);
-      const ContactSampling sampling(surface, config_.contact_samples);
-      found->second = static_cast<int>(sampling.samples().size());
+      found->second = make_sampling(config_, *model, surface)->sample_count();
     }
     return found->second;
   }

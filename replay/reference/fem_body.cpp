@@ -5,6 +5,7 @@
 
 #include "common/error.hpp"
 #include "precompute/fem/mass_properties.hpp"
+#include "simulation/step/object_sampling.hpp"
 
 namespace irdm::replay {
 namespace {
@@ -139,7 +140,7 @@ FemBody::FemBody(const SimulationConfig& config, std::size_t number,
       mesh_(std::make_unique<Mesh>(*model_, elasticity_, 1.0, h_)),
       force_(Eigen::VectorXd::Zero(model_->mesh.nodes.size())) {
   if (touches_bodies(config)) {
-    sampling_ = std::make_unique<ContactSampling>(surface_, config.contact_samples);
+    sampling_ = make_sampling(config, *model_, surface_);
   }
   for (const SimulationStylus& stylus : config.styluses) {
     masks_.emplace_back(surface_, stylus.radius);
@@ -216,16 +217,14 @@ Vector3 FemBody::place(const ContactPatch& patch) const {
 
 // Of the nodes that have its force.
 Vector3 FemBody::place(const TouchForce& touch) const {
-  const auto of_row = [&](int row) {
-    return mean(sampling_->patch(row), [&](int node) { return place(node); });
+  const auto of_patch = [&](const SurfacePatch& patch) {
+    return mean(patch, [&](int node) { return place(node); });
   };
   const BodyContactRecord& contact = *touch.contact;
-  if (touch.first) {
-    return of_row(sampling_->samples()[static_cast<std::size_t>(contact.sample)].row);
-  }
+  if (touch.first) return of_patch(sampling_->patch_of(contact.sample));
   Vector3 sum = Vector3::Zero();
   for (std::size_t i = 0; i < 3; ++i) {
-    sum += contact.weights[i] * of_row(sampling_->sites(contact.triangle)[i]);
+    sum += contact.weights[i] * of_patch(sampling_->patch(sampling_->sites(contact.triangle)[i]));
   }
   return sum;
 }

@@ -20,6 +20,12 @@ constexpr double kSmooth = 0.766;
 constexpr double kOwn = 11.0 / 18.0;
 constexpr double kOther = 7.0 / 36.0;
 
+// Largest mean area of a triangle on which a ball uses the samples for other bodies, as a multiple
+// of the square of the spacing that its own samples would have.
+constexpr double kMaxFineTriangle = 0.7;
+// Largest spacing of the samples for other bodies that a ball uses, as a part of its radius.
+constexpr double kMaxFineSpacing = 0.4;
+
 int root(std::vector<int>& parent, int i) {
   while (parent[static_cast<std::size_t>(i)] != i) {
     i = parent[static_cast<std::size_t>(i)] =
@@ -79,7 +85,12 @@ void ContactSampling::make_sites(const std::vector<int>& parts) {
                               kOther * corners[(i + 2) % 3]);
     }
   }
-  for (Site& site : sites_) site.normal.normalize();
+  site_of_node_.resize(static_cast<std::size_t>(surface_.node_count()));
+  for (std::size_t s = 0; s < sites_.size(); ++s) {
+    sites_[s].normal.normalize();
+    area_ += sites_[s].area;
+    site_of_node_[static_cast<std::size_t>(sites_[s].node)] = static_cast<int>(s);
+  }
 }
 
 // Each node with the share of the area that is its own: the load of a uniform pressure on linear
@@ -153,6 +164,76 @@ void ContactSampling::make_samples(const std::vector<int>& chosen) {
     samples_.push_back(sample);
   }
   spacing_ = std::sqrt(total / static_cast<double>(samples_.size()));
+}
+
+double ContactSampling::ball_spacing(double radius) const noexcept {
+  return ball_sample_spacing(radius, area_);
+}
+
+// Returns whether balls of a radius need samples of their own: because the triangles are larger
+// than the parts of these samples, or because the spacing of the other samples is too wide.
+bool ContactSampling::too_coarse_for(double radius) const noexcept {
+  const double triangle = area_ / surface_.triangle_count();
+  const double spacing = ball_spacing(radius);
+  return triangle > kMaxFineTriangle * spacing * spacing || spacing_ > kMaxFineSpacing * radius;
+}
+
+void ContactSampling::add_ball(const ModelMesh& mesh, double radius) {
+  if (!too_coarse_for(radius) || ball(radius).count > 0) return;
+  const double spacing = ball_spacing(radius);
+  const std::vector<BallSample> samples = irdm::ball_samples(mesh, surface_, spacing);
+  ball_ranges_.push_back(
+      {static_cast<int>(ball_samples_.size()), static_cast<int>(samples.size()), spacing});
+  ball_samples_.insert(ball_samples_.end(), samples.begin(), samples.end());
+}
+
+ContactSampling::BallRange ContactSampling::ball(double radius) const noexcept {
+  if (!too_coarse_for(radius)) return {};
+  const double spacing = ball_spacing(radius);
+  for (const BallRange& range : ball_ranges_) {
+    if (range.spacing == spacing) return range;
+  }
+  return {};
+}
+
+SurfacePlace ContactSampling::place(int sample) const noexcept {
+  SurfacePlace place;
+  if (sample < first_ball()) {
+    place.rows[0] = samples_[static_cast<std::size_t>(sample)].row;
+    place.weights[0] = 1.0;
+    place.count = 1;
+    return place;
+  }
+  place.ball_sample = sample - first_ball();
+  const BallSample& ball = ball_samples_[static_cast<std::size_t>(place.ball_sample)];
+  place.count = static_cast<int>(ball.node_count);
+  for (std::size_t k = 0; k < ball.node_count; ++k) {
+    place.rows[k] = site_of_node_[static_cast<std::size_t>(ball.nodes[k])];
+    place.weights[k] = ball.weights[k];
+  }
+  return place;
+}
+
+SurfacePlace ContactSampling::node_place(int node) const noexcept {
+  SurfacePlace place;
+  place.rows[0] = site_of_node_[static_cast<std::size_t>(node)];
+  place.weights[0] = 1.0;
+  place.count = 1;
+  return place;
+}
+
+SurfacePlace ContactSampling::place(const SurfaceLocation& at) const noexcept {
+  SurfacePlace place;
+  std::copy(sites(at.triangle).begin(), sites(at.triangle).end(), place.rows.begin());
+  std::copy(at.point.weights.begin(), at.point.weights.end(), place.weights.begin());
+  place.count = 3;
+  return place;
+}
+
+SurfacePatch ContactSampling::patch_of(int sample) const noexcept {
+  if (sample < first_ball()) return patch(samples_[static_cast<std::size_t>(sample)].row);
+  const BallSample& ball = ball_samples_[static_cast<std::size_t>(sample - first_ball())];
+  return {{ball.nodes.data(), ball.node_count}, {ball.weights.data(), ball.node_count}};
 }
 
 // Of each node that lies on several parts: convex, where each part lies behind the others.

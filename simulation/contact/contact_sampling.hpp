@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "simulation/collision/rest_surface.hpp"
+#include "simulation/contact/ball_samples.hpp"
 #include "simulation/engine/response_engine.hpp"
 
 namespace irdm {
@@ -14,6 +15,14 @@ namespace irdm {
 struct SurfacePatch {
   std::span<const int> nodes;
   std::span<const double> weights;
+};
+
+/// The place of a contact on a surface: a weighted mean of rows of a ContactSampling.
+struct SurfacePlace {
+  std::array<int, 6> rows{};
+  std::array<double, 6> weights{};
+  int count = 0;         ///< number of rows: 1, 3 or 6
+  int ball_sample = -1;  ///< index among the ball samples; -1 if it is none of them
 };
 
 /// The weighted mean over a patch of a quantity that is known at nodes.
@@ -39,12 +48,19 @@ Vector3 mean(const SurfacePatch& patch, const NodeValue& value) {
 /// Besides, each node of a convex crease is an *edge sample*: where an edge or a corner meets a
 /// face, it touches there, and not where the areas beside it have their centroids.
 /// A contact lies between a sample of one object and a point of another, whose force goes to the
-/// sites of the point's triangle by barycentric weights. Built once, read only.
+/// sites of the point's triangle by barycentric weights.
+///
+/// Contacts with balls of the scenery use samples of another kind (BallSample), whose spacing suits
+/// the ball's radius. add_ball() adds them for one radius, unless the triangles of the surface and
+/// the samples above are fine enough. Immutable after the last add_ball().
 class ContactSampling {
  public:
   /// @param most samples that are patches, > 0; there are at least as many as smooth parts
   /// @param surface must outlive this object
   ContactSampling(const RestSurface& surface, int most);
+  /// Adds the samples for balls of a radius [m], unless those for other bodies are fine enough.
+  /// @param mesh the mesh whose surface this is
+  void add_ball(const ModelMesh& mesh, double radius);
 
   struct Sample {
     SurfaceLocation place;             ///< the centroid of its area, on the surface at rest
@@ -61,6 +77,30 @@ class ContactSampling {
   std::span<const Vector3> faces(const Sample& sample) const noexcept {
     return sample.site < 0 ? std::span<const Vector3>() : faces_at(sample.site);
   }
+
+  /// Returns the samples for balls of all radii. Their numbers follow those of samples().
+  std::span<const BallSample> ball_samples() const noexcept { return ball_samples_; }
+  int first_ball() const noexcept { return static_cast<int>(samples_.size()); }
+  int sample_count() const noexcept {
+    return first_ball() + static_cast<int>(ball_samples_.size());
+  }
+  struct BallRange {
+    int first = 0;  ///< among ball_samples()
+    int count = 0;
+    double spacing = 0.0;  ///< [m]
+  };
+  std::span<const BallRange> ball_ranges() const noexcept { return ball_ranges_; }
+  /// Returns the range of samples for balls of a radius [m]; it is empty if such a ball uses
+  /// samples().
+  BallRange ball(double radius) const noexcept;
+  /// Return the place of a sample of any kind, and the nodes that its force loads.
+  SurfacePlace place(int sample) const noexcept;
+  SurfacePatch patch_of(int sample) const noexcept;
+  /// Returns the place of a surface node.
+  SurfacePlace node_place(int node) const noexcept;
+  /// Returns the place of a point of the surface.
+  SurfacePlace place(const SurfaceLocation& at) const noexcept;
+
   /// Square root of the mean area of a sample [m].
   double spacing() const noexcept { return spacing_; }
 
@@ -108,6 +148,8 @@ class ContactSampling {
   std::vector<int> choose(int most) const;
   void make_samples(const std::vector<int>& chosen);
   void add_row(const std::vector<int>& sites);
+  double ball_spacing(double radius) const noexcept;
+  bool too_coarse_for(double radius) const noexcept;
 
   const RestSurface& surface_;
   std::vector<Site> sites_;
@@ -117,7 +159,11 @@ class ContactSampling {
   std::vector<Sample> samples_;
   int first_edge_ = 0;
   double spacing_ = 0.0;
-  std::vector<int> first_;  ///< of each row, and one more
+  double area_ = 0.0;  ///< of the surface [m^2]
+  std::vector<BallSample> ball_samples_;
+  std::vector<BallRange> ball_ranges_;
+  std::vector<int> site_of_node_;  ///< one site of each node
+  std::vector<int> first_;         ///< of each row, and one more
   std::vector<int> nodes_;
   std::vector<double> weights_;
 };

@@ -40,7 +40,8 @@ std::vector<float> in_blocks(const Eigen::MatrixXd& matrix) {
 
 }  // namespace
 
-PatchCompliance::PatchCompliance(const Model& model, const ContactSampling& sampling) {
+PatchCompliance::PatchCompliance(const Model& model, const ContactSampling& sampling)
+    : sampling_(sampling) {
   const int nodes = model.mesh.surface_node_count();
   if (nodes > kMaxNodes) {
     throw Error("contact",
@@ -49,12 +50,33 @@ PatchCompliance::PatchCompliance(const Model& model, const ContactSampling& samp
                 "use a mesh of at most " + std::to_string(kMaxNodes) +
                     " surface nodes, or set contact.between_objects and contact.self = false");
   }
-  const Eigen::SparseMatrix<double> spread = spreading(sampling, nodes);
-  const Eigen::MatrixXd at_nodes = stored_response(model)->zero_lag() * spread;
-  const Eigen::MatrixXd at_patches = spread.transpose() * at_nodes;
+  const std::unique_ptr<StoredResponse> response = stored_response(model);
   row_count_ = static_cast<std::size_t>(sampling.row_count());
-  nodes_ = in_blocks(at_nodes);
-  patches_ = in_blocks(0.5 * (at_patches + at_patches.transpose()));
+  {
+    const Eigen::SparseMatrix<double> spread = spreading(sampling, nodes);
+    const Eigen::MatrixXd at_nodes = response->zero_lag() * spread;
+    const Eigen::MatrixXd at_patches = spread.transpose() * at_nodes;
+    nodes_ = in_blocks(at_nodes);
+    patches_ = in_blocks(0.5 * (at_patches + at_patches.transpose()));
+  }
+  if (sampling.ball_ranges().empty()) return;
+  const Eigen::MatrixXd settled = response->static_limit();
+  for (const ContactSampling::BallRange& range : sampling.ball_ranges()) {
+    near_.emplace_back(model, settled,
+                       sampling.ball_samples().subspan(static_cast<std::size_t>(range.first),
+                                                       static_cast<std::size_t>(range.count)));
+  }
+}
+
+double PatchCompliance::near_field(int to, int from) const noexcept {
+  const std::span<const ContactSampling::BallRange> ranges = sampling_.ball_ranges();
+  for (std::size_t i = 0; i < near_.size(); ++i) {
+    const int a = to - ranges[i].first;
+    const int b = from - ranges[i].first;
+    if (a < 0 || b < 0 || a >= ranges[i].count || b >= ranges[i].count) continue;
+    return near_[i].between(a, b);
+  }
+  return 0.0;
 }
 
 Matrix3 PatchCompliance::between(const Place& to, const Place& from) const noexcept {
@@ -65,6 +87,12 @@ Matrix3 PatchCompliance::between(const Place& to, const Place& from) const noexc
       sum += (to.weights[i] * from.weights[j]) *
              block(patches_, to.rows[i], from.rows[j]).cast<double>();
     }
+  }
+  if (to.ball_sample >= 0 && from.ball_sample >= 0) {
+    const std::span<const BallSample> samples = sampling_.ball_samples();
+    sum += near_field(to.ball_sample, from.ball_sample) *
+           samples[static_cast<std::size_t>(to.ball_sample)].normal *
+           samples[static_cast<std::size_t>(from.ball_sample)].normal.transpose();
   }
   return sum;
 }

@@ -12,8 +12,6 @@ namespace {
 
 // Samples as near as this are given to the solver, which leaves them alone unless they come down.
 constexpr double kNearBody = 1e-4;
-// A displacement by contacts at rest is at most about this share of its bound.
-constexpr double kBoundShare = 0.25;
 // How far beyond a way distances are seen, by that depth, and what of them is relied on.
 constexpr double kSightDepths = 2.0;
 constexpr double kCertain = 1.0 - 1e-9;

@@ -11,22 +11,14 @@ namespace {
 // Distance below the surface at which two bodies are looked for that begin in one place [m].
 constexpr double kInside = 1e-3;
 constexpr double kNearItself = 0.1;
-// As those of the floor: how far a sample may be from where it would be at rest, to be looked at.
-constexpr double kLeastReach = 2e-3;
-constexpr double kReachFactor = 2.0;
-constexpr double kReachFading = 0.99;
 // Part of the samples' spacing by which their way begins inside their own object.
 constexpr double kDepth = 0.5;
-// In which a sample that was inside when its contact began comes out, and one that yields comes to
-// its anchor [s].
-constexpr double kInsetTime = 0.05;
 
 }  // namespace
 
 BodyContacts::BodyContacts(int object, const ContactBody& body, int other,
                            const ContactBody& other_body, double dt, int first_sample)
-    : object_(object),
-      other_(other),
+    : ContactPair(object, other),
       body_(body),
       other_body_(&other_body),
       radius_(body.rest.bounding_radius()),
@@ -41,8 +33,7 @@ BodyContacts::BodyContacts(int object, const ContactBody& body, int other,
 
 BodyContacts::BodyContacts(int object, const ContactBody& body, int scenery,
                            const SceneryStep& there, double dt)
-    : object_(object),
-      other_(-1 - scenery),
+    : ContactPair(object, -1 - scenery),
       body_(body),
       scenery_(&there),
       radius_(body.rest.bounding_radius()),
@@ -85,9 +76,8 @@ bool BodyContacts::near() const noexcept {
 
 void BodyContacts::describe(int sample, const Vector3& place, Contact& contact) noexcept {
   const Sample& state = samples_[static_cast<std::size_t>(sample)];
-  const ContactSampling::Sample& shape = body_.sampling.samples()[static_cast<std::size_t>(sample)];
   contact.sample = sample;
-  contact.place = {{shape.row, 0, 0}, {1.0, 0.0, 0.0}, 1};
+  contact.place = body_.sampling.place(sample);
   contact.arm = place;
   const double inset = state.inset + state.flat_inset;
   const Vector3 x = body_.motion.to_world(place);
@@ -97,8 +87,7 @@ void BodyContacts::describe(int sample, const Vector3& place, Contact& contact) 
     contact.gap = state.anchor_W - inset * state.normal - x;
     return;
   }
-  contact.other_place = {other_body_->sampling.sites(state.anchor.triangle),
-                         state.anchor.point.weights, 3};
+  contact.other_place = other_body_->sampling.place(state.anchor);
   contact.other_arm = state.anchor.position + other_displacement(state.anchor) + state.offset -
                       inset * state.normal;
   contact.normal = other_body_->motion.orientation * state.normal;
@@ -162,19 +151,7 @@ int BodyContacts::find() noexcept {
     candidate.depth = contact.gap.dot(contact.normal);
     if (candidate.pressed) closed_ = std::max(closed_, candidate.depth);
   }
-  const std::size_t most = found_.size();
-  if (candidates_.size() > most) {
-    const auto end = candidates_.begin() + static_cast<std::ptrdiff_t>(most);
-    std::nth_element(candidates_.begin(), end, candidates_.end(),
-                     [](const Candidate& a, const Candidate& b) {
-                       if (a.pressed != b.pressed) return a.pressed;
-                       if (a.depth != b.depth) return a.depth > b.depth;
-                       return a.sample < b.sample;
-                     });
-    candidates_.resize(most);
-    std::sort(candidates_.begin(), candidates_.end(),
-              [](const Candidate& a, const Candidate& b) { return a.sample < b.sample; });
-  }
+  choose(candidates_);
   for (const Candidate& candidate : candidates_) {
     samples_[static_cast<std::size_t>(candidate.sample)].clear = step_;
     describe(candidate.sample, candidate.place, found_[static_cast<std::size_t>(count_++)]);
@@ -234,8 +211,8 @@ void BodyContacts::write(int i, const ContactConstraint& solved,
                          BodyContactRecord& record) const noexcept {
   const Contact& contact = found_[static_cast<std::size_t>(i)];
   const Sample& state = samples_[static_cast<std::size_t>(contact.sample)];
-  record.object = object_;
-  record.other = other_;
+  record.object = object();
+  record.other = other();
   record.sample = contact.sample;
   record.slipping = solved.mode == ContactMode::kSlipping;
   record.triangle = state.anchor.triangle;

@@ -5,26 +5,13 @@
 #include <span>
 #include <vector>
 
-#include "common/contact/contact_problem.hpp"
 #include "common/contact/persistent_contact.hpp"
-#include "common/motion/free_motion.hpp"
-#include "simulation/collision/deformed_surface.hpp"
 #include "simulation/collision/scenery.hpp"
-#include "simulation/contact/contact_sampling.hpp"
-#include "simulation/contact/patch_compliance.hpp"
 #include "simulation/contact/self_contact.hpp"
-#include "simulation/state/state_archive.hpp"
-#include "simulation/step/step_record.hpp"
+#include "simulation/step/contact_body.hpp"
+#include "simulation/step/contact_pair.hpp"
 
 namespace irdm {
-
-/// What the contacts of an object with other bodies need of it: its shape, and the step under way.
-struct ContactBody {
-  const ContactSampling& sampling;
-  const RestSurface& rest;
-  DeformedSurface& surface;
-  const FreeMotion& motion;
-};
 
 /// The contacts of one object's samples with another object, with scenery, or with other parts of
 /// the same object, from step to step.
@@ -32,19 +19,8 @@ struct ContactBody {
 /// came down, moved along as far as it slips. A sample begins to touch where its way in the step,
 /// begun somewhat inside its own object, crosses the other's surface from outside: fast ones do not
 /// pass through. Real-time safe after construction; one thread.
-class BodyContacts {
+class BodyContacts final : public ContactPair {
  public:
-  /// A contact of this step.
-  struct Contact {
-    int sample = 0;
-    PatchCompliance::Place place;         ///< of the object
-    PatchCompliance::Place other_place;   ///< of the other; count 0: scenery
-    Vector3 arm = Vector3::Zero();        ///< of the sample without force [m], B of the object
-    Vector3 other_arm = Vector3::Zero();  ///< of where it is wanted [m], B of the other
-    Vector3 gap = Vector3::Zero();        ///< from the sample to where it is wanted [m], W
-    Vector3 normal = Vector3::Zero();     ///< outward of the other, unit, W
-  };
-
   /// @param object, other are the numbers of objects; both bodies must outlive this
   /// @param first_sample those before it are left to others
   BodyContacts(int object, const ContactBody& body, int other, const ContactBody& other_body,
@@ -55,11 +31,8 @@ class BodyContacts {
   /// Of an object with itself. @param reach of the body's samples; must outlive this
   BodyContacts(int object, const ContactBody& body, const SelfReach& reach, double dt);
 
-  /// It can have at most so many contacts in a step; before: none. Not real-time safe.
-  void set_most(int most) { found_.resize(static_cast<std::size_t>(most)); }
-  void reset() noexcept;
-  /// State, in or out (StateArchive).
-  void archive(StateArchive& state) {
+  void reset() noexcept override;
+  void archive(StateArchive& state) override {
     if (self_) self_->archive(state);
     state.values(samples_);
     for (double* length : {&closed_, &displaced_}) state.value(*length);
@@ -67,33 +40,16 @@ class BodyContacts {
     state.value(any_pressed_);
     if (state.reading()) count_ = 0;
   }
+  int find() noexcept override;
+  void pose(int i, const Friction& friction, ContactConstraint& constraint) const noexcept override;
+  void update(int i, const ContactConstraint& solved, const Vector3& yielded) noexcept override;
+  void skip(int i) noexcept override { update(i, {}, Vector3::Zero()); }
+  void write(int i, const ContactConstraint& solved,
+             BodyContactRecord& record) const noexcept override;
 
-  /// Chooses this step's contacts: samples that would be inside the other by the end of it, and
-  /// those that were pressed on it; at most as many as it can have, those that were pressed and
-  /// then the deepest first. Returns how many.
-  int find() noexcept;
-  /// Writes contact i of the step as a constraint on the object, in W.
-  void pose(int i, const Friction& friction, ContactConstraint& constraint) const noexcept;
-  /// After the solution of its constraint: the anchor slips, the force is kept for the next start.
-  /// @param yielded from where it is to where it was wanted [m], W
-  void update(int i, const ContactConstraint& solved, const Vector3& yielded) noexcept;
-  /// What became of contact i. Its position is left to the caller, who knows the motion.
-  void write(int i, const ContactConstraint& solved, BodyContactRecord& record) const noexcept;
-
-  /// Whether both may touch in the step under way; an object and itself: always.
-  bool near() const noexcept;
-  /// Whether it is with scenery that moves.
-  bool driven() const noexcept { return scenery_ != nullptr && scenery_->moves(); }
-
-  int count() const noexcept { return count_; }
-  const Contact& contact(int i) const noexcept { return found_[static_cast<std::size_t>(i)]; }
-  int object() const noexcept { return object_; }
-  /// The other object, or the same; -1 - i: scenery i.
-  int other() const noexcept { return other_; }
-
-  /// The largest depth of a sample inside the other as both stand at the start [m], 0: none, or the
-  /// other is the object itself.
-  double initial_depth() noexcept;
+  bool near() const noexcept override;
+  bool driven() const noexcept override { return scenery_ != nullptr && scenery_->moves(); }
+  double initial_depth() noexcept override;
 
  private:
   /// A sample's way in the step, B of the other or W: it is looked for from somewhat inside its own
@@ -146,9 +102,6 @@ class BodyContacts {
   /// Surfaces touch where their outward normals point at each other: cosine of their angle at most.
   static constexpr double kFacing = -0.3;
 
-  static Vector3 sideways(const Vector3& v, const Vector3& normal) noexcept {
-    return v - v.dot(normal) * normal;
-  }
   bool near_itself() noexcept;
   double unseen() noexcept;
   bool beyond(const Vector3& x, double reach, Sample& state) const noexcept;
@@ -169,8 +122,6 @@ class BodyContacts {
   void keep_anchor(const Sample& before, const Vector3& place, Sample& state) noexcept;
   void describe(int sample, const Vector3& place, Contact& contact) noexcept;
 
-  int object_;
-  int other_;
   ContactBody body_;
   const ContactBody* other_body_ = nullptr;
   const SceneryStep* scenery_ = nullptr;
@@ -184,15 +135,7 @@ class BodyContacts {
   double displaced_ = 0.0;         ///< how far surfaces were seen away from rest [m]
   int first_sample_ = 0;
   std::vector<Sample> samples_;
-  struct Candidate {
-    int sample;
-    bool pressed;
-    double depth;  ///< [m]
-    Vector3 place;
-  };
   std::vector<Candidate> candidates_;
-  std::vector<Contact> found_;
-  int count_ = 0;
   std::uint64_t step_ = 1;
   std::uint64_t clear_ = 0;  ///< the last step in which no part of the object was near another
   bool any_pressed_ = false;

@@ -31,7 +31,7 @@ void ContactIsland::collect_sides(int object, std::span<const IslandContact> con
   sides_.clear();
   places_.clear();
   for (std::size_t c = 0; c < contacts.size(); ++c) {
-    const BodyContacts::Contact& contact = contacts[c].pair->contact(contacts[c].i);
+    const ContactPair::Contact& contact = contacts[c].pair->contact(contacts[c].i);
     const int row = first + static_cast<int>(c);
     const bool ours = contacts[c].pair->object() == object;
     if (ours) {
@@ -165,6 +165,7 @@ ContactSolution ContactIsland::solve(std::span<SoftObject* const> objects,
   }
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     contacts[c].solved = problem_.contact(first_between + static_cast<int>(c));
+    contacts[c].found = solution.solved;
   }
   return solution;
 }

@@ -13,11 +13,12 @@ namespace irdm {
 
 /// A contact between bodies, as one of an island.
 struct IslandContact {
-  BodyContacts* pair = nullptr;
+  ContactPair* pair = nullptr;
   int i = 0;              ///< number in the pair
   std::uint64_t key = 0;  ///< of pair and sample: the same in the next step, increasing in a list
   Friction friction;
   ContactConstraint solved = {};      ///< written, W
+  bool found = true;                  ///< written: false if the problem had no solution
   Vector3 yielded = Vector3::Zero();  ///< written: what of the gap it leaves [m], W
 };
 

@@ -1,5 +1,7 @@
 #include "simulation/step/nodal_forces.hpp"
 
+#include "simulation/step/object_sampling.hpp"
+
 namespace irdm {
 
 void NodalSums::clear() noexcept {
@@ -27,8 +29,7 @@ void add_body_contact(const BodyContactRecord& contact, bool first, const Contac
                       const Quaternion& halfway, NodalSums& sums) noexcept {
   const Vector3 force = halfway.conjugate() * contact.force;
   if (first) {
-    const auto sample = static_cast<std::size_t>(contact.sample);
-    sums.add(sampling.patch(sampling.samples()[sample].row), force);
+    sums.add(sampling.patch_of(contact.sample), force);
     return;
   }
   for (std::size_t i = 0; i < 3; ++i) {
@@ -46,7 +47,7 @@ RecordedForces::RecordedForces(const SimulationConfig& config, std::size_t numbe
   for (const SimulationStylus& stylus : config.styluses)
     masks_.emplace_back(surface, stylus.radius);
   if (!touches_bodies(config)) return;
-  sampling_ = std::make_unique<ContactSampling>(surface, config.contact_samples);
+  sampling_ = make_sampling(config, *config.objects[number].model, surface);
 }
 
 std::span<const NodalForce> RecordedForces::of(

@@ -7,7 +7,8 @@ namespace irdm {
 namespace {
 
 bool same(const PatchCompliance::Place& a, const PatchCompliance::Place& b) noexcept {
-  return a.count == b.count && a.rows == b.rows && a.weights == b.weights;
+  return a.count == b.count && a.rows == b.rows && a.weights == b.weights &&
+         a.ball_sample == b.ball_sample;
 }
 
 }  // namespace

@@ -129,11 +129,12 @@ bool Sleep::wake_neighbours() noexcept {
   bool any = false;
   for (bool woken = true; woken;) {
     woken = false;
-    for (const BodyContacts& pair : world_->pairs()) {
-      const bool first = asleep(pair.object());
-      const bool wakes = pair.other() < 0 ? first && pair.driven() : first != asleep(pair.other());
-      if (!wakes || !pair.near()) continue;
-      wake(first ? pair.object() : pair.other());
+    for (const auto& pair : world_->pairs()) {
+      const bool first = asleep(pair->object());
+      const bool wakes =
+          pair->other() < 0 ? first && pair->driven() : first != asleep(pair->other());
+      if (!wakes || !pair->near()) continue;
+      wake(first ? pair->object() : pair->other());
       woken = any = true;
     }
   }
@@ -177,11 +178,11 @@ void Sleep::follow(Body& body) noexcept {
 void Sleep::find_groups() noexcept {
   std::iota(leader_.begin(), leader_.end(), 0);
   if (world_ == nullptr) return;
-  for (const BodyContacts& pair : world_->pairs()) {
-    if (pair.driven() && pair.near()) body(pair.object()).rested = 0;
-    if (pair.other() < 0 || !pair.near()) continue;
-    const int a = leader_[static_cast<std::size_t>(pair.object())];
-    const int b = leader_[static_cast<std::size_t>(pair.other())];
+  for (const auto& pair : world_->pairs()) {
+    if (pair->driven() && pair->near()) body(pair->object()).rested = 0;
+    if (pair->other() < 0 || !pair->near()) continue;
+    const int a = leader_[static_cast<std::size_t>(pair->object())];
+    const int b = leader_[static_cast<std::size_t>(pair->other())];
     std::replace(leader_.begin(), leader_.end(), std::max(a, b), std::min(a, b));
   }
 }

@@ -7,10 +7,13 @@
 #include <numeric>
 #include <string>
 #include <utility>
+#include <variant>
 
 #include "common/error.hpp"
 #include "common/number_text.hpp"
 #include "simulation/state/state_archive.hpp"
+#include "simulation/step/ball_contacts.hpp"
+#include "simulation/step/object_sampling.hpp"
 
 namespace irdm {
 namespace {
@@ -31,7 +34,10 @@ constexpr int kMostOfMany = 64;
 constexpr double kMostMassRatio = 1000.0;
 constexpr double kMostMassRatioOfRigid = 100.0;  // where the light one is rigid
 
-bool touches_itself(const BodyContacts& pair) noexcept {
+// Smallest radius of a ball that cannot pass between samples, in their spacing.
+constexpr double kLeastBallRadius = 1.5;
+
+bool touches_itself(const ContactPair& pair) noexcept {
   return pair.other() == pair.object();
 }
 
@@ -67,7 +73,7 @@ std::string pair_name(const SimulationConfig& config, int one, int other) {
 }
 
 // Both bodies of a pair, in words.
-std::string pair_name(const SimulationConfig& config, const BodyContacts& pair) {
+std::string pair_name(const SimulationConfig& config, const ContactPair& pair) {
   if (pair.other() >= 0) return pair_name(config, pair.object(), pair.other());
   const auto scenery = static_cast<std::size_t>(-1 - pair.other());
   return object_name(config, static_cast<std::size_t>(pair.object())) + " and scenery \"" +
@@ -96,9 +102,10 @@ WorldContacts::WorldContacts(const SimulationConfig& config,
         {*shape.sampling, object->surface(), object->deformed_surface(), object->motion()});
   }
   add_pairs(config);
-  const bool itself = std::any_of(pairs_.begin(), pairs_.end(), touches_itself);
+  const bool itself = std::any_of(pairs_.begin(), pairs_.end(),
+                                  [](const auto& pair) { return touches_itself(*pair); });
   const int most = contacts_of_pair(pairs_.size(), itself);
-  for (BodyContacts& pair : pairs_) pair.set_most(most);
+  for (const auto& pair : pairs_) pair->set_most(most);
   const auto others = static_cast<int>(objects_.size() - 1 + scenery_.size());
   const int with_others = std::min(kMaxBodyContacts, 2 * others * most);
   island_ = std::make_unique<ContactIsland>(static_cast<int>(objects_.size()), capacity(config),
@@ -126,7 +133,7 @@ const WorldContacts::Shape& WorldContacts::shape_of(const SimulationConfig& conf
     if (shape.model == &object.model()) return shape;
   }
   Shape shape{&object.model(), nullptr, nullptr, nullptr};
-  shape.sampling = std::make_unique<ContactSampling>(object.surface(), config.contact_samples);
+  shape.sampling = make_sampling(config, object.model(), object.surface());
   if (config.self_contact && !is_rigid(object.model())) {
     shape.self = std::make_unique<SelfReach>(object.surface(), *shape.sampling);
     if (!shape.self->any()) shape.self.reset();
@@ -143,8 +150,6 @@ const WorldContacts::Shape& WorldContacts::shape_of(const SimulationConfig& conf
 void WorldContacts::add_pairs(const SimulationConfig& config) {
   const int count = static_cast<int>(objects_.size());
   const double dt = objects_.front()->model().dt;
-  // Each made in its place: a copy has no memory in reserve.
-  pairs_.reserve(objects_.size() * (objects_.size() + config.scenery.size()));
   for (int a = 0; a < count && touches_others(config); ++a) {
     const ContactBody& one = bodies_[static_cast<std::size_t>(a)];
     for (int b = a + 1; b < count; ++b) {
@@ -157,21 +162,53 @@ void WorldContacts::add_pairs(const SimulationConfig& config) {
       }
       check_masses(config, a, b);
       const bool second = two.sampling.spacing() < one.sampling.spacing();
-      pairs_.emplace_back(a, one, b, two, dt, second ? one.sampling.first_edge() : 0);
-      pairs_.emplace_back(b, two, a, one, dt, second ? 0 : two.sampling.first_edge());
+      pairs_.push_back(std::make_unique<BodyContacts>(a, one, b, two, dt,
+                                                      second ? one.sampling.first_edge() : 0));
+      pairs_.push_back(std::make_unique<BodyContacts>(b, two, a, one, dt,
+                                                      second ? 0 : two.sampling.first_edge()));
     }
     for (std::size_t s = 0; s < config.scenery.size(); ++s) {
       const SoftObject& object = *objects_[static_cast<std::size_t>(a)];
       const bool yields = scenery_[s].moves() && !is_rigid(object.model());
       if (!object.rigid().moves() && !yields) continue;
-      pairs_.emplace_back(a, one, static_cast<int>(s), scenery_[s], dt);
+      add_scenery(config, a, static_cast<int>(s));
     }
   }
   for (int a = 0; a < count; ++a) {
     const auto index = static_cast<std::size_t>(a);
     const Shape& shape = shape_of(config, *objects_[index]);
-    if (shape.self) pairs_.emplace_back(a, bodies_[index], *shape.self, dt);
+    if (!shape.self) continue;
+    pairs_.push_back(std::make_unique<BodyContacts>(a, bodies_[index], *shape.self, dt));
   }
+}
+
+// A ball presses on samples that suit its radius, if the object has such.
+void WorldContacts::add_scenery(const SimulationConfig& config, int object, int scenery) {
+  const ContactBody& body = bodies_[static_cast<std::size_t>(object)];
+  const SceneryStep& there = scenery_[static_cast<std::size_t>(scenery)];
+  const SoftObject& soft = *objects_[static_cast<std::size_t>(object)];
+  const SphereShape* const ball = std::get_if<SphereShape>(&there.now.shape);
+  if (ball != nullptr && body.sampling.ball(ball->radius).count > 0) {
+    check_ball(config, object, scenery);
+    pairs_.push_back(std::make_unique<BallContacts>(object, body, soft.contact_compliance(),
+                                                    scenery, there, dt_));
+    return;
+  }
+  pairs_.push_back(std::make_unique<BodyContacts>(object, body, scenery, there, dt_));
+}
+
+// Throws Error if a ball can pass between the samples.
+void WorldContacts::check_ball(const SimulationConfig& config, int object, int scenery) const {
+  const SceneryConfig& ball = config.scenery[static_cast<std::size_t>(scenery)];
+  const double radius = std::get<SphereShape>(ball.shape).radius;
+  const double least =
+      kLeastBallRadius * bodies_[static_cast<std::size_t>(object)].sampling.ball(radius).spacing;
+  if (radius >= least) return;
+  throw Error("scenery \"" + ball.name + "\"",
+              "has a radius of " + in_millimetres(radius) + ", too small to touch " +
+                  object_name(config, static_cast<std::size_t>(object)),
+              "use a radius of at least " + in_millimetres(least) +
+                  " or a smaller object, or set contact.between_objects = false");
 }
 
 void WorldContacts::check_masses(const SimulationConfig& config, int a, int b) const {
@@ -194,11 +231,11 @@ void WorldContacts::refuse_overlaps(const SimulationConfig& config) {
   const std::vector<StylusCommand> nobody(config.styluses.size());
   auto record = std::make_unique<ObjectRecord>();
   for (SoftObject* const object : objects_) object->begin(nobody, *record);
-  for (BodyContacts& pair : pairs_) {
-    const double depth = pair.initial_depth();
+  for (const auto& pair : pairs_) {
+    const double depth = pair->initial_depth();
     if (depth <= kDeepestOverlap) continue;
     throw Error("scene",
-                pair_name(config, pair) + " are inside one another by " + in_millimetres(depth) +
+                pair_name(config, *pair) + " are inside one another by " + in_millimetres(depth) +
                     " at the start",
                 "move them apart, or set contact.between_objects = false");
   }
@@ -217,7 +254,7 @@ void WorldContacts::reset() noexcept {
   for (SceneryStep& scenery : scenery_) {
     if (scenery.moves()) scenery.go_on(0.0);
   }
-  for (BodyContacts& pair : pairs_) pair.reset();
+  for (const auto& pair : pairs_) pair->reset();
 }
 
 void WorldContacts::archive(StateArchive& state) {
@@ -227,7 +264,7 @@ void WorldContacts::archive(StateArchive& state) {
     for (Quaternion* turn : {&scenery.now.orientation, &scenery.turn}) state.value(*turn);
   }
   state.same(pairs_.size());
-  for (BodyContacts& pair : pairs_) pair.archive(state);
+  for (const auto& pair : pairs_) pair->archive(state);
   state.list(held_);
 }
 
@@ -244,7 +281,7 @@ void WorldContacts::release_awake() noexcept {
   std::erase_if(held_, [&](const BodyContactRecord& held) { return !asleep(held.object); });
 }
 
-Friction WorldContacts::friction(const BodyContacts& pair) const noexcept {
+Friction WorldContacts::friction(const ContactPair& pair) const noexcept {
   const Friction& own = objects_[static_cast<std::size_t>(pair.object())]->friction();
   if (pair.other() < 0) {
     return scenery_[static_cast<std::size_t>(-1 - pair.other())].now.friction;
@@ -254,10 +291,10 @@ Friction WorldContacts::friction(const BodyContacts& pair) const noexcept {
 
 void WorldContacts::find_islands() noexcept {
   std::iota(leader_.begin(), leader_.end(), 0);
-  for (const BodyContacts& pair : pairs_) {
-    if (pair.count() == 0 || pair.other() < 0) continue;
-    const int a = leader_[static_cast<std::size_t>(pair.object())];
-    const int b = leader_[static_cast<std::size_t>(pair.other())];
+  for (const auto& pair : pairs_) {
+    if (pair->count() == 0 || pair->other() < 0) continue;
+    const int a = leader_[static_cast<std::size_t>(pair->object())];
+    const int b = leader_[static_cast<std::size_t>(pair->other())];
     std::replace(leader_.begin(), leader_.end(), std::max(a, b), std::min(a, b));
   }
 }
@@ -269,7 +306,7 @@ void WorldContacts::solve_island(int leader, StepRecord& record) noexcept {
   }
   contacts_.clear();
   for (std::size_t p = 0; p < pairs_.size(); ++p) {
-    BodyContacts& pair = pairs_[p];
+    ContactPair& pair = *pairs_[p];
     if (leader_[static_cast<std::size_t>(pair.object())] != leader) continue;
     for (int i = 0; i < pair.count(); ++i) {
       if (contacts_.size() + solved_.size() + held_.size() == kMaxBodyContacts) break;
@@ -323,8 +360,8 @@ void WorldContacts::apply(std::span<const IslandContact> contacts, StepRecord& r
 }
 
 void WorldContacts::solve(StepRecord& record) noexcept {
-  for (BodyContacts& pair : pairs_) {
-    if (!rests(pair)) pair.find();
+  for (const auto& pair : pairs_) {
+    if (!rests(*pair)) pair->find();
   }
   find_islands();
   solved_.clear();
@@ -337,7 +374,11 @@ void WorldContacts::solve(StepRecord& record) noexcept {
   apply(solved_, record);
   for (const BodyContactRecord& held : held_) record.body_contact.push_back(held);
   for (const IslandContact& contact : solved_) {
-    contact.pair->update(contact.i, contact.solved, contact.yielded);
+    if (contact.found) {
+      contact.pair->update(contact.i, contact.solved, contact.yielded);
+    } else {
+      contact.pair->skip(contact.i);
+    }
   }
 }
 

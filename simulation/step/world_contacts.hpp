@@ -33,7 +33,7 @@ class WorldContacts {
   /// SoftObject::finish().
   void solve(StepRecord& record) noexcept;
 
-  std::span<const BodyContacts> pairs() const noexcept { return pairs_; }
+  std::span<const std::unique_ptr<ContactPair>> pairs() const noexcept { return pairs_; }
   /// Contacts of this step on objects that are asleep now are in the records of those that follow.
   void hold(const StepRecord& record) noexcept;
   /// ... until the objects are awake.
@@ -50,16 +50,18 @@ class WorldContacts {
   const Shape& shape_of(const SimulationConfig& config, SoftObject& object);
   int capacity(const SimulationConfig& config) const;
   void add_pairs(const SimulationConfig& config);
+  void add_scenery(const SimulationConfig& config, int object, int scenery);
+  void check_ball(const SimulationConfig& config, int object, int scenery) const;
   void check_masses(const SimulationConfig& config, int a, int b) const;
   void refuse_overlaps(const SimulationConfig& config);
   void find_islands() noexcept;
   void solve_island(int leader, StepRecord& record) noexcept;
   void apply(std::span<const IslandContact> contacts, StepRecord& record) noexcept;
-  Friction friction(const BodyContacts& pair) const noexcept;
+  Friction friction(const ContactPair& pair) const noexcept;
   bool asleep(int object) const noexcept {
     return objects_[static_cast<std::size_t>(object)]->asleep();
   }
-  bool rests(const BodyContacts& pair) const noexcept {
+  bool rests(const ContactPair& pair) const noexcept {
     return asleep(pair.object()) && (pair.other() < 0 || asleep(pair.other()));
   }
 
@@ -69,7 +71,7 @@ class WorldContacts {
   std::uint64_t steps_ = 0;  ///< begun since the start or the last reset
   std::vector<Shape> shapes_;
   std::vector<ContactBody> bodies_;  ///< of each object
-  std::vector<BodyContacts> pairs_;
+  std::vector<std::unique_ptr<ContactPair>> pairs_;
   std::vector<int> leader_;  ///< of each object: the least number in its island
   std::unique_ptr<ContactIsland> island_;
   std::vector<int> members_;

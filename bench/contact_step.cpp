@@ -1,6 +1,7 @@
 // How long a force step takes with contacts of all kinds, on the paper's cube (866 surface nodes,
 // all its modes): points and fingertips, held, sticking and slipping, one, two and ten, the floor,
-// a tool, and cubes on each other. With a word as argument: the lines that have it in them.
+// a tool, balls of the scenery, and cubes on each other. With a word as argument: the lines that
+// have it in them.
 
 #include <algorithm>
 #include <array>
@@ -138,6 +139,30 @@ std::vector<StylusCommand> press_with_rod(int k) {
   return {test::lead_to(above_top(height) + along, kLying)};
 }
 
+// Returns a scene with balls of 15 mm that are pressed 5 mm into the top of a cube of quadratic
+// elements within 0.2 s and then slide to and fro by up to 10 mm.
+// @param modes number of modes, 0 for all
+SimulationConfig balls(int count, int modes) {
+  SimulationConfig config = scene(0.0, 1, {});
+  config.objects[0].model = test::fem_cube({.cells = 6, .order = 2, .modes = modes});
+  for (int i = 0; i < count; ++i) {
+    SceneryConfig ball;
+    ball.name = "ball " + std::to_string(i + 1);
+    ball.shape = SphereShape{0.015};
+    ball.friction = {0.3, 0.3};
+    const Vector3 place(count == 1 ? 0.0 : -0.044 + 0.022 * (i % 5), 0.0,
+                        count == 1 ? 0.0 : -0.03 + 0.06 * (i / 5));
+    ball.position = place + Vector3(0.0, kHalfEdge + 0.017, 0.0);
+    ball.motion.path = {{0.0, Vector3::Zero()}, {0.2, Vector3(0, -0.007, 0)}};
+    for (int turn = 0; turn < 20; ++turn) {
+      const double side = turn % 2 == 0 ? 0.01 : -0.01;
+      ball.motion.path.push_back({0.5 + 0.25 * turn, Vector3(side, -0.007, 0)});
+    }
+    config.scenery.push_back(ball);
+  }
+  return config;
+}
+
 // Down on the top within 0.2 s, then to and fro.
 Vector3 press(int k, double amplitude) {
   const double down = std::min(1.0, k / 100.0);
@@ -154,6 +179,7 @@ int main(int argc, char** argv) {
   const Friction rough{1.0, 1.0};
   const Friction smooth{0.2, 0.2};
   const Vector3 near(0.003, kHalfEdge + 0.004, 0.003);
+  const Commands nobody = [](int) { return std::vector<StylusCommand>{StylusCommand{}}; };
   measure("tip 4 mm above a cube at rest", scene(0.0, 1, rough),
           [&](int) { return std::vector<StylusCommand>{at(near)}; });
   measure("the same, another stylus moves the cube", scene(0.0, 2, rough), [&](int k) {
@@ -175,11 +201,15 @@ int main(int argc, char** argv) {
   });
   measure("ten fingertips of 1.5 cm, dt = 1 ms", ten_fingertips(), pinch_with_ten);
   measure("tool: a rod lies across a cube and rubs", rod_on_cube(), press_with_rod);
+  for (const int modes : {0, 400}) {
+    const std::string of = modes == 0 ? ", all modes" : ", 400 modes";
+    measure("a ball slides on quadratic elements" + of, balls(1, modes), nobody);
+    measure("ten balls slide on quadratic elements" + of, balls(10, modes), nobody);
+  }
   SimulationConfig resting = scene(0.0, 1, rough);
   resting.gravity = Vector3(0, -9.81, 0);
   resting.objects[0].tether = {};
   resting.floor = FloorConfig{Vector3(0, 1, 0), -kHalfEdge, {0.5, 0.5}};
-  const Commands nobody = [](int) { return std::vector<StylusCommand>{StylusCommand{}}; };
   measure("resting on the floor", resting, nobody);
   measure("a cube on a plane of scenery", stack(1, {0.5, 0.5}), nobody);
   measure("two cubes face on face, the lower one fixed by a tether", face_on_face(rough), nobody);

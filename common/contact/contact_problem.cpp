@@ -7,8 +7,15 @@
 namespace irdm {
 namespace {
 
-// Enough for directions to settle to rounding on any W that is not close to singular.
+// Largest number of directions that slip() tries. It converges in about six, unless W is nearly
+// singular.
 constexpr int kMaxTurns = 60;
+// Change of the direction at which it has converged [rad].
+constexpr double kConverged = 1e-15;
+// Range of the slope of the remaining turn over the angle in which the secant method is safe: the
+// fixed point of the turns is attractive there.
+constexpr double kSteepest = -1.95;
+constexpr double kFlattest = -1e-3;
 
 Vector3 sideways(const Vector3& v, const Vector3& normal) noexcept {
   return v - v.dot(normal) * normal;
@@ -26,21 +33,34 @@ Vector3 force_towards(const Matrix3& W, const Vector3& gap, const Vector3& norma
   return push * on_cone;
 }
 
-// Finds d parallel to the slip that it leaves: turns d towards the slip until it stays.
+// Finds the direction d along the surface that is parallel to the slip it leaves. Turning d towards
+// the slip is a contraction; the secant method finds its fixed point in few steps.
 SingleContact slip(const Matrix3& W, const Vector3& gap, const Vector3& normal, double mu,
                    const Vector3& stick) noexcept {
   SingleContact result;
   result.mode = ContactMode::kSlipping;
-  Vector3 d = sideways(stick, normal).normalized();
+  const Vector3 first = sideways(stick, normal).normalized();
+  const Vector3 across = normal.cross(first);
   const double scale = W.trace();
-  for (int turn = 0; turn < kMaxTurns; ++turn) {
+  double angle = 0.0;
+  double last_angle = 0.0;
+  double last_turn = 0.0;
+  for (int i = 0; i < kMaxTurns; ++i) {
+    const Vector3 d = std::cos(angle) * first + std::sin(angle) * across;
     result.force = force_towards(W, gap, normal, mu, d);
     result.slip = sideways(gap - W * result.force, normal);
     const double hold = scale * sideways(result.force, normal).norm();
-    const Vector3 next = (hold * d + result.slip).normalized();
-    const double change = (next - d).norm();
-    d = next;
-    if (!(change > 1e-15)) break;
+    const double turn = std::atan2(normal.cross(d).dot(result.slip), hold + d.dot(result.slip));
+    if (!(std::abs(turn) > kConverged)) break;
+    double step = turn;
+    if (i > 0) {
+      const double slope = (turn - last_turn) / (angle - last_angle);
+      if (slope > kSteepest && slope < kFlattest) step = -turn / slope;
+    }
+    last_turn = turn;
+    last_angle = angle;
+    angle += step;
+    if (angle == last_angle) break;
   }
   return result;
 }

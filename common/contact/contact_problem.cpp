@@ -16,6 +16,8 @@ constexpr double kConverged = 1e-15;
 // fixed point of the turns is attractive there.
 constexpr double kSteepest = -1.95;
 constexpr double kFlattest = -1e-3;
+// Largest step of the secant method [rad].
+constexpr double kMaxStep = 0.5;
 
 Vector3 sideways(const Vector3& v, const Vector3& normal) noexcept {
   return v - v.dot(normal) * normal;
@@ -55,7 +57,9 @@ SingleContact slip(const Matrix3& W, const Vector3& gap, const Vector3& normal, 
     double step = turn;
     if (i > 0) {
       const double slope = (turn - last_turn) / (angle - last_angle);
-      if (slope > kSteepest && slope < kFlattest) step = -turn / slope;
+      if (slope > kSteepest && slope < kFlattest) {
+        step = std::clamp(-turn / slope, -kMaxStep, kMaxStep);
+      }
     }
     last_turn = turn;
     last_angle = angle;

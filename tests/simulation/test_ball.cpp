@@ -147,7 +147,7 @@ TEST_CASE("ball: the half space through a low pass, against closed forms") {
   CHECK(quadratic(13.9999) == Approx(quadratic(14.0001)).epsilon(3e-5));  // no jump
 }
 
-TEST_CASE("ball: faces of elements make up the surface and interpolate over it") {
+TEST_CASE("ball: faces of elements make up the surface and interpolate over it", "[unsanitized]") {
   const int order = GENERATE(1, 2);
   const std::shared_ptr<const Model> model = coarse_cube(0.002, order);
   const RestSurface surface(model->mesh);
@@ -184,7 +184,8 @@ TEST_CASE("ball: faces of elements make up the surface and interpolate over it")
   }
 }
 
-TEST_CASE("ball: the near field stores energy, and less where samples are far apart") {
+TEST_CASE("ball: the near field stores energy, and less where samples are far apart",
+          "[unsanitized]") {
   const std::shared_ptr<const Model> model = coarse_cube();
   const RestSurface surface(model->mesh);
   const std::vector<BallSample> all = ball_samples(model->mesh, surface, 0.004);
@@ -291,7 +292,7 @@ TEST_CASE("ball: the same force at any place of a face", "[slow]") {
   }
 }
 
-TEST_CASE("ball: a slide without friction over the elements' edges is smooth") {
+TEST_CASE("ball: a slide without friction over the elements' edges is smooth", "[unsanitized]") {
   const std::shared_ptr<const Model> model = coarse_cube();
   const double radius = GENERATE(0.01, 0.02);
   SceneryConfig ball = pressing_ball(radius, 0.005, 0.2, -0.025, 0.004);
@@ -392,7 +393,7 @@ TEST_CASE("ball: the impulse of a tap has a limit in dt and is there at 2 ms", "
   }
 }
 
-TEST_CASE("ball: friction drags a ball that slides with its coefficient") {
+TEST_CASE("ball: friction drags a ball that slides with its coefficient", "[unsanitized]") {
   SceneryConfig ball = pressing_ball(0.015, 0.005, 0.2, -0.02);
   ball.friction = {0.3, 0.3};
   const Vector3 down = ball.motion.path.back().displacement;
@@ -463,8 +464,8 @@ TEST_CASE("ball: one that passes its own radius in a step does not pass through"
         Approx(held_force(coarse_cube(), radius, depth, 0.003, 0.002)).epsilon(0.02));
 }
 
-TEST_CASE(
-    "ball: withdrawn from a depth of more than its radius it feels nothing, and comes again") {
+TEST_CASE("ball: withdrawn from a depth of more than its radius it feels nothing, and comes again",
+          "[unsanitized]") {
   SceneryConfig ball = pressing_ball(0.006, 0.008, 0.1);
   const Vector3 down = ball.motion.path.back().displacement;
   ball.motion.path.push_back({0.4, down});
@@ -526,7 +527,8 @@ TEST_CASE(
   CHECK(together == Approx(alone).epsilon(0.03));
 }
 
-TEST_CASE("ball: linear elements are too stiff over several edges, but not without bound") {
+TEST_CASE("ball: linear elements are too stiff over several edges, but not without bound",
+          "[unsanitized]") {
   const std::shared_ptr<const Model> model = coarse_cube(0.002, 1);
   const double share = 0.0;
   for (const double radius : {0.007, 0.015}) {

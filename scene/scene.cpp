@@ -81,20 +81,36 @@ void read_tokens(TomlTable& table, ViewerConfig& config) {
   }
 }
 
+// Reads the kind of tip, after its radius. `stylus.ball` is the default.
+void read_shape(TomlTable& table, SimulationStylus& stylus) {
+  stylus.ball = table.choice("shape", {"patch", "ball"}, stylus.ball ? "ball" : "patch") == "ball";
+  if (!stylus.ball) return;
+  if (table.has("reach")) {
+    table.fail("reach", "is for grabbing, which a ball cannot do", "leave it out");
+  }
+  if (table.has("radius") && stylus.radius <= 0.0) {
+    table.fail("radius", "of a ball is 0", "use more, or leave out `shape`");
+  }
+}
+
 // @param radius of the first [[stylus]]; none: it names none
-void read_viewer_stylus(TomlTable table, std::optional<double> radius, ViewerConfig& config) {
+// @param ball whether that one has a ball
+void read_viewer_stylus(TomlTable table, std::optional<double> radius, bool ball,
+                        ViewerConfig& config) {
   SimulationStylus& stylus = config.stylus;
+  stylus.ball = ball;
   config.default_radius = !radius && !table.has("radius");
   stylus.radius = table.number("radius", lab::kTipLength, radius.value_or(0.0));
   stylus.coupling_stiffness =
       table.number("coupling_stiffness", between(1.0, 1e5), stylus.coupling_stiffness);
   stylus.reach = table.number("reach", lab::kTipLength, stylus.reach);
+  read_shape(table, stylus);
   config.max_force = table.number("max_force", between(0.1, 100.0), config.max_force);
   table.finish();
 }
 
-// @param radius as in read_viewer_stylus()
-ViewerConfig read_viewer(TomlTable table, std::optional<double> radius) {
+// @param radius, ball as in read_viewer_stylus()
+ViewerConfig read_viewer(TomlTable table, std::optional<double> radius, bool ball) {
   ViewerConfig config;
   config.enabled = table.boolean("enabled", config.enabled);
   config.address = table.text("address", config.address);
@@ -103,7 +119,7 @@ ViewerConfig read_viewer(TomlTable table, std::optional<double> radius) {
   if (table.has("recordings")) config.recordings = table.path("recordings");
   if (table.has("scenes")) config.scenes = table.path("scenes");
   config.mouse = table.boolean("mouse", config.mouse);
-  read_viewer_stylus(table.table("stylus"), radius, config);
+  read_viewer_stylus(table.table("stylus"), radius, ball, config);
   table.finish();
   return config;
 }
@@ -164,6 +180,7 @@ SimulationStylus read_stylus(TomlTable table, const ContactConfig& contact) {
       table.number("coupling_stiffness", lab::kStiffness, contact.coupling_stiffness);
   stylus.reach = table.number("reach", lab::kTipLength, stylus.reach);
   stylus.max_force = table.number("max_force", between(0.1, kMostAppliedForce), stylus.max_force);
+  read_shape(table, stylus);
   if (table.has("tool")) table.table("tool");  // read_tool()
   table.finish();
   return stylus;
@@ -217,7 +234,7 @@ CouplingConstants read_coupling(TomlTable& table) {
 // Of a stylus that has one, when the objects are known. @param taken that other styluses lead
 void read_tool(TomlTable table, const std::vector<ObjectConfig>& objects, std::set<int>& taken,
                SimulationStylus& stylus) {
-  for (const char* key : {"radius", "coupling_stiffness", "reach"}) {
+  for (const char* key : {"radius", "shape", "coupling_stiffness", "reach"}) {
     if (table.has(key)) table.fail(key, "is nothing to a stylus that leads a tool", "leave it out");
   }
   TomlTable tool = table.table("tool");
@@ -267,7 +284,8 @@ SceneConfig read_scene(TomlTable file) {
   }
   const bool named = !styluses.empty() && styluses.front().has("radius");
   scene.viewer = read_viewer(file.table("viewer"),
-                             named ? std::optional(scene.styluses.front().radius) : std::nullopt);
+                             named ? std::optional(scene.styluses.front().radius) : std::nullopt,
+                             scene.styluses.front().ball);
   std::set<std::string> names;
   for (TomlTable& object : file.tables("object")) {
     scene.objects.push_back(read_object(object));
@@ -396,8 +414,10 @@ void set_default_radius(const SceneConfig& scene, bool viewer_stylus, Simulation
   const bool of_viewer = viewer_stylus && scene.viewer.default_radius;
   if (scene.default_radius.empty() && !of_viewer) return;
   const double radius = default_fingertip(config);
-  for (const std::size_t s : scene.default_radius) config.styluses[s].radius = radius;
-  if (of_viewer) config.styluses.back().radius = radius;
+  const double ball = default_ball_radius(config);
+  const auto set = [&](SimulationStylus& stylus) { stylus.radius = stylus.ball ? ball : radius; };
+  for (const std::size_t s : scene.default_radius) set(config.styluses[s]);
+  if (of_viewer) set(config.styluses.back());
 }
 
 }  // namespace

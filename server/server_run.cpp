@@ -29,9 +29,9 @@ NetworkSettings network_settings(const PreparedRun& run, RealTimeScheduling sche
   // One bridge may have all of them, or each its own, with another one that comes in its place.
   settings.max_frame_rate = std::max(settings.max_frame_rate, 10'000 * settings.styluses);
   settings.max_connections = std::max(settings.max_connections, 2 * settings.styluses);
-  settings.contact_models =
-      std::none_of(scene.styluses.begin(), scene.styluses.end(),
-                   [](const SimulationStylus& stylus) { return stylus.tool.has_value(); });
+  settings.contact_models = std::none_of(
+      scene.styluses.begin(), scene.styluses.end(),
+      [](const SimulationStylus& stylus) { return stylus.tool.has_value() || stylus.ball; });
   settings.scheduling = scheduling;
   settings.udp = scene.server.udp;
   settings.any_datagram_port = any_datagram_port;

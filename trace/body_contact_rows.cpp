@@ -43,10 +43,13 @@ bool within(int value, Eigen::Index count) {
 void check_place(const BodyContactRecord& contact, const SimulationConfig& config,
                  SampleCounts& samples, const std::string& file) {
   const auto objects = static_cast<int>(config.objects.size());
-  const auto scenery = static_cast<int>(config.scenery.size());
-  const bool may = contact.other == contact.object ? config.self_contact : touches_others(config);
-  if (!may || !within(contact.object, objects) || contact.other < -scenery ||
-      contact.other >= objects) {
+  const int ball = stylus_of_ball(config, contact.other);
+  bool may = contact.other == contact.object ? config.self_contact : touches_others(config);
+  if (ball >= 0) {
+    may = within(ball, static_cast<Eigen::Index>(config.styluses.size())) &&
+          config.styluses[static_cast<std::size_t>(ball)].ball;
+  }
+  if (!may || !within(contact.object, objects) || contact.other >= objects) {
     throw Error(file, "/body_contact has a contact of bodies that the scene does not have",
                 "use the scene that it was recorded with");
   }

@@ -394,7 +394,11 @@ void Recording::step(std::size_t k, StepRecord& record) const {
     const bool free = data.objects.size() == 1 && data.objects[0].contacts[s].state[k] == 0;
     stylus.object = rows.object.empty() ? (free ? -1 : 0) : rows.object[k];
     stylus.contact = ContactState::kFree;
-    if (stylus.object >= 0) {
+    if (data.config.styluses[s].ball) {  // its contacts are those of a body
+      const bool touches = !stylus.force.isZero(0.0);
+      if (data.objects.size() == 1) stylus.object = touches ? 0 : -1;
+      if (touches) stylus.contact = ContactState::kTouching;
+    } else if (stylus.object >= 0) {
       const auto i = static_cast<std::size_t>(stylus.object);
       stylus.contact = record.object[i].contact[s].state;
     }

@@ -143,9 +143,8 @@ BodyContactRecord get_body_contact(Reader& reader, int objects) {
   BodyContactRecord contact;
   contact.object = reader.get<std::uint8_t>();
   contact.other = static_cast<std::int8_t>(reader.get<std::uint8_t>());
-  const int scenery = -1 - contact.other;
-  if (contact.object >= objects || contact.other >= objects ||
-      scenery >= static_cast<int>(kMaxScenery)) {
+  constexpr int kMost = static_cast<int>(kMaxScenery) + kMaxStyluses;  // scenery and balls
+  if (contact.object >= objects || contact.other >= objects || -1 - contact.other >= kMost) {
     throw MessageError("a contact is out of range");
   }
   for (double& part : contact.normal) part = get_number(reader, false) / kNormalUnits;

@@ -18,7 +18,7 @@ namespace {
 // The first fingertip of the scene, else the one that a stylus has by default.
 double felt_radius(const SimulationConfig& config) {
   for (const SimulationStylus& stylus : config.styluses) {
-    if (!stylus.tool && stylus.radius > 0) return stylus.radius;
+    if (!stylus.tool && stylus.patch_radius() > 0) return stylus.radius;
   }
   return default_fingertip(config);
 }

@@ -1,5 +1,7 @@
 #include "replay/output/contact_output.hpp"
 
+#include <string>
+
 #include "common/error.hpp"
 #include "replay/output/csv_row.hpp"
 
@@ -9,6 +11,9 @@ ContactOutput::ContactOutput(const std::filesystem::path& path, const TracedScen
     : file_(path), stream_(file_.part(), std::ios::binary), objects_(plain_names(scene)) {
   for (const SceneryConfig& scenery : scene.config.scenery) {
     scenery_.push_back(plain_name(scenery.name));
+  }
+  for (std::size_t s = 1; s <= scene.config.styluses.size(); ++s) {
+    scenery_.push_back("stylus " + std::to_string(s));
   }
   stream_ << "time_s,object,other,slipping" << vector_columns("position", "_m")
           << vector_columns("normal", "") << vector_columns("force", "_N")

@@ -143,7 +143,7 @@ FemBody::FemBody(const SimulationConfig& config, std::size_t number,
     sampling_ = make_sampling(config, *model_, surface_);
   }
   for (const SimulationStylus& stylus : config.styluses) {
-    masks_.emplace_back(surface_, stylus.radius);
+    masks_.emplace_back(surface_, stylus.patch_radius());
     spring_compliance_.push_back(stylus.coupling_stiffness > 0.0 ? 1.0 / stylus.coupling_stiffness
                                                                  : 0.0);
   }

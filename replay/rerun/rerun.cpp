@@ -96,6 +96,10 @@ void ForceRerun::write_floor_and_styluses(StepRecord& again) const {
   for (std::size_t s = 0; s < styluses; ++s) {
     if (again.stylus[s].tool < 0) again.stylus[s].force.setZero();
   }
+  for (const BodyContactRecord& contact : again.body_contacts()) {
+    const int s = stylus_of_ball(config_, contact.other);
+    if (s >= 0) again.stylus[static_cast<std::size_t>(s)].force -= contact.force;
+  }
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     ObjectRecord& object = again.object[i];
     const Quaternion& Q = object.halfway;

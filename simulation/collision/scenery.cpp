@@ -222,7 +222,7 @@ void SceneryStep::go_on(double t) noexcept {
   const Vector3 position = first_position + t * motion.velocity +
                            0.5 * (1.0 - std::cos(phase)) * motion.stroke +
                            displacement(motion.path, t);
-  before = t > 0 ? now.position : position;
+  before = origin = t > 0 ? now.position : position;
   turn = t > 0 ? Quaternion(orientation * now.orientation.conjugate()) : Quaternion::Identity();
   now.position = position;
   now.orientation = orientation;

@@ -71,20 +71,27 @@ struct SceneryConfig {
   SceneryMotion motion{};
 };
 
-/// Scenery in the step under way.
+/// Scenery, or the ball of a stylus (StylusBall), in the current step.
 struct SceneryStep {
-  SceneryConfig now;                         ///< as it stands at the end of the step
-  Vector3 before = now.position;             ///< its position at the start of the step [m], W
-  Quaternion turn = Quaternion::Identity();  ///< of its orientation in the step, W
+  SceneryConfig now;                         ///< its pose is that at the end of the step
+  Vector3 before = now.position;             ///< position at the start of the step [m], W
+  Vector3 origin = now.position;             ///< `now.position` of the last step [m], W
+  Quaternion turn = Quaternion::Identity();  ///< change of the orientation in the step, W
   Vector3 first_position = now.position;     ///< at the start [m], W
   Quaternion first_orientation = now.orientation;
+  bool led = false;     ///< true for the ball of a stylus
+  bool present = true;  ///< false for the ball of an absent stylus, which touches nothing
+  /// Displacement of the ball of a stylus at the end of the step if no contact force acted on it,
+  /// relative to `now` [m], W.
+  Vector3 recoil = Vector3::Zero();
 
-  bool moves() const noexcept { return now.motion.any(); }
-  /// The step that ends at time t [s]; 0: none, it is at the start. Real-time safe.
+  bool moves() const noexcept { return led ? present : now.motion.any(); }
+  /// Moves it to its pose at time t [s], the end of the step; 0 is the start. Real-time safe.
   void go_on(double t) noexcept;
-  /// Where the step takes a point of W that moves along.
+  /// Returns the position [m, W] to which the step takes a point of the body. The argument is the
+  /// position that contacts of the last step gave the point.
   Vector3 carried(const Vector3& x) const noexcept {
-    return moves() ? Vector3(now.position + turn * (x - before)) : x;
+    return moves() ? Vector3(now.position + turn * (x - origin)) : x;
   }
 };
 

@@ -21,8 +21,8 @@ constexpr std::uint64_t kFirstStep = 2;
 }  // namespace
 
 BallContacts::BallContacts(int object, const ContactBody& body, const PatchCompliance& compliance,
-                           int scenery, const SceneryStep& there, double dt)
-    : ContactPair(object, -1 - scenery),
+                           int ball, const SceneryStep& there, double dt)
+    : ContactPair(object, ball),
       body_(body),
       compliance_(compliance),
       scenery_(there),
@@ -99,6 +99,7 @@ void BallContacts::archive(StateArchive& state) {
 }
 
 bool BallContacts::near() const noexcept {
+  if (!scenery_.present) return false;
   const FreeMotion& motion = body_.motion;
   const double moved = (motion.position - motion.start.position).norm() +
                        (scenery_.now.position - scenery_.before).norm();
@@ -244,7 +245,7 @@ bool BallContacts::evaluate(const Near& near, const BallWay& ball, Candidate& ca
   if (!faces || outward.isZero(0.0)) return false;
   const FreeMotion& motion = body_.motion;
   state.normal = motion.orientation * outward;
-  const double free_depth = depth + outward.dot(moved);
+  const double free_depth = depth + outward.dot(moved) + state.normal.dot(scenery_.recoil);
   if (pressed) {
     state.anchor = scenery_.carried(state.anchor);
   } else {
@@ -257,7 +258,7 @@ bool BallContacts::evaluate(const Near& near, const BallWay& ball, Candidate& ca
   }
   state.listed = step_;
   state.gap = (free_depth - state.inset) * state.normal +
-              sideways(state.anchor - motion.to_world(near.place), state.normal);
+              sideways(state.anchor + scenery_.recoil - motion.to_world(near.place), state.normal);
   candidate = {near.sample, false, free_depth, place};
   return true;
 }

@@ -9,8 +9,8 @@
 
 namespace irdm {
 
-/// Contacts of a soft object with a ball of the scenery, on the samples for its radius
-/// (ContactSampling::ball()).
+/// Contacts of a soft object with a ball of the scenery or of a stylus, on the samples for its
+/// radius (ContactSampling::ball()).
 ///
 /// The position of a sample and whether it faces the ball are evaluated in the *reference state*:
 /// the state of the object at the end of the step if the ball's forces stayed as they were in the
@@ -19,9 +19,9 @@ namespace irdm {
 /// enough (docs/theory.md, "Balls against soft bodies").
 class BallContacts final : public ContactPair {
  public:
-  /// @param scenery number of the ball
+  /// @param ball number of the ball, as BodyContactRecord::other
   /// @param there the ball; it and `compliance` must outlive this object
-  BallContacts(int object, const ContactBody& body, const PatchCompliance& compliance, int scenery,
+  BallContacts(int object, const ContactBody& body, const PatchCompliance& compliance, int ball,
                const SceneryStep& there, double dt);
 
   void reset() noexcept override;

@@ -31,9 +31,9 @@ BodyContacts::BodyContacts(int object, const ContactBody& body, int other,
   for (int i = 0; i < other_body.rest.node_count(); ++i) other_box_.extend(other_body.rest.node(i));
 }
 
-BodyContacts::BodyContacts(int object, const ContactBody& body, int scenery,
-                           const SceneryStep& there, double dt)
-    : ContactPair(object, -1 - scenery),
+BodyContacts::BodyContacts(int object, const ContactBody& body, int other, const SceneryStep& there,
+                           double dt)
+    : ContactPair(object, other),
       body_(body),
       scenery_(&there),
       radius_(body.rest.bounding_radius()),
@@ -63,6 +63,7 @@ void BodyContacts::reset() noexcept {
 // Whether the balls round both meet.
 bool BodyContacts::near() const noexcept {
   if (self_) return true;
+  if (scenery_ != nullptr && !scenery_->present) return false;
   const Vector3& there =
       other_body_ != nullptr ? other_body_->motion.position : scenery_->now.position;
   const double reach = radius_ + other_radius_ + kLeastReach + kReachFactor * displaced_;
@@ -84,7 +85,7 @@ void BodyContacts::describe(int sample, const Vector3& place, Contact& contact) 
   if (other_body_ == nullptr) {
     contact.other_place.count = 0;
     contact.normal = state.normal;
-    contact.gap = state.anchor_W - inset * state.normal - x;
+    contact.gap = state.anchor_W + scenery_->recoil - inset * state.normal - x;
     return;
   }
   contact.other_place = other_body_->sampling.place(state.anchor);

@@ -25,9 +25,9 @@ class BodyContacts final : public ContactPair {
   /// @param first_sample those before it are left to others
   BodyContacts(int object, const ContactBody& body, int other, const ContactBody& other_body,
                double dt, int first_sample = 0);
-  /// @param scenery its number  @param there must outlive this
-  BodyContacts(int object, const ContactBody& body, int scenery, const SceneryStep& there,
-               double dt);
+  /// @param other scenery or the ball of a stylus, as BodyContactRecord::other
+  /// @param there the same; it must outlive this object
+  BodyContacts(int object, const ContactBody& body, int other, const SceneryStep& there, double dt);
   /// Of an object with itself. @param reach of the body's samples; must outlive this
   BodyContacts(int object, const ContactBody& body, const SelfReach& reach, double dt);
 

@@ -88,6 +88,21 @@ void ContactIsland::add_sides(const SoftObject& object, SideCompliance& complian
   }
 }
 
+// Adds the compliance of the springs of balls: a force at one contact of a ball moves all of them.
+void ContactIsland::add_springs(std::span<const IslandContact> contacts,
+                                int first_between) noexcept {
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    const ContactPair& pair = *contacts[c].pair;
+    if (pair.spring_compliance() <= 0.0) continue;
+    for (std::size_t d = 0; d < contacts.size(); ++d) {
+      if (contacts[d].pair->other() != pair.other()) continue;
+      problem_.elastic(first_between + static_cast<int>(c), first_between + static_cast<int>(d))
+          .diagonal()
+          .array() += pair.spring_compliance();
+    }
+  }
+}
+
 // The own contacts' solution, and what the contacts between bodies do to them.
 void ContactIsland::take_back(SoftObject& object, int first, std::span<IslandContact> contacts,
                               int first_between) noexcept {
@@ -157,6 +172,7 @@ ContactSolution ContactIsland::solve(std::span<SoftObject* const> objects,
     add_own(object, first);
     add_sides(object, compliances_[static_cast<std::size_t>(member)]);
   }
+  add_springs(contacts, first_between);
   const ContactSolution solution = solver_.solve(problem_, kLimits);
   for (const int member : members) {
     collect_sides(member, contacts, first_between);

@@ -49,6 +49,7 @@ class ContactIsland {
   };
   void add_own(SoftObject& object, int first) noexcept;
   void add_sides(const SoftObject& object, SideCompliance& compliance) noexcept;
+  void add_springs(std::span<const IslandContact> contacts, int first_between) noexcept;
   void take_back(SoftObject& object, int first, std::span<IslandContact> contacts,
                  int first_between) noexcept;
   void collect_sides(int object, std::span<const IslandContact> contacts, int first) noexcept;

@@ -9,9 +9,10 @@
 
 namespace irdm {
 
-/// Contacts of one object with another object, with scenery, or with other parts of itself. They
-/// persist from step to step. Each contact is at a sample of the object (ContactSampling).
-/// Real-time safe after construction, unless a function says otherwise; for one thread.
+/// Contacts of one object with another object, with scenery, with the ball of a stylus, or with
+/// other parts of itself. They persist from step to step. Each contact is at a sample of the object
+/// (ContactSampling). Real-time safe after construction, unless a function says otherwise; for one
+/// thread.
 class ContactPair {
  public:
   /// One contact of the current step.
@@ -26,7 +27,7 @@ class ContactPair {
   };
 
   /// @param object number of the object
-  /// @param other number of the other object, or of the same one; -1 - i for scenery i
+  /// @param other as BodyContactRecord::other
   ContactPair(int object, int other) : object_(object), other_(other) {}
   virtual ~ContactPair() = default;
 
@@ -55,12 +56,16 @@ class ContactPair {
 
   /// Returns whether the two bodies may touch in this step. True for an object and itself.
   virtual bool near() const noexcept = 0;
-  /// Returns whether the other body is moving scenery.
+  /// Returns whether the other body is moving scenery or the ball of a stylus that is present.
   virtual bool driven() const noexcept = 0;
   /// Returns the largest depth of the object inside the other body in their initial poses [m]; 0
   /// for an object and itself.
   virtual double initial_depth() noexcept = 0;
 
+  /// Sets the compliance of the spring by which a stylus leads the other body [m/N], 0 before. All
+  /// contacts with that body share it.
+  void set_spring_compliance(double compliance) noexcept { spring_compliance_ = compliance; }
+  double spring_compliance() const noexcept { return spring_compliance_; }
   int count() const noexcept { return count_; }
   const Contact& contact(int i) const noexcept { return found_[static_cast<std::size_t>(i)]; }
   int object() const noexcept { return object_; }
@@ -98,6 +103,7 @@ class ContactPair {
  private:
   int object_;
   int other_;
+  double spring_compliance_ = 0.0;
 };
 
 }  // namespace irdm

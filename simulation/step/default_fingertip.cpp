@@ -45,6 +45,21 @@ double default_fingertip(const SimulationConfig& config) {
   return edge > 0 ? std::min(std::max(radius, edge), largest) : 0.0;
 }
 
+double default_ball_radius(const SimulationConfig& config) {
+  constexpr double kLeast = 3e-3;  // [m]
+  constexpr double kEdges = 2.0;   // of the surface's triangles
+  constexpr double kOfDiameter = 0.1;
+  constexpr double kDiameter = 6.0;  // of a ball, times V / S
+  double edge = 0.0;
+  double diameter = std::numeric_limits<double>::infinity();
+  for (const SimulationObject& object : config.objects) {
+    const RestSurface surface(object.model->mesh);
+    edge = std::max(edge, surface.mean_edge());
+    diameter = std::min(diameter, kDiameter * volume_by_surface(surface));
+  }
+  return std::min(std::max(kEdges * edge, kLeast), kOfDiameter * diameter);
+}
+
 double mesh_dependence_of_points(const Model& model, double radius) {
   const RestSurface surface(model.mesh);
   const Eigen::ArrayXd ratio = static_compliance(model, fingertip_loads(surface, 0.0)).array() /

@@ -11,6 +11,11 @@ namespace irdm {
 /// compliance differs by less than 3 %, over each by less than 5 %. 0: all of them are rigid.
 double default_fingertip(const SimulationConfig& config);
 
+/// Returns the radius of a stylus' ball that names none [m]: twice the mean edge length of the
+/// coarsest surface and at least 3 mm, but at most a tenth of the diameter of the smallest object,
+/// taken as 6 V / S. Rigid objects count as well.
+double default_ball_radius(const SimulationConfig& config);
+
 /// By which factor points on neighbouring nodes of an object differ in static compliance where a
 /// fingertip feels the same; the median over all edges of triangles. NaN: not known, or rigid.
 /// @param radius of the fingertip [m], > 0

@@ -44,8 +44,9 @@ RecordedForces::RecordedForces(const SimulationConfig& config, std::size_t numbe
       forces_(config.styluses.size() * kMaxPatchNodes + kMaxFloorContacts +
               static_cast<std::size_t>(surface.node_count())),
       sums_(surface.node_count()) {
-  for (const SimulationStylus& stylus : config.styluses)
-    masks_.emplace_back(surface, stylus.radius);
+  for (const SimulationStylus& stylus : config.styluses) {
+    masks_.emplace_back(surface, stylus.patch_radius());
+  }
   if (!touches_bodies(config)) return;
   sampling_ = make_sampling(config, *config.objects[number].model, surface);
 }

@@ -149,8 +149,8 @@ void Simulation::step(std::span<const StylusCommand> commands, StepRecord& recor
     commands = commands_;
   }
   record.body_contact.clear();
-  const std::span<const StylusCommand> all = std::exchange(commands, lead_tools(commands));
-  if (world_) world_->move_scenery();
+  const std::span<const StylusCommand> all = std::exchange(commands, own_contacts(commands));
+  if (world_) world_->begin_step(all);
   begin_objects(commands, record);
   if (world_) {
     world_->solve(record);
@@ -179,17 +179,19 @@ void Simulation::begin_objects(std::span<const StylusCommand> commands,
   for (std::size_t i = 0; i < objects_.size(); ++i) objects_[i]->begin(commands, record.object[i]);
 }
 
-// For the objects, a stylus that leads a tool is not there.
-std::span<const StylusCommand> Simulation::lead_tools(
+// Moves the tools, and returns the commands for the contacts that objects solve themselves: there
+// a stylus that leads a tool or has a ball is absent.
+std::span<const StylusCommand> Simulation::own_contacts(
     std::span<const StylusCommand> commands) noexcept {
   std::span<const StylusCommand> contacts = commands;
   for (std::size_t s = 0; s < stylus_count_; ++s) {
-    if (!tools_[s]) continue;
+    if (!tools_[s] && ball(s) == nullptr) continue;
     if (contacts.data() == commands.data()) {
       std::copy_n(commands.begin(), stylus_count_, contacts_.begin());
       contacts = {contacts_.data(), stylus_count_};
     }
     contacts_[s] = {};
+    if (!tools_[s]) continue;
     tools_[s]->begin(commands[s]);
     objects_[static_cast<std::size_t>(tools_[s]->object())]->lead(tools_[s]->step());
   }
@@ -217,7 +219,7 @@ bool Simulation::predict_horizon(std::size_t s, const Vector3& tip, int horizon,
   model.step = next_step_ - 1;
   model.dt = dt_;
   local_model_object_[s] = -1;
-  if (next_step_ == 0 || !tip.allFinite() || tools_[s]) return true;
+  if (next_step_ == 0 || !tip.allFinite() || tools_[s] || ball(s) != nullptr) return true;
   local_model_object_[s] = touched_by(s, tip);
   if (local_model_object_[s] < 0) return true;
   SoftObject& touched = *objects_[static_cast<std::size_t>(local_model_object_[s])];
@@ -272,6 +274,14 @@ void Simulation::write_stylus(std::size_t s, const StylusCommand& command,
   if (tools_[s]) {
     stylus.orientation = command.orientation;
     write_tool(*tools_[s], stylus);
+    return;
+  }
+  if (const StylusBall* const ball = this->ball(s)) {
+    stylus.object = ball->object();
+    stylus.force = -ball->force();
+    if (stylus.object < 0) return;
+    stylus.contact = ContactState::kTouching;
+    stylus.proxy = ball->centre();
     return;
   }
   double largest = -1.0;

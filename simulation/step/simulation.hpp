@@ -96,7 +96,10 @@ class Simulation {
  private:
   void add_tool(const SimulationConfig& config, std::size_t s);
   void begin_objects(std::span<const StylusCommand> commands, StepRecord& record) noexcept;
-  std::span<const StylusCommand> lead_tools(std::span<const StylusCommand> commands) noexcept;
+  std::span<const StylusCommand> own_contacts(std::span<const StylusCommand> commands) noexcept;
+  const StylusBall* ball(std::size_t s) const noexcept {
+    return world_ ? world_->ball(s) : nullptr;
+  }
   void write_tool(const ToolLead& lead, StylusRecord& stylus) const noexcept;
   int touched_by(std::size_t s, const Vector3& tip) noexcept;
   bool reset_pressed(std::span<const StylusCommand> commands) noexcept;
@@ -118,7 +121,7 @@ class Simulation {
   std::array<std::unique_ptr<ToolLead>, kMaxStyluses> tools_;  ///< of each stylus; null: none
   std::array<int, kMaxStyluses> local_model_object_;           ///< object, -1: none
   std::array<StylusCommand, kMaxStyluses> commands_;  ///< of a step that begins with a reset
-  std::array<StylusCommand, kMaxStyluses> contacts_;  ///< of the styluses that lead no tool
+  std::array<StylusCommand, kMaxStyluses> contacts_;  ///< what own_contacts() returns, if changed
   LateForces late_;                                   ///< entered since the last step
 };
 

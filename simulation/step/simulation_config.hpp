@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
@@ -48,13 +49,20 @@ struct ToolCoupling {
 
 /// How one stylus touches.
 struct SimulationStylus {
-  double radius = 0.0;              ///< of the fingertip [m]; 0: a point
+  double radius = 0.0;              ///< of the fingertip or the ball [m]; 0: a point
   double coupling_stiffness = 0.0;  ///< k_vc, spring between tip and surface [N/m]; 0: none (rigid)
   double reach = 0.0;  ///< pressed within it, the grab button holds the nearest node [m]
   /// Its bridge, if the contact is solved there, makes it exert at most this [N], > 0.
   double max_force = kMostAppliedForce;
+  /// True if the tip is a rigid ball of `radius` > 0 about the position of the stylus. False for a
+  /// fingertip: a patch of prescribed pressure on the surface nearest to the tip.
+  bool ball = false;
   /// It leads a tool, and makes no contact of its own; what is above means nothing then.
   std::optional<ToolCoupling> tool = {};
+
+  /// Returns the radius of its patch of prescribed pressure [m]; 0 for a point, and for a ball,
+  /// which has no such patch.
+  double patch_radius() const noexcept { return ball ? 0.0 : radius; }
 };
 
 /// Objects among their styluses. All models have the same dt.
@@ -84,9 +92,26 @@ inline bool touches_others(const SimulationConfig& config) {
   return config.between_objects && (config.objects.size() > 1 || !config.scenery.empty());
 }
 
-/// Whether they can touch those or themselves.
+/// Returns whether the tip of a stylus is a ball.
+inline bool has_balls(const SimulationConfig& config) {
+  return std::any_of(config.styluses.begin(), config.styluses.end(),
+                     [](const SimulationStylus& stylus) { return stylus.ball; });
+}
+
+/// Returns whether a step can have contacts in BodyContactRecord: of objects with each other, with
+/// scenery, with balls of styluses, or of parts of one object.
 inline bool touches_bodies(const SimulationConfig& config) {
-  return config.self_contact || touches_others(config);
+  return config.self_contact || touches_others(config) || has_balls(config);
+}
+
+/// Returns the number of the ball of stylus s in BodyContactRecord::other.
+inline int ball_number(const SimulationConfig& config, std::size_t s) {
+  return -1 - static_cast<int>(config.scenery.size() + s);
+}
+
+/// Returns the stylus of a ball by its number in BodyContactRecord::other; -1 if it is not one.
+inline int stylus_of_ball(const SimulationConfig& config, int other) {
+  return other < 0 ? std::max(-1, -1 - other - static_cast<int>(config.scenery.size())) : -1;
 }
 
 /// The styluses that lead a tool.

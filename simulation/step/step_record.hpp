@@ -78,7 +78,8 @@ inline constexpr int kMaxBodyContacts = 256;
 /// What a body did to an object at one of the object's samples (ContactSampling) in one step.
 struct BodyContactRecord {
   int object = 0;  ///< whose sample it is
-  int other = 0;   ///< the object that it touches; -1 - i: scenery i
+  /// The object that it touches; -1 - i for scenery i; for the ball of stylus s ball_number().
+  int other = 0;
   int sample = 0;
   bool slipping = false;
   int triangle = 0;  ///< of the other object, where its point is; this and weights not of scenery

@@ -48,7 +48,8 @@ ObjectRow row_of(const ObjectStep& object, double energy) noexcept {
           object.residual,          energy};
 }
 
-ContactRows::ContactRows(const SimulationConfig& config) : floor_(config.floor) {
+ContactRows::ContactRows(const SimulationConfig& config)
+    : floor_(config.floor), scenery_count_(config.scenery.size()) {
   forces_.reserve(most(config));
 }
 
@@ -107,9 +108,13 @@ void ContactRows::add_floor(const Simulation& simulation, const StepRecord& reco
 void ContactRows::add_bodies(const StepRecord& record) noexcept {
   for (const BodyContactRecord& contact : record.body_contacts()) {
     const bool scenery = contact.other < 0;
-    ContactRow out = begin(static_cast<std::size_t>(contact.object),
-                           scenery ? ContactKind::kScenery : ContactKind::kObject,
-                           static_cast<std::size_t>(scenery ? -1 - contact.other : contact.other));
+    auto other = static_cast<std::size_t>(scenery ? -1 - contact.other : contact.other);
+    ContactKind kind = scenery ? ContactKind::kScenery : ContactKind::kObject;
+    if (scenery && other >= scenery_count_) {
+      kind = ContactKind::kStylus;
+      other -= scenery_count_;
+    }
+    ContactRow out = begin(static_cast<std::size_t>(contact.object), kind, other);
     out.place = contact.sample;
     out.slipping = contact.slipping ? 1 : 0;
     out.position = numbers(contact.position);

@@ -56,8 +56,8 @@ struct ContactRow {
   std::int32_t object = 0;  ///< on which it acts
   std::int32_t kind = 0;    ///< ContactKind
   std::int32_t other = 0;   ///< stylus, object or scenery; 0 of the floor
-  /// Patch of the object (ContactSampling) that touches an object or scenery, surface node on the
-  /// floor; -1 of a stylus.
+  /// Sample of the object (ContactSampling) that touches an object, scenery or the ball of a
+  /// stylus; surface node on the floor; -1 for the other tips of styluses.
   std::int32_t place = -1;
   std::int32_t state = 0;  ///< ContactState
   std::int32_t slipping = 0;
@@ -87,6 +87,7 @@ class ContactRows {
   void add_bodies(const StepRecord& record) noexcept;
 
   std::optional<FloorConfig> floor_;
+  std::size_t scenery_count_;
   std::vector<ContactRow> forces_;
 };
 

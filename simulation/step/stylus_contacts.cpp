@@ -50,13 +50,14 @@ StylusContacts::StylusContacts(const SimulationConfig& config, double dt, int ob
     : rest_(rest), surface_(surface), dt_(dt), release_time_(config.release_time), object_(object) {
   const double largest = PressureMask::largest_radius(rest);
   for (const SimulationStylus& tip : config.styluses) {
-    if (tip.radius > largest) {
+    const double radius = tip.patch_radius();
+    if (radius > largest) {
       throw Error("stylus",
                   "radius " + std::to_string(tip.radius) +
                       " m is too large for an object whose triangles are this small",
                   "use at most " + std::to_string(largest) + " m or a coarser mesh");
     }
-    styluses_.push_back({tip, PressureMask(rest, tip.radius), SmoothedSurface(rest, tip.radius)});
+    styluses_.push_back({tip, PressureMask(rest, radius), SmoothedSurface(rest, radius)});
   }
   size_ = rest.bounding_radius();
 }

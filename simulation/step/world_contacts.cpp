@@ -89,6 +89,11 @@ WorldContacts::WorldContacts(const SimulationConfig& config,
     scenery_.push_back({scenery});
     if (scenery_.back().moves()) scenery_.back().go_on(0.0);
   }
+  for (const SimulationStylus& stylus : config.styluses) {
+    balls_.push_back(stylus.ball
+                         ? std::make_unique<StylusBall>(stylus.radius, stylus.coupling_stiffness)
+                         : nullptr);
+  }
   if (touches_others(config) && config.floor && objects.size() > kMostOnFloor) {
     throw Error("floor",
                 "is for at most " + std::to_string(kMostOnFloor) + " objects that touch each other",
@@ -106,7 +111,7 @@ WorldContacts::WorldContacts(const SimulationConfig& config,
                                   [](const auto& pair) { return touches_itself(*pair); });
   const int most = contacts_of_pair(pairs_.size(), itself);
   for (const auto& pair : pairs_) pair->set_most(most);
-  const auto others = static_cast<int>(objects_.size() - 1 + scenery_.size());
+  const auto others = static_cast<int>(objects_.size() - 1 + scenery_.size() + balls_.size());
   const int with_others = std::min(kMaxBodyContacts, 2 * others * most);
   island_ = std::make_unique<ContactIsland>(static_cast<int>(objects_.size()), capacity(config),
                                             with_others + (itself ? 2 * most : 0));
@@ -122,7 +127,7 @@ int WorldContacts::capacity(const SimulationConfig& config) const {
   int own = 0;
   for (SoftObject* const object : objects_) {
     const int more = object->problem().capacity();
-    own = touches_others(config) ? own + more : std::max(own, more);
+    own = touches_others(config) || has_balls(config) ? own + more : std::max(own, more);
   }
   return own + kMaxBodyContacts;
 }
@@ -138,7 +143,7 @@ const WorldContacts::Shape& WorldContacts::shape_of(const SimulationConfig& conf
     shape.self = std::make_unique<SelfReach>(object.surface(), *shape.sampling);
     if (!shape.self->any()) shape.self.reset();
   }
-  if (touches_others(config) || shape.self) {
+  if (touches_bodies(config)) {
     shape.compliance = std::make_unique<PatchCompliance>(object.model(), *shape.sampling);
   }
   shapes_.push_back(std::move(shape));
@@ -167,13 +172,9 @@ void WorldContacts::add_pairs(const SimulationConfig& config) {
       pairs_.push_back(std::make_unique<BodyContacts>(b, two, a, one, dt,
                                                       second ? 0 : two.sampling.first_edge()));
     }
-    for (std::size_t s = 0; s < config.scenery.size(); ++s) {
-      const SoftObject& object = *objects_[static_cast<std::size_t>(a)];
-      const bool yields = scenery_[s].moves() && !is_rigid(object.model());
-      if (!object.rigid().moves() && !yields) continue;
-      add_scenery(config, a, static_cast<int>(s));
-    }
+    add_scenery(config, a);
   }
+  for (int a = 0; a < count; ++a) add_balls(config, a);
   for (int a = 0; a < count; ++a) {
     const auto index = static_cast<std::size_t>(a);
     const Shape& shape = shape_of(config, *objects_[index]);
@@ -182,33 +183,54 @@ void WorldContacts::add_pairs(const SimulationConfig& config) {
   }
 }
 
-// A ball presses on samples that suit its radius, if the object has such.
-void WorldContacts::add_scenery(const SimulationConfig& config, int object, int scenery) {
-  const ContactBody& body = bodies_[static_cast<std::size_t>(object)];
-  const SceneryStep& there = scenery_[static_cast<std::size_t>(scenery)];
+void WorldContacts::add_scenery(const SimulationConfig& config, int object) {
   const SoftObject& soft = *objects_[static_cast<std::size_t>(object)];
-  const SphereShape* const ball = std::get_if<SphereShape>(&there.now.shape);
-  if (ball != nullptr && body.sampling.ball(ball->radius).count > 0) {
-    check_ball(config, object, scenery);
-    pairs_.push_back(std::make_unique<BallContacts>(object, body, soft.contact_compliance(),
-                                                    scenery, there, dt_));
-    return;
+  for (std::size_t i = 0; i < scenery_.size(); ++i) {
+    const bool yields = scenery_[i].moves() && !is_rigid(soft.model());
+    if (!soft.rigid().moves() && !yields) continue;
+    add_pair(config, object, -1 - static_cast<int>(i), scenery_[i],
+             "scenery \"" + config.scenery[i].name + "\"");
   }
-  pairs_.push_back(std::make_unique<BodyContacts>(object, body, scenery, there, dt_));
 }
 
-// Throws Error if a ball can pass between the samples.
-void WorldContacts::check_ball(const SimulationConfig& config, int object, int scenery) const {
-  const SceneryConfig& ball = config.scenery[static_cast<std::size_t>(scenery)];
-  const double radius = std::get<SphereShape>(ball.shape).radius;
-  const double least =
-      kLeastBallRadius * bodies_[static_cast<std::size_t>(object)].sampling.ball(radius).spacing;
-  if (radius >= least) return;
-  throw Error("scenery \"" + ball.name + "\"",
-              "has a radius of " + in_millimetres(radius) + ", too small to touch " +
-                  object_name(config, static_cast<std::size_t>(object)),
-              "use a radius of at least " + in_millimetres(least) +
-                  " or a smaller object, or set contact.between_objects = false");
+void WorldContacts::add_balls(const SimulationConfig& config, int object) {
+  const SoftObject& soft = *objects_[static_cast<std::size_t>(object)];
+  for (std::size_t s = 0; s < balls_.size(); ++s) {
+    if (!balls_[s]) continue;
+    const std::string name = "stylus " + std::to_string(s + 1);
+    if (balls_[s]->compliance() <= 0.0 && is_rigid(soft.model())) {
+      throw Error(name,
+                  "has a ball without a spring, but " +
+                      object_name(config, static_cast<std::size_t>(object)) + " is rigid",
+                  "set coupling_stiffness, for instance to 1000 (N/m)");
+    }
+    ContactPair& pair = add_pair(config, object, ball_number(config, s), balls_[s]->body(), name);
+    pair.set_spring_compliance(balls_[s]->compliance());
+  }
+}
+
+// A ball presses on samples that suit its radius, if the object has such.
+// @param name of the other body, for messages
+ContactPair& WorldContacts::add_pair(const SimulationConfig& config, int object, int other,
+                                     const SceneryStep& there, const std::string& name) {
+  const ContactBody& body = bodies_[static_cast<std::size_t>(object)];
+  const SoftObject& soft = *objects_[static_cast<std::size_t>(object)];
+  const SphereShape* const ball = std::get_if<SphereShape>(&there.now.shape);
+  if (ball == nullptr || body.sampling.ball(ball->radius).count == 0) {
+    pairs_.push_back(std::make_unique<BodyContacts>(object, body, other, there, dt_));
+    return *pairs_.back();
+  }
+  const double least = kLeastBallRadius * body.sampling.ball(ball->radius).spacing;
+  if (ball->radius < least) {  // it could pass between the samples
+    throw Error(name,
+                "has a radius of " + in_millimetres(ball->radius) + ", too small to touch " +
+                    object_name(config, static_cast<std::size_t>(object)),
+                "use a radius of at least " + in_millimetres(least) + " or a smaller object" +
+                    (there.led ? "" : ", or set contact.between_objects = false"));
+  }
+  pairs_.push_back(
+      std::make_unique<BallContacts>(object, body, soft.contact_compliance(), other, there, dt_));
+  return *pairs_.back();
 }
 
 void WorldContacts::check_masses(const SimulationConfig& config, int a, int b) const {
@@ -232,6 +254,7 @@ void WorldContacts::refuse_overlaps(const SimulationConfig& config) {
   auto record = std::make_unique<ObjectRecord>();
   for (SoftObject* const object : objects_) object->begin(nobody, *record);
   for (const auto& pair : pairs_) {
+    if (ball_of(*pair) != nullptr) continue;
     const double depth = pair->initial_depth();
     if (depth <= kDeepestOverlap) continue;
     throw Error("scene",
@@ -242,10 +265,16 @@ void WorldContacts::refuse_overlaps(const SimulationConfig& config) {
   for (SoftObject* const object : objects_) object->reset();
 }
 
-void WorldContacts::move_scenery() noexcept {
+void WorldContacts::begin_step(std::span<const StylusCommand> commands) noexcept {
   ++steps_;
   for (SceneryStep& scenery : scenery_) {
     if (scenery.moves()) scenery.go_on(static_cast<double>(steps_) * dt_);
+  }
+  for (std::size_t s = 0; s < balls_.size(); ++s) {
+    if (!balls_[s] || balls_[s]->begin(commands[s])) continue;
+    for (const auto& pair : pairs_) {
+      if (ball_of(*pair) == balls_[s].get()) pair->reset();
+    }
   }
 }
 
@@ -254,14 +283,22 @@ void WorldContacts::reset() noexcept {
   for (SceneryStep& scenery : scenery_) {
     if (scenery.moves()) scenery.go_on(0.0);
   }
+  for (const auto& ball : balls_) {
+    if (ball) ball->reset();
+  }
   for (const auto& pair : pairs_) pair->reset();
 }
 
 void WorldContacts::archive(StateArchive& state) {
   state.value(steps_);
   for (SceneryStep& scenery : scenery_) {
-    for (Vector3* place : {&scenery.now.position, &scenery.before}) state.value(*place);
+    for (Vector3* place : {&scenery.now.position, &scenery.before, &scenery.origin}) {
+      state.value(*place);
+    }
     for (Quaternion* turn : {&scenery.now.orientation, &scenery.turn}) state.value(*turn);
+  }
+  for (const auto& ball : balls_) {
+    if (ball) ball->archive(state);
   }
   state.same(pairs_.size());
   for (const auto& pair : pairs_) pair->archive(state);
@@ -283,6 +320,7 @@ void WorldContacts::release_awake() noexcept {
 
 Friction WorldContacts::friction(const ContactPair& pair) const noexcept {
   const Friction& own = objects_[static_cast<std::size_t>(pair.object())]->friction();
+  if (ball_of(pair) != nullptr) return own;
   if (pair.other() < 0) {
     return scenery_[static_cast<std::size_t>(-1 - pair.other())].now.friction;
   }
@@ -291,11 +329,21 @@ Friction WorldContacts::friction(const ContactPair& pair) const noexcept {
 
 void WorldContacts::find_islands() noexcept {
   std::iota(leader_.begin(), leader_.end(), 0);
-  for (const auto& pair : pairs_) {
-    if (pair->count() == 0 || pair->other() < 0) continue;
-    const int a = leader_[static_cast<std::size_t>(pair->object())];
-    const int b = leader_[static_cast<std::size_t>(pair->other())];
+  const auto join = [&](int one, int other) {
+    const int a = leader_[static_cast<std::size_t>(one)];
+    const int b = leader_[static_cast<std::size_t>(other)];
     std::replace(leader_.begin(), leader_.end(), std::max(a, b), std::min(a, b));
+  };
+  std::array<int, kMaxStyluses> touched;  // an object that each ball touches
+  touched.fill(-1);
+  for (const auto& pair : pairs_) {
+    if (pair->count() == 0) continue;
+    if (pair->other() >= 0) join(pair->object(), pair->other());
+    const int s = -1 - pair->other() - static_cast<int>(scenery_.size());
+    if (s < 0) continue;
+    int& other = touched[static_cast<std::size_t>(s)];
+    if (other < 0) other = pair->object();
+    join(pair->object(), other);
   }
 }
 
@@ -372,6 +420,7 @@ void WorldContacts::solve(StepRecord& record) noexcept {
     if (!objects_[i]->asleep()) objects_[i]->write(record.object[i]);
   }
   apply(solved_, record);
+  end_balls();
   for (const BodyContactRecord& held : held_) record.body_contact.push_back(held);
   for (const IslandContact& contact : solved_) {
     if (contact.found) {
@@ -379,6 +428,30 @@ void WorldContacts::solve(StepRecord& record) noexcept {
     } else {
       contact.pair->skip(contact.i);
     }
+  }
+}
+
+void WorldContacts::end_balls() noexcept {
+  for (const auto& ball : balls_) {
+    if (!ball) continue;
+    Vector3 force = Vector3::Zero();
+    double largest = 0.0;
+    int object = -1;
+    bool solved = true;
+    for (std::size_t i = 0; i < objects_.size(); ++i) {
+      Vector3 part = Vector3::Zero();
+      for (const IslandContact& contact : solved_) {
+        if (contact.pair->object() != static_cast<int>(i)) continue;
+        if (ball_of(*contact.pair) != ball.get()) continue;
+        solved = solved && contact.found;
+        if (contact.solved.mode != ContactMode::kOpen) part += contact.solved.force;
+      }
+      force += part;
+      if (part.norm() <= largest) continue;
+      largest = part.norm();
+      object = static_cast<int>(i);
+    }
+    ball->end(force, object, solved);
   }
 }
 

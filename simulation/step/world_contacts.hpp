@@ -2,18 +2,20 @@
 
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "simulation/step/body_contacts.hpp"
 #include "simulation/step/contact_island.hpp"
 #include "simulation/step/simulation_config.hpp"
 #include "simulation/step/soft_object.hpp"
+#include "simulation/step/stylus_ball.hpp"
 
 namespace irdm {
 
-/// Contacts of a scene's objects with each other, with scenery, and of parts of one object. In each
-/// step objects that touch form islands, each of which is one contact problem. Real-time safe after
-/// construction; one thread.
+/// Contacts of a scene's objects with each other, with scenery, with balls of styluses, and of
+/// parts of one object. In each step objects that touch each other or the same ball form islands,
+/// each of which is one contact problem. Real-time safe after construction; one thread.
 class WorldContacts {
  public:
   /// Throws Error when an object is too large to touch others, when their masses are too far apart,
@@ -27,12 +29,15 @@ class WorldContacts {
   void reset() noexcept;
   /// State, in or out (StateArchive).
   void archive(StateArchive& state);
-  /// Before SoftObject::begin(): scenery goes where it is at the end of the step.
-  void move_scenery() noexcept;
+  /// Moves scenery and balls to their places at the end of the step. Call it before
+  /// SoftObject::begin(). @param commands one for each stylus
+  void begin_step(std::span<const StylusCommand> commands) noexcept;
   /// After SoftObject::begin() of all objects: solves their problems and writes the records, up to
   /// SoftObject::finish().
   void solve(StepRecord& record) noexcept;
 
+  /// Returns the ball of stylus s; null if its tip is not a ball.
+  const StylusBall* ball(std::size_t s) const noexcept { return balls_[s].get(); }
   std::span<const std::unique_ptr<ContactPair>> pairs() const noexcept { return pairs_; }
   /// Contacts of this step on objects that are asleep now are in the records of those that follow.
   void hold(const StepRecord& record) noexcept;
@@ -47,11 +52,19 @@ class WorldContacts {
     std::unique_ptr<PatchCompliance> compliance;
     std::unique_ptr<SelfReach> self;  ///< null: it does not touch itself
   };
+  /// Returns the ball of a pair; null if its other body is not one.
+  StylusBall* ball_of(const ContactPair& pair) const noexcept {
+    const int s = -1 - pair.other() - static_cast<int>(scenery_.size());
+    return s >= 0 ? balls_[static_cast<std::size_t>(s)].get() : nullptr;
+  }
   const Shape& shape_of(const SimulationConfig& config, SoftObject& object);
   int capacity(const SimulationConfig& config) const;
   void add_pairs(const SimulationConfig& config);
-  void add_scenery(const SimulationConfig& config, int object, int scenery);
-  void check_ball(const SimulationConfig& config, int object, int scenery) const;
+  void add_scenery(const SimulationConfig& config, int object);
+  void add_balls(const SimulationConfig& config, int object);
+  ContactPair& add_pair(const SimulationConfig& config, int object, int other,
+                        const SceneryStep& there, const std::string& name);
+  void end_balls() noexcept;
   void check_masses(const SimulationConfig& config, int a, int b) const;
   void refuse_overlaps(const SimulationConfig& config);
   void find_islands() noexcept;
@@ -67,8 +80,9 @@ class WorldContacts {
 
   std::vector<SoftObject*> objects_;
   std::vector<SceneryStep> scenery_;
-  double dt_;                ///< of a step [s]
-  std::uint64_t steps_ = 0;  ///< begun since the start or the last reset
+  std::vector<std::unique_ptr<StylusBall>> balls_;  ///< of each stylus; null if it has none
+  double dt_;                                       ///< of a step [s]
+  std::uint64_t steps_ = 0;                         ///< begun since the start or the last reset
   std::vector<Shape> shapes_;
   std::vector<ContactBody> bodies_;  ///< of each object
   std::vector<std::unique_ptr<ContactPair>> pairs_;

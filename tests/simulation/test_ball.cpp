@@ -10,6 +10,7 @@
 #include "simulation/contact/surface_faces.hpp"
 #include "simulation/step/nodal_forces.hpp"
 #include "simulation/step/object_sampling.hpp"
+#include "tests/simulation/coarse_cube.hpp"
 #include "tests/simulation/hertz.hpp"
 #include "tests/simulation/saved_state.hpp"
 #include "tests/simulation/touching_cubes.hpp"
@@ -22,18 +23,6 @@ using namespace irdm;
 using namespace irdm::test;
 
 namespace {
-
-constexpr double kTop = 0.06;  // of the box [m]
-
-// A cube of elements of 30 mm, twice as large as the balls.
-std::shared_ptr<const Model> coarse_cube(double dt = 0.002, int order = 2) {
-  FixedBox box;
-  box.cells = {4, 4, 4};
-  box.order = order;
-  Model model = *fixed_box(box);
-  model.dt = dt;
-  return std::make_shared<const Model>(std::move(model));
-}
 
 // A ball that comes straight down from `above` over the top at (x, z) to a depth, within `time`.
 SceneryConfig pressing_ball(double radius, double depth, double time, double x = 0.0,

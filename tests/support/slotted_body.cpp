@@ -1,16 +1,14 @@
 #include "tests/support/slotted_body.hpp"
 
-#include <algorithm>
-#include <fstream>
 #include <map>
 #include <sstream>
 #include <tuple>
 #include <utility>
-#include <vector>
 
 #include "precompute/compress/compress_model.hpp"
 #include "precompute/precompute.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tests/support/voxel_body.hpp"
 
 namespace irdm::test {
 namespace {
@@ -27,47 +25,12 @@ bool is_solid(const SlottedBody& body, const std::array<int, 3>& cell) {
   return cell[0] != kCells[0] / 2 || end;
 }
 
-// Each cube in six tetrahedra about its diagonal. Gmsh 2.2.
 void write_mesh(const SlottedBody& body, const std::filesystem::path& path) {
-  std::map<std::array<int, 3>, int> numbers;
-  std::vector<std::array<int, 4>> tets;
-  const auto number = [&](const std::array<int, 3>& at) {
-    return numbers.emplace(at, static_cast<int>(numbers.size()) + 1).first->second;
-  };
-  for (int x = 0; x < kCells[0]; ++x) {
-    for (int y = 0; y < kCells[1]; ++y) {
-      for (int z = 0; z < kCells[2]; ++z) {
-        if (!is_solid(body, {x, y, z})) continue;
-        std::array<std::size_t, 3> axes{0, 1, 2};
-        do {
-          std::array<int, 3> at{x, y, z};
-          std::array<int, 4> tet{number(at), 0, 0, 0};
-          for (std::size_t i = 0; i < 3; ++i) {
-            ++at[axes[i]];
-            tet[i + 1] = number(at);
-          }
-          const bool even = axes[1] == (axes[0] + 1) % 3;
-          if (!even) std::swap(tet[2], tet[3]);
-          tets.push_back(tet);
-        } while (std::next_permutation(axes.begin(), axes.end()));
-      }
-    }
-  }
-  std::vector<std::array<int, 3>> places(numbers.size());
-  for (const auto& [at, i] : numbers) places[static_cast<std::size_t>(i) - 1] = at;
-  std::ofstream file(path);
-  file.precision(17);
-  file << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" << places.size() << "\n";
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    file << i + 1 << ' ' << kVoxel * (places[i][0] - 0.5 * kCells[0]) << ' '
-         << kVoxel * places[i][1] << ' ' << kVoxel * places[i][2] << "\n";
-  }
-  file << "$EndNodes\n$Elements\n" << tets.size() << "\n";
-  for (std::size_t t = 0; t < tets.size(); ++t) {
-    file << t + 1 << " 4 2 1 1 " << tets[t][0] << ' ' << tets[t][1] << ' ' << tets[t][2] << ' '
-         << tets[t][3] << "\n";
-  }
-  file << "$EndElements\n";
+  write_voxel_mesh({kCells, [&](const std::array<int, 3>& cell) { return is_solid(body, cell); },
+                    [](const std::array<int, 3>& at) -> Vector3 {
+                      return kVoxel * Vector3(at[0] - 0.5 * kCells[0], at[1], at[2]);
+                    }},
+                   path);
 }
 
 }  // namespace

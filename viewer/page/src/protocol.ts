@@ -415,7 +415,7 @@ function readContact(reader: Reader, scene: Scene): BodyContact {
   const object = reader.u8();
   const other = reader.i8();
   const objects = scene.objects.length;
-  if (object >= objects || other >= objects || -1 - other >= scene.scenery.length) {
+  if (object >= objects || other >= objects || -1 - other >= scene.scenery.length + scene.styluses.length) {
     throw new ProtocolError("a contact of a body that is not there");
   }
   const part = (): number => reader.i16() / NORMAL_UNITS;

@@ -245,7 +245,7 @@ test("a number out of its range is refused", () => {
     [frameBytes, 15, 2], // contacts, high byte
     [frameBytes, contact, 1], // object that touches
     [frameBytes, contact + 1, 1], // object that is touched
-    [frameBytes, contact + 1, 0xfa], // scenery that is touched
+    [frameBytes, contact + 1, 0x80], // scenery or ball that is touched
     [sceneBytes, 14, 17], // scenery
     [sceneBytes, capsule, 5], // shape
     [sceneBytes, mesh + 60, 5], // nodes of a mesh

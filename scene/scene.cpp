@@ -86,7 +86,7 @@ void read_shape(TomlTable& table, SimulationStylus& stylus) {
   stylus.ball = table.choice("shape", {"patch", "ball"}, stylus.ball ? "ball" : "patch") == "ball";
   if (!stylus.ball) return;
   if (table.has("reach")) {
-    table.fail("reach", "is for grabbing, which a ball cannot do", "leave it out");
+    table.fail("reach", "is not for a ball, which grabs what it touches", "leave it out");
   }
   if (table.has("radius") && stylus.radius <= 0.0) {
     table.fail("radius", "of a ball is 0", "use more, or leave out `shape`");

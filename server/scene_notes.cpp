@@ -59,7 +59,7 @@ void SceneNotes::say() const {
 
 SceneNotes scene_notes(const SceneConfig& scene, const SimulationConfig& config, bool viewer_stylus,
                        bool lockstep, const std::string& name) {
-  SceneNotes notes{default_fingertip_note(scene, config, viewer_stylus)};
+  SceneNotes notes{default_radius_note(scene, config, viewer_stylus)};
   const auto warn = [&](const std::string& warning) {
     if (!warning.empty()) notes.warnings += "irdm-server: warning: " + name + ": " + warning + "\n";
   };

@@ -50,14 +50,24 @@ std::string list_of_styluses(const std::vector<std::size_t>& numbers, std::size_
   return text;
 }
 
-std::string default_fingertip_note(const SceneConfig& scene, const SimulationConfig& config,
-                                   bool viewer_stylus) {
+std::string default_radius_note(const SceneConfig& scene, const SimulationConfig& config,
+                                bool viewer_stylus) {
   std::vector<std::size_t> numbers = scene.default_radius;
   if (viewer_stylus && scene.viewer.default_radius) numbers.push_back(scene.styluses.size());
-  if (numbers.empty() || config.styluses[numbers.front()].radius <= 0) return "";
-  return list_of_styluses(numbers, viewer_number(scene, viewer_stylus)) + ": fingertip of radius " +
-         millimetres(config.styluses[numbers.front()].radius) +
-         " by default, from the objects' size; `radius` sets another";
+  std::string text;
+  for (const bool balls : {false, true}) {
+    std::vector<std::size_t> these;
+    for (const std::size_t s : numbers) {
+      if (config.styluses[s].ball == balls && config.styluses[s].radius > 0) these.push_back(s);
+    }
+    if (these.empty()) continue;
+    text += (text.empty() ? "" : "; ") +
+            list_of_styluses(these, viewer_number(scene, viewer_stylus)) + ": " +
+            (balls ? "ball" : "fingertip") + " of radius " +
+            millimetres(config.styluses[these.front()].radius) + " by default, from the objects' " +
+            (balls ? "mesh and size" : "size");
+  }
+  return text.empty() ? "" : text + "; `radius` sets another";
 }
 
 std::string point_warning(const SceneConfig& scene, const SimulationConfig& config,

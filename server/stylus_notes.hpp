@@ -12,9 +12,9 @@ namespace irdm {
 /// @param viewer_stylus number of that one; as many as there are: none
 std::string list_of_styluses(const std::vector<std::size_t>& numbers, std::size_t viewer_stylus);
 
-/// What is said at the start of styluses that name no radius; empty: all of them do.
-std::string default_fingertip_note(const SceneConfig& scene, const SimulationConfig& config,
-                                   bool viewer_stylus);
+/// Returns what is said at the start about styluses that name no radius; empty if all of them do.
+std::string default_radius_note(const SceneConfig& scene, const SimulationConfig& config,
+                                bool viewer_stylus);
 
 /// Of styluses that are points on objects that deform: that they feel the mesh, and by how much.
 /// Empty: there is none.

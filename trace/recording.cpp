@@ -394,13 +394,14 @@ void Recording::step(std::size_t k, StepRecord& record) const {
     const bool free = data.objects.size() == 1 && data.objects[0].contacts[s].state[k] == 0;
     stylus.object = rows.object.empty() ? (free ? -1 : 0) : rows.object[k];
     stylus.contact = ContactState::kFree;
-    if (data.config.styluses[s].ball) {  // its contacts are those of a body
-      const bool touches = !stylus.force.isZero(0.0);
-      if (data.objects.size() == 1) stylus.object = touches ? 0 : -1;
-      if (touches) stylus.contact = ContactState::kTouching;
-    } else if (stylus.object >= 0) {
+    const bool pushes = data.config.styluses[s].ball && !stylus.force.isZero(0.0);
+    if (pushes && data.objects.size() == 1) stylus.object = 0;
+    if (stylus.object >= 0) {
       const auto i = static_cast<std::size_t>(stylus.object);
       stylus.contact = record.object[i].contact[s].state;
+      // Contacts of a ball are those of a body, until it takes hold.
+      const bool held = stylus.contact != ContactState::kFree;
+      if (pushes && !held) stylus.contact = ContactState::kTouching;
     }
   }
   for (std::size_t row = data.bridged_of[k]; row < data.bridged_of[k + 1]; ++row) {

@@ -18,7 +18,7 @@ namespace {
 // The first fingertip of the scene, else the one that a stylus has by default.
 double felt_radius(const SimulationConfig& config) {
   for (const SimulationStylus& stylus : config.styluses) {
-    if (!stylus.tool && stylus.patch_radius() > 0) return stylus.radius;
+    if (!stylus.tool && !stylus.ball && stylus.radius > 0) return stylus.radius;
   }
   return default_fingertip(config);
 }
@@ -361,6 +361,7 @@ Bytes encode(const Scene& scene) {
     writer.put(static_cast<float>(stylus.coupling_stiffness));
     writer.put(static_cast<float>(stylus.reach));
     writer.put(scene.viewer_stylus && &stylus == &scene.styluses.back() ? scene.max_force : 0.0F);
+    writer.put(static_cast<std::uint32_t>(stylus.ball ? 1 : 0));
   }
   for (const SceneObject& object : scene.objects) put_object(writer, object);
   for (const SceneryConfig& scenery : scene.scenery) put_scenery(writer, scenery);
@@ -390,6 +391,9 @@ Scene decode_scene(std::span<const std::uint8_t> bytes) {
     stylus.coupling_stiffness = static_cast<double>(reader.get_single());
     stylus.reach = static_cast<double>(reader.get_single());
     scene.max_force = reader.get_single();
+    const auto kind = reader.get<std::uint32_t>();
+    if (kind > 1) throw MessageError("a stylus is of an unknown kind");
+    stylus.ball = kind == 1;
   }
   for (std::size_t i = 0; i < objects; ++i) scene.objects.push_back(get_object(reader));
   for (std::size_t i = 0; i < scenery; ++i) scene.scenery.push_back(get_scenery(reader));

@@ -6,6 +6,7 @@
 #include "common/error.hpp"
 #include "precompute/fem/mass_properties.hpp"
 #include "simulation/step/object_sampling.hpp"
+#include "simulation/step/stylus_patch.hpp"
 
 namespace irdm::replay {
 namespace {
@@ -143,7 +144,7 @@ FemBody::FemBody(const SimulationConfig& config, std::size_t number,
     sampling_ = make_sampling(config, *model_, surface_);
   }
   for (const SimulationStylus& stylus : config.styluses) {
-    masks_.emplace_back(surface_, stylus.patch_radius());
+    masks_.emplace_back(surface_, patch_radius(stylus, surface_));
     spring_compliance_.push_back(stylus.coupling_stiffness > 0.0 ? 1.0 / stylus.coupling_stiffness
                                                                  : 0.0);
   }

@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "simulation/step/stylus_patch.hpp"
+
 namespace irdm::replay {
 namespace {
 
@@ -19,7 +21,7 @@ ForcedObject::ForcedObject(const SimulationConfig& config, std::size_t number)
       surface_(body_.model().mesh),
       forces_(config, number, surface_) {
   for (const SimulationStylus& stylus : config.styluses) {
-    masks_.emplace_back(surface_, stylus.patch_radius());
+    masks_.emplace_back(surface_, patch_radius(stylus, surface_));
   }
   for (std::size_t s = 0; s < config.styluses.size(); ++s) {
     const std::optional<ToolCoupling>& tool = config.styluses[s].tool;

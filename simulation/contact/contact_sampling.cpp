@@ -23,8 +23,9 @@ constexpr double kOther = 7.0 / 36.0;
 // Largest mean area of a triangle on which a ball uses the samples for other bodies, as a multiple
 // of the square of the spacing that its own samples would have.
 constexpr double kMaxFineTriangle = 0.7;
-// Largest spacing of the samples for other bodies that a ball uses, as a part of its radius.
-constexpr double kMaxFineSpacing = 0.4;
+// Largest spacing of the samples for other bodies that a ball uses, as a multiple of the spacing
+// that its own samples would have.
+constexpr double kMaxFineSpacing = 1.3;
 
 int root(std::vector<int>& parent, int i) {
   while (parent[static_cast<std::size_t>(i)] != i) {
@@ -175,7 +176,7 @@ double ContactSampling::ball_spacing(double radius) const noexcept {
 bool ContactSampling::too_coarse_for(double radius) const noexcept {
   const double triangle = area_ / surface_.triangle_count();
   const double spacing = ball_spacing(radius);
-  return triangle > kMaxFineTriangle * spacing * spacing || spacing_ > kMaxFineSpacing * radius;
+  return triangle > kMaxFineTriangle * spacing * spacing || spacing_ > kMaxFineSpacing * spacing;
 }
 
 void ContactSampling::add_ball(const ModelMesh& mesh, double radius) {

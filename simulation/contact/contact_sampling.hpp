@@ -93,6 +93,12 @@ class ContactSampling {
   /// Returns the range of samples for balls of a radius [m]; it is empty if such a ball uses
   /// samples().
   BallRange ball(double radius) const noexcept;
+  /// Returns the position of a sample of any kind on the surface at rest [m], B.
+  const Vector3& rest_position(int sample) const noexcept {
+    const auto i = static_cast<std::size_t>(sample);
+    return sample < first_ball() ? samples_[i].place.position
+                                 : ball_samples_[i - samples_.size()].place.position;
+  }
   /// Return the place of a sample of any kind, and the nodes that its force loads.
   SurfacePlace place(int sample) const noexcept;
   SurfacePatch patch_of(int sample) const noexcept;

@@ -1,6 +1,7 @@
 #include "simulation/step/nodal_forces.hpp"
 
 #include "simulation/step/object_sampling.hpp"
+#include "simulation/step/stylus_patch.hpp"
 
 namespace irdm {
 
@@ -45,7 +46,7 @@ RecordedForces::RecordedForces(const SimulationConfig& config, std::size_t numbe
               static_cast<std::size_t>(surface.node_count())),
       sums_(surface.node_count()) {
   for (const SimulationStylus& stylus : config.styluses) {
-    masks_.emplace_back(surface, stylus.patch_radius());
+    masks_.emplace_back(surface, patch_radius(stylus, surface));
   }
   if (!touches_bodies(config)) return;
   sampling_ = make_sampling(config, *config.objects[number].model, surface);

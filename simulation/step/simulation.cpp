@@ -191,11 +191,29 @@ std::span<const StylusCommand> Simulation::own_contacts(
       contacts = {contacts_.data(), stylus_count_};
     }
     contacts_[s] = {};
-    if (!tools_[s]) continue;
+    if (!tools_[s]) {
+      grip(s, commands[s]);
+      continue;
+    }
     tools_[s]->begin(commands[s]);
     objects_[static_cast<std::size_t>(tools_[s]->object())]->lead(tools_[s]->step());
   }
   return contacts;
+}
+
+// Writes the command of a stylus with a ball that holds an object, lets it go, or takes hold of it.
+void Simulation::grip(std::size_t s, const StylusCommand& command) noexcept {
+  if (!command.present) return;
+  for (const auto& object : objects_) {
+    if (object->contact_state(s) == ContactState::kFree) continue;
+    contacts_[s] = command;
+    return;
+  }
+  if ((command.buttons & kGrabButton) == 0) return;
+  const std::optional<BallGrip> grip = world_->grip(s);
+  if (!grip) return;
+  contacts_[s] = command;
+  contacts_[s].grip = grip;
 }
 
 // The object that a stylus is in contact with, or else the nearest.
@@ -276,15 +294,14 @@ void Simulation::write_stylus(std::size_t s, const StylusCommand& command,
     write_tool(*tools_[s], stylus);
     return;
   }
-  if (const StylusBall* const ball = this->ball(s)) {
-    stylus.object = ball->object();
-    stylus.force = -ball->force();
-    if (stylus.object < 0) return;
-    stylus.contact = ContactState::kTouching;
-    stylus.proxy = ball->centre();
-    return;
-  }
+  const StylusBall* const ball = this->ball(s);
   double largest = -1.0;
+  if (ball != nullptr && ball->strongest().object >= 0) {
+    stylus.force = -ball->force();
+    stylus.object = ball->strongest().object;
+    stylus.contact = ContactState::kTouching;
+    largest = ball->strongest().force.norm();
+  }
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     const ContactRecord& contact = record.object[i].contact[s];
     if (contact.state == ContactState::kFree) continue;
@@ -295,6 +312,7 @@ void Simulation::write_stylus(std::size_t s, const StylusCommand& command,
     stylus.contact = contact.state;
     stylus.proxy = contact.proxy;
   }
+  if (ball != nullptr) stylus.proxy = command.tip + ball->compliance() * stylus.force;
 }
 
 void Simulation::write_tool(const ToolLead& lead, StylusRecord& stylus) const noexcept {

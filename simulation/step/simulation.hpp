@@ -97,6 +97,7 @@ class Simulation {
   void add_tool(const SimulationConfig& config, std::size_t s);
   void begin_objects(std::span<const StylusCommand> commands, StepRecord& record) noexcept;
   std::span<const StylusCommand> own_contacts(std::span<const StylusCommand> commands) noexcept;
+  void grip(std::size_t s, const StylusCommand& command) noexcept;
   const StylusBall* ball(std::size_t s) const noexcept {
     return world_ ? world_->ball(s) : nullptr;
   }

@@ -59,10 +59,6 @@ struct SimulationStylus {
   bool ball = false;
   /// It leads a tool, and makes no contact of its own; what is above means nothing then.
   std::optional<ToolCoupling> tool = {};
-
-  /// Returns the radius of its patch of prescribed pressure [m]; 0 for a point, and for a ball,
-  /// which has no such patch.
-  double patch_radius() const noexcept { return ball ? 0.0 : radius; }
 };
 
 /// Objects among their styluses. All models have the same dt.

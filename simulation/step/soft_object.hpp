@@ -102,6 +102,7 @@ class SoftObject {
   /// From the surface to a point of W, positive outside [m]. Between steps.
   double distance(const Vector3& tip) noexcept;
   ContactState contact_state(std::size_t s) const noexcept { return contacts_.state(s); }
+  bool held_by(std::size_t s) const noexcept { return contacts_.holds(s); }
   /// In the last step.
   bool touched_by_stylus() const noexcept { return contacts_.count() > 0; }
 

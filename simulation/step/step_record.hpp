@@ -36,6 +36,14 @@ struct BridgedForce {
   std::optional<double> share = {};
 };
 
+/// The place at which the ball of a stylus takes hold of an object.
+struct BallGrip {
+  int object = -1;
+  int triangle = 0;                 ///< of the object's surface
+  SurfacePoint point;               ///< on that triangle
+  Vector3 force = Vector3::Zero();  ///< on the object, which goes on without a jump [N], B
+};
+
 /// What one stylus asks of one step.
 struct StylusCommand {
   bool present = false;  ///< false: nobody is there; a contact that was there ends
@@ -46,6 +54,8 @@ struct StylusCommand {
   std::optional<BridgedForce> bridged = {};  ///< the bridge solves the contact
   /// Of the stylus at the end of the step, in W: leads a tool.
   Quaternion orientation = Quaternion::Identity();
+  /// Set by the simulation itself in the step in which the ball of the stylus takes hold.
+  std::optional<BallGrip> grip = {};
 };
 
 /// What one stylus did to one object in one step.

@@ -13,7 +13,7 @@ void StylusBall::reset() noexcept {
   body_.present = false;
   reference_.setZero();
   force_.setZero();
-  object_ = -1;
+  strongest_ = {};
 }
 
 void StylusBall::archive(StateArchive& state) {
@@ -22,7 +22,7 @@ void StylusBall::archive(StateArchive& state) {
     state.value(*vector);
   }
   state.value(body_.present);
-  state.value(object_);
+  state.value(strongest_);
 }
 
 bool StylusBall::begin(const StylusCommand& command) noexcept {
@@ -30,7 +30,7 @@ bool StylusBall::begin(const StylusCommand& command) noexcept {
   const bool stays = present == body_.present;
   body_.present = present;
   force_.setZero();
-  object_ = -1;
+  strongest_ = {};
   if (!present) return stays;
   tip_ = command.tip;
   if (!stays) {
@@ -44,9 +44,9 @@ bool StylusBall::begin(const StylusCommand& command) noexcept {
   return stays;
 }
 
-void StylusBall::end(const Vector3& force, int object, bool solved) noexcept {
+void StylusBall::end(const Vector3& force, const Touch& strongest, bool solved) noexcept {
   force_ = force;
-  object_ = object;
+  strongest_ = strongest;
   if (solved) reference_ = force;
   centre_ = tip_ - compliance_ * force;
 }

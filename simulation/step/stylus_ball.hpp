@@ -25,20 +25,27 @@ class StylusBall {
   /// Moves the ball for a step. Returns false if it was present before and is absent now, or was
   /// absent before: its contacts of the last step have ended.
   bool begin(const StylusCommand& command) noexcept;
+
+  /// Forces on one object.
+  struct Touch {
+    int object = -1;                   ///< -1: none
+    Vector3 force = Vector3::Zero();   ///< on the object [N], W
+    Vector3 middle = Vector3::Zero();  ///< mean place of its contacts, at rest [m], B
+  };
   /// Ends the step.
   /// @param force sum of the forces that the ball exerted in the step [N], W
-  /// @param object the one with the largest force; -1 if there was none
+  /// @param strongest the part on the object with the largest force
   /// @param solved false if the contact problem had no solution, so that no force acted; the next
   /// step then takes its geometry from the same force as this one
-  void end(const Vector3& force, int object, bool solved) noexcept;
+  void end(const Vector3& force, const Touch& strongest, bool solved) noexcept;
 
   /// The ball as contacts see it.
   const SceneryStep& body() const noexcept { return body_; }
   double compliance() const noexcept { return compliance_; }  ///< of the spring [m/N]
-  const Vector3& force() const noexcept { return force_; }    ///< of the last step [N], W
-  int object() const noexcept { return object_; }             ///< of the last step, as in end()
-  /// Returns the centre c at the end of the last step [m], W.
-  const Vector3& centre() const noexcept { return centre_; }
+  /// What it exerted in the last step: on all objects [N], W, and on the one with the largest
+  /// force.
+  const Vector3& force() const noexcept { return force_; }
+  const Touch& strongest() const noexcept { return strongest_; }
 
  private:
   SceneryStep body_;
@@ -47,7 +54,7 @@ class StylusBall {
   Vector3 centre_ = Vector3::Zero();     ///< at the end of the last step [m], W
   Vector3 reference_ = Vector3::Zero();  ///< force from which the next step takes its geometry
   Vector3 force_ = Vector3::Zero();
-  int object_ = -1;
+  Touch strongest_;
 };
 
 }  // namespace irdm

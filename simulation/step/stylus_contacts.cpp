@@ -6,6 +6,7 @@
 
 #include "common/contact/contact_problem.hpp"
 #include "common/error.hpp"
+#include "simulation/step/stylus_patch.hpp"
 
 namespace irdm {
 namespace {
@@ -50,7 +51,7 @@ StylusContacts::StylusContacts(const SimulationConfig& config, double dt, int ob
     : rest_(rest), surface_(surface), dt_(dt), release_time_(config.release_time), object_(object) {
   const double largest = PressureMask::largest_radius(rest);
   for (const SimulationStylus& tip : config.styluses) {
-    const double radius = tip.patch_radius();
+    const double radius = patch_radius(tip, rest);
     if (radius > largest) {
       throw Error("stylus",
                   "radius " + std::to_string(tip.radius) +
@@ -125,6 +126,7 @@ void StylusContacts::follow(Stylus& stylus, const StylusCommand& command) noexce
 bool StylusContacts::find_contact(Stylus& stylus, const StylusCommand& command,
                                   const Vector3& tip) noexcept {
   GodObject& proxy = stylus.proxy;
+  if (stylus.tip.ball && !command.given) return find_grip(stylus, command, tip);
   if (command.given) {
     if (command.given->object != object_) return false;
     proxy.impose(command.given->contact, command.given->point);
@@ -136,6 +138,20 @@ bool StylusContacts::find_contact(Stylus& stylus, const StylusCommand& command,
   if (!proxy.fresh() || project_initial_contact(stylus, tip)) return true;
   proxy.reject_contact();
   return false;
+}
+
+// A ball makes a contact here only where it takes hold, and until it has let go.
+bool StylusContacts::find_grip(Stylus& stylus, const StylusCommand& command,
+                               const Vector3& tip) noexcept {
+  GodObject& proxy = stylus.proxy;
+  stylus.gripped.reset();
+  if (proxy.state() != ContactState::kFree) {
+    proxy.find({tip, (command.buttons & kGrabButton) != 0, 0.0}, surface_);
+  } else if (command.grip && command.grip->object == object_) {
+    proxy.impose(ContactState::kHeld, command.grip->triangle, command.grip->point);
+    stylus.gripped = command.grip->force;
+  }
+  return proxy.state() != ContactState::kFree;
 }
 
 // The bridge has one object in mind. Its contact with that one may be none by now: its force acts
@@ -213,7 +229,7 @@ void StylusContacts::pose(std::span<const StylusCommand> commands, const FreeMot
 void StylusContacts::pose_contact(Contact& contact, const StylusCommand& command,
                                   const FreeMotion& motion, const Friction& friction, int row,
                                   ContactProblem& problem) noexcept {
-  const Stylus& stylus = stylus_of(contact);
+  Stylus& stylus = stylus_of(contact);
   const PersistentContact& state = stylus.proxy.contact();
   ContactConstraint& posed = problem.contact(row);
   posed.arm = contact.arm;
@@ -227,6 +243,14 @@ void StylusContacts::pose_contact(Contact& contact, const StylusCommand& command
              motion.to_body(command.tip), posed);
   const double stiffness = stylus.tip.coupling_stiffness;
   if (stiffness > 0) problem.elastic(row, row).diagonal().array() += 1.0 / stiffness;
+  if (stylus.gripped) {
+    // At the offset at which the contact takes over the force that the ball exerted.
+    const Vector3 tip = posed.arm + posed.gap;
+    posed.arm = tip;
+    const Vector3 offset = tip - contact.arm - problem.compliance(row, row) * *stylus.gripped;
+    stylus.proxy.set_inset(offset);
+    state.pose(contact.normal, friction, contact.arm + offset, tip, posed);
+  }
   if (state.releasing()) {
     const double left = state.hold_left(dt_, release_time_);
     if (left > 0) {
@@ -366,7 +390,8 @@ void StylusContacts::update(std::span<const StylusCommand> commands, const FreeM
     if (solved.law == ContactLaw::kTouching && !std::isinf(solved.friction.kinetic)) {
       proxy.follow(tip, share, rest_);
     }
-    if (proxy.contact().releasing() && pushes(solved) && !proxy.reached()) {
+    const bool ball = stylus_of(contact).tip.ball;  // its own contacts push on
+    if (proxy.contact().releasing() && pushes(solved) && !proxy.reached() && !ball) {
       proxy.turn_to_touching();
     }
   }

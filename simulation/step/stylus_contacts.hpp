@@ -99,6 +99,10 @@ class StylusContacts {
 
   // Between steps, for the bridge of stylus s.
   ContactState state(std::size_t s) const noexcept { return styluses_[s].proxy.state(); }
+  /// Returns whether stylus s holds the object, and is not letting go.
+  bool holds(std::size_t s) const noexcept {
+    return state(s) == ContactState::kHeld && !styluses_[s].proxy.contact().releasing();
+  }
   /// Whether a contact goes on, or may begin.
   bool may_touch(std::size_t s) const noexcept;
   /// State, place and normal of its contact, or of where one would begin, which stays for some
@@ -160,6 +164,8 @@ class StylusContacts {
     Vector3 velocity = Vector3::Zero();    ///< of its tip, smoothed [m/s], W
     WorkLedger ledger = {};                ///< of its bridge's forces
     double share = 1.0;                    ///< of its bridge's force in this step that acts
+    /// Force on the object that its ball exerted before it took hold in this step [N].
+    std::optional<Vector3> gripped = {};
     Prediction prediction = {};
   };
   /// A contact of this step.
@@ -189,6 +195,7 @@ class StylusContacts {
                                   const SurfacePoint& point) noexcept;
   void follow(Stylus& stylus, const StylusCommand& command) noexcept;
   bool find_contact(Stylus& stylus, const StylusCommand& command, const Vector3& tip) noexcept;
+  bool find_grip(Stylus& stylus, const StylusCommand& command, const Vector3& tip) noexcept;
   void apply_remote_contact(Stylus& stylus, const BridgedForce& bridged,
                             const Vector3& tip) noexcept;
   bool project_initial_contact(Stylus& stylus, const Vector3& tip) noexcept;

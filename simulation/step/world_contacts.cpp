@@ -111,6 +111,7 @@ WorldContacts::WorldContacts(const SimulationConfig& config,
                                   [](const auto& pair) { return touches_itself(*pair); });
   const int most = contacts_of_pair(pairs_.size(), itself);
   for (const auto& pair : pairs_) pair->set_most(most);
+  suspended_.assign(pairs_.size(), 0);
   const auto others = static_cast<int>(objects_.size() - 1 + scenery_.size() + balls_.size());
   const int with_others = std::min(kMaxBodyContacts, 2 * others * most);
   island_ = std::make_unique<ContactIsland>(static_cast<int>(objects_.size()), capacity(config),
@@ -302,6 +303,7 @@ void WorldContacts::archive(StateArchive& state) {
   }
   state.same(pairs_.size());
   for (const auto& pair : pairs_) pair->archive(state);
+  state.values(suspended_);
   state.list(held_);
 }
 
@@ -408,8 +410,8 @@ void WorldContacts::apply(std::span<const IslandContact> contacts, StepRecord& r
 }
 
 void WorldContacts::solve(StepRecord& record) noexcept {
-  for (const auto& pair : pairs_) {
-    if (!rests(*pair)) pair->find();
+  for (std::size_t p = 0; p < pairs_.size(); ++p) {
+    if (!rests(*pairs_[p]) && !suspended(p)) pairs_[p]->find();
   }
   find_islands();
   solved_.clear();
@@ -435,24 +437,49 @@ void WorldContacts::end_balls() noexcept {
   for (const auto& ball : balls_) {
     if (!ball) continue;
     Vector3 force = Vector3::Zero();
-    double largest = 0.0;
-    int object = -1;
+    StylusBall::Touch strongest;
     bool solved = true;
     for (std::size_t i = 0; i < objects_.size(); ++i) {
-      Vector3 part = Vector3::Zero();
+      StylusBall::Touch touch{static_cast<int>(i), Vector3::Zero(), Vector3::Zero()};
+      double weights = 0.0;
       for (const IslandContact& contact : solved_) {
-        if (contact.pair->object() != static_cast<int>(i)) continue;
+        if (contact.pair->object() != touch.object) continue;
         if (ball_of(*contact.pair) != ball.get()) continue;
         solved = solved && contact.found;
-        if (contact.solved.mode != ContactMode::kOpen) part += contact.solved.force;
+        if (contact.solved.mode == ContactMode::kOpen) continue;
+        touch.force += contact.solved.force;
+        const double weight = contact.solved.force.norm();
+        const int sample = contact.pair->contact(contact.i).sample;
+        touch.middle += weight * bodies_[i].sampling.rest_position(sample);
+        weights += weight;
       }
-      force += part;
-      if (part.norm() <= largest) continue;
-      largest = part.norm();
-      object = static_cast<int>(i);
+      force += touch.force;
+      if (weights <= 0.0 || touch.force.norm() <= strongest.force.norm()) continue;
+      touch.middle /= weights;
+      strongest = touch;
     }
-    ball->end(force, object, solved);
+    ball->end(force, strongest, solved);
   }
+}
+
+std::optional<BallGrip> WorldContacts::grip(std::size_t s) const noexcept {
+  const StylusBall::Touch& touch = balls_[s]->strongest();
+  if (touch.object < 0) return std::nullopt;
+  const auto object = static_cast<std::size_t>(touch.object);
+  const SurfaceLocation at = bodies_[object].rest.closest(touch.middle);
+  return BallGrip{touch.object, at.triangle, at.point,
+                  objects_[object]->motion().halfway.conjugate() * touch.force};
+}
+
+// A ball has no contacts with an object that it holds: the grip takes their place.
+bool WorldContacts::suspended(std::size_t pair) noexcept {
+  const int s = -1 - pairs_[pair]->other() - static_cast<int>(scenery_.size());
+  if (s < 0) return false;
+  const auto object = static_cast<std::size_t>(pairs_[pair]->object());
+  const bool held = objects_[object]->held_by(static_cast<std::size_t>(s));
+  if (held && suspended_[pair] == 0) pairs_[pair]->reset();
+  suspended_[pair] = held ? 1 : 0;
+  return held;
 }
 
 }  // namespace irdm

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -38,6 +39,9 @@ class WorldContacts {
 
   /// Returns the ball of stylus s; null if its tip is not a ball.
   const StylusBall* ball(std::size_t s) const noexcept { return balls_[s].get(); }
+  /// Returns where and with which force the ball of stylus s touched in the last step, so that it
+  /// can take hold there in this one; nothing if it touched no object. Call it before begin_step().
+  std::optional<BallGrip> grip(std::size_t s) const noexcept;
   std::span<const std::unique_ptr<ContactPair>> pairs() const noexcept { return pairs_; }
   /// Contacts of this step on objects that are asleep now are in the records of those that follow.
   void hold(const StepRecord& record) noexcept;
@@ -65,6 +69,7 @@ class WorldContacts {
   ContactPair& add_pair(const SimulationConfig& config, int object, int other,
                         const SceneryStep& there, const std::string& name);
   void end_balls() noexcept;
+  bool suspended(std::size_t pair) noexcept;
   void check_masses(const SimulationConfig& config, int a, int b) const;
   void refuse_overlaps(const SimulationConfig& config);
   void find_islands() noexcept;
@@ -86,7 +91,8 @@ class WorldContacts {
   std::vector<Shape> shapes_;
   std::vector<ContactBody> bodies_;  ///< of each object
   std::vector<std::unique_ptr<ContactPair>> pairs_;
-  std::vector<int> leader_;  ///< of each object: the least number in its island
+  std::vector<char> suspended_;  ///< of each pair: not 0 if it was suspended in the last step
+  std::vector<int> leader_;      ///< of each object: the least number in its island
   std::unique_ptr<ContactIsland> island_;
   std::vector<int> members_;
   std::vector<IslandContact> contacts_;

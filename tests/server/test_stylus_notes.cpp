@@ -74,15 +74,33 @@ TEST_CASE("the default fingertip is by the smallest object that deforms, and fit
         Approx(6.3 * 0.0025 * edge));
 }
 
+TEST_CASE("the default ball is two edges wide, but never large beside an object") {
+  const auto radius_for = [](double edge, int cells) {
+    SimulationConfig config;
+    config.objects.emplace_back().model = share(synthetic_cube(cells, 1, 4, edge));
+    return default_ball_radius(config);
+  };
+  const double edge = (2.0 + std::sqrt(2.0)) / 3.0;  // two edges of a square and its diagonal
+  CHECK(radius_for(0.12, 12) == Approx(0.1 * 0.12));
+  CHECK(radius_for(0.12, 40) == Approx(2.0 * 0.003 * edge));
+  CHECK(radius_for(0.12, 80) == Approx(0.003));
+  CHECK(radius_for(0.02, 20) == Approx(0.002));
+}
+
 TEST_CASE("styluses without a radius are told to have a fingertip") {
   const SceneConfig read = scene("[[stylus]]\nradius = 0.004\n[[stylus]]\n" + kObject);
   SimulationConfig config = simulated(read, share(synthetic_cube(12, 1, 4, 0.12)));
   config.styluses[1].radius = 0.033;
-  CHECK(default_fingertip_note(read, config, false) ==
+  CHECK(default_radius_note(read, config, false) ==
         "stylus 2: fingertip of radius 33 mm by default, from the objects' size; `radius` sets "
         "another");
-  CHECK(default_fingertip_note(scene("[[stylus]]\nradius = 0.004\n" + kObject), config, true) ==
-        "");
+  CHECK(default_radius_note(scene("[[stylus]]\nradius = 0.004\n" + kObject), config, true) == "");
+  config.styluses.push_back({.radius = 0.012, .ball = true});
+  CHECK(default_radius_note(read, config, false).find("ball") == std::string::npos);
+  config.styluses[1] = config.styluses.back();
+  CHECK(default_radius_note(read, config, false) ==
+        "stylus 2: ball of radius 12 mm by default, from the objects' mesh and size; `radius` sets "
+        "another");
   CHECK(point_warning(read, config, false) == "");
   CHECK(list_of_styluses({0, 2, 3}, 3) == "styluses 1, 3 and the viewers' stylus");
   CHECK(list_of_styluses({3}, 3) == "the viewers' stylus");

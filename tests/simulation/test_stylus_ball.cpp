@@ -36,6 +36,7 @@ struct LedBall {
   Vector3 step(const Vector3& tip, bool present = true) {
     StylusCommand command;
     command.present = present;
+    command.buttons = grab ? kGrabButton : 0;
     command.tip = tip;
     simulation.step({&command, 1}, *record);
     return record->stylus[0].force;
@@ -51,6 +52,7 @@ struct LedBall {
   }
   Vector3 hold(const Vector3& at, double time) { return go(at, at, time); }
 
+  bool grab = false;
   Simulation simulation;
   std::unique_ptr<StepRecord> record = std::make_unique<StepRecord>();
 };
@@ -185,6 +187,58 @@ TEST_CASE("ball of a stylus: between two bodies it is one ball on one spring") {
   CHECK(run.record->stylus[0].object == 1);
 }
 
+TEST_CASE("ball of a stylus: it takes hold of what it presses without a jump, pulls, and lets go") {
+  const double radius = 0.012;
+  const double stiffness = GENERATE(0.0, 300.0);
+  LedBall run(led_scene(coarse_cube(), radius, stiffness));
+  const Vector3 deep = over_top(radius, -0.004);
+  run.grab = true;
+  CHECK(run.hold(over_top(radius, 0.001), 0.01).norm() == 0.0);  // it touches nothing
+  CHECK(run.record->stylus[0].contact == ContactState::kFree);
+  run.grab = false;
+  run.go(over_top(radius, 0.001), deep, 0.2);
+  const Vector3 pressed = run.hold(deep, 0.3);
+  REQUIRE(pressed.y() > 0.02);
+  run.grab = true;
+  CHECK((run.step(deep) - pressed).norm() < 0.02 * pressed.norm());
+  CHECK(run.record->stylus[0].contact == ContactState::kHeld);
+  CHECK(run.record->body_contact.empty());
+  // It settles at another force, as the patch of the grip is not the contact's.
+  CHECK((run.hold(deep, 0.3) - pressed).norm() < 0.1 * pressed.norm());
+  // Pulled up it is pulled down, along with the surface; pulled aside it is pulled back.
+  const Vector3 up = over_top(radius, 0.006);
+  const Vector3 pulled = run.go(deep, up, 0.3);
+  CHECK(pulled.y() < -0.02);
+  const Vector3 aside = run.go(up, up + Vector3(0.006, 0, 0), 0.3);
+  CHECK(aside.x() < -0.01);
+  run.go(up + Vector3(0.006, 0, 0), deep, 0.3);
+  // Let go while it presses: its own contacts take over.
+  const Vector3 again = run.hold(deep, 0.3);
+  run.grab = false;
+  double largest = 0.0;
+  double least = again.norm();
+  Vector3 last = again;
+  for (int k = 0; k < 200; ++k) {
+    const Vector3 force = run.step(deep);
+    largest = std::max(largest, (force - last).norm());
+    least = std::min(least, force.norm());
+    last = force;
+  }
+  INFO("k " << stiffness << ": pressed " << pressed.y() << ", least " << least << ", step "
+            << largest);
+  CHECK(largest < 0.15 * pressed.norm());
+  CHECK(least > 0.3 * pressed.norm());
+  CHECK(run.record->stylus[0].contact == ContactState::kTouching);
+  CHECK((last - pressed).norm() < 0.02 * pressed.norm());
+  // Let go while it pulls: the force goes to zero.
+  run.grab = true;
+  run.step(deep);
+  run.go(deep, up, 0.3);
+  run.grab = false;
+  CHECK(run.hold(up, 0.2).norm() == 0.0);
+  CHECK(run.record->stylus[0].contact == ContactState::kFree);
+}
+
 TEST_CASE("ball of a stylus: rows, recorded forces and a saved state have its contacts") {
   const double radius = 0.012;
   SimulationConfig config = led_scene(coarse_cube(), radius, 300.0);
@@ -195,7 +249,8 @@ TEST_CASE("ball of a stylus: rows, recorded forces and a saved state have its co
   };
   check_saved_state(config, 60, 60, [&](int k) {
     std::vector<StylusCommand> commands(1);
-    commands[0].present = k < 100;
+    commands[0].present = k < 110;
+    commands[0].buttons = k > 50 && k < 90 ? kGrabButton : 0;
     commands[0].tip = tip(k);
     return commands;
   });

@@ -91,7 +91,7 @@ inline viewer::Scene example_scene() {
   scene.lockstep = true;
   scene.floor = FloorConfig{Vector3(0, 1, 0), -0.06, {}};
   scene.scenery = example_scenery();
-  scene.styluses = {{0.01, 400.0, 0.0}, {0.0, 0.0, 0.02}};
+  scene.styluses = {{.radius = 0.01, .coupling_stiffness = 400.0, .ball = true}, {0.0, 0.0, 0.02}};
   const Model cube = synthetic_cube(3, 1, 1);
   viewer::SceneObject first{"w\xC3\xBCrfel", {}, cube.mesh.triangles, 0.19F, 2000.0F};
   first.rest = cube.mesh.nodes.cast<float>().cast<double>();

@@ -95,7 +95,7 @@ TEST_CASE("a scene's bytes are those of the document") {
   CHECK(encode(one_point_scene()) ==
         from_hex("49525657 0100 0100 | 0100 0100 00000000 | fca9f1d24d62603f"
                  "0000000000000000 0000000000000000 0000000000000000 | 0000000000000000"
-                 "0000003f 0000fa44 0000803e 00000000 |"
+                 "0000003f 0000fa44 0000803e 00000000 00000000 |"
                  "01000000 01000000 02000000 0000003f 0000fa44 00000000 61620000"
                  "0000003f 000080bf 00000040 | 00000000 00000000 00000000 | 0000803e"));
 }
@@ -256,7 +256,7 @@ TEST_CASE("contacts that are too many, or of bodies that are not there, are refu
     frame.body_contacts.back().other = 1;
   }
   SECTION("no such scenery") {
-    frame.body_contacts.back().other = -17;
+    frame.body_contacts.back().other = -1 - static_cast<int>(kMaxScenery) - kMaxStyluses;
   }
   CHECK_THROWS_AS(decode_frame(frame_bytes(frame), {&one, 1}), MessageError);
 }

@@ -24,6 +24,7 @@ export class Hand {
    * @param forward from the eye through the middle of the screen, unit
    * @param reach distance from which it can take hold [m]
    * @param grabs to take hold, not to push
+   * @param radius of a ball, whose centre the tip is [m]; 0 for a tip that touches with its point
    */
   constructor(
     private readonly place: Vector3,
@@ -31,11 +32,12 @@ export class Hand {
     private readonly forward: Vector3,
     reach: number,
     grabs: boolean,
+    radius = 0,
   ) {
     const grabDepth = reach > 0 ? -Math.min(GRAB_DISTANCE, 0.4 * reach) : GRAB_DEPTH;
     this.depth = grabs ? grabDepth : PUSH_DEPTH;
     this.way = this.depth + CLEARANCE;
-    const end = place.clone().addScaledVector(ray.direction, this.depth);
+    const end = place.clone().addScaledVector(ray.direction, this.depth - radius);
     this.plane.setFromNormalAndCoplanarPoint(forward, end);
     this.holdsFromAfar = reach > 0;
   }

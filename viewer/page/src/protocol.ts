@@ -43,7 +43,7 @@ export type Vec3 = readonly [number, number, number];
 export type Quat = readonly [number, number, number, number];
 
 export interface SceneStylus {
-  /** of the fingertip [m]; 0: a point */
+  /** of the fingertip or ball [m]; 0: a point */
   radius: number;
   /** [N/m]; 0: none */
   couplingStiffness: number;
@@ -51,6 +51,8 @@ export interface SceneStylus {
   reach: number;
   /** that it can be pushed with [N]; 0: no bound of its own */
   largestForce: number;
+  /** the tip is a ball about the position of the stylus */
+  ball: boolean;
 }
 
 export interface SceneObject {
@@ -375,6 +377,7 @@ function readScene(reader: Reader): Scene {
       couplingStiffness: reader.f32(),
       reach: reader.f32(),
       largestForce: reader.f32(),
+      ball: upTo(1, reader.u32()) === 1,
     })),
     objects: repeat(objects, () => readObject(reader)),
     scenery: repeat(scenery, () => readScenery(reader)),

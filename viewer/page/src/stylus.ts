@@ -17,6 +17,7 @@ export class Stylus {
   private readonly proxyMaterial = new THREE.MeshBasicMaterial({ depthTest: false, transparent: true, opacity: 0.9 });
   private readonly arrowMaterial = new THREE.MeshStandardMaterial({ roughness: 0.5 });
   private readonly radius: number;
+  private readonly ball: boolean;
   private readonly tip: THREE.Mesh;
   private readonly proxy: THREE.Mesh;
   private readonly spring = new Spring();
@@ -26,6 +27,7 @@ export class Stylus {
 
   constructor(stylus: SceneStylus) {
     this.radius = Math.max(stylus.radius, SMALLEST_TIP);
+    this.ball = stylus.ball;
     this.tip = new THREE.Mesh(new THREE.SphereGeometry(this.radius, 32, 20), this.tipMaterial);
     this.tip.castShadow = true;
     if (stylus.radius > SMALLEST_TIP) {
@@ -50,13 +52,15 @@ export class Stylus {
     this.group.position.copy(shift);
     if (!state.present) return;
     const touches = state.contact !== Contact.Free && overlays.contacts;
-    this.tip.position.set(...state.tip);
+    // The proxy of a ball is its centre: the ball lies on the surface, the spring leads to the position of the stylus.
+    const place = this.ball ? state.proxy : state.tip;
+    this.tip.position.set(...place);
     this.proxy.visible = touches;
     this.proxy.position.set(...state.proxy);
     this.spring.mesh.visible = touches;
-    if (touches) this.spring.span(this.asked ?? this.tip.position, this.proxy.position);
+    if (touches) this.spring.span(this.asked ?? new THREE.Vector3(...state.tip), this.proxy.position);
     this.arrow.visible = overlays.forces;
-    if (overlays.forces) this.point(new THREE.Vector3(...state.force), state.tip, metresPerNewton);
+    if (overlays.forces) this.point(new THREE.Vector3(...state.force), place, metresPerNewton);
   }
 
   /** From where the arrow leaves the tip. */

@@ -85,8 +85,8 @@ export class Touch {
   }
 
   private handAt(place: Vector3, ray: Ray): Hand {
-    const { reach } = this.scene!.styluses.at(-1)!;
-    return new Hand(place, ray, this.world.view.forward(), reach, this.grabs);
+    const { ball, radius, reach } = this.scene!.styluses.at(-1)!;
+    return new Hand(place, ray, this.world.view.forward(), ball ? 0 : reach, this.grabs, ball ? radius : 0);
   }
 
   lost(): void {

@@ -49,6 +49,12 @@ test("taking hold pushes as little as can be", () => {
   assert.equal(reaching.mayTakeHold(120), true);
 });
 
+test("the centre of a ball stays its radius before the surface", () => {
+  const hand = new Hand(press, ray(0), FORWARD, NO_REACH, false, 0.012);
+  near(hand.tip(0), new Vector3(0, 0, 0.017));
+  near(hand.tip(200), new Vector3(0, 0, 0.004));
+});
+
 test("dragging slides in the plane parallel to the screen", () => {
   const hand = begun(NO_REACH, false);
   hand.aim(new Ray(new Vector3(0, 0, 1), new Vector3(0.3, 0.1, -1).normalize()));

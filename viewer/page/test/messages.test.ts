@@ -94,6 +94,10 @@ test("a scene says whose the last stylus is, how hard it may push, and how soft 
   assert.equal(scene.viewersStylus, true);
   assert.equal(scene.recordedOnly, false);
   assert.equal(scene.styluses[1]!.largestForce, 3);
+  assert.deepEqual(
+    scene.styluses.map(({ ball }) => ball),
+    [false, true],
+  );
   assert.equal(scene.objects[0]!.compliance.length, nodes / 3);
   assert.ok(Math.abs(scene.objects[0]!.compliance[0]! - parts.objects[0]!.compliance[0]!) < 1e-8);
 });
@@ -197,7 +201,7 @@ test("regions that break the rules are refused", () => {
   };
   const block = 12 * 3 * 4; // faces
   const counts = tissueBytes.byteLength - 12 * 4 - block - 8 * 12 - 8;
-  const header = 56 + 2 * 16 + 20;
+  const header = 56 + 2 * 20 + 20;
   const list = counts - 4 * (tissue.objects[0]!.triangles.length / 3) - 2 * 28;
   assert.equal(decode(changed(counts, 8), null)?.kind, "scene");
   const unknown = decode(changed(list + 2 * 28, 0, 0, 0xc0, 0x7f), null) as Scene;
@@ -247,6 +251,7 @@ test("a number out of its range is refused", () => {
     [frameBytes, contact + 1, 1], // object that is touched
     [frameBytes, contact + 1, 0x80], // scenery or ball that is touched
     [sceneBytes, 14, 17], // scenery
+    [sceneBytes, 56 + 16, 2], // kind of a stylus
     [sceneBytes, capsule, 5], // shape
     [sceneBytes, mesh + 60, 5], // nodes of a mesh
     [sceneBytes, mesh + 160, 4], // a node of its last triangle

@@ -86,7 +86,7 @@ typedef struct irdm_contact {
   int32_t object;     /* on which it acts */
   int32_t kind;       /* irdm_contact_kind */
   int32_t other;      /* stylus, object or scenery; 0 of the floor */
-  int32_t place;      /* patch that touches an object or scenery, surface node on the floor, else -1 */
+  int32_t place;      /* sample that touches an object, scenery or a stylus' ball, node on the floor, else -1 */
   int32_t state;      /* 1 touching, 2 held */
   int32_t slipping;
   double position[3]; /* [m] */

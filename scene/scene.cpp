@@ -89,7 +89,7 @@ void read_shape(TomlTable& table, SimulationStylus& stylus) {
     table.fail("reach", "is not for a ball, which grabs what it touches", "leave it out");
   }
   if (table.has("radius") && stylus.radius <= 0.0) {
-    table.fail("radius", "of a ball is 0", "use more, or leave out `shape`");
+    table.fail("radius", "of a ball is 0", "use more, or shape = \"patch\"");
   }
 }
 
@@ -105,6 +105,7 @@ void read_viewer_stylus(TomlTable table, std::optional<double> radius, bool ball
       table.number("coupling_stiffness", between(1.0, 1e5), stylus.coupling_stiffness);
   stylus.reach = table.number("reach", lab::kTipLength, stylus.reach);
   read_shape(table, stylus);
+  if (stylus.ball && stylus.radius <= 0.0) config.default_radius = true;
   config.max_force = table.number("max_force", between(0.1, 100.0), config.max_force);
   table.finish();
 }

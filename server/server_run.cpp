@@ -31,7 +31,7 @@ NetworkSettings network_settings(const PreparedRun& run, RealTimeScheduling sche
   settings.max_connections = std::max(settings.max_connections, 2 * settings.styluses);
   settings.contact_models = std::none_of(
       scene.styluses.begin(), scene.styluses.end(),
-      [](const SimulationStylus& stylus) { return stylus.tool.has_value() || stylus.ball; });
+      [](const SimulationStylus& stylus) { return stylus.tool.has_value() || stylus.has_ball(); });
   settings.scheduling = scheduling;
   settings.udp = scene.server.udp;
   settings.any_datagram_port = any_datagram_port;

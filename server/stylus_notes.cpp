@@ -75,7 +75,7 @@ std::string point_warning(const SceneConfig& scene, const SimulationConfig& conf
   std::vector<std::size_t> points;
   for (std::size_t s = 0; s < config.styluses.size(); ++s) {
     const SimulationStylus& stylus = config.styluses[s];
-    if (!stylus.tool && !stylus.ball && stylus.radius <= 0) points.push_back(s);
+    if (!stylus.tool && !stylus.has_ball() && stylus.radius <= 0) points.push_back(s);
   }
   const double radius = default_fingertip(config);
   if (points.empty() || radius <= 0) return "";

@@ -47,7 +47,7 @@ void check_place(const BodyContactRecord& contact, const SimulationConfig& confi
   bool may = contact.other == contact.object ? config.self_contact : touches_others(config);
   if (ball >= 0) {
     may = within(ball, static_cast<Eigen::Index>(config.styluses.size())) &&
-          config.styluses[static_cast<std::size_t>(ball)].ball;
+          config.styluses[static_cast<std::size_t>(ball)].has_ball();
   }
   if (!may || !within(contact.object, objects) || contact.other >= objects) {
     throw Error(file, "/body_contact has a contact of bodies that the scene does not have",

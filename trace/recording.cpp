@@ -320,6 +320,12 @@ void Recording::Data::object_step(std::size_t i, std::size_t k, ObjectRecord& ou
   out.contact.fill(ContactRecord{});
   for (std::size_t s = 0; s < rows.contacts.size(); ++s) {
     out.contact[s] = contact(rows.contacts[s], k, out.halfway);
+    if (objects.size() > 1 || out.contact[s].state == ContactState::kFree) continue;
+    // The recorded force on the stylus has those of the ball's own contacts in it.
+    for (const BodyContactRecord& own : touching_of[k]) {
+      if (stylus_of_ball(config, own.other) != static_cast<int>(s)) continue;
+      out.contact[s].force -= out.halfway.conjugate() * own.force;
+    }
   }
   out.floor_count = 0;
   out.floor_force.setZero();
@@ -394,7 +400,7 @@ void Recording::step(std::size_t k, StepRecord& record) const {
     const bool free = data.objects.size() == 1 && data.objects[0].contacts[s].state[k] == 0;
     stylus.object = rows.object.empty() ? (free ? -1 : 0) : rows.object[k];
     stylus.contact = ContactState::kFree;
-    const bool pushes = data.config.styluses[s].ball && !stylus.force.isZero(0.0);
+    const bool pushes = data.config.styluses[s].has_ball() && !stylus.force.isZero(0.0);
     if (pushes && data.objects.size() == 1) stylus.object = 0;
     if (stylus.object >= 0) {
       const auto i = static_cast<std::size_t>(stylus.object);

@@ -18,7 +18,7 @@ namespace {
 // The first fingertip of the scene, else the one that a stylus has by default.
 double felt_radius(const SimulationConfig& config) {
   for (const SimulationStylus& stylus : config.styluses) {
-    if (!stylus.tool && !stylus.ball && stylus.radius > 0) return stylus.radius;
+    if (!stylus.tool && !stylus.has_ball() && stylus.radius > 0) return stylus.radius;
   }
   return default_fingertip(config);
 }
@@ -361,7 +361,7 @@ Bytes encode(const Scene& scene) {
     writer.put(static_cast<float>(stylus.coupling_stiffness));
     writer.put(static_cast<float>(stylus.reach));
     writer.put(scene.viewer_stylus && &stylus == &scene.styluses.back() ? scene.max_force : 0.0F);
-    writer.put(static_cast<std::uint32_t>(stylus.ball ? 1 : 0));
+    writer.put(static_cast<std::uint32_t>(stylus.has_ball() ? 1 : 0));
   }
   for (const SceneObject& object : scene.objects) put_object(writer, object);
   for (const SceneryConfig& scenery : scene.scenery) put_scenery(writer, scenery);

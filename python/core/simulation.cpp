@@ -298,7 +298,7 @@ origin) and tether [J]; nan of a dense or compressed response.)")
                     R"((contacts) of irdm.contact_dtype: every force on every object.
 
 object; kind (irdm.STYLUS, FLOOR, OBJECT, SCENERY, COUPLING: a stylus that leads it as its tool); other (number of stylus,
-object, scenery); place (patch, or node on the floor, or -1); state, slipping; in W position [m], normal towards the object,
+object, scenery); place (sample, also under a stylus' ball, or node on the floor, or -1); state, slipping; in W position [m], normal towards the object,
 force on it [N], slip in the step [m]; area [m^2]. What is not known is nan. A contact of two objects is there for each.
 The sum of an object's forces and its weight is the change of its momentum over dt, where it has no damping and no tether.)");
   py::class_<Steps>(module, "Steps",

@@ -88,8 +88,12 @@ struct SceneryStep {
   bool moves() const noexcept { return led ? present : now.motion.any(); }
   /// Moves it to its pose at time t [s], the end of the step; 0 is the start. Real-time safe.
   void go_on(double t) noexcept;
-  /// Returns the position [m, W] to which the step takes a point of the body. The argument is the
-  /// position that contacts of the last step gave the point.
+  /// Returns the position [m, W] to which the step takes a point of the body. The argument is its
+  /// true position at the start of the step.
+  Vector3 moved(const Vector3& x) const noexcept {
+    return moves() ? Vector3(now.position + turn * (x - before)) : x;
+  }
+  /// The same, but the argument is the position that contacts of the last step gave the point.
   Vector3 carried(const Vector3& x) const noexcept {
     return moves() ? Vector3(now.position + turn * (x - origin)) : x;
   }

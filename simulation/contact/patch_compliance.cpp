@@ -46,9 +46,10 @@ PatchCompliance::PatchCompliance(const Model& model, const ContactSampling& samp
   if (nodes > kMaxNodes) {
     throw Error("contact",
                 "an object with " + std::to_string(nodes) +
-                    " surface nodes is too large to touch other objects",
+                    " surface nodes is too large to touch other objects or balls of styluses",
                 "use a mesh of at most " + std::to_string(kMaxNodes) +
-                    " surface nodes, or set contact.between_objects and contact.self = false");
+                    " surface nodes; or set contact.between_objects and contact.self = false, and "
+                    "no stylus.shape = \"ball\"");
   }
   const std::unique_ptr<StoredResponse> response = stored_response(model);
   row_count_ = static_cast<std::size_t>(sampling.row_count());
@@ -59,7 +60,7 @@ PatchCompliance::PatchCompliance(const Model& model, const ContactSampling& samp
     nodes_ = in_blocks(at_nodes);
     patches_ = in_blocks(0.5 * (at_patches + at_patches.transpose()));
   }
-  if (sampling.ball_ranges().empty()) return;
+  if (sampling.ball_ranges().empty() || rigid()) return;
   const Eigen::MatrixXd settled = response->static_limit();
   for (const ContactSampling::BallRange& range : sampling.ball_ranges()) {
     near_.emplace_back(model, settled,

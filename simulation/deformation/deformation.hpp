@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -62,7 +63,9 @@ struct ObjectSurface {
 
 /// Where a stylus touches the object that it touches.
 struct StylusContact {
-  Vector3 place = Vector3::Zero();  ///< on the surface at rest [m], B; means nothing when free
+  /// On the surface at rest [m], B; NaN when free, and for contacts of a ball, which are among
+  /// SurfaceFrame::body_contacts.
+  Vector3 place = Vector3::Constant(std::numeric_limits<double>::quiet_NaN());
   bool slipping = false;
 };
 
@@ -77,7 +80,7 @@ struct SurfaceFrame {
   std::vector<StylusRecord> styluses;
   std::vector<StylusContact> contacts;  ///< of each of them, with the object that it touches
   ForceTrail trail;                     ///< up to this step
-  /// Of objects with each other and with scenery in this step, at most kMaxBodyContacts.
+  /// Of objects with each other, scenery and balls in this step, at most kMaxBodyContacts.
   std::vector<BodyContactRecord> body_contacts;
 };
 

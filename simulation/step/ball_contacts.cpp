@@ -33,6 +33,7 @@ BallContacts::BallContacts(int object, const ContactBody& body, const PatchCompl
   const auto count = static_cast<std::size_t>(range_.count);
   const auto nodes = static_cast<std::size_t>(body.rest.node_count());
   samples_.resize(count);
+  used_.reserve(count);
   near_.reserve(count);
   candidates_.reserve(count);
   pressed_.reserve(count);
@@ -61,7 +62,8 @@ void BallContacts::make_faces() {
 }
 
 void BallContacts::reset() noexcept {
-  std::fill(samples_.begin(), samples_.end(), Sample{});
+  for (const int i : used_) samples_[static_cast<std::size_t>(i)] = Sample{};
+  used_.clear();
   count_ = 0;
   displaced_ = 0.0;
   step_ = 1;
@@ -77,21 +79,17 @@ void BallContacts::forget_steps() noexcept {
 void BallContacts::archive(StateArchive& state) {
   state.value(displaced_);
   state.value(step_);
-  // Only the samples that a ball ever came near to.
-  std::vector<int> used;
-  for (int i = 0; i < range_.count && !state.reading(); ++i) {
-    if (samples_[static_cast<std::size_t>(i)].seen) used.push_back(i);
-  }
-  used.resize(state.size(used.size(), samples_.size()));
-  state.numbers(used.data(), used.size());
   if (state.reading()) {
-    std::fill(samples_.begin(), samples_.end(), Sample{});
+    for (const int i : used_) samples_[static_cast<std::size_t>(i)] = Sample{};
     count_ = 0;
     forget_steps();
     pressed_now_.clear();
   }
-  for (const int i : used) {
-    if (i < 0 || i >= range_.count) continue;
+  state.list(used_);
+  if (state.reading()) {
+    std::erase_if(used_, [&](int i) { return i < 0 || i >= range_.count; });
+  }
+  for (const int i : used_) {
     Sample& sample = samples_[static_cast<std::size_t>(i)];
     state.value(sample);
     if (state.reading() && sample.pressed == step_) pressed_now_.push_back(i);
@@ -154,6 +152,7 @@ bool BallContacts::may_be_near(int sample, const Vector3& centre, double reach,
 void BallContacts::look_at(int sample, const Vector3& centre, double limit) noexcept {
   Sample& state = samples_[static_cast<std::size_t>(sample)];
   const Vector3 place = displaced_place(shape(sample));
+  if (!state.seen) used_.push_back(sample);
   state.seen = true;
   state.seen_from = centre;
   state.mark = body_.surface.mark();

@@ -111,6 +111,7 @@ class BallContacts final : public ContactPair {
   double displaced_ = 0.0;  ///< largest displacement of a sample seen lately [m]
   std::uint64_t step_ = 1;
   std::vector<Sample> samples_;
+  std::vector<int> used_;  ///< samples that were ever evaluated since the last reset
   std::vector<Face> faces_;
   // Working memory of find().
   std::vector<Near> near_;

@@ -75,7 +75,7 @@ double BodyContacts::look(const Vector3& place, Sample& state) const noexcept {
 Vector3 BodyContacts::started(const Vector3& place) const noexcept {
   const FreeMotion& motion = body_.motion;
   const Vector3 x = motion.start.position + motion.start.orientation * place;
-  return scenery_ != nullptr ? scenery_->carried(x) : x;
+  return scenery_ != nullptr ? scenery_->moved(x) : x;
 }
 
 // How far surfaces may be displaced where none was looked at [m].

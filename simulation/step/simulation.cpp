@@ -23,7 +23,12 @@ Simulation::Simulation(const SimulationConfig& config)
   }
   reset_down_.fill(true);
   local_model_object_.fill(-1);
-  for (std::size_t s = 0; s < stylus_count_; ++s) max_force_[s] = config.styluses[s].max_force;
+  for (std::size_t s = 0; s < stylus_count_; ++s) {
+    max_force_[s] = config.styluses[s].max_force;
+    if (!config.styluses[s].has_ball() || config.styluses[s].radius > 0.0) continue;
+    throw Error("stylus " + std::to_string(s + 1), "has a ball of radius 0",
+                "give it a radius, or shape \"patch\"");
+  }
   dt_ = config.objects.front().model->dt;
   for (std::size_t i = 0; i < config.objects.size(); ++i) {
     const SimulationObject& object = config.objects[i];

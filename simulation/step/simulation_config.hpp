@@ -59,6 +59,8 @@ struct SimulationStylus {
   bool ball = false;
   /// It leads a tool, and makes no contact of its own; what is above means nothing then.
   std::optional<ToolCoupling> tool = {};
+
+  bool has_ball() const noexcept { return ball && !tool; }
 };
 
 /// Objects among their styluses. All models have the same dt.
@@ -88,10 +90,10 @@ inline bool touches_others(const SimulationConfig& config) {
   return config.between_objects && (config.objects.size() > 1 || !config.scenery.empty());
 }
 
-/// Returns whether the tip of a stylus is a ball.
+/// Returns whether the tip of any stylus is a ball.
 inline bool has_balls(const SimulationConfig& config) {
   return std::any_of(config.styluses.begin(), config.styluses.end(),
-                     [](const SimulationStylus& stylus) { return stylus.ball; });
+                     [](const SimulationStylus& stylus) { return stylus.has_ball(); });
 }
 
 /// Returns whether a step can have contacts in BodyContactRecord: of objects with each other, with

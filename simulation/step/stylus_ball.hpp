@@ -10,8 +10,9 @@ namespace irdm {
 /// The rigid ball at the tip of a stylus. A spring without mass ties its centre c to the position x
 /// of the stylus: c = x - f / k_vc, where f is the sum of the forces that the ball exerts. The
 /// contacts of a step use x, with the compliance 1 / k_vc between all of them, and take their
-/// geometry from the ball at x - f / k_vc with f of the last step (docs/theory.md, "The ball of a
-/// stylus"). Real-time safe; for one thread.
+/// geometry from the ball at x - f / k_vc with f of the last step. The force of its hold on an
+/// object, which is a contact of that object, enters both as in the last step (docs/theory.md, "The
+/// ball of a stylus"). Real-time safe; for one thread.
 class StylusBall {
  public:
   /// @param radius [m], > 0
@@ -22,8 +23,8 @@ class StylusBall {
   /// Saves or restores the state (StateArchive). Not real-time safe.
   void archive(StateArchive& state);
 
-  /// Moves the ball for a step. Returns false if it was present before and is absent now, or was
-  /// absent before: its contacts of the last step have ended.
+  /// Moves the ball for a step. Returns false if the stylus appears or vanishes in this step: the
+  /// contacts of the last step have then ended.
   bool begin(const StylusCommand& command) noexcept;
 
   /// Forces on one object.
@@ -33,17 +34,18 @@ class StylusBall {
     Vector3 middle = Vector3::Zero();  ///< mean place of its contacts, at rest [m], B
   };
   /// Ends the step.
-  /// @param force sum of the forces that the ball exerted in the step [N], W
+  /// @param force sum of the forces of its contacts in the step, without a hold [N], W
+  /// @param held force of its hold on an object [N], W
   /// @param strongest the part on the object with the largest force
   /// @param solved false if the contact problem had no solution, so that no force acted; the next
   /// step then takes its geometry from the same force as this one
-  void end(const Vector3& force, const Touch& strongest, bool solved) noexcept;
+  void end(const Vector3& force, const Vector3& held, const Touch& strongest, bool solved) noexcept;
 
   /// The ball as contacts see it.
   const SceneryStep& body() const noexcept { return body_; }
   double compliance() const noexcept { return compliance_; }  ///< of the spring [m/N]
-  /// What it exerted in the last step: on all objects [N], W, and on the one with the largest
-  /// force.
+  /// Forces of its contacts in the last step, without a hold: on all objects [N], W, and on the one
+  /// with the largest force.
   const Vector3& force() const noexcept { return force_; }
   const Touch& strongest() const noexcept { return strongest_; }
 
@@ -53,6 +55,7 @@ class StylusBall {
   Vector3 tip_ = Vector3::Zero();        ///< position of the stylus in this step [m], W
   Vector3 centre_ = Vector3::Zero();     ///< at the end of the last step [m], W
   Vector3 reference_ = Vector3::Zero();  ///< force from which the next step takes its geometry
+  Vector3 held_ = Vector3::Zero();       ///< force of its hold in the last step [N], W
   Vector3 force_ = Vector3::Zero();
   Touch strongest_;
 };

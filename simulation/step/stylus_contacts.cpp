@@ -126,7 +126,7 @@ void StylusContacts::follow(Stylus& stylus, const StylusCommand& command) noexce
 bool StylusContacts::find_contact(Stylus& stylus, const StylusCommand& command,
                                   const Vector3& tip) noexcept {
   GodObject& proxy = stylus.proxy;
-  if (stylus.tip.ball && !command.given) return find_grip(stylus, command, tip);
+  if (stylus.tip.has_ball() && !command.given) return find_grip(stylus, command, tip);
   if (command.given) {
     if (command.given->object != object_) return false;
     proxy.impose(command.given->contact, command.given->point);
@@ -390,7 +390,7 @@ void StylusContacts::update(std::span<const StylusCommand> commands, const FreeM
     if (solved.law == ContactLaw::kTouching && !std::isinf(solved.friction.kinetic)) {
       proxy.follow(tip, share, rest_);
     }
-    const bool ball = stylus_of(contact).tip.ball;  // its own contacts push on
+    const bool ball = stylus_of(contact).tip.has_ball();  // its own contacts push on
     if (proxy.contact().releasing() && pushes(solved) && !proxy.reached() && !ball) {
       proxy.turn_to_touching();
     }

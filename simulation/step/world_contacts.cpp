@@ -90,14 +90,18 @@ WorldContacts::WorldContacts(const SimulationConfig& config,
     if (scenery_.back().moves()) scenery_.back().go_on(0.0);
   }
   for (const SimulationStylus& stylus : config.styluses) {
-    balls_.push_back(stylus.ball
+    balls_.push_back(stylus.has_ball()
                          ? std::make_unique<StylusBall>(stylus.radius, stylus.coupling_stiffness)
                          : nullptr);
   }
-  if (touches_others(config) && config.floor && objects.size() > kMostOnFloor) {
+  const bool several = touches_others(config) || has_balls(config);
+  if (several && config.floor && objects.size() > kMostOnFloor) {
     throw Error("floor",
-                "is for at most " + std::to_string(kMostOnFloor) + " objects that touch each other",
-                "use a [[scenery]] with a plane instead, or set contact.between_objects = false");
+                "is for at most " + std::to_string(kMostOnFloor) +
+                    " objects that touch each other or balls of styluses",
+                std::string("use a [[scenery]] with a plane instead, or set ") +
+                    (has_balls(config) ? "stylus.shape = \"patch\" and " : "") +
+                    "contact.between_objects = false");
   }
   for (const auto& object : objects) objects_.push_back(object.get());
   for (SoftObject* const object : objects_) {
@@ -144,7 +148,7 @@ const WorldContacts::Shape& WorldContacts::shape_of(const SimulationConfig& conf
     shape.self = std::make_unique<SelfReach>(object.surface(), *shape.sampling);
     if (!shape.self->any()) shape.self.reset();
   }
-  if (touches_bodies(config)) {
+  if (touches_others(config) || has_balls(config) || shape.self) {
     shape.compliance = std::make_unique<PatchCompliance>(object.model(), *shape.sampling);
   }
   shapes_.push_back(std::move(shape));
@@ -422,7 +426,7 @@ void WorldContacts::solve(StepRecord& record) noexcept {
     if (!objects_[i]->asleep()) objects_[i]->write(record.object[i]);
   }
   apply(solved_, record);
-  end_balls();
+  end_balls(record);
   for (const BodyContactRecord& held : held_) record.body_contact.push_back(held);
   for (const IslandContact& contact : solved_) {
     if (contact.found) {
@@ -433,10 +437,12 @@ void WorldContacts::solve(StepRecord& record) noexcept {
   }
 }
 
-void WorldContacts::end_balls() noexcept {
-  for (const auto& ball : balls_) {
-    if (!ball) continue;
+void WorldContacts::end_balls(const StepRecord& record) noexcept {
+  for (std::size_t s = 0; s < balls_.size(); ++s) {
+    StylusBall* const ball = balls_[s].get();
+    if (ball == nullptr) continue;
     Vector3 force = Vector3::Zero();
+    Vector3 held = Vector3::Zero();
     StylusBall::Touch strongest;
     bool solved = true;
     for (std::size_t i = 0; i < objects_.size(); ++i) {
@@ -444,7 +450,7 @@ void WorldContacts::end_balls() noexcept {
       double weights = 0.0;
       for (const IslandContact& contact : solved_) {
         if (contact.pair->object() != touch.object) continue;
-        if (ball_of(*contact.pair) != ball.get()) continue;
+        if (ball_of(*contact.pair) != ball) continue;
         solved = solved && contact.found;
         if (contact.solved.mode == ContactMode::kOpen) continue;
         touch.force += contact.solved.force;
@@ -454,11 +460,13 @@ void WorldContacts::end_balls() noexcept {
         weights += weight;
       }
       force += touch.force;
+      const ContactRecord& hold = record.object[i].contact[s];
+      if (hold.state != ContactState::kFree) held += objects_[i]->motion().halfway * hold.force;
       if (weights <= 0.0 || touch.force.norm() <= strongest.force.norm()) continue;
       touch.middle /= weights;
       strongest = touch;
     }
-    ball->end(force, strongest, solved);
+    ball->end(force, held, strongest, solved);
   }
 }
 

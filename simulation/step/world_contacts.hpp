@@ -68,7 +68,7 @@ class WorldContacts {
   void add_balls(const SimulationConfig& config, int object);
   ContactPair& add_pair(const SimulationConfig& config, int object, int other,
                         const SceneryStep& there, const std::string& name);
-  void end_balls() noexcept;
+  void end_balls(const StepRecord& record) noexcept;
   bool suspended(std::size_t pair) noexcept;
   void check_masses(const SimulationConfig& config, int a, int b) const;
   void refuse_overlaps(const SimulationConfig& config);

@@ -169,6 +169,41 @@ TEST_CASE("forces act where they acted: off the surface's point, near an edge an
   check_both(run);
 }
 
+TEST_CASE("a run with a ball that presses, holds and lets go is rerun") {
+  SimulationConfig config;
+  config.objects.resize(GENERATE(1, 2));
+  for (SimulationObject& object : config.objects) {
+    object.model = fem_cube({.cells = 2, .order = 2});
+    object.tether = {50.0, 0.1};
+    object.friction = {0.5, 0.4};
+  }
+  config.objects.back().position.x() += config.objects.size() > 1 ? 0.14 : 0.0;
+  config.styluses = {{.radius = 0.012, .coupling_stiffness = 300.0, .ball = true}, {}};
+  KeptRun run(config);
+  Simulation simulation(config);
+  StepRecord record;
+  int held = 0;
+  int both = 0;
+  for (int k = 0; k < 200; ++k) {
+    const double depth = std::min(2e-4 * k, 0.012);
+    const std::array<StylusCommand, 2> commands{
+        StylusCommand{true,
+                      k > 90 && k < 140 ? kGrabButton : 0,
+                      Vector3(0.01 + 5e-5 * k, 0.076 - depth, 0.005),
+                      {}},
+        StylusCommand{}};
+    simulation.step(commands, record);
+    run.keep(simulation, record);
+    const bool holds = record.object[0].contact[0].state == ContactState::kHeld;
+    held += holds ? 1 : 0;
+    both += holds && !record.body_contact.empty() ? 1 : 0;
+  }
+  REQUIRE(held > 40);
+  REQUIRE(both > 5);  // while it lets go
+  REQUIRE(record.stylus[0].force.norm() > 0.01);
+  check_both(run);
+}
+
 TEST_CASE("a run of a fixed object that sags is rerun, to the bit from its tips") {
   check_both(sag());
 }

@@ -11,6 +11,7 @@
 #include "tests/support/allocation_guard.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/left_out.hpp"
+#include "tests/support/synthetic_model.hpp"
 #include "tests/support/voxel_body.hpp"
 
 using namespace irdm;
@@ -237,6 +238,37 @@ TEST_CASE("ball of a stylus: it takes hold of what it presses without a jump, pu
   run.grab = false;
   CHECK(run.hold(up, 0.2).norm() == 0.0);
   CHECK(run.record->stylus[0].contact == ContactState::kFree);
+}
+
+TEST_CASE(
+    "ball of a stylus: let go with its spring stretched by more than its radius it presses on") {
+  const double radius = 0.01;
+  LedBall run(led_scene(coarse_cube(), radius, 10.0));
+  const Vector3 inside = over_top(radius, -0.03);
+  run.go(over_top(radius, 0.001), inside, 0.6);
+  const Vector3 pressed = run.hold(inside, 0.3);
+  REQUIRE(pressed.y() / 10.0 > radius);
+  run.grab = true;
+  run.hold(inside, 0.3);
+  run.grab = false;
+  CHECK((run.hold(inside, 0.4) - pressed).norm() < 0.03 * pressed.norm());
+}
+
+TEST_CASE("ball of a stylus: a rigid body is felt anywhere, however large its triangles") {
+  SimulationConfig config = led_scene(
+      std::make_shared<const Model>(made_rigid(*fixed_box({.cells = {1, 1, 1}}))), 0.006, 500.0);
+  config.objects[0].friction = {0.5, 0.4};
+  LedBall run(config);
+  for (const double x : {0.0, 0.013, 0.031}) {
+    const Vector3 deep = over_top(0.006, -0.003, x, 0.7 * x);
+    run.go(over_top(0.006, 0.002, x, 0.7 * x), deep, 0.1);
+    const Vector3 force = run.hold(deep, 0.1);
+    CHECK(force.y() == Approx(500.0 * 0.003).epsilon(0.05));
+    CHECK(std::hypot(force.x(), force.z()) < 0.05 * force.y());
+    run.go(deep, over_top(0.006, 0.002, x, 0.7 * x), 0.1);
+  }
+  config.styluses[0].coupling_stiffness = 0.0;
+  CHECK_THROWS_WITH(Simulation(config), Catch::Matchers::ContainsSubstring("without a spring"));
 }
 
 TEST_CASE("ball of a stylus: rows, recorded forces and a saved state have its contacts") {

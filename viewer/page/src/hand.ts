@@ -9,8 +9,8 @@ const MOST_DEPTH = 0.08;
 
 /**
  * A press by mouse or finger: the tip begins outside the surface, goes in along the view within a moment, and then
- * slides in the plane parallel to the screen at that depth. It is a point that touches, whatever the radius, which
- * spreads its pressure: a longer way would end too late at the server to take hold. Pure; times in ms.
+ * slides in the plane parallel to the screen at that depth. The tip of a fingertip is the point that touches, whatever
+ * its radius; that of a ball is its centre. Pure; times in ms.
  */
 export class Hand {
   private readonly plane = new Plane();

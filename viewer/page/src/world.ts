@@ -137,7 +137,8 @@ export class World {
     const { overlays } = this.look;
     frame.styluses.forEach((state, s) => {
       const touched = state.contact === Contact.Free ? undefined : this.objects[state.object];
-      const shift = touched?.shiftOfStylus(s, state.middle) ?? new THREE.Vector3();
+      const ball = this.scene!.styluses[s]!.ball;
+      const shift = (ball ? touched?.shiftAt(state.proxy) : touched?.shiftOfStylus(s, state.middle)) ?? new THREE.Vector3();
       this.styluses[s]!.follow(state, overlays, this.metresPerNewton, shift);
     });
     if (rests) return;
@@ -158,11 +159,17 @@ export class World {
 
   private markStyluses(frame: Frame): void {
     this.objects.forEach((object, i) => {
-      const touching = frame.styluses.map((state, s) => ({ state, radius: this.scene!.styluses[s]!.radius }));
-      const here = touching.filter(({ state }) => state.present && state.contact !== Contact.Free && state.object === i);
+      // A ball holds with a patch of half its radius; its other contacts are marked as those of bodies.
+      const touching = frame.styluses.map((state, s) => {
+        const { ball, radius } = this.scene!.styluses[s]!;
+        return { state, radius: ball ? radius / 2 : radius };
+      });
+      const here = touching.filter(
+        ({ state }) => state.present && state.contact !== Contact.Free && state.object === i && !Number.isNaN(state.middle[0]),
+      );
       const patches = here.map(({ state, radius }) => ({ middle: state.middle, radius }));
       object.surface.marks.show(this.look.overlays.contacts ? patches : []);
-      object.showHeld(patches.filter((_, p) => here[p]!.state.contact === Contact.Held && !Number.isNaN(patches[p]!.middle[0])));
+      object.showHeld(patches.filter((_, p) => here[p]!.state.contact === Contact.Held));
     });
   }
 

@@ -41,6 +41,7 @@ const scenery: SceneryParts[] = [
 const parts: SceneParts = {
   objects: [cube(0.1, 2)],
   radii: [0, 0.008],
+  ball: 1,
   dt: 0.002,
   flags: 4,
   floorHeight: 0,

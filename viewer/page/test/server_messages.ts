@@ -167,6 +167,8 @@ export interface SceneParts {
   objects: ObjectParts[];
   /** of their tips [m] */
   radii: number[];
+  /** the stylus whose tip is a ball, if there is one */
+  ball?: number;
   dt: number;
   /** bit 0 lockstep, 1 floor, 2 viewers' stylus, 3 recorded run only */
   flags: number;
@@ -191,7 +193,7 @@ function putDisplay(to: Writer, display: DisplayParts): void {
 export function sceneMessage(parts: SceneParts): ArrayBuffer {
   const to = begin(1).u16(parts.objects.length, parts.radii.length).u16(parts.flags, parts.scenery.length).f64(parts.dt);
   to.f64(0, (parts.flags & 2) !== 0 ? 1 : 0, 0, parts.floorHeight);
-  for (const radius of parts.radii) to.f32(radius, 400, 0, parts.largestForce).u32(radius > 0 ? 1 : 0);
+  parts.radii.forEach((radius, s) => to.f32(radius, 400, 0, parts.largestForce).u32(s === parts.ball ? 1 : 0));
   for (const object of parts.objects) {
     const name = utf8(object.name);
     to.u32(object.rest.length / 3, object.triangles.length / 3, name.length).f32(0.1, 2e4);

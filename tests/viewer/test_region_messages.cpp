@@ -17,7 +17,7 @@ TEST_CASE("the bytes of an object's regions are those of the document") {
   regions.faces_left_out = true;
   scene.objects[0].regions = regions;
   const Bytes bytes = encode(scene);
-  CHECK(Bytes(bytes.begin() + 92, bytes.begin() + 96) == from_hex("0200 0200"));
+  CHECK(Bytes(bytes.begin() + 96, bytes.begin() + 100) == from_hex("0200 0200"));
   CHECK(added_after(bytes, before) ==
         from_hex("00000000 0000fa44 0000fa44 0000803e 0000003f 00007a44 00007a44"
                  "03000000 0000fa43 0000fa45 0000803e 0000803e 00008044 00008044 |"
@@ -35,13 +35,13 @@ TEST_CASE("regions that break the rules are refused") {
   CHECK_NOTHROW(decode_scene(bytes));
   const std::size_t counts = at + 2 * 28 + 4;
   SECTION("more than can be listed") {
-    bytes[92] = kMaxRegions + 1;
+    bytes[96] = kMaxRegions + 1;
   }
   SECTION("more than there are bytes") {
-    bytes[92] = kMaxRegions;
+    bytes[96] = kMaxRegions;
   }
   SECTION("none, and yet their bytes") {
-    bytes[92] = 0;
+    bytes[96] = 0;
   }
   SECTION("a least value above the greatest") {
     bytes[at + 7] = 0x45;

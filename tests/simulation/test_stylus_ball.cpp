@@ -72,7 +72,8 @@ double held_led_force(const SimulationConfig& config, double depth) {
 
 }  // namespace
 
-TEST_CASE("ball of a stylus: without a spring it presses as a ball of the scenery does") {
+TEST_CASE("ball of a stylus: without a spring it presses as a ball of the scenery does",
+          "[unsanitized]") {
   const double radius = 0.012;
   const double depth = 0.004;
   const SimulationConfig config = led_scene(coarse_cube(), radius, 0.0);
@@ -100,7 +101,7 @@ TEST_CASE("ball of a stylus: without a spring it presses as a ball of the scener
   CHECK(run.record->stylus[0].object == 0);
 }
 
-TEST_CASE("ball of a stylus: a spring is in series with the contact") {
+TEST_CASE("ball of a stylus: a spring is in series with the contact", "[unsanitized]") {
   const double radius = 0.012;
   const double depth = 0.006;
   const double stiffness = GENERATE(30.0, 300.0);
@@ -135,7 +136,8 @@ TEST_CASE("ball of a stylus: what a step changes comes to the object as momentum
   CHECK(most > 0.02);
 }
 
-TEST_CASE("ball of a stylus: it is felt again after its stylus was absent, and not from inside") {
+TEST_CASE("ball of a stylus: it is felt again after its stylus was absent, and not from inside",
+          "[unsanitized]") {
   const double radius = 0.01;
   LedBall run(led_scene(coarse_cube(), radius, 300.0));
   const Vector3 deep = over_top(radius, -0.005);
@@ -241,7 +243,8 @@ TEST_CASE("ball of a stylus: it takes hold of what it presses without a jump, pu
 }
 
 TEST_CASE(
-    "ball of a stylus: let go with its spring stretched by more than its radius it presses on") {
+    "ball of a stylus: let go with its spring stretched by more than its radius it presses on",
+    "[unsanitized]") {
   const double radius = 0.01;
   LedBall run(led_scene(coarse_cube(), radius, 10.0));
   const Vector3 inside = over_top(radius, -0.03);
@@ -322,7 +325,7 @@ TEST_CASE("ball of a stylus: a step does not allocate") {
   CHECK(most > 0.02);
 }
 
-TEST_CASE("ball of a stylus: pressed without a spring it is calm and does not kick") {
+TEST_CASE("ball of a stylus: pressed without a spring it is calm and does not kick", "[slow]") {
   // Paper's cube, 5 kPa and 1000 kg/m^3: with a patch of pressure 174 changes and steps of 83 N.
   const double dt = GENERATE(0.0005, 0.001, 0.002);
   VoxelMesh cube{{4, 4, 4}, {}, [](const std::array<int, 3>& at) -> Vector3 {

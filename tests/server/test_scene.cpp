@@ -272,7 +272,7 @@ TEST_CASE("each limit of styluses, floor and objects: the last good value, the f
       {"[[stylus]]", "stylus[0].radius", "radius = 1", "radius = 1.1", "is 1.1"},
       {"[[stylus]]", "stylus[0].reach", "reach = 0", "reach = -1", "is -1"},
       {"[[stylus]]", "stylus[0].reach", "reach = 1", "reach = 1.1", "is 1.1"},
-      {"[[stylus]]", "stylus[0].shape", "shape = 'ball'", "shape = 'cube'", "is \"cube\""},
+      {"[[stylus]]", "stylus[0].shape", "shape = 'ball'", "shape = 'cube'", "is 'cube'"},
       {"[[stylus]]", "stylus[0].reach", "shape = 'ball'", "reach = 0.01\nshape = 'ball'",
        "is not for a ball"},
       {"[[stylus]]", "stylus[0].radius", "radius = 0.001\nshape = 'ball'",

@@ -83,7 +83,7 @@ TEST_CASE("the default ball is two edges wide, but never large beside an object"
   const double edge = (2.0 + std::sqrt(2.0)) / 3.0;  // two edges of a square and its diagonal
   CHECK(radius_for(0.12, 12) == Approx(0.1 * 0.12));
   CHECK(radius_for(0.12, 40) == Approx(2.0 * 0.003 * edge));
-  CHECK(radius_for(0.12, 80) == Approx(0.003));
+  CHECK(radius_for(0.06, 60) == Approx(0.003));
   CHECK(radius_for(0.02, 20) == Approx(0.002));
 }
 

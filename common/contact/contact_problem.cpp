@@ -35,6 +35,37 @@ Vector3 force_towards(const Matrix3& W, const Vector3& gap, const Vector3& norma
   return push * on_cone;
 }
 
+// Without friction.
+SingleContact slip_freely(const Matrix3& W, const Vector3& gap, const Vector3& normal) noexcept {
+  SingleContact result;
+  result.mode = ContactMode::kSlipping;
+  result.force = force_towards(W, gap, normal, 0.0, Vector3::Zero());
+  result.slip = sideways(gap - W * result.force, normal);
+  return result;
+}
+
+struct BoundedForce {
+  Eigen::Vector2d force;
+  double lag;  ///< what of the gap stays open, over the force [m/N]
+};
+
+// Solves (A + lag Id) f = gap for the lag >= 0 with which |f| = most, which is less than
+// |A^-1 gap|. Newton's method on 1 / |f|, which is concave in the lag, comes from below and never
+// goes too far.
+BoundedForce bounded_force(const Eigen::Matrix2d& A, const Eigen::Vector2d& gap,
+                           double most) noexcept {
+  BoundedForce result{Eigen::Vector2d::Zero(), 0.0};
+  for (int i = 0; i < kMaxTurns; ++i) {
+    const Eigen::Matrix2d inverse = (A + result.lag * Eigen::Matrix2d::Identity()).inverse();
+    result.force = inverse * gap;
+    const double length = result.force.norm();
+    if (length <= (1.0 + kConverged) * most) break;
+    const double slope = result.force.dot(inverse * result.force) / (length * length);
+    result.lag += (length / most - 1.0) / slope;
+  }
+  return result;
+}
+
 // Finds the direction d along the surface that is parallel to the slip it leaves. Turning d towards
 // the slip is a contraction; the secant method finds its fixed point in few steps.
 SingleContact slip(const Matrix3& W, const Vector3& gap, const Vector3& normal, double mu,
@@ -75,6 +106,7 @@ SingleContact solve_single_contact(const Matrix3& W, const Vector3& gap, Contact
                                    const Vector3& normal, const Friction& friction) noexcept {
   if (law == ContactLaw::kReleased) return {};
   if (law == ContactLaw::kTouching && gap.dot(normal) >= 0) return {};
+  if (law == ContactLaw::kTouching && friction.static_ == 0.0) return slip_freely(W, gap, normal);
   const Vector3 stick = W.ldlt().solve(gap);
   if (law == ContactLaw::kHeld) return {stick, ContactMode::kSticking, Vector3::Zero()};
   const double push = -stick.dot(normal);
@@ -83,14 +115,28 @@ SingleContact solve_single_contact(const Matrix3& W, const Vector3& gap, Contact
     return {stick, ContactMode::kSticking, Vector3::Zero()};
   }
   if (std::isinf(friction.kinetic)) return {};  // would have to be pulled, and cannot slip
-  if (friction.kinetic == 0.0 || along == 0.0) {
-    SingleContact result;
-    result.mode = ContactMode::kSlipping;
-    result.force = force_towards(W, gap, normal, 0.0, Vector3::Zero());
-    result.slip = sideways(gap - W * result.force, normal);
-    return result;
-  }
+  if (friction.kinetic == 0.0 || along == 0.0) return slip_freely(W, gap, normal);
   return slip(W, gap, normal, friction.kinetic, stick);
+}
+
+SingleContact solve_group_friction(const Matrix3& W, const Vector3& gap, const Vector3& pressed,
+                                   const Friction& friction) noexcept {
+  const double push = pressed.norm();
+  if (!(push > 0.0)) return {};
+  const Vector3 normal = pressed / push;
+  Eigen::Matrix<double, 3, 2> plane;
+  plane.col(0) = normal.unitOrthogonal();
+  plane.col(1) = normal.cross(plane.col(0));
+  const Eigen::Matrix2d within = plane.transpose() * W * plane;
+  const Eigen::Vector2d open = plane.transpose() * gap;
+  const Eigen::Vector2d stick = within.inverse() * open;
+  if (stick.norm() <= friction.static_ * push) {
+    return {plane * stick, ContactMode::kSticking, Vector3::Zero()};
+  }
+  const double most = friction.kinetic * push;
+  if (most == 0.0) return {Vector3::Zero(), ContactMode::kSlipping, plane * open};
+  const BoundedForce found = bounded_force(within, open, most);
+  return {plane * found.force, ContactMode::kSlipping, plane * (found.lag * found.force)};
 }
 
 namespace {
@@ -208,6 +254,9 @@ namespace {
 
 // Few, or such that none can let go: one factorisation is enough.
 bool may_stick(const ContactProblem& problem) noexcept {
+  for (int a = 0; a < problem.count(); ++a) {
+    if (problem.contact(a).law == ContactLaw::kGroupFriction) return false;
+  }
   if (problem.count() <= kMaxDirectContacts) return true;
   if (problem.count() > kMaxContacts) return false;
   for (int a = 0; a < problem.count(); ++a) {
@@ -385,6 +434,23 @@ double ContactSolver::solve_touching(ContactProblem& problem, int a) noexcept {
   return off;
 }
 
+double ContactSolver::solve_group_friction(ContactProblem& problem, int a) noexcept {
+  ContactConstraint& contact = problem.contact(a);
+  Vector3 pressed = Vector3::Zero();
+  for (int i = 0; i < contact.group_count; ++i) {
+    pressed += problem.contact(contact.group_first + i).force;
+  }
+  const Matrix3 W = own_compliance(problem, a);
+  const Vector3 own = contact.gap - displacement(problem, a) + W * contact.force;
+  const SingleContact found = irdm::solve_group_friction(W, own, pressed, contact.friction);
+  const double off = (W * (found.force - contact.force)).norm();
+  contact.mode = found.mode;
+  contact.slip = found.slip;
+  if (found.mode == ContactMode::kSlipping) contact.friction.static_ = contact.friction.kinetic;
+  change(problem, a, found.force);
+  return off;
+}
+
 double ContactSolver::sweep(ContactProblem& problem) noexcept {
   double largest = held_count_ > 0 ? solve_held(problem) : 0.0;
   int held = 0;
@@ -392,6 +458,8 @@ double ContactSolver::sweep(ContactProblem& problem) noexcept {
     ContactConstraint& contact = problem.contact(a);
     if (contact.law == ContactLaw::kGiven) {
       contact.mode = ContactMode::kSticking;
+    } else if (contact.law == ContactLaw::kGroupFriction) {
+      largest = std::max(largest, solve_group_friction(problem, a));
     } else if (contact.law != ContactLaw::kHeld || held++ >= held_count_) {
       largest = std::max(largest, solve_touching(problem, a));
     }

@@ -26,6 +26,9 @@ enum class ContactLaw {
   kReleased,  ///< not at all
   kGiven,     ///< with the force that is there
   kTouching,  ///< towards the inside, and sideways inside the Coulomb cone
+  /// Friction of a whole group of touching contacts without friction of their own: a force in the
+  /// plane across the sum of their forces, inside the Coulomb disk of that sum's length.
+  kGroupFriction,
 };
 
 /// Coulomb friction: a contact sticks while the force along the surface is at most `static_`
@@ -58,6 +61,9 @@ struct ContactConstraint {
   Vector3 slip = Vector3::Zero();  ///< sideways, from the point to where it was wanted [m]
   /// Elastic displacement of its point by forces outside the problem, which the gap allows for [m].
   Vector3 elsewhere = Vector3::Zero();
+  // Of kGroupFriction: numbers of the contacts in its group.
+  int group_first = 0;
+  int group_count = 0;
 };
 
 /// The rigid body's own answer within the step: displacement at arm a per force at arm b,
@@ -151,6 +157,7 @@ class ContactSolver {
   double sweep(ContactProblem& problem) noexcept;
   double solve_held(ContactProblem& problem) noexcept;
   double solve_touching(ContactProblem& problem, int a) noexcept;
+  double solve_group_friction(ContactProblem& problem, int a) noexcept;
   Vector3 displacement(const ContactProblem& problem, int a) const noexcept;
   void change(ContactProblem& problem, int a, const Vector3& force) noexcept;
   void add(ContactProblem& problem, int a, const Vector3& more) noexcept;
@@ -188,5 +195,13 @@ struct SingleContact {
 /// has the direction in which the point lags behind. Pure, real-time safe.
 SingleContact solve_single_contact(const Matrix3& W, const Vector3& gap, ContactLaw law,
                                    const Vector3& normal, const Friction& friction) noexcept;
+
+/// Solves the friction of a group (ContactLaw::kGroupFriction) exactly, with W and `gap` as above:
+/// a force f across `pressed` closes the gap across it, if |f| <= static |pressed|. Otherwise the
+/// group slips: |f| = kinetic |pressed|, and what stays open is parallel to f. Without a pressing
+/// force it is open. Pure, real-time safe.
+/// @param pressed sum of the forces of the group's contacts [N]
+SingleContact solve_group_friction(const Matrix3& W, const Vector3& gap, const Vector3& pressed,
+                                   const Friction& friction) noexcept;
 
 }  // namespace irdm

@@ -67,6 +67,8 @@ void BallContacts::reset() noexcept {
   count_ = 0;
   displaced_ = 0.0;
   step_ = 1;
+  friction_.setZero();
+  slipping_ = false;
   pressed_now_.clear();
   forget_steps();
 }
@@ -79,6 +81,8 @@ void BallContacts::forget_steps() noexcept {
 void BallContacts::archive(StateArchive& state) {
   state.value(displaced_);
   state.value(step_);
+  state.value(friction_);
+  state.value(slipping_);
   if (state.reading()) {
     for (const int i : used_) samples_[static_cast<std::size_t>(i)] = Sample{};
     count_ = 0;
@@ -248,8 +252,8 @@ bool BallContacts::evaluate(const Near& near, const BallWay& ball, Candidate& ca
   if (pressed) {
     state.anchor = scenery_.carried(state.anchor);
   } else {
-    state.contact.end();
     state.force.setZero();
+    state.push = 0.0;
     if (depth < -kSearchDistance - ball.way || free_depth < -kContactDistance) return false;
     const double inside = step_ == kFirstStep ? depth : depth_before;
     if (!listed) state.inset = known && inside > kMaxOutsideDepth ? inside : 0.0;
@@ -305,6 +309,7 @@ void BallContacts::skip(int i) noexcept {
 int BallContacts::find() noexcept {
   keep_left_out();
   count_ = 0;
+  pushed_ = 0.0;
   ++step_;
   displaced_ *= kReachFading;
   std::swap(pressed_, pressed_now_);
@@ -334,6 +339,11 @@ int BallContacts::find() noexcept {
     contact.arm = candidate.place;
     contact.normal = state.normal;
     contact.gap = state.gap;
+    pushed_ += state.push;
+  }
+  if (pushed_ <= 0.0) {  // it begins to touch
+    friction_.setZero();
+    slipping_ = false;
   }
   return count_;
 }
@@ -342,9 +352,30 @@ void BallContacts::pose(int i, const Friction& friction,
                         ContactConstraint& constraint) const noexcept {
   const Contact& contact = found_[static_cast<std::size_t>(i)];
   const Sample& state = samples_[static_cast<std::size_t>(number_of(contact))];
-  state.contact.pose(-contact.normal, friction, Vector3::Zero(), contact.gap, constraint);
   constraint.law = ContactLaw::kTouching;
-  constraint.force = body_.motion.halfway * state.force;
+  constraint.normal = -contact.normal;
+  constraint.friction = friction;
+  constraint.gap = contact.gap;
+  constraint.force = state.push * contact.normal;
+}
+
+// As the contacts pressed in the last step: where they press now is not known before.
+double BallContacts::friction_share(int i) const noexcept {
+  if (pushed_ <= 0.0) return 1.0 / count_;
+  const Contact& contact = found_[static_cast<std::size_t>(i)];
+  return samples_[static_cast<std::size_t>(number_of(contact))].push / pushed_;
+}
+
+void BallContacts::pose_friction(const Friction& friction,
+                                 ContactConstraint& constraint) const noexcept {
+  constraint.friction = friction;
+  if (slipping_) constraint.friction.static_ = friction.kinetic;
+  constraint.force = body_.motion.halfway * friction_;
+}
+
+void BallContacts::take_friction(const ContactConstraint& solved) noexcept {
+  friction_ = body_.motion.halfway.conjugate() * solved.force;
+  slipping_ = solved.mode == ContactMode::kSlipping;
 }
 
 void BallContacts::update(int i, const ContactConstraint& solved, const Vector3& yielded) noexcept {
@@ -353,8 +384,9 @@ void BallContacts::update(int i, const ContactConstraint& solved, const Vector3&
   state.updated = step_;
   const bool pressed = solved.mode != ContactMode::kOpen;
   const bool slipping = solved.mode == ContactMode::kSlipping;
-  state.contact.begin(pressed ? ContactState::kTouching : ContactState::kFree, slipping);
   state.force = body_.motion.halfway.conjugate() * solved.force;
+  const Vector3 friction = friction_share(i) * (body_.motion.halfway * friction_);
+  state.push = std::max(0.0, (solved.force - friction).dot(contact.normal));
   state.inset = inset_left_ * state.inset - (1.0 - inset_left_) * yielded.dot(contact.normal);
   if (pressed) {
     state.pressed = step_;

@@ -32,16 +32,21 @@ class BallContacts final : public ContactPair {
   void skip(int i) noexcept override;
   void write(int i, const ContactConstraint& solved,
              BodyContactRecord& record) const noexcept override;
+  bool shares_friction() const noexcept override { return true; }
+  double friction_share(int i) const noexcept override;
+  void pose_friction(const Friction& friction,
+                     ContactConstraint& constraint) const noexcept override;
+  void take_friction(const ContactConstraint& solved) noexcept override;
   bool near() const noexcept override;
   bool driven() const noexcept override { return scenery_.moves(); }
   double initial_depth() noexcept override;
 
  private:
   struct Sample {
-    PersistentContact contact;
     Vector3 anchor = Vector3::Zero();  ///< point of the ball that friction ties it to [m], W
     Vector3 normal = Vector3::Zero();  ///< outward unit normal of the ball in this step, W
     Vector3 force = Vector3::Zero();   ///< of the last step [N], B
+    double push = 0.0;                 ///< its part along the ball's normal, without friction [N]
     /// Target depth below the ball's surface [m]. It is positive at first if the sample was inside
     /// before it faced the ball, and decays, so that the sample comes out gradually.
     double inset = 0.0;
@@ -110,6 +115,9 @@ class BallContacts final : public ContactPair {
   double inset_left_;       ///< share of an inset that is left after a step
   double displaced_ = 0.0;  ///< largest displacement of a sample seen lately [m]
   std::uint64_t step_ = 1;
+  Vector3 friction_ = Vector3::Zero();  ///< shared, of the last step [N], B
+  bool slipping_ = false;               ///< in the last step
+  double pushed_ = 0.0;                 ///< sum of `push` of this step's contacts before it [N]
   std::vector<Sample> samples_;
   std::vector<int> used_;  ///< samples that were ever evaluated since the last reset
   std::vector<Face> faces_;

@@ -15,13 +15,16 @@ constexpr SolverLimits kLimits{200, 1e-8, 60, 1e-7, 1e-4, 0};
 // own weight at 2 ms.
 constexpr double kYielding = 0.1;
 
+constexpr Friction kNoFriction{0.0, 0.0};
+
 }  // namespace
 
-ContactIsland::ContactIsland(int object_count, int capacity, int sides)
+ContactIsland::ContactIsland(int object_count, int capacity, int sides, int groups)
     : problem_(capacity), solver_(capacity), first_(static_cast<std::size_t>(object_count), 0) {
   // Each made in its place: a copy has no memory in reserve.
   compliances_.reserve(first_.size());
   for (int i = 0; i < object_count; ++i) compliances_.emplace_back(sides);
+  groups_.reserve(static_cast<std::size_t>(groups));
   sides_.reserve(static_cast<std::size_t>(sides));
   places_.reserve(static_cast<std::size_t>(sides));
 }
@@ -103,6 +106,66 @@ void ContactIsland::add_springs(std::span<const IslandContact> contacts,
   }
 }
 
+// Contacts of a pair follow one another in the list.
+void ContactIsland::find_groups(std::span<const IslandContact> contacts) noexcept {
+  groups_.clear();
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    const ContactPair* const pair = contacts[c].pair;
+    if (!pair->shares_friction() || contacts[c].friction.static_ == 0.0) continue;
+    if (c == 0 || contacts[c - 1].pair != pair) groups_.push_back({static_cast<int>(c), 0, 0});
+    ++groups_.back().count;
+  }
+}
+
+// The friction of a group acts on each of its contacts with their shares, so its row of the problem
+// is the mean of theirs.
+void ContactIsland::pose_friction(std::span<const IslandContact> contacts,
+                                  int first_between) noexcept {
+  for (const Group& group : groups_) {
+    const IslandContact& first = contacts[static_cast<std::size_t>(group.first)];
+    ContactConstraint& posed = problem_.contact(group.row);
+    first.pair->pose_friction(first.friction, posed);
+    posed.law = ContactLaw::kGroupFriction;
+    posed.group_first = first_between + group.first;
+    posed.group_count = group.count;
+    posed.gap.setZero();
+    for (int i = 0; i < group.count; ++i) {
+      const IslandContact& contact = contacts[static_cast<std::size_t>(group.first + i)];
+      const int member = first_between + group.first + i;
+      const double share = contact.pair->friction_share(contact.i);
+      posed.gap += share * problem_.contact(member).gap;
+      for (int row = 0; row < group.row; ++row) {
+        problem_.elastic(group.row, row) += share * problem_.elastic(member, row);
+      }
+    }
+    for (int row = 0; row < group.row; ++row) {
+      problem_.elastic(row, group.row) = problem_.elastic(group.row, row).transpose();
+    }
+    for (int i = 0; i < group.count; ++i) {
+      const IslandContact& contact = contacts[static_cast<std::size_t>(group.first + i)];
+      problem_.elastic(group.row, group.row) +=
+          contact.pair->friction_share(contact.i) *
+          problem_.elastic(first_between + group.first + i, group.row);
+    }
+  }
+}
+
+// Gives each contact its share of the friction that was found.
+void ContactIsland::spread_friction(std::span<const IslandContact> contacts, int first_between,
+                                    bool solved) noexcept {
+  for (const Group& group : groups_) {
+    const ContactConstraint& friction = problem_.contact(group.row);
+    for (int i = 0; i < group.count; ++i) {
+      const IslandContact& contact = contacts[static_cast<std::size_t>(group.first + i)];
+      ContactConstraint& member = problem_.contact(first_between + group.first + i);
+      member.force += contact.pair->friction_share(contact.i) * friction.force;
+      member.slip = friction.slip;
+      member.mode = member.force.isZero(0.0) ? ContactMode::kOpen : friction.mode;
+    }
+    if (solved) contacts[static_cast<std::size_t>(group.first)].pair->take_friction(friction);
+  }
+}
+
 // The own contacts' solution, and what the contacts between bodies do to them.
 void ContactIsland::take_back(SoftObject& object, int first, std::span<IslandContact> contacts,
                               int first_between) noexcept {
@@ -149,11 +212,14 @@ ContactSolution ContactIsland::solve(std::span<SoftObject* const> objects,
   }
   const int first_between = rows;
   rows += static_cast<int>(contacts.size());
+  find_groups(contacts);
+  for (Group& group : groups_) group.row = rows++;
   problem_.begin(rows);
   problem_.rigid = {};
   problem_.clear_elastic();
   for (std::size_t c = 0; c < contacts.size(); ++c) {
-    contacts[c].pair->pose(contacts[c].i, contacts[c].friction,
+    const bool shared = contacts[c].pair->shares_friction();
+    contacts[c].pair->pose(contacts[c].i, shared ? kNoFriction : contacts[c].friction,
                            problem_.contact(first_between + static_cast<int>(c)));
   }
   for (const int member : members) {
@@ -173,7 +239,9 @@ ContactSolution ContactIsland::solve(std::span<SoftObject* const> objects,
     add_sides(object, compliances_[static_cast<std::size_t>(member)]);
   }
   add_springs(contacts, first_between);
+  pose_friction(contacts, first_between);
   const ContactSolution solution = solver_.solve(problem_, kLimits);
+  spread_friction(contacts, first_between, solution.solved);
   for (const int member : members) {
     collect_sides(member, contacts, first_between);
     take_back(*objects[static_cast<std::size_t>(member)], first_[static_cast<std::size_t>(member)],

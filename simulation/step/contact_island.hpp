@@ -29,9 +29,11 @@ struct IslandContact {
 /// construction.
 class ContactIsland {
  public:
-  /// @param capacity contacts at most, those of the objects' own problems included
+  /// @param capacity contacts at most, those of the objects' own problems and one for the friction
+  /// of each group included
   /// @param sides of contacts between bodies that one object can have
-  ContactIsland(int object_count, int capacity, int sides);
+  /// @param groups pairs that share their friction, at most
+  ContactIsland(int object_count, int capacity, int sides, int groups);
 
   int capacity() const noexcept { return problem_.capacity(); }
   /// Solves it; the objects' own problems and `contacts` have the solution then.
@@ -50,14 +52,26 @@ class ContactIsland {
   void add_own(SoftObject& object, int first) noexcept;
   void add_sides(const SoftObject& object, SideCompliance& compliance) noexcept;
   void add_springs(std::span<const IslandContact> contacts, int first_between) noexcept;
+  void find_groups(std::span<const IslandContact> contacts) noexcept;
+  void pose_friction(std::span<const IslandContact> contacts, int first_between) noexcept;
+  void spread_friction(std::span<const IslandContact> contacts, int first_between,
+                       bool solved) noexcept;
   void take_back(SoftObject& object, int first, std::span<IslandContact> contacts,
                  int first_between) noexcept;
   void collect_sides(int object, std::span<const IslandContact> contacts, int first) noexcept;
+
+  /// Contacts of a pair that share their friction.
+  struct Group {
+    int first = 0;  ///< number in the list of contacts
+    int count = 0;
+    int row = 0;  ///< of their friction
+  };
 
   ContactProblem problem_;
   ContactSolver solver_;
   std::vector<int> first_;                   ///< row of the first own contact of each object
   std::vector<SideCompliance> compliances_;  ///< of each object
+  std::vector<Group> groups_;
   // Of the object under way.
   std::vector<Side> sides_;
   std::vector<SideCompliance::Side> places_;

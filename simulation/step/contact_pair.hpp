@@ -54,6 +54,18 @@ class ContactPair {
   virtual void write(int i, const ContactConstraint& solved,
                      BodyContactRecord& record) const noexcept = 0;
 
+  /// Returns whether all contacts of the pair share one friction force (ContactLaw::kGroupFriction)
+  /// and are without friction of their own.
+  virtual bool shares_friction() const noexcept { return false; }
+  /// Returns the part of the shared friction force that acts on contact i of this step; the parts
+  /// of all contacts add up to 1.
+  virtual double friction_share(int /*i*/) const noexcept { return 0.0; }
+  /// Writes the shared friction of this step as a constraint, but for its gap and its group, in W.
+  virtual void pose_friction(const Friction& /*friction*/,
+                             ContactConstraint& /*constraint*/) const noexcept {}
+  /// Takes the solution of that constraint. Called before update().
+  virtual void take_friction(const ContactConstraint& /*solved*/) noexcept {}
+
   /// Returns whether the two bodies may touch in this step. True for an object and itself.
   virtual bool near() const noexcept = 0;
   /// Returns whether the other body is moving scenery or the ball of a stylus that is present.

@@ -119,7 +119,8 @@ WorldContacts::WorldContacts(const SimulationConfig& config,
   const auto others = static_cast<int>(objects_.size() - 1 + scenery_.size() + balls_.size());
   const int with_others = std::min(kMaxBodyContacts, 2 * others * most);
   island_ = std::make_unique<ContactIsland>(static_cast<int>(objects_.size()), capacity(config),
-                                            with_others + (itself ? 2 * most : 0));
+                                            with_others + (itself ? 2 * most : 0),
+                                            static_cast<int>(pairs_.size()));
   members_.reserve(objects_.size());
   contacts_.reserve(kMaxBodyContacts);
   solved_.reserve(kMaxBodyContacts);
@@ -127,14 +128,14 @@ WorldContacts::WorldContacts(const SimulationConfig& config,
   refuse_overlaps(config);
 }
 
-// Of the largest island.
+// Of the largest island, with one for the friction of each pair.
 int WorldContacts::capacity(const SimulationConfig& config) const {
   int own = 0;
   for (SoftObject* const object : objects_) {
     const int more = object->problem().capacity();
     own = touches_others(config) || has_balls(config) ? own + more : std::max(own, more);
   }
-  return own + kMaxBodyContacts;
+  return own + kMaxBodyContacts + static_cast<int>(pairs_.size());
 }
 
 const WorldContacts::Shape& WorldContacts::shape_of(const SimulationConfig& config,

@@ -382,19 +382,31 @@ TEST_CASE("ball: the impulse of a tap has a limit in dt and is there at 2 ms", "
   }
 }
 
-TEST_CASE("ball: friction drags a ball that slides with its coefficient", "[unsanitized]") {
+// The mean over the way, on which the ball passes two edges and comes back: at each place the force
+// without friction leans by up to 2 degrees, too, where elements yield more on one side. The body
+// is nearly incompressible: in another, friction moves the surface across itself, too (Johnson,
+// Contact Mechanics, 3.6), and the ball rests on what is behind it.
+TEST_CASE("ball: friction turns the force on a sliding ball by its angle", "[unsanitized]") {
+  const double mu = GENERATE(0.3, 0.6);
   SceneryConfig ball = pressing_ball(0.015, 0.005, 0.2, -0.02);
-  ball.friction = {0.3, 0.3};
+  ball.friction = {mu, mu};
   const Vector3 down = ball.motion.path.back().displacement;
   ball.motion.path.push_back({1.0, down + Vector3(0.04, 0, 0)});
+  ball.motion.path.push_back({1.8, down});
   Run run(scene(coarse_cube(), ball));
-  run.go_on(0.6);
-  for (int k = 0; k < 200; ++k) {
+  run.go_on(0.3);
+  double sum = 0.0;
+  int count = 0;
+  for (int k = 0; k < 750; ++k) {
     const Vector3 force = run.step();
-    const double ratio = -force.x() / force.y();
-    CHECK(ratio > 0.28);
-    CHECK(ratio < 0.38);  // the middle of the contact runs ahead of the ball
+    const double t = 0.3 + 0.002 * k;
+    if (t > 0.9 && t < 1.2) continue;  // it turns round
+    const double drag = t < 1.0 ? -force.x() : force.x();
+    sum += std::atan2(drag, force.y());
+    ++count;
+    CHECK(std::abs(force.z()) < 0.03 * force.y());
   }
+  CHECK(std::abs(sum / count - std::atan(mu)) < 0.5 * std::numbers::pi / 180.0);
 }
 
 TEST_CASE(

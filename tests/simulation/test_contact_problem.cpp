@@ -300,6 +300,93 @@ TEST_CASE("an iteration that ends above the worst residual is no solution, and g
   }
 }
 
+// Of all forces across `pressed` of at most its length times mu, the one that leaves the least
+// energy f W f / 2 - f gap: the principle of maximum dissipation, searched on a grid of the disk.
+TEST_CASE("friction of a group: no other force in its disk leaves less energy") {
+  std::srand(5);
+  for (int i = 0; i < 40; ++i) {
+    const Matrix3 a = Matrix3::Random();
+    const Matrix3 W = 1e-3 * (a * a.transpose() + 0.1 * Matrix3::Identity());
+    const Vector3 gap = 2e-3 * Vector3::Random();
+    const Vector3 pressed = Vector3::Random();
+    const Friction friction{0.5, 0.5};
+    const auto energy = [&](const Vector3& f) { return 0.5 * f.dot(W * f) - f.dot(gap); };
+    const SingleContact found = solve_group_friction(W, gap, pressed, friction);
+    const double most = 0.5 * pressed.norm();
+    CHECK(std::abs(found.force.dot(pressed)) < 1e-12);
+    CHECK(found.force.norm() <= most * (1.0 + 1e-12));
+    CHECK((found.mode == ContactMode::kSlipping) == (found.force.norm() > most * (1.0 - 1e-12)));
+    const Vector3 one = pressed.unitOrthogonal();
+    const Vector3 other = pressed.normalized().cross(one);
+    double least = 0.0;
+    for (int r = 1; r <= 20; ++r) {
+      for (int k = 0; k < 360; ++k) {
+        const double angle = 2.0 * std::acos(-1.0) * k / 360;
+        least = std::min(least, energy(most * r / 20 *
+                                       (std::cos(angle) * one + std::sin(angle) * other)));
+      }
+    }
+    CHECK(energy(found.force) <= least + 1e-12);
+    const Vector3 open = gap - W * found.force;
+    const Vector3 along = open - open.dot(pressed) * pressed / pressed.squaredNorm();
+    CHECK((found.slip - along).norm() < 1e-12);
+  }
+  CHECK(solve_group_friction(Matrix3::Identity(), Vector3::UnitX(), Vector3::Zero(), {0.5, 0.5})
+            .mode == ContactMode::kOpen);
+}
+
+TEST_CASE("contacts that share their friction: each closes its gap, and the friction is Coulomb's") {
+  int slipping = 0;
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    const int count = 3 + static_cast<int>(seed % 10);
+    ContactProblem problem = random_problem(count + 1, seed);
+    problem.rigid = {};
+    const Vector3 up = Vector3::UnitY();
+    for (int i = 0; i < count; ++i) {
+      ContactConstraint& contact = problem.contact(i);
+      contact.law = ContactLaw::kTouching;
+      contact.normal = (up + 0.4 * Vector3::Random()).normalized();
+      contact.friction = {0.0, 0.0};
+      contact.gap -= 1e-3 * up;
+    }
+    ContactConstraint& friction = problem.contact(count);
+    friction.law = ContactLaw::kGroupFriction;
+    friction.friction = {0.5, 0.4};
+    friction.gap *= 3.0;
+    friction.group_first = 0;
+    friction.group_count = count;
+    const ContactSolution solution = solve(problem);
+    REQUIRE(solution.solved);
+    CHECK(solution.residual < 1e-12);
+    Vector3 pressed = Vector3::Zero();
+    for (int i = 0; i < count; ++i) {
+      pressed += problem.contact(i).force;
+      const ContactConstraint& contact = problem.contact(i);
+      const double open = (contact.gap - moved(problem, i)).dot(contact.normal);
+      const double pull = contact.force.dot(contact.normal);
+      CHECK(contact.force.cross(contact.normal).norm() < 1e-12);
+      CHECK(pull <= 0.0);
+      CHECK(open > -1e-10);
+      CHECK(pull * open > -1e-10);
+    }
+    const double push = pressed.norm();
+    const Vector3 open = friction.gap - moved(problem, count);
+    const Vector3 along = open - open.dot(pressed) * pressed / (push * push);
+    CHECK(std::abs(friction.force.dot(pressed)) < 1e-10 * push);
+    if (friction.mode == ContactMode::kSticking) {
+      CHECK(along.norm() < 1e-10);
+      CHECK(friction.force.norm() <= 0.5 * push);
+    } else {
+      ++slipping;
+      CHECK(friction.force.norm() == Approx(0.4 * push));
+      CHECK(along.cross(friction.force).norm() < 1e-10 * friction.force.norm());
+      CHECK(along.dot(friction.force) > 0.0);
+    }
+  }
+  CHECK(slipping > 5);
+  CHECK(slipping < 35);
+}
+
 TEST_CASE("no contacts, no forces") {
   ContactProblem problem = random_problem(0, 1);
   const ContactSolution solution = solve(problem);

@@ -106,7 +106,6 @@ SingleContact solve_single_contact(const Matrix3& W, const Vector3& gap, Contact
                                    const Vector3& normal, const Friction& friction) noexcept {
   if (law == ContactLaw::kReleased) return {};
   if (law == ContactLaw::kTouching && gap.dot(normal) >= 0) return {};
-  if (law == ContactLaw::kTouching && friction.static_ == 0.0) return slip_freely(W, gap, normal);
   const Vector3 stick = W.ldlt().solve(gap);
   if (law == ContactLaw::kHeld) return {stick, ContactMode::kSticking, Vector3::Zero()};
   const double push = -stick.dot(normal);
@@ -248,9 +247,15 @@ ContactSolver::ContactSolver(int capacity)
     : now_(Eigen::VectorXd::Zero(6 + 6 * capacity)),
       before_(now_),
       direction_(now_),
+      own_(static_cast<std::size_t>(capacity)),
+      across_(static_cast<std::size_t>(capacity)),
       held_answer_(Eigen::MatrixXd::Zero(3 * kMaxContacts, 3 * capacity)) {}
 
 namespace {
+
+bool is_smooth(const ContactConstraint& contact) noexcept {
+  return contact.law == ContactLaw::kTouching && contact.friction.static_ == 0.0;
+}
 
 // Few, or such that none can let go: one factorisation is enough.
 bool may_stick(const ContactProblem& problem) noexcept {
@@ -391,14 +396,17 @@ void ContactSolver::change(ContactProblem& problem, int a, const Vector3& force)
   }
 }
 
-// With the answer of held contacts.
-Matrix3 ContactSolver::own_compliance(const ContactProblem& problem, int a) const noexcept {
-  Matrix3 W = problem.compliance(a, a);
-  for (int i = 0; i < held_count_; ++i) {
-    W -= problem.compliance(a, held_[static_cast<std::size_t>(i)]) *
-         held_answer_.block<3, 3>(3 * i, 3 * a);
+void ContactSolver::find_own_compliances(const ContactProblem& problem) noexcept {
+  for (int a = 0; a < problem.count(); ++a) {
+    Matrix3 W = problem.compliance(a, a);
+    for (int i = 0; i < held_count_; ++i) {
+      W -= problem.compliance(a, held_[static_cast<std::size_t>(i)]) *
+           held_answer_.block<3, 3>(3 * i, 3 * a);
+    }
+    const auto index = static_cast<std::size_t>(a);
+    own_[index] = 0.5 * (W + W.transpose());
+    across_[index] = problem.contact(a).normal.dot(W * problem.contact(a).normal);
   }
-  return 0.5 * (W + W.transpose());
 }
 
 // Returns how far a contact was off [m].
@@ -419,9 +427,34 @@ double ContactSolver::solve_held(ContactProblem& problem) noexcept {
   return largest;
 }
 
+// A contact without friction: one number.
+double ContactSolver::solve_smooth(ContactProblem& problem, int a) noexcept {
+  ContactConstraint& contact = problem.contact(a);
+  const Vector3& normal = contact.normal;
+  const double across = across_[static_cast<std::size_t>(a)];
+  const double open = normal.dot(contact.gap - displacement(problem, a));
+  const double force = normal.dot(contact.force);
+  const double needed = std::min(0.0, force + open / across);
+  contact.mode = needed < 0.0 ? ContactMode::kSlipping : ContactMode::kOpen;
+  change(problem, a, needed * normal);
+  return std::abs(needed - force) * across;
+}
+
+// ... whose slip nobody asks for before the end.
+void ContactSolver::find_slips(ContactProblem& problem) noexcept {
+  for (int a = 0; a < problem.count(); ++a) {
+    ContactConstraint& contact = problem.contact(a);
+    if (!is_smooth(contact)) continue;
+    contact.slip.setZero();
+    if (contact.mode == ContactMode::kOpen) continue;
+    contact.slip = sideways(contact.gap - displacement(problem, a), contact.normal);
+  }
+}
+
 double ContactSolver::solve_touching(ContactProblem& problem, int a) noexcept {
   ContactConstraint& contact = problem.contact(a);
-  const Matrix3 W = own_compliance(problem, a);
+  if (is_smooth(contact)) return solve_smooth(problem, a);
+  const Matrix3& W = own_[static_cast<std::size_t>(a)];
   const Vector3 own = contact.gap - displacement(problem, a) + W * contact.force;
   const SingleContact found =
       solve_single_contact(W, own, contact.law, contact.normal, contact.friction);
@@ -440,7 +473,7 @@ double ContactSolver::solve_group_friction(ContactProblem& problem, int a) noexc
   for (int i = 0; i < contact.group_count; ++i) {
     pressed += problem.contact(contact.group_first + i).force;
   }
-  const Matrix3 W = own_compliance(problem, a);
+  const Matrix3& W = own_[static_cast<std::size_t>(a)];
   const Vector3 own = contact.gap - displacement(problem, a) + W * contact.force;
   const SingleContact found = irdm::solve_group_friction(W, own, pressed, contact.friction);
   const double off = (W * (found.force - contact.force)).norm();
@@ -503,8 +536,13 @@ void ContactSolver::extrapolate(ContactProblem& problem) noexcept {
 
 ContactSolution ContactSolver::iterate(ContactProblem& problem,
                                        const SolverLimits& limits) noexcept {
+  for (int a = 0; a < problem.count(); ++a) {
+    ContactConstraint& contact = problem.contact(a);
+    if (is_smooth(contact)) contact.force -= sideways(contact.force, contact.normal);
+  }
   start(problem);
   factor_held(problem);
+  find_own_compliances(problem);
   ContactSolution solution;
   while (solution.sweeps < limits.max_sweeps) {
     if (solution.sweeps > 0 && restarts_ <= limits.restarts) extrapolate(problem);
@@ -516,6 +554,7 @@ ContactSolution ContactSolver::iterate(ContactProblem& problem,
     const double enough = solution.sweeps < limits.usual_sweeps ? limits.tolerance : limits.usual;
     if (!(solution.residual > enough)) break;
   }
+  find_slips(problem);
   solution.solved = solution.residual <= limits.worst;
   return solution;
 }

@@ -152,11 +152,13 @@ class ContactSolver {
   void start(const ContactProblem& problem) noexcept;
   void keep(const ContactProblem& problem) noexcept;
   void extrapolate(ContactProblem& problem) noexcept;
-  Matrix3 own_compliance(const ContactProblem& problem, int a) const noexcept;
+  void find_own_compliances(const ContactProblem& problem) noexcept;
   void factor_held(ContactProblem& problem) noexcept;
   double sweep(ContactProblem& problem) noexcept;
   double solve_held(ContactProblem& problem) noexcept;
   double solve_touching(ContactProblem& problem, int a) noexcept;
+  double solve_smooth(ContactProblem& problem, int a) noexcept;
+  void find_slips(ContactProblem& problem) noexcept;
   double solve_group_friction(ContactProblem& problem, int a) noexcept;
   Vector3 displacement(const ContactProblem& problem, int a) const noexcept;
   void change(ContactProblem& problem, int a, const Vector3& force) noexcept;
@@ -169,11 +171,13 @@ class ContactSolver {
   auto push() const noexcept { return now_.segment<3>(0); }
   auto turn() noexcept { return now_.segment<3>(3); }
   auto turn() const noexcept { return now_.segment<3>(3); }
-  Eigen::VectorXd now_;        ///< (6 + 6 capacity)
-  Eigen::VectorXd before_;     ///< the same before the last sweep
-  Eigen::VectorXd direction_;  ///< of the conjugate gradients
-  double last_change_ = 0.0;   ///< squared norm of the last sweep's change of forces [N^2]
-  int restarts_ = 0;           ///< of the conjugate directions
+  Eigen::VectorXd now_;         ///< (6 + 6 capacity)
+  Eigen::VectorXd before_;      ///< the same before the last sweep
+  Eigen::VectorXd direction_;   ///< of the conjugate gradients
+  std::vector<Matrix3> own_;    ///< compliance of each contact, with the answer of held ones [m/N]
+  std::vector<double> across_;  ///< the same along its normal [m/N]
+  double last_change_ = 0.0;    ///< squared norm of the last sweep's change of forces [N^2]
+  int restarts_ = 0;            ///< of the conjugate directions
   std::array<int, kMaxContacts> held_{};   ///< contacts that are held ...
   int held_count_ = 0;                     ///< ... so many of them; more are solved one by one
   Eigen::LDLT<ContactMatrix> held_block_;  ///< compliance between them

@@ -9,7 +9,6 @@
 namespace irdm {
 namespace {
 
-constexpr double kStep = 0.02;
 constexpr int kSteps = 700;  // up to x = 14, where g is 1 / x within 0.5 %
 // The integral over k, by Simpson's rule: exp(-k^p) is below 1e-18 at the end.
 constexpr int kIntervals = 1200;
@@ -76,7 +75,7 @@ std::vector<std::size_t> ring_about(std::size_t i, std::span<const BallSample> s
 
 }  // namespace
 
-LowPass::LowPass(double power) : power_(power) {
+LowPass::LowPass(int power) : power_(power) {
   const double end = std::pow(42.0, 1.0 / power);
   const double h = end / kIntervals;
   for (int i = 0; i <= kSteps; ++i) {
@@ -84,28 +83,25 @@ LowPass::LowPass(double power) : power_(power) {
     for (int j = 0; j <= kIntervals; ++j) {
       const double k = j * h;
       const double weight = j == 0 || j == kIntervals ? 1.0 : (j % 2 == 1 ? 4.0 : 2.0);
-      sum += weight * std::exp(-std::pow(k, power)) * ::j0(k * i * kStep);
+      sum += weight * std::exp(-std::pow(k, power)) * ::j0(k * i / kStepsPerUnit);
     }
     values_.push_back(sum * h / 3.0);
   }
 }
 
 const LowPass& LowPass::of_order(int order) {
-  static const LowPass linear(2.0);
-  static const LowPass quadratic(3.0);
+  static const LowPass linear(2);
+  static const LowPass quadratic(3);
   return order == 1 ? linear : quadratic;
 }
 
-double LowPass::operator()(double x) const noexcept {
-  const double place = x / kStep;
-  const auto i = static_cast<std::size_t>(place);
-  if (i + 1 < values_.size()) {
-    const double part = place - static_cast<double>(i);
-    return (1.0 - part) * values_[i] + part * values_[i + 1];
-  }
+double LowPass::far(double x) const noexcept {
   // The Green's function without a low pass, and the leading term that the low pass adds.
-  const double last = kStep * kSteps;
-  return 1.0 / x + (values_.back() - 1.0 / last) * std::pow(last / x, power_ + 1.0);
+  const double last = kSteps / kStepsPerUnit;
+  const double ratio = last / x;
+  double fading = ratio;
+  for (int k = 0; k < power_; ++k) fading *= ratio;
+  return 1.0 / x + (values_.back() - 1.0 / last) * fading;
 }
 
 NearField::NearField(const Model& model, const Eigen::MatrixXd& static_limit,
@@ -132,19 +128,19 @@ NearField::NearField(const Model& model, const Eigen::MatrixXd& static_limit,
       const double longest = kMaxLength * sample.edge;
       mesh_length = own > share ? std::min(g0 * scale / (own - share), longest) : longest;
     }
-    places_.push_back({sample.place.position, sample_length, std::max(mesh_length, sample_length),
-                       std::sqrt(scale)});
+    places_.push_back({sample.place.position, 1.0 / sample_length,
+                       1.0 / std::max(mesh_length, sample_length), std::sqrt(scale)});
   }
 }
 
 double NearField::between(int i, int j) const noexcept {
   const Place& a = places_[static_cast<std::size_t>(i)];
   const Place& b = places_[static_cast<std::size_t>(j)];
-  const double fine = std::max(a.sample_length, b.sample_length);
-  const double mesh = std::min(a.mesh_length, b.mesh_length);
-  if (mesh <= fine) return 0.0;
+  const double fine = std::min(a.per_sample_length, b.per_sample_length);
+  const double mesh = std::max(a.per_mesh_length, b.per_mesh_length);
+  if (mesh >= fine) return 0.0;
   const double r = (a.position - b.position).norm();
-  return a.scale * b.scale * ((*low_pass_)(r / fine) / fine - (*low_pass_)(r / mesh) / mesh);
+  return a.scale * b.scale * ((*low_pass_)(r * fine) * fine - (*low_pass_)(r * mesh) * mesh);
 }
 
 }  // namespace irdm

@@ -20,14 +20,23 @@ class LowPass {
   /// @param order 1 or 2
   static const LowPass& of_order(int order);
 
-  double operator()(double x) const noexcept;
+  double operator()(double x) const noexcept {
+    const double place = x * kStepsPerUnit;
+    const auto i = static_cast<std::size_t>(place);
+    if (i + 1 >= values_.size()) return far(x);
+    const double part = place - static_cast<double>(i);
+    return (1.0 - part) * values_[i] + part * values_[i + 1];
+  }
   double at_zero() const noexcept { return values_.front(); }
 
  private:
-  explicit LowPass(double power);
+  static constexpr double kStepsPerUnit = 50.0;
 
-  double power_;
-  std::vector<double> values_;  ///< at 0, kStep, 2 kStep, ...
+  explicit LowPass(int power);
+  double far(double x) const noexcept;
+
+  int power_;
+  std::vector<double> values_;  ///< at 0, 1 / kStepsPerUnit, 2 / kStepsPerUnit, ...
 };
 
 /// The part of the surface compliance that a finite element mesh is too coarse to represent near a
@@ -48,15 +57,15 @@ class NearField {
   double between(int i, int j) const noexcept;
   /// Returns the length of the low pass that describes the mesh at a sample [m].
   double mesh_length(int i) const noexcept {
-    return places_[static_cast<std::size_t>(i)].mesh_length;
+    return 1.0 / places_[static_cast<std::size_t>(i)].per_mesh_length;
   }
 
  private:
   struct Place {
-    Vector3 position;      ///< [m], B
-    double sample_length;  ///< length of the low pass that describes the sample [m]
-    double mesh_length;    ///< the same of the mesh, >= sample_length [m]
-    double scale;          ///< 1 / sqrt(pi E*) of the material there [1/sqrt(Pa)]
+    Vector3 position;          ///< [m], B
+    double per_sample_length;  ///< 1 over the length of the sample's low pass [1/m]
+    double per_mesh_length;    ///< 1 over the length of the mesh's, which is not shorter [1/m]
+    double scale;              ///< 1 / sqrt(pi E*) of the material there [1/sqrt(Pa)]
   };
 
   const LowPass* low_pass_;

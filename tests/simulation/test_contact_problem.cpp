@@ -322,8 +322,8 @@ TEST_CASE("friction of a group: no other force in its disk leaves less energy") 
     for (int r = 1; r <= 20; ++r) {
       for (int k = 0; k < 360; ++k) {
         const double angle = 2.0 * std::acos(-1.0) * k / 360;
-        least = std::min(least, energy(most * r / 20 *
-                                       (std::cos(angle) * one + std::sin(angle) * other)));
+        least = std::min(least,
+                         energy(most * r / 20 * (std::cos(angle) * one + std::sin(angle) * other)));
       }
     }
     CHECK(energy(found.force) <= least + 1e-12);
@@ -335,7 +335,8 @@ TEST_CASE("friction of a group: no other force in its disk leaves less energy") 
             .mode == ContactMode::kOpen);
 }
 
-TEST_CASE("contacts that share their friction: each closes its gap, and the friction is Coulomb's") {
+TEST_CASE(
+    "contacts that share their friction: each closes its gap, and the friction is Coulomb's") {
   int slipping = 0;
   for (unsigned seed = 1; seed <= 40; ++seed) {
     const int count = 3 + static_cast<int>(seed % 10);

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""A case by irdm: irdm_engine.py [--ball | --fine] SCENE.json RESULT.json (README.md: what both hold)
+"""A case by irdm: irdm_engine.py [--ball [--quadratic] | --rigid-ball | --fine] SCENE.json RESULT.json (README.md: what both hold)
 
 The tool is irdm's fingertip: its point is the ball's foremost one, its radius that of Hertz' contact at the greatest
-depth. With --ball it is a rigid body that a stylus leads. Linear elements of the given mesh, all modes.
+depth. With --ball it is the ball of a stylus, with --rigid-ball a rigid body that a stylus leads. Linear elements of the
+given mesh, all modes. With --quadratic: quadratic elements, twice as large as those of --fine where the case has a shape.
 With --fine it is scenery, an exact ball on its path; quadratic elements, of shapes/ where the case has one, a quarter of
 the step or less.
 """
@@ -70,7 +71,20 @@ def volume(mesh, dt):
 
 def fine_model(body, dt, folder):
     """Of a shape of our own, else of the given mesh; with some modes where all would take long."""
+    return model_of_shape(body, dt, folder, shape_of(body, folder))
+
+
+def coarse_model(body, dt, folder):
+    """The same with elements twice as large."""
     shape = shape_of(body, folder)
+    if shape and shape.suffix == ".geo":
+        coarse = folder / shape.name
+        coarse.write_text(shape.read_text(encoding="utf-8") + "Mesh.MeshSizeFactor = 1.4;\n", encoding="utf-8")
+        shape = coarse
+    return model_of_shape(body, dt, folder, shape)
+
+
+def model_of_shape(body, dt, folder, shape):
     config = table_of(body, dt, shape or given_mesh(body, folder))
     config["mesh"]["order"] = 2
     if shape:
@@ -123,6 +137,22 @@ class Fingertip:
 
 
 class Ball:
+    """A tool as the ball of a stylus, without a spring."""
+
+    def __init__(self, scene):
+        self.tool = scene["tools"][0]
+        self.styluses = [{"shape": "ball", "radius": self.tool["radius"], "coupling_stiffness": 0}]
+        self.objects, self.scenery = [], []
+        self.settings = "ball of a stylus, no spring"
+
+    def tip(self, time):
+        return centre(self.tool, time)
+
+    def force(self, step):
+        return step.styluses["force"][0]
+
+
+class RigidBall:
     """A tool as a rigid body, led by nearly the stiffest spring that irdm accepts."""
 
     def __init__(self, scene):
@@ -174,16 +204,17 @@ def on_object(step, number):
     return contacts["force"][which].sum(axis=0)
 
 
-def run(scene, tool_kind):
+def run(scene, tool_kind, quadratic=False):
     fine = tool_kind is Kinematic
     parts = FINER_STEPS.get(scene["name"], FINE_STEPS) if fine else 1
     dt = scene["dt"] / parts
     tool = tool_kind(scene) if scene["tools"] else None
     with tempfile.TemporaryDirectory() as folder:
-        models = [(fine_model if fine else model)(body, dt, Path(folder)) for body in scene["bodies"]]
+        make = fine_model if fine else coarse_model if quadratic else model
+        models = [make(body, dt, Path(folder)) for body in scene["bodies"]]
         objects, starts = [], []
         for number, (body, one) in enumerate(zip(scene["bodies"], models)):
-            own = fine and shape_of(body, Path(folder))  # in the frame of its file
+            own = (fine or quadratic) and shape_of(body, Path(folder))  # in the frame of its file
             orientation = body.get("orientation", [1, 0, 0, 0]) if own else [1, 0, 0, 0]
             turn = meshes.rotation(orientation)
             if own:
@@ -209,16 +240,19 @@ def run(scene, tool_kind):
     force, taken, shapes = [], [], []
     styluses = tool.styluses if tool else []
     for k in range(1, steps + 1):
+        mean = numpy.zeros(3)
         begin = time.process_time_ns()
         for part in range(parts):
             now = ((k - 1) * parts + part + 1) * dt
             step = simulation.step([tool.tip(now)] if styluses else None)
+            mean += (tool.force(step) if tool else on_object(step, 1)) / parts
         taken.append((time.process_time_ns() - begin) / 1e3)
-        force.append((tool.force(step) if tool else on_object(step, 1)).tolist())
+        force.append(mean.tolist())
         if k in samples:
             shapes.append(matched(scene, starts[0], models[0].triangles, simulation.surface(0)))
-    elements = "quadratic elements" if fine else "linear elements"
-    settings = f"{elements}, all modes or {FINE_MODES}, steps of {1e3 * dt:g} ms" if fine else f"{elements}, all modes"
+    settings = "linear elements, all modes"
+    if fine or quadratic:
+        settings = f"quadratic elements, all modes or {FINE_MODES}, steps of {1e3 * dt:g} ms"
     settings += f", {tool.settings}" if tool else ""
     return {"version": irdm.__version__, "settings": settings, "dt": scene["dt"], "force": force,
             "step_us": numpy.percentile(taken, [50, 99]).tolist(), "positions": shapes}
@@ -250,9 +284,9 @@ def matched(scene, start, triangles, now):
 
 def main():
     arguments = sys.argv[1:]
-    kind = {"--ball": Ball, "--fine": Kinematic}.get(arguments[0], Fingertip)
+    kind = {"--ball": Ball, "--rigid-ball": RigidBall, "--fine": Kinematic}.get(arguments[0], Fingertip)
     scene = json.loads(Path(arguments[-2]).read_text(encoding="utf-8"))
-    Path(arguments[-1]).write_text(json.dumps(run(scene, kind)), encoding="utf-8")
+    Path(arguments[-1]).write_text(json.dumps(run(scene, kind, "--quadratic" in arguments)), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -21,7 +21,9 @@ HERE = Path(__file__).resolve().parent
 BUILT = HERE.parent / "out" / "benchmark"  # by engines/setup.sh
 ENGINES = {"irdm": [sys.executable, str(HERE / "irdm_engine.py")],
            "irdm, fine": [sys.executable, str(HERE / "irdm_engine.py"), "--fine"],
-           "irdm, rigid ball": [sys.executable, str(HERE / "irdm_engine.py"), "--ball"],
+           "irdm, ball": [sys.executable, str(HERE / "irdm_engine.py"), "--ball"],
+           "irdm, ball, quadratic": [sys.executable, str(HERE / "irdm_engine.py"), "--ball", "--quadratic"],
+           "irdm, rigid ball": [sys.executable, str(HERE / "irdm_engine.py"), "--rigid-ball"],
            "bullet": [str(BUILT / "bullet")],
            "jolt": ["node", str(BUILT / "jolt.mjs")],
            "jolt, 10 substeps": ["node", str(BUILT / "jolt.mjs"), "--substeps", "10"],
@@ -101,13 +103,23 @@ def deepest(scene, positions):
     return depth
 
 
+def means_of_values(force):
+    """Means over steps of a force that is known at their ends, and begins at zero."""
+    return 0.5 * (force + numpy.vstack([numpy.zeros(3), force[:-1]]))
+
+
+def means_of_means(force, own_dt, dt, count):
+    """Means over `count` steps of dt of a force that is known as means over steps of own_dt: of its impulse."""
+    impulse = numpy.vstack([numpy.zeros(3), own_dt * numpy.cumsum(force, axis=0)])
+    own_time = own_dt * numpy.arange(len(impulse))
+    time = dt * numpy.arange(count + 1)
+    return numpy.stack([numpy.diff(numpy.interp(time, own_time, impulse[:, axis])) / dt for axis in range(3)], axis=1)
+
+
 def score(scene, reference, found):
     dt = reference["dt"]
-    truth = numpy.array(reference["force"])
-    time = dt * numpy.arange(1, len(truth) + 1)
-    raw = numpy.array(found["force"], dtype=float)
-    own_time = found["dt"] * numpy.arange(1, len(raw) + 1)
-    force = numpy.stack([numpy.interp(time, own_time, raw[:, axis]) for axis in range(3)], axis=1)
+    truth = means_of_values(numpy.array(reference["force"]))
+    force = means_of_means(numpy.array(found["force"], dtype=float), found["dt"], dt, len(truth))
     peak = numpy.linalg.norm(truth, axis=1).max()
     apart = numpy.linalg.norm(force - truth, axis=1)
     rest = numpy.array(scene["bodies"][0]["nodes"])[scene["watched"]]

@@ -81,5 +81,5 @@ else
   scripts/build.sh $preset
 fi
 # Under sanitizers some tests cannot run; here all must that the machine and its packages allow.
-run_tests $preset "${chosen[@]}" --parallel 4 --output-junit tests.xml
+run_tests $preset "${chosen[@]}" --parallel 4 --output-junit tests.xml --test-output-size-passed 1000000
 scripts/check_left_out.py build/$preset/tests.xml $([ $all = yes ] || echo --quick)

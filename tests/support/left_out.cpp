@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 #include <iostream>
+#include <string>
 
 #include "common/hdf5/handle.hpp"
 #include "tests/support/catch.hpp"
@@ -13,7 +14,8 @@ namespace {
 
 constexpr int kStatus = 211;  // SKIP_RETURN_CODE of every test, tests/CMakeLists.txt
 
-bool left_out = false;  // the running test case, or a part of it
+std::string running;    // test case
+bool left_out = false;  // it, or a part of it
 std::size_t cases_left_out = 0;
 
 /// A program of which nothing failed and every test case was left out ends with a status of its
@@ -21,6 +23,7 @@ std::size_t cases_left_out = 0;
 class LeftOutListener : public Catch::EventListenerBase {
  public:
   using Catch::EventListenerBase::EventListenerBase;
+  void testCaseStarting(const Catch::TestCaseInfo& info) override { running = info.name; }
   void testCaseEnded(const Catch::TestCaseStats&) override {
     if (left_out) ++cases_left_out;
     left_out = false;
@@ -41,7 +44,8 @@ namespace irdm::test {
 
 void leave_out(const std::string& reason) {
   left_out = true;
-  std::cout << "test left out: " << reason.substr(0, reason.find('\n')) << std::endl;
+  std::cout << "test left out: " << running << ": " << reason.substr(0, reason.find('\n'))
+            << std::endl;
 }
 
 }  // namespace irdm::test

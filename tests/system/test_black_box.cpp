@@ -75,6 +75,24 @@ bool any_black_box(const Stage& stage) {
   return std::filesystem::exists(stage.path("blackbox"));
 }
 
+/// Runs server and bridge for a second that ends in contact. Returns whether force steps stopped in
+/// contact for so long that this is a fault of its own, as they may on a busy machine.
+bool stalled_in_a_run_that_is_well() {
+  const Stage stage;
+  stage.write("script.csv", hold_and_circle());
+  if (!kKeepsPace) stage.hold_forces();
+  Server server = stage.start_server({}, {.folder = stage.path("")});
+  ChildProcess bridge = stage.start_bridge(server, {"--duration", "1"}, {.folder = stage.path("")});
+  CHECK(bridge.wait() == 0);
+  server.process.signal(SIGTERM);
+  CHECK(server.process.wait() == 0);
+  if (!any_black_box(stage)) return false;
+  CHECK(find_black_box(stage, "irdm-bridge-", 0).empty());
+  const hdf5::File file = black_box(stage, "irdm-server-");
+  CHECK(file.read_string_attribute("/", "fault") == "force steps stopped in contact");
+  return true;
+}
+
 }  // namespace
 
 // Those with the tag need a connection that stays until the fault: not where a sanitizer makes the
@@ -206,14 +224,10 @@ TEST_CASE(
   const Stage stage;
   stage.write("script.csv", hold_and_circle());
   SECTION("all is well, and the bridge ends in contact") {
-    if (!kKeepsPace) stage.hold_forces();
-    Server server = stage.start_server({}, {.folder = stage.path("")});
-    ChildProcess bridge =
-        stage.start_bridge(server, {"--duration", "1"}, {.folder = stage.path("")});
-    CHECK(bridge.wait() == 0);
-    server.process.signal(SIGTERM);
-    CHECK(server.process.wait() == 0);
-    CHECK_FALSE(any_black_box(stage));
+    constexpr int kMostRuns = 20;
+    int runs = 1;
+    while (stalled_in_a_run_that_is_well() && runs < kMostRuns) ++runs;
+    CHECK(runs < kMostRuns);
   }
   SECTION("no folder is wanted") {
     std::string scene = scene_text();

@@ -129,8 +129,8 @@ class Fingertip:
         self.objects, self.scenery = [], []
         self.settings = f"fingertip of {1e3 * radius:.1f} mm, spring {stiffness:g} N/m"
 
-    def tip(self, time):
-        return centre(self.tool, time) + self.foremost
+    def tips(self, time):
+        return [centre(self.tool, time) + self.foremost]
 
     def force(self, step):
         return step.styluses["force"][0]
@@ -140,13 +140,14 @@ class Ball:
     """A tool as the ball of a stylus, without a spring."""
 
     def __init__(self, scene):
-        self.tool = scene["tools"][0]
-        self.styluses = [{"shape": "ball", "radius": self.tool["radius"], "coupling_stiffness": 0}]
+        self.tools = scene["tools"]
+        self.styluses = [{"shape": "ball", "radius": tool["radius"], "coupling_stiffness": 0} for tool in self.tools]
         self.objects, self.scenery = [], []
         self.settings = "ball of a stylus, no spring"
+        scene["friction"] = self.tools[0]["friction"]  # such a ball has that of the object
 
-    def tip(self, time):
-        return centre(self.tool, time)
+    def tips(self, time):
+        return [centre(tool, time) for tool in self.tools]
 
     def force(self, step):
         return step.styluses["force"][0]
@@ -168,6 +169,9 @@ class RigidBall:
         self.number = len(scene["bodies"])
         self.settings = (f"rigid ball of {mass:.2g} kg, {BALL_CELLS} cells in a quarter circle, "
                          f"spring {stiffness:.2g} N/m")
+
+    def tips(self, time):
+        return [self.tip(time)]
 
     def tip(self, time):
         return centre(self.tool, time)
@@ -240,13 +244,15 @@ def run(scene, tool_kind, quadratic=False):
     force, taken, shapes = [], [], []
     styluses = tool.styluses if tool else []
     for k in range(1, steps + 1):
-        mean = numpy.zeros(3)
-        begin = time.process_time_ns()
+        mean, took = numpy.zeros(3), 0
         for part in range(parts):
             now = ((k - 1) * parts + part + 1) * dt
-            step = simulation.step([tool.tip(now)] if styluses else None)
+            tips = tool.tips(now) if styluses else None
+            begin = time.process_time_ns()
+            step = simulation.step(tips)
+            took += time.process_time_ns() - begin
             mean += (tool.force(step) if tool else on_object(step, 1)) / parts
-        taken.append((time.process_time_ns() - begin) / 1e3)
+        taken.append(took / 1e3)
         force.append(mean.tolist())
         if k in samples:
             shapes.append(matched(scene, starts[0], models[0].triangles, simulation.surface(0)))

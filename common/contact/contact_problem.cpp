@@ -253,6 +253,9 @@ ContactSolver::ContactSolver(int capacity)
 
 namespace {
 
+// From then on the friction of a group that slips takes half of each change.
+constexpr int kUndampedSweeps = 20;
+
 bool is_smooth(const ContactConstraint& contact) noexcept {
   return contact.law == ContactLaw::kTouching && contact.friction.static_ == 0.0;
 }
@@ -432,12 +435,14 @@ double ContactSolver::solve_smooth(ContactProblem& problem, int a) noexcept {
   ContactConstraint& contact = problem.contact(a);
   const Vector3& normal = contact.normal;
   const double across = across_[static_cast<std::size_t>(a)];
-  const double open = normal.dot(contact.gap - displacement(problem, a));
+  // One that began with friction may have a force sideways.
+  const Vector3 lost = own_[static_cast<std::size_t>(a)] * sideways(contact.force, normal);
+  const double open = normal.dot(contact.gap - displacement(problem, a) + lost);
   const double force = normal.dot(contact.force);
-  const double needed = std::min(0.0, force + open / across);
+  const double needed = std::min(force + open / across, 0.0);  // NaN stays
   contact.mode = needed < 0.0 ? ContactMode::kSlipping : ContactMode::kOpen;
   change(problem, a, needed * normal);
-  return std::abs(needed - force) * across;
+  return std::abs(needed - force) * across + lost.norm();
 }
 
 // ... whose slip nobody asks for before the end.
@@ -475,7 +480,11 @@ double ContactSolver::solve_group_friction(ContactProblem& problem, int a) noexc
   }
   const Matrix3& W = own_[static_cast<std::size_t>(a)];
   const Vector3 own = contact.gap - displacement(problem, a) + W * contact.force;
-  const SingleContact found = irdm::solve_group_friction(W, own, pressed, contact.friction);
+  SingleContact found = irdm::solve_group_friction(W, own, pressed, contact.friction);
+  if (found.mode == ContactMode::kSlipping && sweeps_ > kUndampedSweeps) {
+    // Friction may press or lift its contacts by more than they yield: else the two go round.
+    found.force = 0.5 * (found.force + contact.force);
+  }
   const double off = (W * (found.force - contact.force)).norm();
   contact.mode = found.mode;
   contact.slip = found.slip;
@@ -549,7 +558,7 @@ ContactSolution ContactSolver::iterate(ContactProblem& problem,
     keep(problem);
     const int used = 6 + 6 * problem.count();
     before_.head(used) = now_.head(used);
-    ++solution.sweeps;
+    sweeps_ = ++solution.sweeps;
     solution.residual = sweep(problem);
     const double enough = solution.sweeps < limits.usual_sweeps ? limits.tolerance : limits.usual;
     if (!(solution.residual > enough)) break;

@@ -64,6 +64,10 @@ struct ContactConstraint {
   // Of kGroupFriction: numbers of the contacts in its group.
   int group_first = 0;
   int group_count = 0;
+  // Of a contact in a group, written by who spreads the friction.
+  Vector3 shared = Vector3::Zero();  ///< its part of the friction, which `force` contains [N]
+  /// What the solution leaves open at it sideways, less the mean of the group [m].
+  Vector3 apart = Vector3::Zero();
 };
 
 /// The rigid body's own answer within the step: displacement at arm a per force at arm b,
@@ -178,6 +182,7 @@ class ContactSolver {
   std::vector<double> across_;  ///< the same along its normal [m/N]
   double last_change_ = 0.0;    ///< squared norm of the last sweep's change of forces [N^2]
   int restarts_ = 0;            ///< of the conjugate directions
+  int sweeps_ = 0;              ///< done
   std::array<int, kMaxContacts> held_{};   ///< contacts that are held ...
   int held_count_ = 0;                     ///< ... so many of them; more are solved one by one
   Eigen::LDLT<ContactMatrix> held_block_;  ///< compliance between them

@@ -309,7 +309,6 @@ void BallContacts::skip(int i) noexcept {
 int BallContacts::find() noexcept {
   keep_left_out();
   count_ = 0;
-  pushed_ = 0.0;
   ++step_;
   displaced_ *= kReachFading;
   std::swap(pressed_, pressed_now_);
@@ -339,9 +338,8 @@ int BallContacts::find() noexcept {
     contact.arm = candidate.place;
     contact.normal = state.normal;
     contact.gap = state.gap;
-    pushed_ += state.push;
   }
-  if (pushed_ <= 0.0) {  // it begins to touch
+  if (pressed_.empty()) {  // it begins to touch
     friction_.setZero();
     slipping_ = false;
   }
@@ -360,10 +358,9 @@ void BallContacts::pose(int i, const Friction& friction,
 }
 
 // As the contacts pressed in the last step: where they press now is not known before.
-double BallContacts::friction_share(int i) const noexcept {
-  if (pushed_ <= 0.0) return 1.0 / count_;
+double BallContacts::friction_weight(int i) const noexcept {
   const Contact& contact = found_[static_cast<std::size_t>(i)];
-  return samples_[static_cast<std::size_t>(number_of(contact))].push / pushed_;
+  return samples_[static_cast<std::size_t>(number_of(contact))].push;
 }
 
 void BallContacts::pose_friction(const Friction& friction,
@@ -382,18 +379,18 @@ void BallContacts::update(int i, const ContactConstraint& solved, const Vector3&
   const Contact& contact = found_[static_cast<std::size_t>(i)];
   Sample& state = samples_[static_cast<std::size_t>(number_of(contact))];
   state.updated = step_;
-  const bool pressed = solved.mode != ContactMode::kOpen;
-  const bool slipping = solved.mode == ContactMode::kSlipping;
+  state.push = std::max(0.0, (solved.force - solved.shared).dot(contact.normal));
+  const bool pressed = state.push > 0.0;
   state.force = body_.motion.halfway.conjugate() * solved.force;
-  const Vector3 friction = friction_share(i) * (body_.motion.halfway * friction_);
-  state.push = std::max(0.0, (solved.force - friction).dot(contact.normal));
   state.inset = inset_left_ * state.inset - (1.0 - inset_left_) * yielded.dot(contact.normal);
   if (pressed) {
     state.pressed = step_;
     pressed_now_.push_back(number_of(contact));
   }
-  if (!slipping) return;
-  const Vector3 arm = state.anchor - solved.slip - scenery_.now.position;
+  Vector3 moved = solved.apart;
+  if (solved.mode == ContactMode::kSlipping) moved += solved.slip;
+  if (moved.isZero(0.0)) return;
+  const Vector3 arm = state.anchor - moved - scenery_.now.position;
   if (arm.isZero(0.0)) return;
   state.anchor = scenery_.now.position + radius_ * arm.normalized();
 }

@@ -33,7 +33,7 @@ class BallContacts final : public ContactPair {
   void write(int i, const ContactConstraint& solved,
              BodyContactRecord& record) const noexcept override;
   bool shares_friction() const noexcept override { return true; }
-  double friction_share(int i) const noexcept override;
+  double friction_weight(int i) const noexcept override;
   void pose_friction(const Friction& friction,
                      ContactConstraint& constraint) const noexcept override;
   void take_friction(const ContactConstraint& solved) noexcept override;
@@ -117,7 +117,6 @@ class BallContacts final : public ContactPair {
   std::uint64_t step_ = 1;
   Vector3 friction_ = Vector3::Zero();  ///< shared, of the last step [N], B
   bool slipping_ = false;               ///< in the last step
-  double pushed_ = 0.0;                 ///< sum of `push` of this step's contacts before it [N]
   std::vector<Sample> samples_;
   std::vector<int> used_;  ///< samples that were ever evaluated since the last reset
   std::vector<Face> faces_;

@@ -106,15 +106,28 @@ void ContactIsland::add_springs(std::span<const IslandContact> contacts,
   }
 }
 
-// Contacts of a pair follow one another in the list.
+// Contacts of a pair follow one another in the list. Those that were not pressed in the last step
+// share no friction yet.
 void ContactIsland::find_groups(std::span<const IslandContact> contacts) noexcept {
   groups_.clear();
-  for (std::size_t c = 0; c < contacts.size(); ++c) {
+  for (std::size_t c = 0; c < contacts.size();) {
     const ContactPair* const pair = contacts[c].pair;
-    if (!pair->shares_friction() || contacts[c].friction.static_ == 0.0) continue;
-    if (c == 0 || contacts[c - 1].pair != pair) groups_.push_back({static_cast<int>(c), 0, 0});
-    ++groups_.back().count;
+    Group group{static_cast<int>(c), 0, 0, 0.0};
+    for (; c < contacts.size() && contacts[c].pair == pair; ++c) {
+      ++group.count;
+      group.weight += pair->friction_weight(contacts[c].i);
+    }
+    const Friction& friction = contacts[static_cast<std::size_t>(group.first)].friction;
+    if (pair->shares_friction() && group.weight > 0.0 && friction.static_ > 0.0) {
+      groups_.push_back(group);
+    }
   }
+}
+
+double ContactIsland::share(const Group& group, std::span<const IslandContact> contacts,
+                            int i) noexcept {
+  const IslandContact& contact = contacts[static_cast<std::size_t>(group.first + i)];
+  return contact.pair->friction_weight(contact.i) / group.weight;
 }
 
 // The friction of a group acts on each of its contacts with their shares, so its row of the problem
@@ -130,22 +143,20 @@ void ContactIsland::pose_friction(std::span<const IslandContact> contacts,
     posed.group_count = group.count;
     posed.gap.setZero();
     for (int i = 0; i < group.count; ++i) {
-      const IslandContact& contact = contacts[static_cast<std::size_t>(group.first + i)];
-      const int member = first_between + group.first + i;
-      const double share = contact.pair->friction_share(contact.i);
-      posed.gap += share * problem_.contact(member).gap;
+      const int member = posed.group_first + i;
+      const double part = share(group, contacts, i);
+      if (part == 0.0) continue;
+      posed.gap += part * problem_.contact(member).gap;
       for (int row = 0; row < group.row; ++row) {
-        problem_.elastic(group.row, row) += share * problem_.elastic(member, row);
+        problem_.elastic(group.row, row) += part * problem_.elastic(member, row);
       }
     }
     for (int row = 0; row < group.row; ++row) {
       problem_.elastic(row, group.row) = problem_.elastic(group.row, row).transpose();
     }
     for (int i = 0; i < group.count; ++i) {
-      const IslandContact& contact = contacts[static_cast<std::size_t>(group.first + i)];
       problem_.elastic(group.row, group.row) +=
-          contact.pair->friction_share(contact.i) *
-          problem_.elastic(first_between + group.first + i, group.row);
+          share(group, contacts, i) * problem_.elastic(posed.group_first + i, group.row);
     }
   }
 }
@@ -156,13 +167,37 @@ void ContactIsland::spread_friction(std::span<const IslandContact> contacts, int
   for (const Group& group : groups_) {
     const ContactConstraint& friction = problem_.contact(group.row);
     for (int i = 0; i < group.count; ++i) {
-      const IslandContact& contact = contacts[static_cast<std::size_t>(group.first + i)];
       ContactConstraint& member = problem_.contact(first_between + group.first + i);
-      member.force += contact.pair->friction_share(contact.i) * friction.force;
+      member.shared = share(group, contacts, i) * friction.force;
+      member.force += member.shared;
       member.slip = friction.slip;
       member.mode = member.force.isZero(0.0) ? ContactMode::kOpen : friction.mode;
     }
     if (solved) contacts[static_cast<std::size_t>(group.first)].pair->take_friction(friction);
+  }
+  for (const Group& group : groups_) find_apart(group, contacts, first_between);
+}
+
+// Only the mean of a group is held: what single contacts leave open beside it is not to become a
+// gap of the mean when the shares change.
+void ContactIsland::find_apart(const Group& group, std::span<const IslandContact> contacts,
+                               int first_between) noexcept {
+  const int rows = first_between + static_cast<int>(contacts.size());
+  Vector3 mean = Vector3::Zero();
+  for (int i = 0; i < group.count; ++i) {
+    ContactConstraint& member = problem_.contact(first_between + group.first + i);
+    member.apart = member.gap;
+    for (int row = 0; row < rows; ++row) {
+      const Vector3& force = problem_.contact(row).force;
+      if (force.isZero(0.0)) continue;
+      member.apart -= problem_.elastic(first_between + group.first + i, row) * force;
+    }
+    mean += share(group, contacts, i) * member.apart;
+  }
+  for (int i = 0; i < group.count; ++i) {
+    ContactConstraint& member = problem_.contact(first_between + group.first + i);
+    member.apart -= mean;
+    member.apart -= member.apart.dot(member.normal) * member.normal;
   }
 }
 

@@ -49,23 +49,27 @@ class ContactIsland {
     const PatchCompliance::Place* place = nullptr;
     Vector3 arm = Vector3::Zero();  ///< [m], B
   };
+  /// Contacts of a pair that share their friction.
+  struct Group {
+    int first = 0;  ///< number in the list of contacts
+    int count = 0;
+    int row = 0;          ///< of their friction
+    double weight = 0.0;  ///< sum of ContactPair::friction_weight() [N]
+  };
+  /// Part of the friction of a group that acts on its contact i; the parts add up to 1.
+  static double share(const Group& group, std::span<const IslandContact> contacts, int i) noexcept;
   void add_own(SoftObject& object, int first) noexcept;
   void add_sides(const SoftObject& object, SideCompliance& compliance) noexcept;
   void add_springs(std::span<const IslandContact> contacts, int first_between) noexcept;
   void find_groups(std::span<const IslandContact> contacts) noexcept;
+  void find_apart(const Group& group, std::span<const IslandContact> contacts,
+                  int first_between) noexcept;
   void pose_friction(std::span<const IslandContact> contacts, int first_between) noexcept;
   void spread_friction(std::span<const IslandContact> contacts, int first_between,
                        bool solved) noexcept;
   void take_back(SoftObject& object, int first, std::span<IslandContact> contacts,
                  int first_between) noexcept;
   void collect_sides(int object, std::span<const IslandContact> contacts, int first) noexcept;
-
-  /// Contacts of a pair that share their friction.
-  struct Group {
-    int first = 0;  ///< number in the list of contacts
-    int count = 0;
-    int row = 0;  ///< of their friction
-  };
 
   ContactProblem problem_;
   ContactSolver solver_;

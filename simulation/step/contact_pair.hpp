@@ -57,9 +57,9 @@ class ContactPair {
   /// Returns whether all contacts of the pair share one friction force (ContactLaw::kGroupFriction)
   /// and are without friction of their own.
   virtual bool shares_friction() const noexcept { return false; }
-  /// Returns the part of the shared friction force that acts on contact i of this step; the parts
-  /// of all contacts add up to 1.
-  virtual double friction_share(int /*i*/) const noexcept { return 0.0; }
+  /// Returns the weight of contact i of this step in the shared friction: the force that pressed it
+  /// in the last step [N].
+  virtual double friction_weight(int /*i*/) const noexcept { return 0.0; }
   /// Writes the shared friction of this step as a constraint, but for its gap and its group, in W.
   virtual void pose_friction(const Friction& /*friction*/,
                              ContactConstraint& /*constraint*/) const noexcept {}

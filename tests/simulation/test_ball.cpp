@@ -584,6 +584,7 @@ TEST_CASE("ball: a saved state and a reset go on to the bit") {
 TEST_CASE("ball: a step does not allocate") {
   if (!AllocationGuard::active()) return leave_out(kNotCounted);
   SceneryConfig ball = pressing_ball(0.02, 0.008, 0.05);
+  ball.friction = {0.5, 0.4};
   ball.motion.path.push_back({0.2, Vector3(0.02, 0.02, 0.0)});
   Run run(scene(coarse_cube(), ball));
   const AllocationGuard guard;

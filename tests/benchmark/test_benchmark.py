@@ -231,7 +231,7 @@ class TableTest(unittest.TestCase):
 
 class LongTableTest(TableTest):
     def test_irdm_is_as_the_table_says(self):
-        self.check_rows((("two-spheres", "irdm", "irdm"), ("push", "irdm, rigid ball", "irdm-ball"),
+        self.check_rows((("two-spheres", "irdm", "irdm"), ("push", "irdm, rigid ball", "irdm-rigid-ball"),
                          ("push", "irdm, fine", "irdm-fine")))
 
 
